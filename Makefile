@@ -1,0 +1,41 @@
+# Everything a newcomer needs: `make demo` and `make test`.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.installed
+
+.PHONY: help install demo serve test test-all bench lint
+
+help:
+	@echo "make demo | serve | test | test-all | bench | lint | install"
+
+install: $(STAMP)
+
+# --without-pip and pip's --python: Debian's own Python has pip but no ensurepip.
+$(STAMP): pyproject.toml docker/constraints.txt
+	$(PYTHON) -m venv --without-pip $(VENV)
+	$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check \
+	  --constraint docker/constraints.txt --editable ".[dev]"
+	@touch $(STAMP)
+
+demo: install
+	$(BIN)/kinedex demo
+
+serve: install
+	$(BIN)/kinedex serve
+
+lint: install
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports --no-cache
+
+# The test runner comes last: its summary is the run's closing line.
+test: lint
+	$(BIN)/pytest
+
+test-all: lint
+	$(BIN)/pytest -m "not bench"
+
+bench: install
+	$(BIN)/pytest -m bench -s tests/bench

@@ -1,0 +1,1 @@
+"""From a canonical motion to its descriptors."""

@@ -1,0 +1,1 @@
+"""The HTTP contract of DESIGN 8."""

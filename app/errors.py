@@ -1,0 +1,198 @@
+"""The tree of failures.
+
+A failure is a class; the first line of its docstring is its title and default
+detail, `code` is the machine's name for it. HTTP statuses are known only to
+`app.api`. Standard library only.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where something is wrong: a line, joint, frame or field, and what was expected."""
+
+    location: str
+    message: str
+
+
+class KinedexError(Exception):
+    """Something went wrong in Kinedex."""
+
+    code: ClassVar[str] = "internal"
+
+    def __init__(self, detail: str | None = None, *, places: Iterable[Place] = ()) -> None:
+        self.detail = detail or self.title()
+        self.places = tuple(places)
+        super().__init__(self.detail)
+
+    @classmethod
+    def title(cls) -> str:
+        """The first line of the class's docstring, without its full stop."""
+        return (inspect.getdoc(cls) or cls.__name__).splitlines()[0].rstrip(".")
+
+    def as_problem(self) -> dict[str, Any]:
+        """The members of an RFC 9457 problem that do not depend on HTTP."""
+        return {
+            "title": self.title(),
+            "detail": self.detail,
+            "code": self.code,
+            "errors": [{"location": p.location, "message": p.message} for p in self.places],
+        }
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Failures cross process boundaries; keyword-only arguments need help to be pickled.
+        return (_rebuild, (type(self), self.detail, self.places))
+
+
+def _rebuild(kind: type[KinedexError], detail: str, places: tuple[Place, ...]) -> KinedexError:
+    return kind(detail, places=places)
+
+
+class BadContent(KinedexError):
+    """The content cannot be used."""
+
+    code = "bad_content"
+
+
+class Unreadable(BadContent):
+    """The file cannot be read as its format."""
+
+    code = "unreadable"
+
+
+class UnknownFormat(BadContent):
+    """The content is of no format that Kinedex knows."""
+
+    code = "unknown_format"
+
+
+class FormatNotSupported(BadContent):
+    """The format is known, but this version cannot read it."""
+
+    code = "format_not_supported"
+
+
+class EmptyFile(BadContent):
+    """The file is empty."""
+
+    code = "empty_file"
+
+
+class NotHuman(BadContent):
+    """The skeleton lacks joints without which a body cannot be analysed."""
+
+    code = "skeleton_not_human"
+
+
+class TooShort(BadContent):
+    """The motion is too short to be analysed."""
+
+    code = "too_short"
+
+
+class TooLarge(KinedexError):
+    """The content is larger than the limit."""
+
+    code = "too_large"
+
+
+class AnalysisTimedOut(BadContent):
+    """The analysis took longer than the limit and was stopped."""
+
+    code = "analysis_timed_out"
+
+
+class AnalysisCrashed(BadContent):
+    """The analysis process died (out of memory, or killed)."""
+
+    code = "analysis_crashed"
+
+
+class BadField(KinedexError):
+    """A field of the request is wrong."""
+
+    code = "bad_field"
+
+
+class NotFound(KinedexError):
+    """There is no such thing."""
+
+    code = "not_found"
+
+
+class ClipNotFound(NotFound):
+    """There is no clip with this id."""
+
+    code = "clip_not_found"
+
+
+class JobNotFound(NotFound):
+    """There is no job with this id."""
+
+    code = "job_not_found"
+
+
+class Conflict(KinedexError):
+    """The state of things does not allow this."""
+
+    code = "conflict"
+
+
+class ClipNotReady(Conflict):
+    """The clip is not ready yet."""
+
+    code = "clip_not_ready"
+
+
+class ModelNotFitted(Conflict):
+    """No model has been fitted on this library yet."""
+
+    code = "model_not_fitted"
+
+
+class NotEnoughLabels(Conflict):
+    """The library has too few labelled clips to fit this model."""
+
+    code = "not_enough_labels"
+
+
+class StorageError(KinedexError):
+    """The store failed."""
+
+    code = "storage"
+
+
+class DiskFull(StorageError):
+    """There is no space left to store this; nothing was kept."""
+
+    code = "disk_full"
+
+
+class DatabaseOutOfDate(StorageError):
+    """The database is of another version; run `kinedex db upgrade`."""
+
+    code = "database_out_of_date"
+
+
+class Unauthorized(KinedexError):
+    """An API key is needed."""
+
+    code = "unauthorized"
+
+
+class Forbidden(KinedexError):
+    """This API key does not allow that."""
+
+    code = "forbidden"
+
+
+class ConfigurationError(KinedexError):
+    """The settings do not allow this."""
+
+    code = "configuration"

@@ -1,0 +1,1 @@
+"""Bytes to recordings and back, one module a format, and sniffing."""

@@ -1,0 +1,1 @@
+"""What is fitted on a library: frozen records of arrays, pure functions."""

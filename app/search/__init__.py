@@ -1,0 +1,1 @@
+"""The index over motion vectors, shortlist and re-rank."""

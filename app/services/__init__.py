@@ -1,0 +1,1 @@
+"""Use cases: ingest, find, recognise, fit, evaluate, demo library."""

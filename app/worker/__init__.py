@@ -1,0 +1,1 @@
+"""The queue's consumer: each task is one service call."""
