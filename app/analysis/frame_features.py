@@ -1,0 +1,49 @@
+"""What the body does in each frame, free of place, heading, size, unit and rate (DESIGN 13).
+
+82 features at 30 Hz: positions of Sun's 13 joints in the body frame (39, body lengths),
+their velocities (39, change in 1/3 s, halved), the hips' velocity in the body frame
+(3, body lengths per s) and the yaw rate (1, radians per s).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.motion.body_frame import BodyTrack
+from app.motion.resampling import resample
+from app.numerics.arrays import FloatArray
+
+FEATURES = 82
+VELOCITY_STEP = 1 / 3
+"""Seconds; velocities are told as the change in this time."""
+
+VELOCITY_WEIGHT = 0.5
+"""How much the joints' velocities count beside their positions."""
+
+WARPING_RATE = 10.0
+"""Hz; the rate at which motions are warped onto each other."""
+
+TRAVEL_WEIGHT = 2.0
+"""How much more the hips' velocity and the yaw rate count in warping."""
+
+TRAVEL = slice(78, 82)
+"""The columns of the hips' velocity and the yaw rate."""
+
+
+def frame_features(track: BodyTrack) -> FloatArray:
+    """(n, 82) float64 features of each frame of `track`."""
+    places = track.local.reshape(track.frames, -1)
+    changes = np.asarray(np.gradient(places, axis=0))
+    changes *= track.rate * VELOCITY_STEP * VELOCITY_WEIGHT
+    return np.hstack([places, changes, track.velocity(), track.yaw_rate()[:, None]])
+
+
+def features_at_10hz(features: FloatArray, rate: float) -> FloatArray:
+    """(m, 82) float32: `features` (n, 82) of `rate` Hz, ready to be warped.
+
+    At WARPING_RATE, with travel weighted, so that the Euclidean distance of two rows is
+    the cost of matching them.
+    """
+    slow = resample(features, rate, WARPING_RATE)
+    slow[:, TRAVEL] *= TRAVEL_WEIGHT
+    return slow.astype(np.float32)

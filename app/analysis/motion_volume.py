@@ -1,0 +1,71 @@
+"""The motion sequence volume and its rank-1 factors (Sun 2011, sections 3 and 4).
+
+A pose's self-similarity matrix holds the distances between its 13 joints; stacked over
+time they make a volume (13, 13, frames), which is told by lambda, the primary vector rho
+(13,) and the secondary vector epsilon (frames,).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.motion.body_frame import BodyTrack
+from app.numerics.arrays import FloatArray
+from app.numerics.cross_correlation import max_cross_correlations
+from app.numerics.dtw import dtw_distances
+from app.numerics.rank1 import Rank1, symmetric_rank1
+
+LARGEST_CROSS_CORRELATION = 3.0
+"""Of equation 6: three components, each of unit vectors."""
+
+
+def self_similarity(points: FloatArray, *, q: int = 2, threshold: float = 0.0) -> FloatArray:
+    """(frames, joints, joints) self-similarity matrices of `points` (frames, joints, 3).
+
+    Equations 1 and 2: distances by the q-norm, q = 1 or 2, in the unit of `points`. With a
+    threshold eta > 0, 1 where the distance is at most eta and 0 elsewhere; eta = 0, the
+    paper's choice, keeps the distances. Raises ValueError for another q.
+    """
+    if q not in (1, 2):
+        raise ValueError("q must be 1 or 2")
+    differences = points[:, :, None] - points[:, None]
+    distances: FloatArray = (
+        np.abs(differences).sum(axis=-1)
+        if q == 1
+        else np.sqrt(np.einsum("fijk,fijk->fij", differences, differences))
+    )
+    return (distances <= threshold).astype(np.float64) if threshold > 0 else distances
+
+
+def motion_volume(track: BodyTrack, *, q: int = 2, threshold: float = 0.0) -> FloatArray:
+    """(13, 13, frames) volume of `track` (equation 3), in body lengths.
+
+    Joints are taken in the body frame, so that q = 1 does not depend on the heading.
+    """
+    return np.moveaxis(self_similarity(track.local, q=q, threshold=threshold), 0, -1)
+
+
+def decompose(track: BodyTrack, *, q: int = 2, threshold: float = 0.0) -> Rank1:
+    """Lambda, rho (13,) and epsilon (frames,) of `track`'s volume (algorithm 1)."""
+    return symmetric_rank1(motion_volume(track, q=q, threshold=threshold))
+
+
+def cross_correlations(
+    rho: FloatArray, epsilon: FloatArray, rhos: FloatArray, epsilons: Sequence[FloatArray]
+) -> FloatArray:
+    """(c,) D_xcorr of equation 6, 0..3, larger for more alike: rho counts twice.
+
+    One motion's rho (13,), epsilon (n,) against rhos (c, 13), epsilons of (m,) each.
+    """
+    spatial = max_cross_correlations(rho, list(rhos))
+    return 2.0 * spatial + max_cross_correlations(epsilon, epsilons)
+
+
+def warping_distances(
+    rho: FloatArray, epsilon: FloatArray, rhos: FloatArray, epsilons: Sequence[FloatArray]
+) -> FloatArray:
+    """(c,) D_dtw of equation 7, smaller for more alike: rho counts twice; shapes as above."""
+    spatial = dtw_distances(rho, list(rhos), per_step=False)
+    return 2.0 * spatial + dtw_distances(epsilon, epsilons, per_step=False)

@@ -1,0 +1,61 @@
+"""Gait cycles (DESIGN 4): from one forward swing of the left foot to its next.
+
+The fore-aft difference of the feet in the body frame, cut at its upward zero crossings.
+A motion is cyclic where such cycles follow one another, last as human steps do and swing
+widely to both sides; anything else has none.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from app.motion.body_frame import BodyTrack
+from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.numerics.arrays import FloatArray
+
+SMOOTHING = 0.05
+"""Seconds (standard deviation)."""
+
+SHORTEST_CYCLE = 0.4
+LONGEST_CYCLE = 2.0
+"""Seconds for both steps, from a sprint to a stroll."""
+
+LEAST_SWING = 0.15
+"""Body lengths that the feet must part, to each side, in a cycle."""
+
+LEAST_TRAVEL = 0.3
+"""Body lengths that the hips must travel in a cycle: kicks and dances on the spot do not."""
+
+LEFT_FOOT = SUN_ROLES.index(JointRole.LEFT_FOOT)
+RIGHT_FOOT = SUN_ROLES.index(JointRole.RIGHT_FOOT)
+FORWARD = 2
+
+
+def gait_cycles(track: BodyTrack) -> list[tuple[int, int]]:
+    """(first, stop) frames of each gait cycle of `track`, in order; empty where none."""
+    split = foot_split(track)
+    crossings = np.flatnonzero((split[:-1] <= 0) & (split[1:] > 0)) + 1
+    return [
+        (int(first), int(stop))
+        for first, stop in pairwise(crossings)
+        if _is_stride(track, split[first:stop], int(first), int(stop))
+    ]
+
+
+def foot_split(track: BodyTrack) -> FloatArray:
+    """(n,) how far the left foot is before the right one, body lengths, smoothed."""
+    split = track.local[:, LEFT_FOOT, FORWARD] - track.local[:, RIGHT_FOOT, FORWARD]
+    return np.asarray(gaussian_filter1d(split, SMOOTHING * track.rate, mode="nearest"))
+
+
+def _is_stride(track: BodyTrack, split: FloatArray, first: int, stop: int) -> bool:
+    seconds = (stop - first) / track.rate
+    if not SHORTEST_CYCLE <= seconds <= LONGEST_CYCLE:
+        return False
+    last = min(stop, track.frames - 1)
+    travel = np.linalg.norm((track.origin[last] - track.origin[first])[[0, FORWARD]])
+    parted = min(split.max(), -split.min()) >= LEAST_SWING
+    return bool(parted and travel / track.body_length >= LEAST_TRAVEL)

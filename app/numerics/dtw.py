@@ -1,0 +1,138 @@
+"""Dynamic time warping, vectorised over candidates.
+
+The accumulated cost D[i, j] = cost[i, j] + min(D[i-1, j], D[i, j-1], D[i-1, j-1]) depends
+only on the two anti-diagonals before its own, so one numpy step computes a whole
+anti-diagonal of a whole batch of candidates. Candidates of similar length share a batch;
+padding at their ends is harmless because D never looks ahead.
+Sequences are (frames, dimensions), or (frames,) for one dimension; cost is Euclidean.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray, IntArray
+
+CELLS_AT_ONCE = 1_500_000
+"""Cost cells of one batch (8 bytes each): bounds memory, and keeps it near the caches."""
+
+MAX_BATCH = 256
+
+
+def dtw_distance(
+    a: FloatArray, b: FloatArray, *, band: float | None = None, per_step: bool = True
+) -> float:
+    """The cost of the cheapest warping of `a` (n, d) onto `b` (m, d), divided by n + m.
+
+    band: see `dtw_distances`; per_step=False leaves the total undivided.
+    """
+    return float(dtw_distances(a, [b], band=band, per_step=per_step)[0])
+
+
+def dtw_distances(
+    query: FloatArray,
+    candidates: Sequence[FloatArray],
+    *,
+    band: float | None = None,
+    per_step: bool = True,
+) -> FloatArray:
+    """(c,) DTW cost of `query` (n, d) against each of `candidates`, each (m, d).
+
+    band: largest difference between the shares of the two sequences that have passed where
+    they meet, 0..1 (Sakoe-Chiba's band on the true diagonal); None is no band. The band is
+    never narrower than one step of the shorter sequence, so that a path exists.
+    per_step: divide the total by n + m. Raises ValueError for an empty sequence.
+    """
+    query = _as_table(query)
+    lengths = np.array([len(candidate) for candidate in candidates], dtype=np.int64)
+    if not len(query) or (len(lengths) and not lengths.min()):
+        raise ValueError("cannot warp an empty sequence")
+    totals = np.empty(len(lengths))
+    for chosen in _batches(lengths, len(query)):
+        stacked = _stacked([candidates[i] for i in chosen], query.shape[1])
+        cost = _costs(query, stacked)
+        if band is not None:
+            _forbid_outside(cost, lengths[chosen], band)
+        totals[chosen] = _accumulate(cost, lengths[chosen])
+    return totals / (len(query) + lengths) if per_step else totals
+
+
+def _as_table(sequence: FloatArray) -> FloatArray:
+    table = np.asarray(sequence, dtype=np.float64)
+    return table[:, None] if table.ndim == 1 else table
+
+
+def _batches(lengths: IntArray, frames: int) -> list[IntArray]:
+    """Indices grouped so that lengths are alike and a batch's costs fit CELLS_AT_ONCE."""
+    order = np.argsort(-lengths, kind="stable")
+    batches: list[IntArray] = []
+    first = 0
+    while first < len(order):
+        longest = int(lengths[order[first]])
+        count = int(np.clip(CELLS_AT_ONCE // (frames * longest), 1, MAX_BATCH))
+        batches.append(order[first : first + count])
+        first += count
+    return batches
+
+
+def _stacked(candidates: list[FloatArray], dimensions: int) -> FloatArray:
+    """(m, c, d): candidates side by side, zeros after their ends."""
+    longest = max(len(candidate) for candidate in candidates)
+    stacked = np.zeros((longest, len(candidates), dimensions))
+    for index, candidate in enumerate(candidates):
+        stacked[: len(candidate), index] = _as_table(candidate)
+    return stacked
+
+
+def _costs(query: FloatArray, stacked: FloatArray) -> FloatArray:
+    """(n, m, c) Euclidean distances between frames; (n, d) and (m, c, d) in."""
+    if query.shape[1] == 1:
+        return np.asarray(np.abs(query[:, :, None] - stacked[None, :, :, 0]))
+    frames, count, dimensions = stacked.shape
+    centre = query.mean(axis=0)  # differences of small numbers keep more digits
+    rows, columns = query - centre, stacked.reshape(-1, dimensions) - centre
+    squares = rows @ (-2.0 * columns.T)
+    squares += np.einsum("nd,nd->n", rows, rows)[:, None]
+    squares += np.einsum("kd,kd->k", columns, columns)
+    np.maximum(squares, 0.0, out=squares)
+    return np.asarray(np.sqrt(squares, out=squares).reshape(len(query), frames, count))
+
+
+def _forbid_outside(cost: FloatArray, lengths: IntArray, band: float) -> None:
+    """Make cells of (n, m, c) `cost` outside the band infinitely dear, in place."""
+    rows, columns, _ = cost.shape
+    short = np.minimum(rows, lengths)
+    passed = np.arange(rows)[:, None, None] / max(rows - 1, 1)
+    other = np.arange(columns)[None, :, None] / np.maximum(lengths - 1, 1)
+    width = np.maximum(band, 1.0 / np.maximum(short - 1, 1))
+    cost[np.abs(passed - other) > width + 1e-12] = np.inf
+
+
+def _accumulate(cost: FloatArray, lengths: IntArray) -> FloatArray:
+    """(c,) totals at each candidate's last frame; cost (n, m, c) C-contiguous.
+
+    Anti-diagonal k holds D[i, k - i] at row i + 1; row 0 is the wall outside the table.
+    """
+    rows, columns, count = cost.shape
+    totals = np.empty(count)
+    older, old, new = (np.full((rows + 1, count), np.inf) for _ in range(3))
+    older[0] = 0.0  # the corner before the first cell
+    flat = cost.reshape(rows * columns, count)
+    for k in range(rows + columns - 1):
+        low, high = max(0, k - columns + 1), min(rows - 1, k)
+        diagonal = flat[
+            low * columns + k - low : high * columns + k - high + 1 : max(columns - 1, 1)
+        ]
+        inside = new[low + 1 : high + 2]
+        np.minimum(old[low + 1 : high + 2], old[low : high + 1], out=inside)
+        np.minimum(inside, older[low : high + 1], out=inside)
+        inside += diagonal
+        new[: low + 1] = np.inf
+        new[high + 2 :] = np.inf
+        ended = lengths == k - rows + 2
+        if high == rows - 1 and ended.any():
+            totals[ended] = new[rows, ended]
+        older, old, new = old, new, older
+    return totals

@@ -1,0 +1,77 @@
+"""Symmetric rank-1 approximation: identities, a general decomposition as the twin."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tensorly.decomposition import parafac
+
+from app.numerics.arrays import FloatArray
+from app.numerics.rank1 import Rank1, symmetric_rank1
+
+
+def a_volume(seed: int, joints: int = 6, frames: int = 9) -> FloatArray:
+    """Symmetric and not negative, as volumes of distances are."""
+    drawn = np.random.default_rng(seed).random((joints, joints, frames))
+    return drawn + drawn.transpose(1, 0, 2)
+
+
+def whole(found: Rank1) -> FloatArray:
+    return found.weight * np.einsum("i,j,k->ijk", found.primary, found.primary, found.secondary)
+
+
+def test_a_rank_1_volume_is_found_exactly() -> None:
+    rng = np.random.default_rng(0)
+    rho, epsilon = rng.random(13), rng.random(40)
+    rho, epsilon = rho / np.linalg.norm(rho), epsilon / np.linalg.norm(epsilon)
+    found = symmetric_rank1(7.5 * np.einsum("i,j,k->ijk", rho, rho, epsilon))
+    assert found.weight == pytest.approx(7.5)
+    np.testing.assert_allclose(found.primary, rho, atol=1e-9)
+    np.testing.assert_allclose(found.secondary, epsilon, atol=1e-9)
+    assert found.errors[-1] < 1e-7
+    assert found.converged
+
+
+@given(seed=st.integers(0, 10_000))
+@settings(max_examples=30, deadline=None)
+def test_what_is_left_is_what_the_weight_does_not_explain(seed: int) -> None:
+    volume = a_volume(seed)
+    found = symmetric_rank1(volume)
+    left = np.linalg.norm(volume - whole(found)) ** 2
+    assert left == pytest.approx(np.linalg.norm(volume) ** 2 - found.weight**2, rel=1e-8)
+    assert found.errors[-1] == pytest.approx(np.sqrt(left) / np.linalg.norm(volume), abs=1e-6)
+    assert np.linalg.norm(found.primary) == pytest.approx(1.0)
+    assert np.linalg.norm(found.secondary) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_no_worse_than_an_unsymmetric_decomposition(seed: int) -> None:
+    volume = a_volume(seed)
+    twin = parafac(volume, rank=1, n_iter_max=500, tol=1e-12, init="svd")
+    found = symmetric_rank1(volume)
+    assert found.weight == pytest.approx(float(np.abs(twin.weights[0]) * np.prod(
+        [np.linalg.norm(factor) for factor in twin.factors])), rel=1e-6)  # fmt: skip
+
+
+def test_errors_fall_and_convergence_is_told() -> None:
+    found = symmetric_rank1(a_volume(3))
+    assert (np.diff(found.errors) <= 1e-12).all()
+    assert found.converged
+    assert found.iterations < 30
+    assert not symmetric_rank1(a_volume(3), max_iterations=1).converged
+
+
+def test_scale_goes_to_the_weight_alone() -> None:
+    once, thrice = symmetric_rank1(a_volume(4)), symmetric_rank1(3 * a_volume(4))
+    assert thrice.weight == pytest.approx(3 * once.weight)
+    np.testing.assert_allclose(thrice.primary, once.primary, atol=1e-12)
+
+
+@pytest.mark.parametrize("frames", [1, 2])
+def test_nothing_and_little_are_answered_without_nan(frames: int) -> None:
+    found = symmetric_rank1(np.zeros((13, 13, frames)))
+    assert found.weight == 0.0
+    assert np.linalg.norm(found.primary) == pytest.approx(1.0)
+    assert np.isfinite(symmetric_rank1(a_volume(1, frames=frames)).secondary).all()
