@@ -1,0 +1,186 @@
+"""The settings of an installation: flags, then `KINEDEX_*`, then a TOML file, then defaults.
+
+One table documents them all: `settings_table()`; a test holds the README against it.
+Secrets are `SecretStr`, so that neither a log line nor a traceback shows them.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field, SecretStr, ValidationError
+from pydantic_settings import (
+    BaseSettings,
+    PydanticBaseSettingsSource,
+    SettingsConfigDict,
+    TomlConfigSettingsSource,
+)
+
+from app.errors import ConfigurationError, Place
+
+ENV_PREFIX = "KINEDEX_"
+CONFIG_FILE_ENV = "KINEDEX_CONFIG_FILE"
+CONFIG_FILE_DEFAULT = "kinedex.toml"
+LOOPBACK_HOSTS = frozenset({"127.0.0.1", "::1", "localhost"})
+MIB = 1024 * 1024
+
+
+class Settings(BaseSettings):
+    """All settings; each field's description is its documentation."""
+
+    model_config = SettingsConfigDict(env_prefix=ENV_PREFIX, extra="forbid", frozen=True)
+
+    data_dir: Path = Field(
+        Path("data"), description="Directory of the database, the uploaded files and the demo."
+    )
+    database_url: SecretStr | None = Field(
+        None, description="SQLAlchemy URL of the database; unset: SQLite in the data directory."
+    )
+    host: str = Field(
+        "127.0.0.1",
+        description="Address to listen on; off loopback an API key must exist.",
+    )
+    port: int = Field(8000, ge=0, le=65535, description="Port to listen on; 0 takes a free one.")
+    require_keys: bool = Field(
+        False, description="Ask for an API key on loopback too (off loopback it is always asked)."
+    )
+    log_level: Literal["debug", "info", "warning", "error"] = Field(
+        "info", description="Least severity that is logged."
+    )
+
+    max_upload_bytes: int = Field(
+        200 * MIB, ge=1, description="Largest motion file taken, bytes; a larger one is a 413."
+    )
+    max_archive_bytes: int = Field(
+        4096 * MIB, ge=1, description="Largest ZIP archive taken by an import, bytes."
+    )
+    max_archive_entries: int = Field(
+        100_000, ge=1, description="Most files in one imported archive."
+    )
+    max_archive_ratio: float = Field(
+        200.0, ge=1, description="Largest unpacked size of an archive, as a multiple of its own."
+    )
+    max_frames: int = Field(500_000, ge=1, description="Most frames in one clip.")
+    max_joints: int = Field(512, ge=1, description="Most joints in one clip.")
+    max_concurrent_uploads: int = Field(
+        16, ge=1, description="Uploads received at once; more are answered 503 with Retry-After."
+    )
+    rate_limit_per_minute: int = Field(
+        0, ge=0, description="Requests a minute for each key (or address); 0 is no limit."
+    )
+    query_timeout_s: float = Field(
+        30.0, gt=0, description="Seconds that analysing an uploaded query may take."
+    )
+
+    analysis_timeout_s: float = Field(
+        300.0, gt=0, description="Seconds that analysing one file may take before it is stopped."
+    )
+    analysis_memory_mb: int = Field(
+        2048, ge=256, description="Address space of an analysis process, MiB."
+    )
+    analysis_processes: int = Field(
+        0, ge=0, description="Analysis processes of a worker; 0 takes one for each core."
+    )
+    job_lease_s: float = Field(
+        30.0, gt=0, description="Seconds without a heartbeat after which a job is given again."
+    )
+    job_heartbeat_s: float = Field(
+        5.0, gt=0, description="Seconds between a worker's heartbeats on a job."
+    )
+    job_max_attempts: int = Field(
+        3, ge=1, description="Times a job is tried when its worker dies, before it is failed."
+    )
+    job_poll_s: float = Field(
+        0.25, gt=0, description="Seconds an idle worker waits before it looks for work again."
+    )
+    refit_growth: float = Field(
+        0.1, ge=0, description="Part by which the library must have changed to be fitted again."
+    )
+
+    @property
+    def database(self) -> str:
+        """The database's URL, password included: never log it."""
+        if self.database_url is not None:
+            return self.database_url.get_secret_value()
+        return f"sqlite:///{self.data_dir / 'kinedex.sqlite3'}"
+
+    @property
+    def files_dir(self) -> Path:
+        """Directory of the content-addressed file store."""
+        return self.data_dir / "files"
+
+    @property
+    def listens_on_loopback(self) -> bool:
+        """Whether only this machine can reach the service."""
+        return self.host in LOOPBACK_HOSTS
+
+    @classmethod
+    def settings_customise_sources(
+        cls,
+        settings_cls: type[BaseSettings],
+        init_settings: PydanticBaseSettingsSource,
+        env_settings: PydanticBaseSettingsSource,
+        dotenv_settings: PydanticBaseSettingsSource,  # noqa: ARG003 - pydantic's signature
+        file_secret_settings: PydanticBaseSettingsSource,  # noqa: ARG003
+    ) -> tuple[PydanticBaseSettingsSource, ...]:
+        """Flags win over the environment, that over the file."""
+        path = Path(os.environ.get(CONFIG_FILE_ENV, CONFIG_FILE_DEFAULT))
+        return init_settings, env_settings, TomlConfigSettingsSource(settings_cls, path)
+
+
+def load_settings(**flags: Any) -> Settings:
+    """The settings in force; a flag of None counts as not given.
+
+    Raises ConfigurationError that names each wrong setting, without its value.
+    """
+    given = {name: value for name, value in flags.items() if value is not None}
+    named = os.environ.get(CONFIG_FILE_ENV)
+    if named is not None and not Path(named).is_file():
+        raise ConfigurationError(f"{CONFIG_FILE_ENV} names a file that does not exist: {named}")
+    try:
+        return Settings(**given)
+    except ValidationError as error:
+        raise _explained(error) from None
+    except ValueError as error:  # tomllib.TOMLDecodeError
+        raise ConfigurationError(f"The settings file cannot be read: {error}") from None
+
+
+def _explained(error: ValidationError) -> ConfigurationError:
+    places = [
+        Place(ENV_PREFIX + ".".join(str(part) for part in item["loc"]).upper(), item["msg"])
+        for item in error.errors(include_input=False, include_url=False, include_context=False)
+    ]
+    detail = "; ".join(f"{place.location}: {place.message}" for place in places)
+    return ConfigurationError(f"The settings do not allow this: {detail}", places=places)
+
+
+@dataclass(frozen=True, slots=True)
+class SettingRow:
+    """One line of the documented table of settings."""
+
+    env: str
+    default: str
+    description: str
+
+
+def settings_table() -> tuple[SettingRow, ...]:
+    """Every setting, in the order of the class, with its default as one would type it."""
+    rows = [
+        SettingRow(ENV_PREFIX + name.upper(), _shown(field.default), field.description or "")
+        for name, field in Settings.model_fields.items()
+    ]
+    rows.append(
+        SettingRow(CONFIG_FILE_ENV, CONFIG_FILE_DEFAULT, "TOML file with these settings by name.")
+    )
+    return tuple(rows)
+
+
+def _shown(default: object) -> str:
+    if default is None:
+        return ""
+    if isinstance(default, bool):
+        return str(default).lower()
+    return str(default)

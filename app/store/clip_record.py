@@ -1,0 +1,157 @@
+"""The clip as the store tells it: the fields of DESIGN 8's Clip and what a re-analysis needs."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+from typing import Any, TypedDict
+
+
+class ClipState(StrEnum):
+    """Where a clip stands."""
+
+    QUEUED = "queued"
+    """Stored durably; waits for a worker."""
+    PROCESSING = "processing"
+    """A worker is analysing it."""
+    READY = "ready"
+    """Analysed: the next search finds it."""
+    FAILED = "failed"
+    """Cannot be analysed; `error` says why. Listed, never searched."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClipWarning:
+    """A doubt about a clip: `code` for machines, `detail` for people, `likely` a better value."""
+
+    code: str
+    detail: str
+    likely: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ClipRecord:
+    """A clip's row. What the analysis finds is None (or empty) until the clip is ready.
+
+    sha256: of the file's own bytes; content_key: what makes the clip one of a kind (the same,
+    or with a skeleton companion a hash of both); roles: joint name by role; durations in
+    seconds, rates in Hz; error: an RFC 9457 problem; *_override: what the client said, which
+    wins over what the file says; changed_version: library version of the last change that
+    searches see, 0 while it was never searchable.
+    """
+
+    id: str
+    name: str
+    state: ClipState
+    format: str | None
+    sha256: str
+    person: str | None
+    task: str | None
+    words: tuple[str, ...]
+    license: str | None
+    source: str | None
+    frames: int | None
+    frame_rate: float | None
+    declared_frame_rate: float | None
+    duration: float | None
+    joints: int | None
+    roles: dict[str, str]
+    missing_roles: tuple[str, ...]
+    warnings: tuple[ClipWarning, ...]
+    created_at: datetime
+    error: dict[str, Any] | None
+    metres_per_unit: float | None
+    content_key: str
+    file_name: str
+    file_size: int
+    skeleton_sha256: str | None
+    frame_rate_override: float | None
+    metres_per_unit_override: float | None
+    roles_override: dict[str, str] | None
+    analysis_version: int | None
+    changed_version: int
+
+
+@dataclass(frozen=True, slots=True)
+class NewClip:
+    """What is known of a clip before its analysis; words are normalised by the caller."""
+
+    sha256: str
+    file_name: str
+    file_size: int
+    name: str
+    person: str | None = None
+    task: str | None = None
+    words: tuple[str, ...] = ()
+    license: str | None = None
+    source: str | None = None
+    format: str | None = None
+    skeleton_sha256: str | None = None
+    frame_rate_override: float | None = None
+    metres_per_unit_override: float | None = None
+    roles_override: dict[str, str] | None = None
+
+    @property
+    def content_key(self) -> str:
+        """Hex SHA-256 that two clips share only if file and skeleton companion are the same."""
+        if self.skeleton_sha256 is None:
+            return self.sha256
+        return hashlib.sha256(f"{self.sha256}+{self.skeleton_sha256}".encode()).hexdigest()
+
+
+@dataclass(frozen=True, slots=True)
+class ClipFacts:
+    """What the analysis found out about a clip; units as in ClipRecord."""
+
+    format: str
+    frames: int
+    frame_rate: float
+    declared_frame_rate: float | None
+    duration: float
+    joints: int
+    metres_per_unit: float
+    roles: dict[str, str]
+    missing_roles: tuple[str, ...]
+    warnings: tuple[ClipWarning, ...]
+    analysis_version: int
+
+
+class ClipChanges(TypedDict, total=False):
+    """What a PATCH may change; a key that is absent stays, None takes a value away."""
+
+    name: str
+    person: str | None
+    task: str | None
+    words: Sequence[str]
+    license: str | None
+    source: str | None
+    frame_rate_override: float | None
+    metres_per_unit_override: float | None
+    roles_override: dict[str, str] | None
+
+
+class AddOutcome(StrEnum):
+    """What became of content that was handed in."""
+
+    ADDED = "added"
+    """A new clip: it needs an ingest job."""
+    EXISTS = "exists"
+    """The same content is there already; nothing was changed."""
+    REQUEUED = "requeued"
+    """The same content had failed; it is queued again and needs an ingest job."""
+
+
+@dataclass(frozen=True, slots=True)
+class Added:
+    """The answer to `clips.add_or_get`."""
+
+    clip: ClipRecord
+    outcome: AddOutcome
+
+    @property
+    def needs_analysis(self) -> bool:
+        """Whether the caller has to enqueue an ingest job in the same transaction."""
+        return self.outcome is not AddOutcome.EXISTS

@@ -1,0 +1,221 @@
+"""Clips: adding, reading, changing, removing. Listing is in `clip_listing`."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from sqlalchemy import RowMapping, delete, insert, select, update
+
+from app.errors import ClipNotFound
+from app.store import library
+from app.store.clip_record import (
+    Added,
+    AddOutcome,
+    ClipChanges,
+    ClipFacts,
+    ClipRecord,
+    ClipState,
+    ClipWarning,
+    NewClip,
+)
+from app.store.engine import Tx
+from app.store.ids import new_id, utc_now
+from app.store.tables import clip_words, clips
+
+IDS_PER_QUERY = 500
+"""Databases limit the parameters of one statement."""
+
+
+def add_or_get(tx: Tx, new: NewClip) -> Added:
+    """Adds a clip in state queued, or finds the one with the same content.
+
+    A failed one is queued again, with those labels and overrides that are given now. Safe
+    between processes: writers take turns, so the look-up cannot be overtaken.
+    """
+    library.lock(tx)
+    found = find_by_content(tx, new.content_key)
+    if found is None:
+        return Added(_insert(tx, new), AddOutcome.ADDED)
+    if found.state is ClipState.FAILED:
+        return Added(_requeue_with(tx, found, new), AddOutcome.REQUEUED)
+    return Added(found, AddOutcome.EXISTS)
+
+
+def get(tx: Tx, clip_id: str) -> ClipRecord:
+    """The clip; raises ClipNotFound."""
+    found = _load(tx, [clip_id])
+    if not found:
+        raise ClipNotFound(f"There is no clip with the id {clip_id!r}")
+    return found[0]
+
+
+def get_many(tx: Tx, clip_ids: Collection[str]) -> dict[str, ClipRecord]:
+    """The clips that exist among `clip_ids`, by id, in the order asked for."""
+    found = {clip.id: clip for batch in in_batches(clip_ids) for clip in _load(tx, batch)}
+    return {clip_id: found[clip_id] for clip_id in clip_ids if clip_id in found}
+
+
+def find_by_content(tx: Tx, content_key: str) -> ClipRecord | None:
+    """The clip with this content (`NewClip.content_key`), if there is one."""
+    clip_id = tx.execute(
+        select(clips.c.id).where(clips.c.content_key == content_key)
+    ).scalar_one_or_none()
+    return None if clip_id is None else get(tx, clip_id)
+
+
+def patch(tx: Tx, clip_id: str, changes: ClipChanges) -> ClipRecord:
+    """Changes labels and overrides; a ready clip's change is seen by the next search.
+
+    A changed override takes effect with the next analysis: see `requeue`.
+    """
+    before = get(tx, clip_id)
+    values: dict[str, Any] = {key: value for key, value in changes.items() if key != "words"}
+    if "name" in changes:
+        values["name_folded"] = changes["name"].casefold()
+    if "words" in changes:
+        _set_words(tx, clip_id, changes["words"])
+    if before.state is ClipState.READY:
+        values["changed_version"] = library.bump(tx)
+    if values:
+        tx.execute(update(clips).where(clips.c.id == clip_id).values(values))
+    return get(tx, clip_id)
+
+
+def requeue(tx: Tx, clip_id: str) -> ClipRecord:
+    """Back to queued, for another analysis; not searchable until that is done."""
+    return _enter(tx, clip_id, ClipState.QUEUED, error=None)
+
+
+def set_processing(tx: Tx, clip_id: str) -> ClipRecord:
+    """A worker has begun."""
+    return _enter(tx, clip_id, ClipState.PROCESSING)
+
+
+def set_ready(tx: Tx, clip_id: str, facts: ClipFacts) -> ClipRecord:
+    """Analysed: searchable from this transaction's commit on."""
+    return _enter(tx, clip_id, ClipState.READY, error=None, **asdict(facts))
+
+
+def set_failed(tx: Tx, clip_id: str, problem: dict[str, Any]) -> ClipRecord:
+    """Cannot be analysed, for the reason given as an RFC 9457 problem."""
+    return _enter(tx, clip_id, ClipState.FAILED, error=problem)
+
+
+def delete_clip(tx: Tx, clip_id: str) -> ClipRecord:
+    """Removes the row with its words and arrays; returns what it was. Raises ClipNotFound.
+
+    Jobs and imports that wait for it: use `outcomes.remove_clip`.
+    """
+    gone = get(tx, clip_id)
+    if gone.changed_version:
+        library.bury(tx, clip_id)
+    tx.execute(delete(clips).where(clips.c.id == clip_id))
+    return gone
+
+
+def in_batches(ids: Iterable[str], size: int = IDS_PER_QUERY) -> Iterator[list[str]]:
+    """Slices of `ids` that fit into one statement."""
+    every = list(ids)
+    for start in range(0, len(every), size):
+        yield every[start : start + size]
+
+
+def _insert(tx: Tx, new: NewClip) -> ClipRecord:
+    clip_id = new_id("clip")
+    values = {key: value for key, value in asdict(new).items() if key != "words"}
+    tx.execute(
+        insert(clips).values(
+            **values,
+            id=clip_id,
+            content_key=new.content_key,
+            name_folded=new.name.casefold(),
+            state=ClipState.QUEUED.value,
+            changed_version=0,
+            created_at=utc_now(),
+        )
+    )
+    _set_words(tx, clip_id, new.words)
+    return get(tx, clip_id)
+
+
+def _requeue_with(tx: Tx, failed: ClipRecord, new: NewClip) -> ClipRecord:
+    given = {key: value for key, value in asdict(new).items() if value not in (None, ())}
+    names = ClipChanges.__annotations__.keys() & given.keys()
+    patch(tx, failed.id, ClipChanges(**{name: given[name] for name in names}))  # type: ignore[typeddict-item]
+    return requeue(tx, failed.id)
+
+
+def _set_words(tx: Tx, clip_id: str, words: Sequence[str]) -> None:
+    tx.execute(delete(clip_words).where(clip_words.c.clip_id == clip_id))
+    rows = [
+        {"clip_id": clip_id, "word": word, "position": position}
+        for position, word in enumerate(dict.fromkeys(words))
+    ]
+    if rows:
+        tx.execute(insert(clip_words), rows)
+
+
+def _enter(tx: Tx, clip_id: str, state: ClipState, **values: Any) -> ClipRecord:
+    before = get(tx, clip_id)
+    if ClipState.READY in (before.state, state):
+        values["changed_version"] = library.bump(tx)
+    tx.execute(update(clips).where(clips.c.id == clip_id).values(state=state.value, **values))
+    return get(tx, clip_id)
+
+
+def _load(tx: Tx, clip_ids: Collection[str]) -> list[ClipRecord]:
+    rows = tx.execute(select(clips).where(clips.c.id.in_(clip_ids))).mappings().all()
+    words = words_of(tx, clip_ids)
+    return [to_record(row, words.get(row["id"], ())) for row in rows]
+
+
+def words_of(tx: Tx, clip_ids: Collection[str]) -> dict[str, tuple[str, ...]]:
+    """Words by clip id, in the order in which they were given."""
+    found: dict[str, list[str]] = {}
+    for batch in in_batches(clip_ids):
+        rows = tx.execute(
+            select(clip_words.c.clip_id, clip_words.c.word)
+            .where(clip_words.c.clip_id.in_(batch))
+            .order_by(clip_words.c.clip_id, clip_words.c.position)
+        )
+        for clip_id, word in rows:
+            found.setdefault(clip_id, []).append(word)
+    return {clip_id: tuple(words) for clip_id, words in found.items()}
+
+
+def to_record(row: RowMapping, words: tuple[str, ...]) -> ClipRecord:
+    """A row of `clips` as a record, field by field."""
+    return ClipRecord(
+        id=row["id"],
+        name=row["name"],
+        state=ClipState(row["state"]),
+        format=row["format"],
+        sha256=row["sha256"],
+        person=row["person"],
+        task=row["task"],
+        words=words,
+        license=row["license"],
+        source=row["source"],
+        frames=row["frames"],
+        frame_rate=row["frame_rate"],
+        declared_frame_rate=row["declared_frame_rate"],
+        duration=row["duration"],
+        joints=row["joints"],
+        roles=dict(row["roles"] or {}),
+        missing_roles=tuple(row["missing_roles"] or ()),
+        warnings=tuple(ClipWarning(**warning) for warning in row["warnings"] or ()),
+        created_at=row["created_at"],
+        error=row["error"],
+        metres_per_unit=row["metres_per_unit"],
+        content_key=row["content_key"],
+        file_name=row["file_name"],
+        file_size=row["file_size"],
+        skeleton_sha256=row["skeleton_sha256"],
+        frame_rate_override=row["frame_rate_override"],
+        metres_per_unit_override=row["metres_per_unit_override"],
+        roles_override=row["roles_override"],
+        analysis_version=row["analysis_version"],
+        changed_version=row["changed_version"],
+    )

@@ -1,0 +1,156 @@
+"""Opening a database; the only module that knows which database it is.
+
+SQLite: write-ahead log, every commit synced (`synchronous=FULL`: stored means that it
+survives kill -9 and a power cut), writers take their lock at once (`BEGIN IMMEDIATE`, so a
+transaction never fails half-way because another one wrote first), readers see one snapshot.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Connection, Engine, create_engine, event
+from sqlalchemy.engine import URL, make_url
+from sqlalchemy.exc import ArgumentError, DBAPIError
+
+from app.errors import ConfigurationError, DiskFull, StorageError
+
+BUSY_TIMEOUT_S = 30.0
+POOL_SIZE = 8
+POOL_OVERFLOW = 56  # above the 40 threads that FastAPI runs, so that a reader never waits
+WRITES_OPTION = "kinedex_writes"
+
+Tx = Connection
+"""A running transaction, as `Database.read()` and `Database.write()` give it."""
+
+
+class Database:
+    """An engine and its two kinds of transaction; safe to share between threads."""
+
+    def __init__(self, url: str, *, foreign_keys: bool = True) -> None:
+        """Connects lazily. `foreign_keys=False` is for migrations, which rebuild tables."""
+        self.engine = _open_engine(url, foreign_keys=foreign_keys)
+        self._is_sqlite = self.engine.dialect.name == "sqlite"
+        self._reader = self.engine if self._is_sqlite else _snapshot_reader(self.engine)
+        self._writer = self.engine.execution_options(**{WRITES_OPTION: True})
+        # Threads of one process queue here rather than poll SQLite's lock; processes poll.
+        self._turn = threading.Lock()
+
+    @contextmanager
+    def read(self) -> Iterator[Tx]:
+        """A transaction that sees one snapshot; nothing written in it is kept."""
+        with _storage_failures(), self._reader.connect() as connection:
+            yield connection
+
+    @contextmanager
+    def write(self) -> Iterator[Tx]:
+        """A transaction that is committed, durably, when the block ends without an exception.
+
+        Do not nest. Raises DiskFull, or StorageError when the lock is not had in time.
+        """
+        with self._my_turn(), _storage_failures(), self._writer.begin() as connection:
+            yield connection
+
+    def close(self) -> None:
+        """Gives back all connections."""
+        self.engine.dispose()
+
+    @contextmanager
+    def _my_turn(self) -> Iterator[None]:
+        if not self._is_sqlite:
+            yield
+            return
+        if not self._turn.acquire(timeout=BUSY_TIMEOUT_S):
+            raise StorageError("The database stayed locked by another writer of this process")
+        try:
+            yield
+        finally:
+            self._turn.release()
+
+
+def _snapshot_reader(engine: Engine) -> Engine:
+    return engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
+
+
+def _open_engine(url: str, *, foreign_keys: bool) -> Engine:
+    try:
+        parsed = make_url(url)
+    except ArgumentError as error:
+        raise ConfigurationError("KINEDEX_DATABASE_URL is not a database URL") from error
+    # allow_nan: JSON has no NaN; hide_parameters: no content of rows in logs and tracebacks.
+    common: dict[str, Any] = {
+        "json_serializer": _to_json,
+        "hide_parameters": True,
+        "pool_size": POOL_SIZE,
+        "max_overflow": POOL_OVERFLOW,
+    }
+    if parsed.get_backend_name() == "sqlite":
+        return _open_sqlite(parsed, common, foreign_keys=foreign_keys)
+    return create_engine(parsed, pool_pre_ping=True, **common)
+
+
+def _to_json(value: object) -> str:
+    return json.dumps(value, allow_nan=False, ensure_ascii=False)
+
+
+def _open_sqlite(url: URL, common: dict[str, Any], *, foreign_keys: bool) -> Engine:
+    if not url.database or url.database == ":memory:":
+        raise ConfigurationError(
+            "SQLite in memory is not shared by processes: give KINEDEX_DATABASE_URL a file"
+        )
+    Path(url.database).parent.mkdir(parents=True, exist_ok=True)
+    engine = create_engine(url, connect_args={"timeout": BUSY_TIMEOUT_S}, **common)
+
+    @event.listens_for(engine, "connect")
+    def _prepare(connection: sqlite3.Connection, _record: object) -> None:
+        connection.isolation_level = None  # we say BEGIN ourselves, below
+        connection.execute("PRAGMA synchronous = FULL")
+        connection.execute(f"PRAGMA foreign_keys = {'ON' if foreign_keys else 'OFF'}")
+        _ensure_wal(connection)
+
+    @event.listens_for(engine, "begin")
+    def _begin(connection: Connection) -> None:
+        writes = connection.get_execution_options().get(WRITES_OPTION, False)
+        connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
+
+    return engine
+
+
+def _ensure_wal(connection: sqlite3.Connection) -> None:
+    # The mode is kept in the file. Two processes that create it at once can meet a lock for
+    # which SQLite does not call its busy handler, hence the loop.
+    deadline = time.monotonic() + BUSY_TIMEOUT_S
+    while connection.execute("PRAGMA journal_mode").fetchone()[0] != "wal":
+        try:
+            connection.execute("PRAGMA journal_mode = WAL")
+        except sqlite3.OperationalError:
+            if time.monotonic() > deadline:
+                raise
+            time.sleep(0.01)
+
+
+@contextmanager
+def _storage_failures() -> Iterator[None]:
+    try:
+        yield
+    except DBAPIError as error:
+        failure = _as_storage_error(error)
+        if failure is None:
+            raise
+        raise failure from error
+
+
+def _as_storage_error(error: DBAPIError) -> StorageError | None:
+    code = getattr(error.orig, "sqlite_errorcode", None)
+    if code in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR_SHMSIZE):
+        return DiskFull()
+    if code is not None and code & 0xFF in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
+        return StorageError("The database stayed locked by another writer")
+    return None

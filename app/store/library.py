@@ -1,0 +1,75 @@
+"""The library version: one number that grows with every change that a search can see.
+
+It is raised in the transaction of the change itself. The update locks its only row until the
+commit, so versions become visible in their order, on any database: whoever has caught up to
+version v has missed nothing up to v.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sqlalchemy import insert, select, update
+
+from app.store.clip_record import ClipState
+from app.store.engine import Tx
+from app.store.tables import clips, library, tombstones
+
+ONLY_ROW = 1
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryChanges:
+    """What an index has to do to stand at `version`.
+
+    changed: ids of clips that are ready, to be loaded again; removed: ids to forget (deleted,
+    failed, or queued for another analysis).
+    """
+
+    version: int
+    changed: tuple[str, ...]
+    removed: tuple[str, ...]
+
+
+def version(tx: Tx) -> int:
+    """The library's version; one cheap query."""
+    found = tx.execute(select(library.c.version).where(library.c.id == ONLY_ROW))
+    return int(found.scalar_one())
+
+
+def lock(tx: Tx) -> None:
+    """Lets no other transaction that locks or bumps go on until this one ends."""
+    tx.execute(select(library.c.version).where(library.c.id == ONLY_ROW).with_for_update())
+
+
+def bump(tx: Tx) -> int:
+    """Raises the version and returns the new one."""
+    raised = update(library).where(library.c.id == ONLY_ROW).values(version=library.c.version + 1)
+    return int(tx.execute(raised.returning(library.c.version)).scalar_one())
+
+
+def bury(tx: Tx, clip_id: str) -> None:
+    """Records that a clip that searches may know is gone."""
+    tx.execute(insert(tombstones).values(clip_id=clip_id, version=bump(tx)))
+
+
+def changed_since(tx: Tx, since: int) -> LibraryChanges:
+    """What changed after version `since`; 0 gives the whole library, oldest change first."""
+    now = version(tx)
+    if now == since:
+        return LibraryChanges(now, (), ())
+    touched = tx.execute(
+        select(clips.c.id, clips.c.state)
+        .where(clips.c.changed_version > since)
+        .order_by(clips.c.changed_version, clips.c.id)
+    ).all()
+    dead = tx.execute(
+        select(tombstones.c.clip_id)
+        .where(tombstones.c.version > since)
+        .order_by(tombstones.c.version)
+    ).scalars()
+    return LibraryChanges(
+        version=now,
+        changed=tuple(row.id for row in touched if row.state == ClipState.READY),
+        removed=(*(row.id for row in touched if row.state != ClipState.READY), *dead),
+    )

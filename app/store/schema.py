@@ -1,0 +1,107 @@
+"""The schema's version: upgrading a database, and refusing one of another version."""
+
+from __future__ import annotations
+
+import sysconfig
+from dataclasses import dataclass
+from pathlib import Path
+
+from alembic import command
+from alembic.config import Config
+from alembic.migration import MigrationContext
+from alembic.script import ScriptDirectory
+from sqlalchemy import inspect
+
+from app.errors import DatabaseOutOfDate, StorageError
+from app.store.engine import Database, Tx
+
+IN_CHECKOUT = Path(__file__).resolve().parents[2] / "migrations"
+IN_INSTALLATION = Path(sysconfig.get_path("data")) / "share" / "kinedex" / "migrations"
+
+
+@dataclass(frozen=True, slots=True)
+class SchemaState:
+    """Revision of a database (None: it has none) beside the one that this code needs."""
+
+    current: str | None
+    needed: str
+    is_empty: bool
+
+    @property
+    def is_current(self) -> bool:
+        """Whether this code can run on the database."""
+        return self.current == self.needed
+
+
+def migrations_dir() -> Path:
+    """The migrations, in a checkout (or the image's copy of one) or as a wheel installs them."""
+    for place in (IN_CHECKOUT, IN_INSTALLATION):
+        if (place / "env.py").is_file():
+            return place
+    raise StorageError("The database migrations were not installed with Kinedex")
+
+
+def upgrade(database_url: str) -> SchemaState:
+    """Brings the database to this code's schema, in one transaction; an empty one is filled.
+
+    Harmless when it is there already, and when two processes do it at once.
+    """
+    # Rebuilding a table under enforced foreign keys would delete what refers to it.
+    database = Database(database_url, foreign_keys=False)
+    try:
+        with database.write() as tx:
+            command.upgrade(_config(tx), "head")
+            return _state(tx)
+    finally:
+        database.close()
+
+
+def state(database_url: str) -> SchemaState:
+    """How the database stands to this code."""
+    database = Database(database_url)
+    try:
+        with database.read() as tx:
+            return _state(tx)
+    finally:
+        database.close()
+
+
+def check(database_url: str) -> None:
+    """Raises DatabaseOutOfDate, telling what to do, unless the schema is this code's."""
+    found = state(database_url)
+    if found.is_current:
+        return
+    if found.current is not None and found.current not in _known_revisions():
+        raise DatabaseOutOfDate(
+            f"The database is of a newer Kinedex (schema {found.current}, this one knows "
+            f"{found.needed}): install that version"
+        )
+    raise DatabaseOutOfDate(
+        f"The database has schema {found.current or 'none'}, this Kinedex needs {found.needed}: "
+        "stop all its processes, make a copy, and run `kinedex db upgrade`"
+    )
+
+
+def prepare(database_url: str) -> None:
+    """What a start does: fills an empty database, checks any other."""
+    if state(database_url).is_empty:
+        upgrade(database_url)
+    check(database_url)
+
+
+def _config(tx: Tx | None = None) -> Config:
+    config = Config()
+    config.set_main_option("script_location", str(migrations_dir()).replace("%", "%%"))
+    config.attributes["connection"] = tx
+    return config
+
+
+def _known_revisions() -> frozenset[str]:
+    scripts = ScriptDirectory.from_config(_config()).walk_revisions()
+    return frozenset(script.revision for script in scripts)
+
+
+def _state(tx: Tx) -> SchemaState:
+    needed = ScriptDirectory.from_config(_config()).get_current_head()
+    current = MigrationContext.configure(tx).get_current_revision()
+    return SchemaState(current, needed or "", is_empty=not inspect(tx).get_table_names())

@@ -1,0 +1,210 @@
+"""The tables. Portable types only; constraints are named, so that migrations can find them."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import (
+    JSON,
+    BigInteger,
+    Boolean,
+    Column,
+    DateTime,
+    Dialect,
+    Float,
+    ForeignKey,
+    Index,
+    Integer,
+    LargeBinary,
+    MetaData,
+    String,
+    Table,
+    UniqueConstraint,
+)
+from sqlalchemy.types import TypeDecorator
+
+metadata = MetaData(
+    naming_convention={
+        "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+        "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+        "ck": "ck_%(table_name)s_%(constraint_name)s",
+        "fk": "fk_%(table_name)s_%(column_0_N_name)s_%(referred_table_name)s",
+        "pk": "pk_%(table_name)s",
+    }
+)
+
+
+class UtcDateTime(TypeDecorator[datetime]):
+    """A moment in UTC, aware in Python on every database (SQLite forgets the zone)."""
+
+    impl = DateTime(timezone=True)
+    cache_ok = True
+
+    def process_bind_param(
+        self,
+        value: datetime | None,
+        dialect: Dialect,  # noqa: ARG002 - SQLAlchemy's signature
+    ) -> datetime | None:
+        """Stored in UTC."""
+        return None if value is None else value.astimezone(UTC)
+
+    def process_result_value(
+        self,
+        value: datetime | None,
+        dialect: Dialect,  # noqa: ARG002 - SQLAlchemy's signature
+    ) -> datetime | None:
+        """Read as aware UTC."""
+        if value is None:
+            return None
+        return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
+
+
+def _json(name: str, **options: Any) -> Column[Any]:
+    return Column(name, JSON(none_as_null=True), **options)
+
+
+def _clip_key(**options: Any) -> Column[Any]:
+    return Column("clip_id", String, ForeignKey("clips.id", ondelete="CASCADE"), **options)
+
+
+library = Table(
+    "library",
+    metadata,
+    Column("id", Integer, primary_key=True, autoincrement=False),
+    Column("version", BigInteger, nullable=False),
+)
+
+clips = Table(
+    "clips",
+    metadata,
+    Column("id", String, primary_key=True),
+    Column("content_key", String, nullable=False, unique=True),
+    Column("sha256", String, nullable=False, index=True),
+    Column("file_name", String, nullable=False),
+    Column("file_size", BigInteger, nullable=False),
+    Column("skeleton_sha256", String, index=True),
+    Column("name", String, nullable=False),
+    Column("name_folded", String, nullable=False, index=True),
+    Column("state", String, nullable=False, index=True),
+    Column("format", String),
+    Column("person", String, index=True),
+    Column("task", String, index=True),
+    Column("license", String),
+    Column("source", String),
+    Column("frame_rate_override", Float),
+    Column("metres_per_unit_override", Float),
+    _json("roles_override"),
+    Column("frames", Integer),
+    Column("frame_rate", Float),
+    Column("declared_frame_rate", Float),
+    Column("duration", Float, index=True),
+    Column("joints", Integer),
+    Column("metres_per_unit", Float),
+    _json("roles"),
+    _json("missing_roles"),
+    _json("warnings"),
+    _json("error"),
+    Column("analysis_version", Integer),
+    Column("changed_version", BigInteger, nullable=False, index=True),
+    Column("created_at", UtcDateTime, nullable=False, index=True),
+)
+
+clip_words = Table(
+    "clip_words",
+    metadata,
+    _clip_key(primary_key=True),
+    Column("word", String, primary_key=True, index=True),
+    Column("position", Integer, nullable=False),
+)
+
+tombstones = Table(
+    "tombstones",
+    metadata,
+    Column("clip_id", String, primary_key=True),
+    Column("version", BigInteger, nullable=False, index=True),
+)
+
+clip_arrays = Table(
+    "clip_arrays",
+    metadata,
+    _clip_key(primary_key=True),
+    Column("name", String, primary_key=True),
+    Column("version", Integer, nullable=False),
+    Column("dtype", String, nullable=False),
+    _json("shape", nullable=False),
+    Column("data", LargeBinary, nullable=False),
+)
+
+jobs = Table(
+    "jobs",
+    metadata,
+    Column("id", String, primary_key=True),
+    Column("kind", String, nullable=False),
+    Column("state", String, nullable=False),
+    Column("priority", Integer, nullable=False),
+    Column("dedupe_key", String, unique=True),
+    # No foreign key: a job outlives its clip, as the record of what was done.
+    Column("clip_id", String, index=True),
+    Column("file_sha256", String, index=True),
+    _json("payload", nullable=False),
+    Column("progress", Float, nullable=False),
+    Column("detail", String),
+    _json("result"),
+    _json("error"),
+    Column("attempts", Integer, nullable=False),
+    Column("max_attempts", Integer, nullable=False),
+    Column("owner", String),
+    Column("lease_until", UtcDateTime),
+    Column("not_before", UtcDateTime),
+    Column("cancel_requested", Boolean, nullable=False),
+    Column("created_at", UtcDateTime, nullable=False, index=True),
+    Column("started_at", UtcDateTime),
+    Column("finished_at", UtcDateTime),
+    Index(None, "state", "priority", "created_at"),
+)
+
+import_entries = Table(
+    "import_entries",
+    metadata,
+    Column("job_id", String, ForeignKey("jobs.id", ondelete="CASCADE"), primary_key=True),
+    Column("path", String, primary_key=True),
+    Column("position", Integer, nullable=False),
+    Column("outcome", String, nullable=False),
+    Column("clip_id", String, ForeignKey("clips.id", ondelete="SET NULL"), index=True),
+    _json("problem"),
+)
+
+models = Table(
+    "models",
+    metadata,
+    Column("id", String, primary_key=True),
+    Column("kind", String, nullable=False),
+    Column("version", Integer, nullable=False),
+    Column("library_version", BigInteger, nullable=False),
+    Column("library_size", Integer, nullable=False),
+    _json("meta", nullable=False),
+    Column("created_at", UtcDateTime, nullable=False),
+    UniqueConstraint("kind", "version"),
+)
+
+model_arrays = Table(
+    "model_arrays",
+    metadata,
+    Column("model_id", String, ForeignKey("models.id", ondelete="CASCADE"), primary_key=True),
+    Column("name", String, primary_key=True),
+    Column("dtype", String, nullable=False),
+    _json("shape", nullable=False),
+    Column("data", LargeBinary, nullable=False),
+)
+
+api_keys = Table(
+    "api_keys",
+    metadata,
+    Column("id", String, primary_key=True),
+    Column("name", String, nullable=False),
+    Column("role", String, nullable=False),
+    Column("secret_sha256", String, nullable=False),
+    Column("created_at", UtcDateTime, nullable=False),
+    Column("revoked_at", UtcDateTime),
+)
