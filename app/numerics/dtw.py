@@ -15,10 +15,17 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
 
-CELLS_AT_ONCE = 1_500_000
-"""Cost cells of one batch (8 bytes each): bounds memory, and keeps it near the caches."""
+CELLS_AT_ONCE = 1_000_000
+"""Cost cells of one batch (4 bytes each): bounds memory, and keeps it near the caches."""
 
 MAX_BATCH = 256
+
+TOO_CLOSE = 1e-4
+"""Squared distances below this share of the squared lengths are taken again, exactly:
+as |a|^2 + |b|^2 - 2ab they have lost their digits, and equal frames would be apart."""
+
+
+RETAKEN_AT_ONCE = 10_000
 
 
 def dtw_distance(
@@ -60,7 +67,7 @@ def dtw_distances(
 
 
 def _as_table(sequence: FloatArray) -> FloatArray:
-    table = np.asarray(sequence, dtype=np.float64)
+    table = np.asarray(sequence, dtype=np.float32)
     return table[:, None] if table.ndim == 1 else table
 
 
@@ -80,24 +87,38 @@ def _batches(lengths: IntArray, frames: int) -> list[IntArray]:
 def _stacked(candidates: list[FloatArray], dimensions: int) -> FloatArray:
     """(m, c, d): candidates side by side, zeros after their ends."""
     longest = max(len(candidate) for candidate in candidates)
-    stacked = np.zeros((longest, len(candidates), dimensions))
+    stacked = np.zeros((longest, len(candidates), dimensions), dtype=np.float32)
     for index, candidate in enumerate(candidates):
         stacked[: len(candidate), index] = _as_table(candidate)
     return stacked
 
 
 def _costs(query: FloatArray, stacked: FloatArray) -> FloatArray:
-    """(n, m, c) Euclidean distances between frames; (n, d) and (m, c, d) in."""
+    """(n, m, c) float32 Euclidean distances between frames; (n, d) and (m, c, d) in."""
     if query.shape[1] == 1:
-        return np.asarray(np.abs(query[:, :, None] - stacked[None, :, :, 0]))
+        differences = query[:, :, None] - stacked[None, :, :, 0]
+        return np.asarray(np.abs(differences, out=differences))
     frames, count, dimensions = stacked.shape
     centre = query.mean(axis=0)  # differences of small numbers keep more digits
     rows, columns = query - centre, stacked.reshape(-1, dimensions) - centre
+    lengths = np.einsum("nd,nd->n", rows, rows)[:, None], np.einsum("kd,kd->k", columns, columns)
     squares = rows @ (-2.0 * columns.T)
-    squares += np.einsum("nd,nd->n", rows, rows)[:, None]
-    squares += np.einsum("kd,kd->k", columns, columns)
-    np.maximum(squares, 0.0, out=squares)
+    squares += lengths[0]
+    squares += lengths[1]
+    _retake_close(squares, rows, columns, TOO_CLOSE * lengths[1])
     return np.asarray(np.sqrt(squares, out=squares).reshape(len(query), frames, count))
+
+
+def _retake_close(
+    squares: FloatArray, rows: FloatArray, columns: FloatArray, least: FloatArray
+) -> None:
+    """Compute anew, in place, the (n, k) `squares` that are not above `least` (k,)."""
+    # flat: numpy's two-dimensional nonzero is many times slower
+    row, column = np.divmod(np.flatnonzero(squares <= least), squares.shape[1])
+    for first in range(0, len(row), RETAKEN_AT_ONCE):
+        some = slice(first, first + RETAKEN_AT_ONCE)
+        apart = rows[row[some]] - columns[column[some]]
+        squares[row[some], column[some]] = np.einsum("ki,ki->k", apart, apart)
 
 
 def _forbid_outside(cost: FloatArray, lengths: IntArray, band: float) -> None:
@@ -113,26 +134,27 @@ def _forbid_outside(cost: FloatArray, lengths: IntArray, band: float) -> None:
 def _accumulate(cost: FloatArray, lengths: IntArray) -> FloatArray:
     """(c,) totals at each candidate's last frame; cost (n, m, c) C-contiguous.
 
-    Anti-diagonal k holds D[i, k - i] at row i + 1; row 0 is the wall outside the table.
+    Anti-diagonal k holds D[i, k - i] at row i + 1, between two rows of infinity: the walls
+    outside the table, of which the next two diagonals read no more than one row.
     """
     rows, columns, count = cost.shape
-    totals = np.empty(count)
-    older, old, new = (np.full((rows + 1, count), np.inf) for _ in range(3))
+    totals = np.empty(count, dtype=cost.dtype)
+    ends = lengths + rows - 2
+    older, old, new = (np.full((rows + 2, count), np.inf, dtype=cost.dtype) for _ in range(3))
     older[0] = 0.0  # the corner before the first cell
     flat = cost.reshape(rows * columns, count)
+    step = max(columns - 1, 1)
+    first_end = int(ends.min())
     for k in range(rows + columns - 1):
         low, high = max(0, k - columns + 1), min(rows - 1, k)
-        diagonal = flat[
-            low * columns + k - low : high * columns + k - high + 1 : max(columns - 1, 1)
-        ]
         inside = new[low + 1 : high + 2]
         np.minimum(old[low + 1 : high + 2], old[low : high + 1], out=inside)
         np.minimum(inside, older[low : high + 1], out=inside)
-        inside += diagonal
-        new[: low + 1] = np.inf
-        new[high + 2 :] = np.inf
-        ended = lengths == k - rows + 2
-        if high == rows - 1 and ended.any():
-            totals[ended] = new[rows, ended]
+        start, last = low * columns + k - low, high * columns + k - high
+        inside += flat[start : last + 1 : step]
+        new[low] = np.inf
+        new[high + 2] = np.inf
+        if k >= first_end:
+            np.copyto(totals, new[rows], where=ends == k)
         older, old, new = old, new, older
     return totals
