@@ -162,6 +162,24 @@ class NotEnoughLabels(Conflict):
     code = "not_enough_labels"
 
 
+class LeaseLost(Conflict):
+    """The job is over, or was given to another worker."""
+
+    code = "lease_lost"
+
+
+class WorkerDied(KinedexError):
+    """The worker died each time it tried this."""
+
+    code = "worker_died"
+
+
+class Canceled(KinedexError):
+    """This was canceled before it was done."""
+
+    code = "canceled"
+
+
 class StorageError(KinedexError):
     """The store failed."""
 

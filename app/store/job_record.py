@@ -62,7 +62,7 @@ class JobRecord:
 class NewJob:
     """A job to be queued.
 
-    priority: higher is taken first; clip_id: the clip it is about; file_sha256: a stored file
+    priority: lower is taken first; clip_id: the clip it is about; file_sha256: a stored file
     that must be kept while it is open; payload: its arguments, JSON; dedupe_key: while a job
     with this key is queued, no second one is.
     """

@@ -169,7 +169,6 @@ import_entries = Table(
     metadata,
     Column("job_id", String, ForeignKey("jobs.id", ondelete="CASCADE"), primary_key=True),
     Column("path", String, primary_key=True),
-    Column("position", Integer, nullable=False),
     Column("outcome", String, nullable=False),
     Column("clip_id", String, ForeignKey("clips.id", ondelete="SET NULL"), index=True),
     _json("problem"),

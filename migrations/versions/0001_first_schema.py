@@ -165,7 +165,6 @@ def upgrade() -> None:
         "import_entries",
         sa.Column("job_id", sa.String(), nullable=False),
         sa.Column("path", sa.String(), nullable=False),
-        sa.Column("position", sa.Integer(), nullable=False),
         sa.Column("outcome", sa.String(), nullable=False),
         sa.Column("clip_id", sa.String(), nullable=True),
         sa.Column("problem", sa.JSON(none_as_null=True), nullable=True),

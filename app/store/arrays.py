@@ -1,0 +1,74 @@
+"""Arrays of clips, by name; each with the version of the analysis that made it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from numpy.typing import NDArray
+from sqlalchemy import delete, insert, select
+
+from app.errors import NotFound
+from app.store.blobs import from_blob, to_blob
+from app.store.clips import in_batches
+from app.store.engine import Tx
+from app.store.tables import clip_arrays
+
+_CONTENT = (clip_arrays.c.dtype, clip_arrays.c.shape, clip_arrays.c.data)
+
+
+def put_many(tx: Tx, clip_id: str, arrays: Mapping[str, NDArray[Any]], *, version: int) -> None:
+    """Stores a clip's arrays in place of all that it had."""
+    delete_all(tx, clip_id)
+    rows = [
+        {"clip_id": clip_id, "name": name, "version": version, **to_blob(array)}
+        for name, array in arrays.items()
+    ]
+    if rows:
+        tx.execute(insert(clip_arrays), rows)
+
+
+def get_one(tx: Tx, clip_id: str, name: str) -> NDArray[Any]:
+    """One array, read-only; raises NotFound."""
+    found = get_many(tx, [clip_id], name)
+    if clip_id not in found:
+        raise NotFound(f"The clip {clip_id!r} has no array {name!r}")
+    return found[clip_id]
+
+
+def get_all(tx: Tx, clip_id: str) -> dict[str, NDArray[Any]]:
+    """All arrays of a clip by name, read-only."""
+    rows = tx.execute(select(clip_arrays.c.name, *_CONTENT).where(clip_arrays.c.clip_id == clip_id))
+    return {name: from_blob(dtype, shape, data) for name, dtype, shape, data in rows}
+
+
+def get_many(
+    tx: Tx, clip_ids: Collection[str], name: str, *, version: int | None = None
+) -> dict[str, NDArray[Any]]:
+    """One array of many clips by clip id, read-only, in the order asked for.
+
+    Clips without it are left out; with `version`, those of other versions too.
+    """
+    found: dict[str, NDArray[Any]] = {}
+    for batch in in_batches(clip_ids):
+        query = select(clip_arrays.c.clip_id, *_CONTENT).where(
+            clip_arrays.c.clip_id.in_(batch), clip_arrays.c.name == name
+        )
+        if version is not None:
+            query = query.where(clip_arrays.c.version == version)
+        for clip_id, dtype, shape, data in tx.execute(query):
+            found[clip_id] = from_blob(dtype, shape, data)
+    return {clip_id: found[clip_id] for clip_id in clip_ids if clip_id in found}
+
+
+def versions(tx: Tx, clip_id: str) -> dict[str, int]:
+    """The analysis version of each of a clip's arrays, by name."""
+    query = select(clip_arrays.c.name, clip_arrays.c.version).where(
+        clip_arrays.c.clip_id == clip_id
+    )
+    return {name: version for name, version in tx.execute(query)}  # noqa: C416 - rows to a dict
+
+
+def delete_all(tx: Tx, clip_id: str) -> None:
+    """Removes a clip's arrays."""
+    tx.execute(delete(clip_arrays).where(clip_arrays.c.clip_id == clip_id))

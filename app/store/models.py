@@ -1,0 +1,114 @@
+"""Fitted models: versioned records of arrays, never pickled; the newest of a kind is in force."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from numpy.typing import NDArray
+from sqlalchemy import RowMapping, and_, delete, func, insert, select
+
+from app.errors import ModelNotFitted
+from app.store import library
+from app.store.blobs import from_blob, to_blob
+from app.store.engine import Tx
+from app.store.ids import new_id, utc_now
+from app.store.tables import model_arrays, models
+
+KEPT_VERSIONS = 2
+"""Of each kind: the one in force, and the one that searches may still be reading."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModelRecord:
+    """A fitted model without its arrays. meta: JSON of the kind's own (figures, words...).
+
+    library_version, library_size: the library that it was fitted on, size in ready clips.
+    """
+
+    id: str
+    kind: str
+    version: int
+    library_version: int
+    library_size: int
+    meta: dict[str, Any]
+    created_at: datetime
+
+
+def save(
+    tx: Tx,
+    kind: str,
+    *,
+    meta: dict[str, Any],
+    arrays: Mapping[str, NDArray[Any]],
+    library_version: int,
+    library_size: int,
+) -> ModelRecord:
+    """Stores a model, which is in force from the commit on; older ones than the last go."""
+    library.lock(tx)
+    latest = select(func.max(models.c.version)).where(models.c.kind == kind)
+    version = (tx.execute(latest).scalar_one() or 0) + 1
+    added = insert(models).values(
+        id=new_id("model"),
+        kind=kind,
+        version=version,
+        library_version=library_version,
+        library_size=library_size,
+        meta=meta,
+        created_at=utc_now(),
+    )
+    record = _to_record(tx.execute(added.returning(models)).mappings().one())
+    rows = [{"model_id": record.id, "name": name, **to_blob(a)} for name, a in arrays.items()]
+    if rows:
+        tx.execute(insert(model_arrays), rows)
+    outdated = and_(models.c.kind == kind, models.c.version <= version - KEPT_VERSIONS)
+    tx.execute(delete(models).where(outdated))
+    return record
+
+
+def current(tx: Tx, kind: str) -> ModelRecord:
+    """The model of this kind that is in force; raises ModelNotFitted."""
+    query = select(models).where(models.c.kind == kind).order_by(models.c.version.desc()).limit(1)
+    row = tx.execute(query).mappings().one_or_none()
+    if row is None:
+        raise ModelNotFitted(f"No {kind} model has been fitted on this library yet")
+    return _to_record(row)
+
+
+def current_versions(tx: Tx) -> dict[str, int]:
+    """The version in force by kind: cheap, to see whether a loaded model is out of date."""
+    query = select(models.c.kind, func.max(models.c.version)).group_by(models.c.kind)
+    return {kind: version for kind, version in tx.execute(query)}  # noqa: C416 - rows to a dict
+
+
+def list_current(tx: Tx) -> tuple[ModelRecord, ...]:
+    """The models in force, by kind."""
+    newest = select(models.c.kind, func.max(models.c.version)).group_by(models.c.kind).subquery()
+    query = (
+        select(models)
+        .join(newest, and_(models.c.kind == newest.c[0], models.c.version == newest.c[1]))
+        .order_by(models.c.kind)
+    )
+    return tuple(_to_record(row) for row in tx.execute(query).mappings())
+
+
+def load_arrays(tx: Tx, model_id: str) -> dict[str, NDArray[Any]]:
+    """A model's arrays by name, read-only."""
+    query = select(
+        model_arrays.c.name, model_arrays.c.dtype, model_arrays.c.shape, model_arrays.c.data
+    ).where(model_arrays.c.model_id == model_id)
+    return {name: from_blob(dtype, shape, data) for name, dtype, shape, data in tx.execute(query)}
+
+
+def _to_record(row: RowMapping) -> ModelRecord:
+    return ModelRecord(
+        id=row["id"],
+        kind=row["kind"],
+        version=row["version"],
+        library_version=row["library_version"],
+        library_size=row["library_size"],
+        meta=row["meta"],
+        created_at=row["created_at"],
+    )
