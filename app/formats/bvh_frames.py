@@ -1,0 +1,132 @@
+"""The MOTION part of a BVH file: frame time and the numbers of each frame.
+
+What the file declares is never trusted with memory: only lines that are there are read,
+and `Frames` is compared afterwards.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.errors import TooLarge
+from app.formats.numbers import excerpt, parse_numbers
+from app.formats.places import unreadable
+from app.motion.recording import Caution
+from app.numerics.arrays import FloatArray
+
+MAX_FRAMES = 1_000_000
+"""More than two hours at 120 Hz."""
+SLOWEST_RATE = 1.0
+FASTEST_RATE = 2000.0
+"""Hz; a declared rate outside is no rate."""
+NEAR_WHOLE = 1e-4
+"""A rate this near to a whole number (relative) was rounded when its period was printed."""
+BLOCK_LINES = 4096
+
+_FRAMES = re.compile(rb"\s*frames\s*:?\s*(\S*)\s*", re.IGNORECASE)
+_FRAME_TIME = re.compile(rb"\s*frame\s*time\s*:?\s*(\S*)\s*", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class Frames:
+    """numbers: (frames, channels) float64 as in the file; frame_rate: Hz or None."""
+
+    numbers: FloatArray
+    frame_rate: float | None
+    cautions: tuple[Caution, ...]
+
+
+def read_frames(text: bytes, first_line: int, channels: int) -> Frames:
+    """Read what follows the line MOTION.
+
+    text: lines separated by newlines, the first of which is line `first_line` of the
+    file; channels: numbers that make a frame. Raises Unreadable naming the line.
+    """
+    lines = _filled_lines(text, first_line)
+    declared = _declared_frames(*next(lines, (first_line, b"")))
+    line, time = next(lines, (first_line, b""))
+    rate, cautions = _frame_rate(line, time)
+    numbers = _rows(lines, channels)
+    if not len(numbers):
+        raise unreadable(line + 1, f"expected frames of {channels} numbers, found none")
+    if declared != len(numbers):
+        detail = f"the file declares {declared} frames and holds {len(numbers)}"
+        cautions += (Caution("frames_mismatch", detail),)
+    return Frames(numbers, rate, cautions)
+
+
+def _filled_lines(text: bytes, first_line: int) -> Iterator[tuple[int, bytes]]:
+    """Number and content of every line that is not blank; the text is not copied whole."""
+    start, number = 0, first_line
+    while start < len(text):
+        end = text.find(b"\n", start)
+        end = len(text) if end < 0 else end
+        line = text[start:end]
+        if line and not line.isspace():
+            yield number, line
+        start, number = end + 1, number + 1
+
+
+def _declared_frames(line: int, text: bytes) -> int:
+    match = _FRAMES.fullmatch(text)
+    if match is None or not re.fullmatch(rb"\d{1,18}", match.group(1)):
+        raise unreadable(line, f"expected 'Frames:' and a number, found {excerpt(text)}")
+    return int(match.group(1))
+
+
+def _frame_rate(line: int, text: bytes) -> tuple[float | None, tuple[Caution, ...]]:
+    match = _FRAME_TIME.fullmatch(text)
+    if match is None:
+        raise unreadable(line, f"expected 'Frame Time:' and seconds, found {excerpt(text)}")
+    try:
+        period = float(match.group(1).replace(b",", b"."))
+    except ValueError:
+        period = 0.0
+    if not 1 / FASTEST_RATE <= period <= 1 / SLOWEST_RATE:
+        detail = f"line {line}: expected a frame time in seconds, found {excerpt(match.group(1))}"
+        return None, (Caution("frame_time_unusable", detail),)
+    return _whole_where_near(1 / period), ()
+
+
+def _whole_where_near(rate: float) -> float:
+    whole = float(round(rate))
+    return whole if abs(rate - whole) <= NEAR_WHOLE * rate else rate
+
+
+def _rows(lines: Iterator[tuple[int, bytes]], channels: int) -> FloatArray:
+    """(frames, channels): each frame begins on a line of its own and may go on over more."""
+    blocks: list[FloatArray] = []
+    rows: list[FloatArray] = []
+    for line, text in lines:
+        row = parse_numbers(text, line, expected=channels)
+        if len(row) < channels:
+            row = _continued(row, lines, line, channels)
+        if len(row) != channels:
+            raise unreadable(line, f"expected {channels} numbers, found {len(row)}")
+        rows.append(row)
+        if len(rows) == BLOCK_LINES:
+            blocks.append(np.stack(rows))
+            rows.clear()
+        if len(blocks) * BLOCK_LINES + len(rows) > MAX_FRAMES:
+            raise TooLarge(f"line {line}: expected at most {MAX_FRAMES} frames")
+    if rows:
+        blocks.append(np.stack(rows))
+    return np.concatenate(blocks) if blocks else np.zeros((0, channels))
+
+
+def _continued(
+    row: FloatArray, lines: Iterator[tuple[int, bytes]], line: int, channels: int
+) -> FloatArray:
+    """`row` with the lines that follow it, until it is full or longer."""
+    parts, found = [row], len(row)
+    while found < channels:
+        number, text = next(lines, (line, b""))
+        parts.append(parse_numbers(text, number))
+        if not len(parts[-1]):
+            break
+        found += len(parts[-1])
+    return np.concatenate(parts) if found == channels else row

@@ -1,0 +1,228 @@
+"""The HIERARCHY part of a BVH file: joints, offsets and channels.
+
+Source: Biovision's format as told by Meredith and Maddock, "Motion capture file formats
+explained" (2001), widened to what files in the wild hold (DESIGN 4). No recursion: the
+joints that are open stand on a stack, so that depth costs nothing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.errors import TooLarge, Unreadable
+from app.formats.numbers import excerpt, parse_numbers
+from app.formats.places import unreadable
+from app.motion.recording import Caution
+from app.motion.skeleton import Skeleton
+from app.numerics.arrays import FloatArray
+
+MAX_JOINTS = 2000
+"""More joints than any body, hands and face together."""
+MAX_NAME_LENGTH = 200
+MAX_CHANNELS = 12
+"""Channels of one joint: position and rotation need six, odd writers repeat some."""
+MAX_HIERARCHY_BYTES = 10_000_000
+
+_TOKEN = re.compile(rb"[{}]|[^\s{}]+|\n")
+_NUMBERLIKE = re.compile(rb"[-+.,\d]|nan|inf", re.IGNORECASE)
+_CHANNEL = re.compile(r"([XYZ])(POSITION|ROTATION)")
+_END = 0
+"""Marks an open End Site on the stack of open blocks; joints stand there as 1 + index."""
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """One number of a frame: what it does to which joint; axis 0, 1, 2 = X, Y, Z."""
+
+    joint: int
+    is_position: bool
+    axis: int
+
+
+@dataclass(frozen=True, slots=True)
+class Hierarchy:
+    """A skeleton, its channels in the order of a frame's numbers, and doubts."""
+
+    skeleton: Skeleton
+    channels: tuple[Channel, ...]
+    cautions: tuple[Caution, ...]
+
+
+def read_hierarchy(text: bytes) -> Hierarchy:
+    """Read all that stands before MOTION, lines separated by newlines.
+
+    Raises Unreadable naming the line, or TooLarge.
+    """
+    if len(text) > MAX_HIERARCHY_BYTES:
+        raise TooLarge(f"expected at most {MAX_HIERARCHY_BYTES} bytes before MOTION")
+    return _Reader(text).read()
+
+
+@dataclass(slots=True)
+class _Joint:
+    name: str
+    parent: int
+    line: int
+    offset: FloatArray | None = None
+
+
+@dataclass(slots=True)
+class _Tokens:
+    """Tokens with the line that they stand on; one token may be put back."""
+
+    source: Iterator[re.Match[bytes]]
+    line: int = 1
+    waiting: list[bytes] = field(default_factory=list)
+
+    def next(self) -> bytes:
+        """The next token, or b"" at the end."""
+        if self.waiting:
+            return self.waiting.pop()
+        for match in self.source:
+            if match.group() != b"\n":
+                return match.group()
+            self.line += 1
+        return b""
+
+    def until_brace(self) -> list[bytes]:
+        """The tokens up to an opening brace, which is consumed."""
+        found: list[bytes] = []
+        while (token := self.next()) != b"{":
+            if token in (b"", b"}"):
+                raise self.expected("'{'", token)
+            found.append(token)
+        return found
+
+    def numbers_on_line(self) -> bytes:
+        """What looks like numbers on the rest of this line."""
+        found: list[bytes] = []
+        for match in self.source:
+            token = match.group()
+            if token == b"\n":
+                self.line += 1
+                break
+            if not _NUMBERLIKE.match(token):
+                self.waiting.append(token)
+                break
+            found.append(token)
+        return b" ".join(found)
+
+    def expected(self, what: str, found: bytes) -> Unreadable:
+        shown = excerpt(found) if found else "the end of the hierarchy"
+        return unreadable(self.line, f"expected {what}, found {shown}")
+
+
+class _Reader:
+    def __init__(self, text: bytes) -> None:
+        self.tokens = _Tokens(_TOKEN.finditer(text))
+        self.joints: list[_Joint] = []
+        self.channels: list[Channel] = []
+        self.ends: list[tuple[int, FloatArray]] = []
+        self.open: list[int] = []
+
+    def read(self) -> Hierarchy:
+        token = self.tokens.next()
+        if token.upper() != b"HIERARCHY":
+            raise self.tokens.expected("HIERARCHY", token)
+        while token := self.tokens.next():
+            self._statement(token)
+        if self.open:
+            raise self.tokens.expected("'}'", b"")
+        if not self.joints:
+            raise self.tokens.expected("ROOT", b"")
+        return Hierarchy(self._skeleton(), tuple(self.channels), self._cautions())
+
+    def _statement(self, token: bytes) -> None:
+        keyword = token.upper().rstrip(b":")
+        at_end_site = bool(self.open) and self.open[-1] == _END
+        if keyword == b"ROOT" and not self.open:
+            self._begin_joint(-1)
+        elif keyword == b"}" and self.open:
+            self._close()
+        elif keyword == b"OFFSET" and self.open:
+            self._offset(at_end_site)
+        elif keyword == b"CHANNELS" and self.open:
+            self._channels(at_end_site)
+        elif keyword == b"JOINT" and self.open and not at_end_site:
+            self._begin_joint(self.open[-1] - 1)
+        elif keyword == b"END" and self.open and not at_end_site:
+            self.tokens.until_brace()
+            self.open.append(_END)
+        else:
+            raise self.tokens.expected("a statement of the hierarchy", token)
+
+    def _begin_joint(self, parent: int) -> None:
+        line = self.tokens.line
+        name = b" ".join(self.tokens.until_brace())
+        if len(self.joints) >= MAX_JOINTS:
+            raise TooLarge(f"line {line}: expected at most {MAX_JOINTS} joints")
+        self.joints.append(_Joint(_checked_name(name, line), parent, line))
+        self.open.append(len(self.joints))
+
+    def _close(self) -> None:
+        opened = self.open.pop()
+        if opened != _END and self.joints[opened - 1].offset is None:
+            raise self.tokens.expected(f"OFFSET in joint {self.joints[opened - 1].name}", b"}")
+
+    def _offset(self, at_end_site: bool) -> None:
+        line = self.tokens.line
+        numbers = parse_numbers(self.tokens.numbers_on_line(), line, expected=3)
+        if len(numbers) != 3:
+            raise unreadable(line, f"expected 3 numbers after OFFSET, found {len(numbers)}")
+        if at_end_site:
+            parent = next(opened for opened in reversed(self.open) if opened != _END) - 1
+            self.ends.append((parent, numbers))
+        else:
+            self.joints[self.open[-1] - 1].offset = numbers
+
+    def _channels(self, at_end_site: bool) -> None:
+        count = self.tokens.next()
+        allowed = 0 if at_end_site else MAX_CHANNELS
+        if not re.fullmatch(rb"0*\d{1,2}", count) or int(count) > allowed:
+            raise self.tokens.expected(f"a number of channels up to {allowed}", count)
+        joint = self.open[-1] - 1
+        for _ in range(int(count)):
+            channel = self._channel(joint)
+            if channel.is_position and channel in self.channels[-MAX_CHANNELS:]:
+                raise unreadable(self.tokens.line, "expected each position channel once")
+            self.channels.append(channel)
+
+    def _channel(self, joint: int) -> Channel:
+        token = self.tokens.next()
+        match = _CHANNEL.fullmatch(token.decode("ascii", errors="replace").upper().rstrip(","))
+        if match is None:
+            raise self.tokens.expected("a channel such as Xposition or Zrotation", token)
+        return Channel(joint, match.group(2) == "POSITION", "XYZ".index(match.group(1)))
+
+    def _skeleton(self) -> Skeleton:
+        offsets = [joint.offset for joint in self.joints if joint.offset is not None]
+        return Skeleton(
+            names=tuple(joint.name for joint in self.joints),
+            parents=np.array([joint.parent for joint in self.joints], dtype=np.int64),
+            offsets=np.array(offsets, dtype=np.float64).reshape(-1, 3),
+            end_parents=np.array([parent for parent, _ in self.ends], dtype=np.int64),
+            end_offsets=np.array([end for _, end in self.ends], dtype=np.float64).reshape(-1, 3),
+        )
+
+    def _cautions(self) -> tuple[Caution, ...]:
+        counts = Counter(joint.name for joint in self.joints)
+        twice = [name for name, count in counts.items() if count > 1]
+        if not twice:
+            return ()
+        shown = ", ".join(twice[:5])
+        return (Caution("duplicate_names", f"several joints have the same name: {shown}"),)
+
+
+def _checked_name(name: bytes, line: int) -> str:
+    try:
+        text = name.decode("utf-8")
+    except UnicodeDecodeError:
+        text = name.decode("latin-1")
+    if not text or len(text) > MAX_NAME_LENGTH or not text.isprintable():
+        raise unreadable(line, f"expected a joint's name, found {excerpt(name)}")
+    return text

@@ -1,0 +1,123 @@
+"""Rotations as unit quaternions and Euler angles, vectorised over any leading axes.
+
+Quaternions are (..., 4), w x y z, acting on column vectors: q v q*. Euler angles are
+intrinsic: order "ZXY" means R = Rz(a0) Rx(a1) Ry(a2), which is how BVH lists its
+channels (Meredith and Maddock, "Motion capture file formats explained", 2001).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray
+
+AXES = "XYZ"
+GIMBAL_LIMIT = 1.0 - 1e-9
+"""Sine of the middle angle above which the first and last axis are taken to coincide."""
+
+
+def euler_to_quaternions(angles_rad: FloatArray, order: str) -> FloatArray:
+    """Quaternions (..., 4) of intrinsic Euler angles (..., len(order)) in radians.
+
+    `order` names the axes from the outermost in, e.g. "ZXY"; any number of axes (none
+    gives the identity) and repeated ones are allowed.
+    """
+    result = identity_quaternions(angles_rad.shape[:-1])
+    for index, axis in enumerate(order):
+        result = multiply(result, _about_axis(angles_rad[..., index], AXES.index(axis)))
+    return result
+
+
+def identity_quaternions(shape: tuple[int, ...]) -> FloatArray:
+    """Identity quaternions of shape (*shape, 4)."""
+    result = np.zeros((*shape, 4))
+    result[..., 0] = 1.0
+    return result
+
+
+def _about_axis(angle: FloatArray, axis: int) -> FloatArray:
+    result = np.zeros((*angle.shape, 4))
+    result[..., 0] = np.cos(angle / 2)
+    result[..., 1 + axis] = np.sin(angle / 2)
+    return result
+
+
+def multiply(left: FloatArray, right: FloatArray) -> FloatArray:
+    """Hamilton product (..., 4) of two arrays of quaternions (..., 4)."""
+    a, b, c, d = np.moveaxis(left, -1, 0)
+    e, f, g, h = np.moveaxis(right, -1, 0)
+    return np.stack(
+        [
+            a * e - b * f - c * g - d * h,
+            a * f + b * e + c * h - d * g,
+            a * g - b * h + c * e + d * f,
+            a * h + b * g - c * f + d * e,
+        ],
+        axis=-1,
+    )
+
+
+def rotate(quaternions: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Vectors (..., 3) turned by unit quaternions (..., 4): v + 2 u x (u x v + w v)."""
+    w, u = quaternions[..., :1], quaternions[..., 1:]
+    return vectors + 2.0 * _cross(u, _cross(u, vectors) + w * vectors)
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    # np.cross spends most of its time on moving axes.
+    x, y, z = a[..., 0], a[..., 1], a[..., 2]
+    u, v, w = b[..., 0], b[..., 1], b[..., 2]
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
+
+
+def quaternions_to_matrices(quaternions: FloatArray) -> FloatArray:
+    """Rotation matrices (..., 3, 3), row-major, of unit quaternions (..., 4)."""
+    w, x, y, z = np.moveaxis(quaternions, -1, 0)
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def matrices_to_quaternions(matrices: FloatArray) -> FloatArray:
+    """Unit quaternions (..., 4) with w >= 0 of rotation matrices (..., 3, 3).
+
+    The largest of the four components is found first, so that no small number is
+    divided by (Shepperd 1978).
+    """
+    m = np.asarray(matrices, dtype=np.float64)
+    trace = m[..., 0, 0] + m[..., 1, 1] + m[..., 2, 2]
+    # (..., 4, 4): row i is the quaternion times four times its own component i
+    outer = np.empty((*m.shape[:-2], 4, 4))
+    outer[..., 0, 0] = 1 + trace
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        outer[..., i + 1, i + 1] = 1 + 2 * m[..., i, i] - trace
+        outer[..., 0, i + 1] = outer[..., i + 1, 0] = m[..., k, j] - m[..., j, k]
+        outer[..., i + 1, j + 1] = outer[..., j + 1, i + 1] = m[..., j, i] + m[..., i, j]
+    best = np.argmax(np.diagonal(outer, axis1=-2, axis2=-1), axis=-1)
+    result = np.take_along_axis(outer, best[..., None, None], axis=-2)[..., 0, :]
+    result = result / np.linalg.norm(result, axis=-1, keepdims=True)
+    return np.asarray(np.where(result[..., :1] < 0, -result, result))
+
+
+def quaternions_to_euler(quaternions: FloatArray, order: str) -> FloatArray:
+    """Intrinsic Euler angles (..., 3) in radians of unit quaternions (..., 4).
+
+    `order` holds each of X, Y, Z once; the middle angle lies in [-pi/2, pi/2]. In gimbal
+    lock the last angle is 0.
+    """
+    i, j, k = (AXES.index(axis) for axis in order)
+    sign = 1.0 if (j - i) % 3 == 1 else -1.0
+    m = quaternions_to_matrices(quaternions)
+    sine = np.clip(sign * m[..., i, k], -1.0, 1.0)
+    locked = np.abs(sine) > GIMBAL_LIMIT
+    first = np.arctan2(-sign * m[..., j, k], m[..., k, k])
+    last = np.arctan2(-sign * m[..., i, j], m[..., i, i])
+    locked_first = np.arctan2(sign * m[..., k, j], m[..., j, j])
+    return np.stack(
+        [np.where(locked, locked_first, first), np.arcsin(sine), np.where(locked, 0.0, last)],
+        axis=-1,
+    )
