@@ -1,0 +1,47 @@
+"""The motion sample: a clip as one vector of fixed length, for person and task (DESIGN 13).
+
+32 poses in the body frame, over the mean gait cycle where there are cycles (they start at
+the left foot's forward swing, so that phases agree), else over the whole clip; then the net
+turn and the mean speed of the whole clip.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.motion.body_frame import BodyTrack
+from app.motion.gait import gait_cycles
+from app.motion.resampling import low_pass, resample_to, sample_at
+from app.numerics.arrays import FloatArray
+
+SAMPLES = 32
+"""Poses in a sample."""
+
+SAMPLE_LENGTH = SAMPLES * 13 * 3 + 2
+"""Numbers in a motion sample: 1250."""
+
+
+def motion_sample(track: BodyTrack) -> FloatArray:
+    """(1250,) float32: 32 x 13 x 3 positions (body lengths), net turn, mean speed.
+
+    The net turn is asinh of radians: near its true value up to a quarter turn, while a
+    dance of many turns does not outweigh everything else. Speed is horizontal, of the hips,
+    body lengths per second.
+    """
+    cycles = gait_cycles(track)
+    poses = mean_cycle(track, cycles) if cycles else resample_to(track.local, SAMPLES)
+    turn = np.arcsinh(track.heading[-1] - track.heading[0])
+    speed = np.hypot(*track.velocity()[:, [0, 2]].T).mean()
+    return np.concatenate([poses.ravel(), [turn, speed]]).astype(np.float32)
+
+
+def mean_cycle(track: BodyTrack, cycles: list[tuple[int, int]]) -> FloatArray:
+    """(32, 13, 3) mean over `cycles` of the body-frame positions at 32 phases of each."""
+    phases = np.arange(SAMPLES) / SAMPLES
+    poses = [_cycle_poses(track, first, stop - first, phases) for first, stop in cycles]
+    return np.asarray(np.mean(poses, axis=0))
+
+
+def _cycle_poses(track: BodyTrack, first: int, length: int, phases: FloatArray) -> FloatArray:
+    smooth = low_pass(track.local, length / SAMPLES)
+    return sample_at(smooth, first + length * phases)
