@@ -1,0 +1,55 @@
+"""Everything that is kept of a clip's motion, by name, with its version.
+
+Arrays (float32 unless told otherwise; n frames at 30 Hz, m at 10 Hz):
+role_positions (n, 13, 3) metres, world; features_10hz (m, 82); motion_vector (128,);
+msv_lambda (1,), msv_rho (13,), msv_epsilon (n,).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.analysis.frame_features import features_at_10hz, frame_features
+from app.analysis.motion_vector import motion_vector
+from app.analysis.motion_volume import decompose
+from app.motion.body_frame import BodyTrack, body_track
+from app.motion.motion import Motion
+from app.numerics.arrays import FloatArray
+
+ANALYSIS_VERSION = 1
+"""Raise it with every change of what an array holds; older clips are then analysed again."""
+
+
+@dataclass(frozen=True, slots=True)
+class Analysis:
+    """A motion and its arrays by name (see the module)."""
+
+    motion: Motion
+    arrays: dict[str, FloatArray]
+
+
+def analyse(motion: Motion) -> Analysis:
+    """All arrays of `motion`. Deterministic; raises TooShort or NotHuman."""
+    track = body_track(motion)
+    return Analysis(motion, _for_search(track))
+
+
+def describe_for_search(motion: Motion) -> Analysis:
+    """The arrays that finding like motions needs: all but the motion symbol, some 10 ms."""
+    return Analysis(motion, _for_search(body_track(motion)))
+
+
+def _for_search(track: BodyTrack) -> dict[str, FloatArray]:
+    features = frame_features(track)
+    volume = decompose(track)
+    arrays = {
+        "role_positions": track.positions,
+        "features_10hz": features_at_10hz(features, track.rate),
+        "motion_vector": motion_vector(features),
+        "msv_lambda": np.array([volume.weight]),
+        "msv_rho": volume.primary,
+        "msv_epsilon": volume.secondary,
+    }
+    return {name: array.astype(np.float32) for name, array in arrays.items()}
