@@ -1,0 +1,84 @@
+"""The application: routes, middlewares and the library that they share."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from importlib.metadata import version
+
+from fastapi import FastAPI
+from fastapi.concurrency import run_in_threadpool
+from fastapi_offline import FastAPIOffline
+
+from app.api.docs import STATIC, install_docs
+from app.api.envelope import Envelope
+from app.api.errors import install_handlers
+from app.api.limits import BodyLimit
+from app.api.loading import Loading
+from app.api.metrics import install_metrics
+from app.api.openapi import describe
+from app.api.routes import (
+    clip_views,
+    clips,
+    health,
+    imports,
+    jobs,
+    labels,
+    models,
+    recognize,
+    search,
+)
+from app.api.schemas.recognition import Recognize
+from app.api.schemas.search import MotionSearch
+from app.config import Settings
+from app.services.library import Library
+
+_SUMMARY = "Search human motion by example and by words, and ask who does what."
+_DESCRIPTION = """\
+Store a clip with `POST /v1/clips`, follow its job, then search with its id: replace `CLIP_ID`
+in the examples by an id that `GET /v1/clips` shows.
+
+Times are ISO 8601 in UTC, durations seconds. Lists are `{"items": [...], "next": cursor}`.
+Every failure is a problem (RFC 9457, `application/problem+json`).
+"""
+_ROUTES = (clips, clip_views, imports, jobs, search, recognize, models, labels, health)
+
+
+def create_app(settings: Settings) -> FastAPI:
+    """The HTTP service for the library that the settings name; opened when the server starts."""
+    app: FastAPI = FastAPIOffline(
+        docs_url=None,
+        redoc_url=None,
+        static_url=STATIC,
+        title="Kinedex",
+        version=version("kinedex"),
+        summary=_SUMMARY,
+        description=_DESCRIPTION,
+        license_info={"name": "Apache-2.0", "identifier": "Apache-2.0"},
+        lifespan=_lifespan,
+    )
+    app.state.settings = settings
+    install_handlers(app)
+    for module in _ROUTES:
+        app.include_router(module.router)
+    install_docs(app)
+    describe(app, [MotionSearch, Recognize])
+    # The last one added is the outermost.
+    app.add_middleware(BodyLimit, settings=settings)
+    install_metrics(app)
+    app.add_middleware(Envelope)
+    return app
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    library = await run_in_threadpool(Library.open, app.state.settings)
+    loading = Loading(library)
+    loading.start()
+    app.state.library = library
+    try:
+        yield
+    finally:
+        app.state.library = None
+        await run_in_threadpool(loading.stop)
+        await run_in_threadpool(library.close)

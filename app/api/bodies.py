@@ -1,0 +1,140 @@
+"""Bodies that FastAPI does not read by itself: multipart with limits, and JSON or multipart.
+
+A form's text fields are checked by a pydantic model, its files by name. A text field that
+is empty counts as not sent, as browsers send it.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any, TypeVar
+
+from fastapi import Request
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel, ValidationError
+from starlette.datastructures import FormData, UploadFile
+from starlette.exceptions import HTTPException
+
+from app.api.problems import MalformedBody, UnsupportedMediaType
+from app.errors import BadField, DiskFull, Place
+
+MOST_FIELDS = 32
+MOST_FILES = 4
+LONGEST_FIELD = 64 * 2**10
+"""Bytes of one text field; a role mapping of a hundred joints needs about four thousand."""
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def media_type(request: Request) -> str:
+    """The body's media type in lower case without parameters; empty where there is none."""
+    return request.headers.get("content-type", "").partition(";")[0].strip().lower()
+
+
+def require_json(request: Request) -> None:
+    """Refuse a body that does not say that it is JSON.
+
+    Raises UnsupportedMediaType.
+    """
+    if not _is_json(media_type(request)):
+        raise UnsupportedMediaType("This call takes application/json.")
+
+
+def is_multipart(request: Request) -> bool:
+    """Whether the body is a form with files; JSON is the other thing that it may be.
+
+    Raises UnsupportedMediaType where it is neither.
+    """
+    kind = media_type(request)
+    if kind != "multipart/form-data" and not _is_json(kind):
+        raise UnsupportedMediaType("This call takes application/json or multipart/form-data.")
+    return kind == "multipart/form-data"
+
+
+async def read_json(request: Request, model: type[Model]) -> Model:
+    """The body as `model`. Raises MalformedBody and RequestValidationError."""
+    try:
+        content = json.loads(await request.body())
+    except (ValueError, RecursionError) as error:
+        raise MalformedBody("The body is not valid JSON.") from error
+    return check(model, content)
+
+
+async def read_form(
+    request: Request, model: type[Model], files: Iterable[str]
+) -> tuple[Model, dict[str, UploadFile]]:
+    """A multipart body: its text fields as `model`, and the files among `files` that came.
+
+    The files stay open until the request has been answered.
+    Raises UnsupportedMediaType, MalformedBody, BadField, RequestValidationError, DiskFull.
+    """
+    if media_type(request) != "multipart/form-data":
+        raise UnsupportedMediaType("This call takes multipart/form-data.")
+    form = await _parse(request)
+    # FastAPI closes this stack after the answer; the files are temporary ones.
+    request.scope["fastapi_middleware_astack"].push_async_callback(form.close)
+    texts, uploads = _sort(form, set(files))
+    return check(model, texts), uploads
+
+
+async def _parse(request: Request) -> FormData:
+    try:
+        return await request.form(
+            max_files=MOST_FILES, max_fields=MOST_FIELDS, max_part_size=LONGEST_FIELD
+        )
+    except HTTPException as error:
+        if error.status_code != 400:
+            raise
+        raise MalformedBody(f"The form cannot be read: {error.detail}") from error
+    except OSError as error:
+        if error.errno in {errno.ENOSPC, errno.EDQUOT}:
+            raise DiskFull from error
+        raise
+    except (ValueError, KeyError, AssertionError) as error:
+        raise MalformedBody("The form cannot be read.") from error
+
+
+def _sort(form: FormData, files: set[str]) -> tuple[dict[str, str], dict[str, UploadFile]]:
+    texts: dict[str, str] = {}
+    uploads: dict[str, UploadFile] = {}
+    wrong: list[Place] = []
+    for name, value in form.multi_items():
+        if name in texts or name in uploads:
+            wrong.append(Place(f"body.{name}", "This field was sent more than once."))
+        elif isinstance(value, UploadFile) and name in files:
+            uploads[name] = value
+        elif isinstance(value, UploadFile):
+            wrong.append(Place(f"body.{name}", "This field does not take a file."))
+        elif name in files and value:
+            wrong.append(Place(f"body.{name}", "This field takes a file, with a file name."))
+        elif value:
+            texts[name] = value
+    if wrong:
+        raise BadField("The form has fields that are wrong.", places=wrong)
+    return texts, uploads
+
+
+def check(model: type[Model], content: Any) -> Model:
+    """`content` as `model`. Raises RequestValidationError with locations under `body`."""
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        found = error.errors(include_url=False, include_context=False, include_input=False)
+        raise RequestValidationError(
+            [{**detail, "loc": ("body", *detail["loc"])} for detail in found]
+        ) from error
+
+
+def required(uploads: Mapping[str, UploadFile], name: str) -> UploadFile:
+    """The file of that name. Raises BadField where it was not sent."""
+    if name not in uploads:
+        raise BadField("A file is missing.", places=[Place(f"body.{name}", "Field required")])
+    return uploads[name]
+
+
+def _is_json(kind: str) -> bool:
+    return kind == "application/json" or (
+        kind.startswith("application/") and kind.endswith("+json")
+    )

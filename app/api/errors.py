@@ -1,0 +1,69 @@
+"""Handlers that answer every failure with a problem (RFC 9457)."""
+
+from __future__ import annotations
+
+import errno
+import logging
+from typing import cast
+
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from starlette.exceptions import HTTPException
+
+from app.api.problems import (
+    problem,
+    problem_of,
+    problem_of_http,
+    problem_of_validation,
+    respond,
+    status_of,
+)
+from app.errors import BadField, DiskFull, KinedexError, Place, Unauthorized
+
+log = logging.getLogger(__name__)
+
+
+def install_handlers(app: FastAPI) -> None:
+    """Answer our failures, the router's and validation's as problems."""
+    app.add_exception_handler(KinedexError, _on_failure)
+    app.add_exception_handler(RequestValidationError, _on_validation)
+    app.add_exception_handler(HTTPException, _on_http)
+
+
+def answer_unexpected(error: Exception) -> Response:
+    """500 without the exception's text, which goes to the log; 507 where the disk is full."""
+    if isinstance(error, OSError) and error.errno in {errno.ENOSPC, errno.EDQUOT}:
+        log.error("disk full")
+        return respond(problem_of(DiskFull()))
+    log.error("unexpected exception", exc_info=error)
+    return respond(problem(500, "internal", "Something went wrong; the log tells what."))
+
+
+async def _on_failure(request: Request, error: Exception) -> Response:
+    failure = cast(KinedexError, error)
+    if isinstance(failure, BadField):
+        failure = _located(failure, "query" if request.method == "GET" else "body")
+    if status_of(type(failure)) >= 500:
+        log.error("failure: %s", failure.detail, exc_info=failure)
+    asks = {"WWW-Authenticate": "Bearer"} if isinstance(failure, Unauthorized) else None
+    return respond(problem_of(failure), asks)
+
+
+def _located(failure: BadField, part: str) -> BadField:
+    """The same failure with the part of the request before the fields that services name."""
+    places = [
+        place
+        if place.location.startswith(("query.", "body.", "path.", "header."))
+        else Place(f"{part}.{place.location}", place.message)
+        for place in failure.places
+    ]
+    return BadField(failure.detail, places=places)
+
+
+async def _on_validation(_request: Request, error: Exception) -> Response:
+    return respond(problem_of_validation(cast(RequestValidationError, error).errors()))
+
+
+async def _on_http(_request: Request, error: Exception) -> Response:
+    refusal = cast(HTTPException, error)
+    return respond(problem_of_http(refusal.status_code, refusal.detail), refusal.headers)

@@ -1,0 +1,40 @@
+"""Loading the index while the service already answers."""
+
+from __future__ import annotations
+
+import logging
+import threading
+
+from app.services.library import Library
+
+log = logging.getLogger(__name__)
+
+RETRY_SECONDS = 2.0
+
+
+class Loading:
+    """Loads a library's index in a thread; tries again when that fails."""
+
+    def __init__(self, library: Library) -> None:
+        self._library = library
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._load, name="load-index", daemon=True)
+
+    def start(self) -> None:
+        """Begin to load."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Try no more; returns when the thread has ended."""
+        self._stop.set()
+        self._thread.join()
+
+    def _load(self) -> None:
+        while not self._stop.is_set():
+            try:
+                self._library.index.catch_up(self._library.store)
+            except Exception:
+                log.exception("the index could not be loaded; trying again")
+                self._stop.wait(RETRY_SECONDS)
+            else:
+                return

@@ -1,0 +1,19 @@
+"""`/metrics`: requests by route and status, for Prometheus."""
+
+from __future__ import annotations
+
+from fastapi import FastAPI
+from prometheus_client import CollectorRegistry
+from prometheus_fastapi_instrumentator import Instrumentator
+
+from app.api.deps import reads
+
+
+def install_metrics(app: FastAPI) -> None:
+    """Count and time every request; a registry of its own for each application."""
+    registry = CollectorRegistry()
+    instrumentator = Instrumentator(
+        registry=registry, excluded_handlers=["/metrics", "/livez", "/readyz"]
+    )
+    instrumentator.instrument(app)
+    instrumentator.expose(app, tags=["service"], dependencies=[reads])

@@ -1,0 +1,109 @@
+"""The OpenAPI description: problems, and bodies that routes read by themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+from pydantic import BaseModel
+from pydantic.json_schema import models_json_schema
+
+from app.api import problems
+from app.api.schemas.problem import Problem
+
+_REF = "#/components/schemas/{model}"
+_DESCRIPTIONS = {
+    400: "The body cannot be read as what its Content-Type says",
+    401: "An API key is needed",
+    403: "This API key does not allow that",
+    404: "There is no such thing",
+    409: "The state of things does not allow this",
+    413: "The body is larger than the limit",
+    415: "Content or media type that is not known here",
+    422: "A field is wrong, or a file that cannot be used",
+    500: "Something went wrong; the log tells what",
+    503: "The service is starting",
+    507: "There is no space left; nothing was kept",
+}
+_EVERYWHERE = (401, 403, 422, 500)
+
+
+def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """The `responses=` of a route: problems of these statuses and of those that any call has."""
+    schema = {"$ref": _REF.format(model="Problem")}
+    return {
+        status: {
+            "description": _DESCRIPTIONS[status],
+            "content": {problems.MEDIA_TYPE: {"schema": schema}},
+        }
+        for status in sorted({*statuses, *_EVERYWHERE})
+    }
+
+
+def body(
+    *,
+    json: type[BaseModel] | None = None,
+    json_examples: Mapping[str, Any] | None = None,
+    form: type[BaseModel] | None = None,
+    files: Mapping[str, str] | None = None,
+    needed: Sequence[str] = (),
+) -> dict[str, Any]:
+    """The `openapi_extra=` of a route that reads JSON as `json` or a form as `form` and `files`.
+
+    files: what each file is, by field name; needed: the fields of the form that must come.
+    """
+    content: dict[str, Any] = {}
+    if json is not None:
+        content["application/json"] = {
+            "schema": {"$ref": _REF.format(model=json.__name__)},
+            "examples": {name: {"value": value} for name, value in (json_examples or {}).items()},
+        }
+    if form is not None:
+        content["multipart/form-data"] = {"schema": _form_schema(form, files or {}, needed)}
+    return {"requestBody": {"required": True, "content": content}}
+
+
+def _form_schema(
+    form: type[BaseModel], files: Mapping[str, str], needed: Sequence[str]
+) -> dict[str, Any]:
+    schema = form.model_json_schema(ref_template=_REF)
+    schema.pop("$defs", None)
+    uploads = {
+        name: {"type": "string", "format": "binary", "description": text}
+        for name, text in files.items()
+    }
+    schema["properties"] = {**uploads, **schema["properties"]}
+    if needed:
+        schema["required"] = list(needed)
+    return schema
+
+
+def describe(app: FastAPI, bodies: Sequence[type[BaseModel]]) -> None:
+    """Make `app.openapi()` tell also the schemas of `bodies` and of problems; made once."""
+
+    def openapi() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            app.openapi_schema = _build(app, bodies)
+        return app.openapi_schema
+
+    app.openapi = openapi  # type: ignore[method-assign]  # FastAPI's documented way
+
+
+def _build(app: FastAPI, bodies: Sequence[type[BaseModel]]) -> dict[str, Any]:
+    told = get_openapi(
+        title=app.title,
+        version=app.version,
+        summary=app.summary,
+        description=app.description,
+        routes=app.routes,
+        tags=app.openapi_tags,
+        license_info=app.license_info,
+    )
+    _, extra = models_json_schema(
+        [(model, "validation") for model in (*bodies, Problem)], ref_template=_REF
+    )
+    schemas = told.setdefault("components", {}).setdefault("schemas", {})
+    schemas.update(extra.get("$defs", {}))
+    return told

@@ -1,0 +1,156 @@
+"""Failures as problem+json (RFC 9457): the one place that knows HTTP statuses of failures.
+
+Members: `type title status detail code errors`; each of `errors` has `location`
+(as `body.limit`, `query.cursor`, `line 12`) and `message`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from http import HTTPStatus
+from typing import Any
+
+from fastapi.responses import JSONResponse
+from pydantic_core import ErrorDetails
+
+from app import errors
+from app.errors import KinedexError, Place
+
+MEDIA_TYPE = "application/problem+json"
+TYPE_PREFIX = "urn:kinedex:problem:"
+MOST_PLACES = 100
+"""Places told in one problem; a form with a thousand wrong fields needs no longer answer."""
+
+
+class NotReadyYet(KinedexError):
+    """The service is starting: its index is not loaded yet."""
+
+    code = "not_ready"
+
+
+class MalformedBody(KinedexError):
+    """The body cannot be read as what its Content-Type says."""
+
+    code = "malformed_body"
+
+
+class UnsupportedMediaType(KinedexError):
+    """The body is of a media type that this call does not take."""
+
+    code = "unsupported_media_type"
+
+
+STATUSES: dict[type[KinedexError], int] = {
+    MalformedBody: 400,
+    errors.Unauthorized: 401,
+    errors.Forbidden: 403,
+    errors.NotFound: 404,
+    errors.Conflict: 409,
+    errors.TooLarge: 413,
+    errors.UnknownFormat: 415,
+    errors.FormatNotSupported: 415,
+    UnsupportedMediaType: 415,
+    errors.BadContent: 422,
+    errors.BadField: 422,
+    errors.StorageError: 500,
+    errors.ConfigurationError: 500,
+    KinedexError: 500,
+    NotReadyYet: 503,
+    errors.DiskFull: 507,
+}
+"""HTTP status by failure; a class that is not listed has its nearest ancestor's."""
+
+_ROUTER_CODES = {404: "not_found", 405: "method_not_allowed", 413: "too_large"}
+_DETAIL_IS_SAFE = {503, 507}
+
+
+def status_of(kind: type[KinedexError]) -> int:
+    """The HTTP status of a class of failures."""
+    return next(STATUSES[base] for base in kind.__mro__ if base in STATUSES)
+
+
+def problem(
+    status: int,
+    code: str,
+    detail: str,
+    *,
+    title: str | None = None,
+    places: Iterable[Mapping[str, str]] = (),
+) -> dict[str, Any]:
+    """The members of a problem, in the order in which they are shown."""
+    return {
+        "type": TYPE_PREFIX + code,
+        "title": title or HTTPStatus(status).phrase,
+        "status": status,
+        "detail": detail,
+        "code": code,
+        "errors": list(places)[:MOST_PLACES],
+    }
+
+
+def problem_of(error: KinedexError) -> dict[str, Any]:
+    """A failure as a problem; what went wrong inside is told to the log only."""
+    status = status_of(type(error))
+    told = error.as_problem()
+    hidden = status >= 500 and status not in _DETAIL_IS_SAFE
+    return problem(
+        status,
+        error.code,
+        error.title() if hidden else error.detail,
+        title=error.title(),
+        places=() if hidden else told["errors"],
+    )
+
+
+def problem_of_http(status: int, detail: str) -> dict[str, Any]:
+    """What the router refused (no such path, method not allowed) as a problem."""
+    code = _ROUTER_CODES.get(status) or HTTPStatus(status).name.lower()
+    return problem(status, code, detail)
+
+
+def problem_of_validation(found: Iterable[ErrorDetails | Mapping[str, Any]]) -> dict[str, Any]:
+    """What request validation found, as a problem: 422, or 400 where JSON cannot be read."""
+    details = list(found)
+    if any(_whole_body_is_not_json(detail) for detail in details):
+        return problem_of(MalformedBody("The body is not valid JSON."))
+    places = [Place(location_of(d["loc"]), d["msg"]) for d in details]
+    return problem_of(errors.BadField("The request has fields that are wrong.", places=places))
+
+
+def _whole_body_is_not_json(detail: ErrorDetails | Mapping[str, Any]) -> bool:
+    # FastAPI gives the offset, ("body", 17); a form's JSON field has a name there.
+    within = detail["loc"][1:]
+    return detail["type"] == "json_invalid" and all(isinstance(step, int) for step in within)
+
+
+def location_of(path: Iterable[int | str]) -> str:
+    """A path of names and positions as `body.words.3`."""
+    return ".".join(str(step) for step in path)
+
+
+def stored_problem(told: Mapping[str, Any]) -> dict[str, Any]:
+    """A failure that a clip or job keeps (`KinedexError.as_problem`), as a whole problem."""
+    code = str(told.get("code", KinedexError.code))
+    status = _status_by_code().get(code, 500)
+    return problem(
+        status,
+        code,
+        str(told.get("detail", "")),
+        title=told.get("title"),
+        places=told.get("errors", ()),
+    )
+
+
+def _status_by_code() -> dict[str, int]:
+    return {kind.code: status_of(kind) for kind in _kinds(KinedexError)}
+
+
+def _kinds(kind: type[KinedexError]) -> list[type[KinedexError]]:
+    return [kind] + [deeper for child in kind.__subclasses__() for deeper in _kinds(child)]
+
+
+def respond(told: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> JSONResponse:
+    """A problem as an answer."""
+    return JSONResponse(
+        told, status_code=told["status"], media_type=MEDIA_TYPE, headers=dict(headers or {})
+    )

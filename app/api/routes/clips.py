@@ -1,0 +1,118 @@
+"""Clips: store, list, read, correct, delete."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query, Request, Response
+from fastapi.responses import FileResponse
+from starlette.datastructures import UploadFile
+
+from app.api.bodies import read_form, require_json, required
+from app.api.deps import Lib, reads, writes
+from app.api.openapi import body, refusals
+from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch, ClipQuery
+from app.api.schemas.jobs import Job
+from app.services import clips
+from app.services.clips import NewClip
+
+router = APIRouter(prefix="/v1/clips", tags=["clips"])
+
+FILES = {
+    "file": "The motion: BVH.",
+    "skeleton": "ASF that belongs to an AMC file.",
+    "audio": "Recording that the motion goes with; this version does not use it.",
+}
+
+
+async def _form(request: Request) -> tuple[ClipForm, dict[str, UploadFile]]:
+    return await read_form(request, ClipForm, FILES)
+
+
+@router.post(
+    "",
+    status_code=202,
+    dependencies=[writes],
+    responses={
+        200: {"model": ClipCreated, "description": "The same bytes were stored before."},
+        **refusals(400, 413, 415, 507),
+    },
+    openapi_extra=body(form=ClipForm, files=FILES, needed=["file"]),
+)
+def create_clip(
+    lib: Lib,
+    sent: Annotated[tuple[ClipForm, dict[str, UploadFile]], Depends(_form)],
+    response: Response,
+) -> ClipCreated:
+    """Store a clip; a worker makes it `ready`, or `failed` with its reason."""
+    form, uploads = sent
+    upload = required(uploads, "file")
+    created = clips.create_clip(lib, upload.file, _new_clip(form, upload.filename))
+    if created.job is None:
+        response.status_code = 200
+    job = None if created.job is None else Job.of(created.job)
+    return ClipCreated(clip=Clip.of(created.clip), job=job)
+
+
+def _new_clip(form: ClipForm, filename: str | None) -> NewClip:
+    return NewClip(
+        filename=filename or "clip",
+        name=form.name,
+        person=form.person,
+        task=form.task,
+        words=None if form.words is None else tuple(form.words),
+        license=form.license,
+        source=form.source,
+        frame_rate=form.frame_rate,
+        unit=form.unit,
+        roles=form.roles,
+    )
+
+
+@router.get("", dependencies=[reads], responses=refusals())
+def list_clips(lib: Lib, query: Annotated[ClipQuery, Query()]) -> ClipList:
+    """The clips that pass every filter; repeat a label parameter to mean any of its values."""
+    page = clips.list_clips(lib, query.as_filter(), query.sort, query.limit, query.cursor)
+    return ClipList(items=[Clip.of(clip) for clip in page.items], next=page.next)
+
+
+@router.get("/{clip_id}", dependencies=[reads], responses=refusals(404))
+def get_clip(lib: Lib, clip_id: str) -> Clip:
+    """One clip."""
+    return Clip.of(clips.get_clip(lib, clip_id))
+
+
+@router.patch(
+    "/{clip_id}",
+    dependencies=[writes, Depends(require_json)],
+    responses=refusals(400, 404, 409, 413, 415),
+)
+def update_clip(lib: Lib, clip_id: str, patch: ClipPatch) -> Clip:
+    """Correct what is said of a clip."""
+    return Clip.of(clips.update_clip(lib, clip_id, patch.model_dump(exclude_unset=True)))
+
+
+@router.delete("/{clip_id}", status_code=204, dependencies=[writes], responses=refusals(404))
+def delete_clip(lib: Lib, clip_id: str) -> None:
+    """Forget a clip, its file and all that was computed from it."""
+    clips.delete_clip(lib, clip_id)
+
+
+@router.get(
+    "/{clip_id}/file",
+    dependencies=[reads],
+    response_class=FileResponse,
+    responses={
+        200: {"content": {"application/octet-stream": {}}, "description": "The original bytes."},
+        **refusals(404),
+    },
+)
+def get_file(lib: Lib, clip_id: str) -> FileResponse:
+    """The original file, as an attachment: it is foreign content and never shown as a page."""
+    file = clips.open_file(lib, clip_id)
+    return FileResponse(
+        file.path,
+        media_type="application/octet-stream",
+        filename=file.name,
+        content_disposition_type="attachment",
+    )

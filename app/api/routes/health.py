@@ -1,0 +1,33 @@
+"""Whether the service lives and is ready; `/` leads to the documentation."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request
+from fastapi.responses import RedirectResponse
+
+from app.api.deps import Lib
+from app.api.openapi import refusals
+from app.api.problems import NotReadyYet
+from app.api.schemas.health import Alive, Ready
+
+router = APIRouter(tags=["service"])
+
+
+@router.get("/", include_in_schema=False)
+def root(request: Request) -> RedirectResponse:
+    """To the documentation, until there are pages."""
+    return RedirectResponse(str(request.scope.get("root_path", "")).rstrip("/") + "/docs")
+
+
+@router.get("/livez")
+def livez() -> Alive:
+    """The process answers. Needs no key."""
+    return Alive()
+
+
+@router.get("/readyz", responses=refusals(503))
+def readyz(lib: Lib) -> Ready:
+    """200 once the index is loaded, 503 before. Needs no key."""
+    if not lib.index.is_loaded:
+        raise NotReadyYet
+    return Ready(library_version=lib.index.version, clips=len(lib.index))

@@ -1,0 +1,37 @@
+"""Imports: many clips in one archive."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Request
+from starlette.datastructures import UploadFile
+
+from app.api.bodies import read_form, required
+from app.api.deps import Lib, writes
+from app.api.openapi import body, refusals
+from app.api.schemas.imports import ImportForm
+from app.api.schemas.jobs import Job, JobStarted
+from app.services import imports
+
+router = APIRouter(prefix="/v1/imports", tags=["clips"])
+
+FILES = {"archive": "A ZIP of motion files; it may hold `manifest.csv`."}
+
+
+async def _form(request: Request) -> UploadFile:
+    _, uploads = await read_form(request, ImportForm, FILES)
+    return required(uploads, "archive")
+
+
+@router.post(
+    "",
+    status_code=202,
+    dependencies=[writes],
+    responses=refusals(400, 413, 415, 507),
+    openapi_extra=body(form=ImportForm, files=FILES, needed=["archive"]),
+)
+def start_import(lib: Lib, archive: Annotated[UploadFile, Depends(_form)]) -> JobStarted:
+    """Store every motion file of a ZIP; `job.result` tells what came of each."""
+    job = imports.start_import(lib, archive.file, archive.filename or "archive.zip")
+    return JobStarted(job=Job.of(job))

@@ -1,0 +1,79 @@
+"""Jobs: list, read, cancel, and follow as server-sent events."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from typing import Annotated
+
+import anyio
+from fastapi import APIRouter, Depends, Query
+from fastapi.concurrency import run_in_threadpool
+from fastapi.sse import EventSourceResponse, ServerSentEvent
+
+from app.api.deps import Lib, reads, writes
+from app.api.openapi import refusals
+from app.api.schemas.jobs import Job, JobList, JobQuery
+from app.errors import JobNotFound
+from app.services import jobs
+from app.services.library import Library
+from app.store.job_record import JobRecord
+
+router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
+
+POLL_SECONDS = 0.25
+"""Between two looks at a job that is being followed."""
+
+
+@router.get("", dependencies=[reads], responses=refusals())
+def list_jobs(lib: Lib, query: Annotated[JobQuery, Query()]) -> JobList:
+    """Jobs, the newest first."""
+    page = jobs.list_jobs(lib, query.limit, query.cursor)
+    return JobList(items=[Job.of(job) for job in page.items], next=page.next)
+
+
+@router.get("/{job_id}", dependencies=[reads], responses=refusals(404))
+def get_job(lib: Lib, job_id: str) -> Job:
+    """One job."""
+    return Job.of(jobs.get_job(lib, job_id))
+
+
+@router.delete("/{job_id}", status_code=202, dependencies=[writes], responses=refusals(404, 409))
+def cancel_job(lib: Lib, job_id: str) -> Job:
+    """Ask a job to stop; one that has ended stays as it is."""
+    return Job.of(jobs.cancel_job(lib, job_id))
+
+
+def _existing(lib: Lib, job_id: str) -> JobRecord:
+    # Before the stream begins, while a 404 can still be answered.
+    return jobs.get_job(lib, job_id)
+
+
+@router.get(
+    "/{job_id}/events",
+    dependencies=[reads],
+    response_class=EventSourceResponse,
+    responses=refusals(404),
+)
+async def follow_job(
+    lib: Lib, job: Annotated[JobRecord, Depends(_existing)]
+) -> AsyncIterator[ServerSentEvent]:
+    """Follow a job: an event `progress` for each change, and `done` when it has ended.
+
+    Every event's data is the Job. The stream ends after `done`.
+    """
+    seen: JobRecord | None = None
+    now: JobRecord | None = job
+    while now is not None and now.is_open:
+        if now != seen:
+            yield ServerSentEvent(event="progress", data=Job.of(now))
+        seen = now
+        await anyio.sleep(POLL_SECONDS)
+        now = await run_in_threadpool(_look, lib, job.id)
+    yield ServerSentEvent(event="done", data=Job.of(now or job))
+
+
+def _look(lib: Library, job_id: str) -> JobRecord | None:
+    try:
+        return jobs.get_job(lib, job_id)
+    except JobNotFound:
+        return None

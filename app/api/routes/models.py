@@ -1,0 +1,25 @@
+"""Models that are fitted on the library."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+
+from app.api.deps import Lib, reads, writes
+from app.api.openapi import refusals
+from app.api.schemas.jobs import Job, JobStarted
+from app.api.schemas.models import Model, ModelList
+from app.services import models
+
+router = APIRouter(prefix="/v1/models", tags=["models"])
+
+
+@router.get("", dependencies=[reads], responses=refusals())
+def list_models(lib: Lib) -> ModelList:
+    """The current model of each kind, with the library's size at the fit and held-out figures."""
+    return ModelList(items=[Model.of(record) for record in models.list_models(lib)])
+
+
+@router.post("/fit", status_code=202, dependencies=[writes], responses=refusals(409))
+def request_fit(lib: Lib) -> JobStarted:
+    """Fit all models again in the background; searches go on with the old ones meanwhile."""
+    return JobStarted(job=Job.of(models.request_fit(lib)))

@@ -1,0 +1,60 @@
+"""Recognition: who, what, and in which words."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Request
+
+from app.api.bodies import is_multipart, read_form, read_json
+from app.api.deps import Lib, reads
+from app.api.openapi import body, refusals
+from app.api.queries import QUERY_FILES, exactly_one, file_of
+from app.api.schemas.recognition import Answer, Recognition, Recognize, RecognizeForm, WordScore
+from app.services import recognise
+from app.services.recognise import RecogniseQuery
+
+router = APIRouter(prefix="/v1/recognize", tags=["recognition"])
+
+_EXAMPLES = {
+    "a stored clip": {"clip_id": "CLIP_ID"},
+    "who, when the task is known": {"clip_id": "CLIP_ID", "known_task": "walk"},
+}
+
+
+async def _query(request: Request) -> RecogniseQuery:
+    if not is_multipart(request):
+        sent = await read_json(request, Recognize)
+        return RecogniseQuery(
+            clip_id=sent.clip_id, known_person=sent.known_person, known_task=sent.known_task
+        )
+    form, uploads = await read_form(request, RecognizeForm, QUERY_FILES)
+    exactly_one(form.clip_id, uploads)
+    return RecogniseQuery(
+        clip_id=form.clip_id,
+        content=file_of(uploads, "file"),
+        known_person=form.known_person,
+        known_task=form.known_task,
+        skeleton=file_of(uploads, "skeleton"),
+        frame_rate=form.frame_rate,
+        unit=form.unit,
+        roles=form.roles,
+    )
+
+
+@router.post(
+    "",
+    dependencies=[reads],
+    responses=refusals(400, 404, 409, 413, 415, 507),
+    openapi_extra=body(
+        json=Recognize, json_examples=_EXAMPLES, form=RecognizeForm, files=QUERY_FILES
+    ),
+)
+def recognize(lib: Lib, query: Annotated[RecogniseQuery, Depends(_query)]) -> Recognition:
+    """Say who it is, what they do and in which words; `label` is null when it is unknown."""
+    found = recognise.recognise(lib, query)
+    return Recognition(
+        person=Answer.of(found.person),
+        task=Answer.of(found.task),
+        words=[WordScore(word=word, score=score) for word, score in found.words],
+    )

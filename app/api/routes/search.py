@@ -1,0 +1,141 @@
+"""Searches: by example and by words."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Request
+
+from app.api.bodies import is_multipart, read_form, read_json, require_json
+from app.api.deps import Lib, reads
+from app.api.openapi import body, refusals
+from app.api.queries import QUERY_FILES, exactly_one, file_of
+from app.api.schemas.clips import Clip
+from app.api.schemas.search import (
+    Hit,
+    MotionHits,
+    MotionSearch,
+    MotionSearchForm,
+    WordHits,
+    WordSearch,
+)
+from app.services import find
+from app.services.find import MotionQuery, WordQuery
+from app.services.hits import Hits
+
+router = APIRouter(prefix="/v1/search", tags=["search"])
+
+_MOTION_EXAMPLES = {
+    "like a stored clip": {"clip_id": "CLIP_ID", "limit": 5},
+    "like a part of it, among walks": {
+        "clip_id": "CLIP_ID",
+        "start": 0.5,
+        "end": 1.5,
+        "method": "dtw",
+        "filter": {"task": ["walk"]},
+    },
+}
+
+
+async def _motion_query(request: Request) -> MotionQuery:
+    if not is_multipart(request):
+        sent = await read_json(request, MotionSearch)
+        given = {} if sent.filter is None else sent.filter.given()
+        return MotionQuery(
+            clip_id=sent.clip_id,
+            start=sent.start,
+            end=sent.end,
+            method=sent.method,
+            limit=sent.limit,
+            filter=given,
+            scope=sent.scope,
+            include_self=sent.include_self,
+            cursor=sent.cursor,
+        )
+    return await _uploaded_query(request)
+
+
+async def _uploaded_query(request: Request) -> MotionQuery:
+    form, uploads = await read_form(request, MotionSearchForm, QUERY_FILES)
+    exactly_one(form.clip_id, uploads)
+    return MotionQuery(
+        clip_id=form.clip_id,
+        content=file_of(uploads, "file"),
+        start=form.start,
+        end=form.end,
+        method=form.method,
+        limit=form.limit,
+        filter={} if form.filter is None else form.filter.given(),
+        scope=form.scope,
+        include_self=form.include_self,
+        cursor=form.cursor,
+        skeleton=file_of(uploads, "skeleton"),
+        frame_rate=form.frame_rate,
+        unit=form.unit,
+        roles=form.roles,
+    )
+
+
+@router.post(
+    "/motion",
+    dependencies=[reads],
+    responses=refusals(400, 404, 409, 413, 415, 507),
+    openapi_extra=body(
+        json=MotionSearch,
+        json_examples=_MOTION_EXAMPLES,
+        form=MotionSearchForm,
+        files=QUERY_FILES,
+    ),
+)
+def search_motion(lib: Lib, query: Annotated[MotionQuery, Depends(_motion_query)]) -> MotionHits:
+    """Find motions like a stored clip, a part of one, or an uploaded file."""
+    hits = find.find_motion(lib, query)
+    return MotionHits(
+        method=hits.method,
+        took_ms=hits.took_ms,
+        library_version=hits.library_version,
+        items=_items(hits),
+        next=hits.next,
+    )
+
+
+@router.post(
+    "/words",
+    dependencies=[reads, Depends(require_json)],
+    responses=refusals(400, 409, 413, 415),
+)
+def search_words(lib: Lib, query: WordSearch) -> WordHits:
+    """Find motions for words."""
+    hits = find.find_words(
+        lib,
+        WordQuery(
+            words=query.words,
+            mode=query.mode,
+            limit=query.limit,
+            filter={} if query.filter is None else query.filter.given(),
+            cursor=query.cursor,
+        ),
+    )
+    return WordHits(
+        method=hits.method,
+        took_ms=hits.took_ms,
+        library_version=hits.library_version,
+        items=_items(hits),
+        next=hits.next,
+        unknown_words=list(hits.unknown_words),
+        expanded={word: list(known) for word, known in (hits.expanded or {}).items()},
+    )
+
+
+def _items(hits: Hits) -> list[Hit]:
+    return [
+        Hit(
+            rank=hit.rank,
+            score=hit.score,
+            distance=hit.distance,
+            start=hit.start,
+            end=hit.end,
+            clip=Clip.of(hit.clip),
+        )
+        for hit in hits.items
+    ]

@@ -1,0 +1,172 @@
+"""Clips: what is sent with one, what is told of one."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field, Json
+
+from app.api.schemas.base import AnyOf, Cursor, FormWords, Incoming, Limit, Outgoing, Seconds
+from app.api.schemas.jobs import Job
+from app.api.schemas.problem import Problem
+from app.store.clip_filter import ClipFilter
+from app.store.clip_record import ClipRecord, ClipState
+
+Label = Annotated[str, Field(max_length=300)]
+Sort = Literal[
+    "created_at",
+    "-created_at",
+    "name",
+    "-name",
+    "duration",
+    "-duration",
+    "person",
+    "-person",
+    "task",
+    "-task",
+]
+FrameRate = Annotated[float, Field(gt=0, le=2000, description="Frames a second.")]
+
+
+class ClipWarning(Outgoing):
+    """A doubt that does not stop a clip."""
+
+    code: str
+    detail: str
+    likely: float | None = Field(None, description="The value that is thought right, if any.")
+
+
+class Clip(Outgoing):
+    """A motion-capture clip with its labels."""
+
+    id: str
+    name: str
+    state: ClipState
+    format: str | None
+    sha256: str
+    person: str | None
+    task: str | None
+    words: list[str]
+    license: str | None
+    source: str | None
+    frames: int | None
+    frame_rate: float | None = Field(description="Frames a second, as used.")
+    declared_frame_rate: float | None = Field(description="Frames a second, as the file says.")
+    duration: float | None = Field(description="Seconds.")
+    joints: int | None = Field(description="Number of joints.")
+    roles: dict[str, str] = Field(description="Joint name by joint role.")
+    missing_roles: list[str]
+    warnings: list[ClipWarning]
+    created_at: datetime
+    error: Problem | None = Field(description="Why the clip is `failed`, else null.")
+
+    @classmethod
+    def of(cls, record: ClipRecord) -> Clip:
+        """A clip as it goes over the wire."""
+        return cls(
+            id=record.id,
+            name=record.name,
+            state=record.state,
+            format=record.format,
+            sha256=record.sha256,
+            person=record.person,
+            task=record.task,
+            words=list(record.words),
+            license=record.license,
+            source=record.source,
+            frames=record.frames,
+            frame_rate=record.frame_rate,
+            declared_frame_rate=record.declared_frame_rate,
+            duration=record.duration,
+            joints=record.joints,
+            roles=dict(record.roles),
+            missing_roles=list(record.missing_roles),
+            warnings=[
+                ClipWarning(code=doubt.code, detail=doubt.detail, likely=doubt.likely)
+                for doubt in record.warnings
+            ],
+            created_at=record.created_at,
+            error=Problem.of(record.error),
+        )
+
+
+class ClipCreated(Outgoing):
+    """A clip that has been stored, and the job that will make it ready."""
+
+    clip: Clip
+    job: Job | None
+
+
+class ClipList(Outgoing):
+    """A page of clips."""
+
+    items: list[Clip]
+    next: str | None
+
+
+class ClipForm(Incoming):
+    """The text fields that come with an uploaded clip."""
+
+    name: Label | None = Field(None, description="Default: the file's name.")
+    person: Label | None = Field(None, examples=["anna"])
+    task: Label | None = Field(None, examples=["walk"])
+    words: FormWords | None = Field(
+        None, description="Separated by spaces, a phrase with underscores.", examples=["walk slow"]
+    )
+    license: Label | None = Field(None, examples=["CC-BY-4.0"])
+    source: Label | None = None
+    frame_rate: FrameRate | None = Field(None, description="Overrides what the file declares.")
+    unit: str | None = Field(
+        None, max_length=30, description="m, dm, cm, mm, in, ft, or metres per unit."
+    )
+    roles: Json[dict[str, str]] | None = Field(
+        None, description='JSON: joint name by role, as {"hips": "Pelvis"}.'
+    )
+
+
+class ClipPatch(Incoming):
+    """Corrections: only fields that are sent change; null forgets one (`name` has none)."""
+
+    name: Label | None = None
+    person: Label | None = None
+    task: Label | None = None
+    words: list[Label] | None = Field(None, max_length=100)
+    license: Label | None = None
+    source: Label | None = None
+    frame_rate: FrameRate | None = Field(
+        None, description="The clip is analysed again; null returns to the declared one."
+    )
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"person": "anna", "words": ["walk", "slow"]}]}
+    )
+
+
+class ClipQuery(Incoming):
+    """Filters of a list of clips; all that are given must hold."""
+
+    person: AnyOf | None = None
+    task: AnyOf | None = None
+    word: AnyOf | None = None
+    license: AnyOf | None = None
+    state: ClipState | None = None
+    min_duration: Seconds | None = None
+    max_duration: Seconds | None = None
+    q: str | None = Field(None, max_length=300, description="Part of the name.")
+    sort: Sort = Field("-created_at", description="A leading - turns the order round.")
+    limit: Limit = 10
+    cursor: Cursor | None = None
+
+    def as_filter(self) -> ClipFilter:
+        """The conditions as the store takes them; words are kept in lower case."""
+        return ClipFilter(
+            person=tuple(self.person or ()),
+            task=tuple(self.task or ()),
+            word=tuple(word.strip().lower() for word in self.word or ()),
+            license=tuple(self.license or ()),
+            state=() if self.state is None else (self.state,),
+            min_duration=self.min_duration,
+            max_duration=self.max_duration,
+            q=self.q,
+        )

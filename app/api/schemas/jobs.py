@@ -1,0 +1,65 @@
+"""Jobs."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Any
+
+from pydantic import Field
+
+from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing
+from app.api.schemas.problem import Problem
+from app.store.job_record import JobKind, JobRecord, JobState
+
+
+class Job(Outgoing):
+    """Work that is done in the background."""
+
+    id: str
+    kind: JobKind
+    state: JobState
+    progress: float = Field(ge=0, le=1)
+    detail: str | None = Field(description="What is being done, for people.")
+    created_at: datetime
+    started_at: datetime | None
+    finished_at: datetime | None
+    result: dict[str, Any] | None = Field(description="What came of it; its members by `kind`.")
+    error: Problem | None
+
+    @classmethod
+    def of(cls, record: JobRecord) -> Job:
+        """A job as it goes over the wire."""
+        return cls(
+            id=record.id,
+            kind=record.kind,
+            state=record.state,
+            progress=record.progress,
+            detail=record.detail,
+            created_at=record.created_at,
+            started_at=record.started_at,
+            finished_at=record.finished_at,
+            result=record.result,
+            error=Problem.of(record.error),
+        )
+
+
+class JobList(Outgoing):
+    """A page of jobs, newest first."""
+
+    items: list[Job]
+    next: str | None
+
+
+class JobStarted(Outgoing):
+    """The job that a call has queued."""
+
+    job: Job
+
+
+class JobQuery(Incoming):
+    """Filters of the list of jobs, and which page of it."""
+
+    kind: JobKind | None = None
+    state: JobState | None = None
+    limit: Limit = 10
+    cursor: Cursor | None = None

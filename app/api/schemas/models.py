@@ -1,0 +1,43 @@
+"""What is fitted on the library."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Any
+
+from pydantic import Field
+
+from app.api.schemas.base import Outgoing
+from app.store.models import ModelRecord
+
+
+class Model(Outgoing):
+    """A fitted model that is in use."""
+
+    id: str
+    kind: str
+    version: int
+    library_version: int = Field(description="The library's version at the fit.")
+    library_size: int = Field(description="Clips in the library at the fit.")
+    figures: dict[str, Any] = Field(description="Held-out figures, by name.")
+    created_at: datetime
+
+    @classmethod
+    def of(cls, record: ModelRecord) -> Model:
+        """A model as it goes over the wire."""
+        return cls(
+            id=record.id,
+            kind=record.kind,
+            version=record.version,
+            library_version=record.library_version,
+            library_size=record.library_size,
+            figures=dict(record.meta.get("figures", {})),
+            created_at=record.created_at,
+        )
+
+
+class ModelList(Outgoing):
+    """The current model of each kind; `next` is always null."""
+
+    items: list[Model]
+    next: str | None = None

@@ -1,0 +1,49 @@
+"""Problems (RFC 9457)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import ConfigDict, Field
+
+from app.api.problems import stored_problem
+from app.api.schemas.base import Outgoing
+
+
+class ProblemPlace(Outgoing):
+    """One place where something is wrong."""
+
+    location: str = Field(description="Line, joint, frame or field: `line 12`, `body.limit`.")
+    message: str
+
+
+class Problem(Outgoing):
+    """What went wrong (RFC 9457, application/problem+json)."""
+
+    type: str
+    title: str
+    status: int
+    detail: str
+    code: str = Field(description="For machines; stable.")
+    errors: list[ProblemPlace]
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {
+                    "type": "urn:kinedex:problem:unreadable",
+                    "title": "The file cannot be read as its format",
+                    "status": 422,
+                    "detail": "The file cannot be read as its format.",
+                    "code": "unreadable",
+                    "errors": [{"location": "line 12", "message": "a number was expected"}],
+                }
+            ]
+        }
+    )
+
+    @classmethod
+    def of(cls, told: Mapping[str, Any] | None) -> Problem | None:
+        """The failure that a clip, job or import entry keeps, as a whole problem."""
+        return None if told is None else cls.model_validate(stored_problem(told))

@@ -1,0 +1,70 @@
+"""Who is it, what do they do, in which words."""
+
+from __future__ import annotations
+
+from pydantic import ConfigDict, Field
+
+from app.api.schemas.base import Incoming, Outgoing
+from app.api.schemas.clips import Label
+from app.api.schemas.search import ClipId, UploadFields
+from app.models.recognition import Answer as FoundAnswer
+
+
+class _Known(Incoming):
+    known_person: Label | None = Field(None, description="Recognise the task given the person.")
+    known_task: Label | None = Field(None, description="Recognise the person given the task.")
+
+
+class Recognize(_Known):
+    """Recognise a stored clip."""
+
+    clip_id: ClipId
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"clip_id": "CLIP_ID"}]})
+
+
+class RecognizeForm(_Known, UploadFields):
+    """Recognise an uploaded motion (never stored), or a stored clip."""
+
+    clip_id: ClipId | None = None
+
+
+class Candidate(Outgoing):
+    """A label that it may be."""
+
+    label: str
+    score: float = Field(ge=0, le=1)
+
+
+class Answer(Outgoing):
+    """Who or what it is."""
+
+    label: str | None = Field(description="Null when it is nobody or nothing known.")
+    known: bool
+    score: float = Field(ge=0, le=1)
+    candidates: list[Candidate]
+
+    @classmethod
+    def of(cls, found: FoundAnswer) -> Answer:
+        """An answer as it goes over the wire."""
+        return cls(
+            label=found.label,
+            known=found.known,
+            score=found.score,
+            candidates=[Candidate(label=c.label, score=c.score) for c in found.candidates],
+        )
+
+
+class WordScore(Outgoing):
+    """A word that describes the motion."""
+
+    word: str
+    score: float = Field(ge=0, le=1)
+
+
+class Recognition(Outgoing):
+    """Person, task and words of a motion."""
+
+    person: Answer
+    task: Answer
+    words: list[WordScore]

@@ -1,0 +1,121 @@
+"""Searches by example and by words."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import ConfigDict, Field, Json
+
+from app.api.schemas.base import AnyOf, Cursor, Incoming, Limit, Outgoing, Seconds
+from app.api.schemas.clips import Clip, FrameRate
+from app.search.methods import Method
+
+
+class Filter(Incoming):
+    """What narrows a search before anything is ranked; all that are given must hold."""
+
+    person: AnyOf | None = None
+    task: AnyOf | None = None
+    word: AnyOf | None = None
+    license: AnyOf | None = None
+    source: AnyOf | None = None
+    min_duration: Seconds | None = Field(None, description="Seconds.")
+    max_duration: Seconds | None = Field(None, description="Seconds.")
+
+    def given(self) -> dict[str, Any]:
+        """The conditions that were sent."""
+        return self.model_dump(exclude_none=True)
+
+
+class _MotionOptions(Incoming):
+    start: Seconds | None = Field(None, description="Seconds: search by a part of the query.")
+    end: Seconds | None = Field(None, description="Seconds: where that part ends.")
+    method: Method = Method.FUSED
+    limit: Limit = 10
+    scope: Literal["clips", "windows"] = "clips"
+    include_self: bool = Field(False, description="Whether the query clip may be among the hits.")
+    cursor: Cursor | None = None
+
+
+ClipId = Annotated[str, Field(min_length=1, max_length=100)]
+
+
+class MotionSearch(_MotionOptions):
+    """Find motions like a stored clip or a part of it."""
+
+    clip_id: ClipId
+    filter: Filter | None = None
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {"clip_id": "CLIP_ID", "limit": 5},
+                {"clip_id": "CLIP_ID", "start": 0.5, "end": 1.5, "filter": {"task": "walk"}},
+            ]
+        }
+    )
+
+
+class UploadFields(Incoming):
+    """What a client may say of an uploaded query."""
+
+    unit: str | None = Field(
+        None, max_length=30, description="m, dm, cm, mm, in, ft, or metres per unit."
+    )
+    frame_rate: FrameRate | None = Field(None, description="Overrides what the file declares.")
+    roles: Json[dict[str, str]] | None = Field(
+        None, description='JSON: joint name by role, as {"hips": "Pelvis"}.'
+    )
+
+
+class MotionSearchForm(_MotionOptions, UploadFields):
+    """Find motions like an uploaded one (never stored), or like a stored clip."""
+
+    clip_id: ClipId | None = None
+    filter: Json[Filter] | None = Field(None, description='JSON, as {"task": ["walk", "run"]}.')
+
+
+class WordSearch(Incoming):
+    """Find motions for words."""
+
+    words: list[Annotated[str, Field(min_length=1, max_length=300)]] = Field(
+        min_length=1, max_length=100
+    )
+    mode: Literal["default", "cca"] = "default"
+    limit: Limit = 10
+    filter: Filter | None = None
+    cursor: Cursor | None = None
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [{"words": ["walk"], "limit": 5}, {"words": ["kick"], "mode": "cca"}]
+        }
+    )
+
+
+class Hit(Outgoing):
+    """One answer of a search."""
+
+    rank: int = Field(ge=1)
+    score: float = Field(ge=0, le=1, description="Higher is closer.")
+    distance: float
+    start: float = Field(description="Seconds from the clip's begin.")
+    end: float
+    clip: Clip
+
+
+class MotionHits(Outgoing):
+    """A page of a ranking, the nearest first."""
+
+    method: str
+    took_ms: float
+    library_version: int
+    items: list[Hit]
+    next: str | None
+
+
+class WordHits(MotionHits):
+    """A page of a ranking by words."""
+
+    unknown_words: list[str] = Field(description="Words that no clip carries.")
+    expanded: dict[str, list[str]] = Field(description="What was used in their place.")
