@@ -1,0 +1,70 @@
+"""Figures of merit for ranked answers, shared by all evaluations.
+
+Takano (section 3: precision, recall, F where they are equal, eq. 20, top-3 words) and the
+usual ones of query by example. A ranking is given by scores, higher is closer; equal
+scores keep the order of the candidates. Shapes: queries Q, candidates N, words V.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.numerics.arrays import BoolArray, FloatArray
+
+
+def average_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
+    """Eq. 20: mean of the precision at each relevant candidate; scores, is_relevant: (N,).
+
+    0.0 where nothing is relevant.
+    """
+    hits = is_relevant[_best_first(scores)]
+    places = np.flatnonzero(hits) + 1
+    if not places.size:
+        return 0.0
+    return float((np.arange(1, places.size + 1) / places).mean())
+
+
+def precision_at_k(scores: FloatArray, is_relevant: BoolArray, k: int) -> float:
+    """Share of relevant ones among the k best; scores, is_relevant: (N,), 1 <= k <= N."""
+    return float(is_relevant[_best_first(scores)[:k]].mean())
+
+
+def mean_average_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
+    """Mean of eq. 20 over the rows of (Q, N) that have something relevant; else 0.0."""
+    rows = np.flatnonzero(is_relevant.any(axis=1))
+    found = [average_precision(scores[row], is_relevant[row]) for row in rows]
+    return float(np.mean(found)) if found else 0.0
+
+
+def mean_precision_at_k(scores: FloatArray, is_relevant: BoolArray, k: int) -> float:
+    """Mean of precision_at_k over the rows of (Q, N) that have something relevant."""
+    rows = np.flatnonzero(is_relevant.any(axis=1))
+    found = [precision_at_k(scores[row], is_relevant[row], k) for row in rows]
+    return float(np.mean(found)) if found else 0.0
+
+
+def nearest_neighbour_rate(scores: FloatArray, is_relevant: BoolArray) -> float:
+    """Share of the rows of (Q, N) with something relevant whose best candidate is relevant."""
+    return mean_precision_at_k(scores, is_relevant, 1)
+
+
+def f_where_recall_is_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
+    """F at R = P over all pairs at once (micro), any equal shapes; 0.0 where none is relevant.
+
+    With as many retrieved as there are relevant, R = P = F.
+    """
+    relevant = int(is_relevant.sum())
+    if relevant == 0:
+        return 0.0
+    return float(is_relevant.ravel()[_best_first(scores.ravel())[:relevant]].mean())
+
+
+def top_k_rate(scores: FloatArray, labels: BoolArray, k: int) -> float:
+    """Share of the labelled rows of (N, V) of which a true label is among the k best."""
+    rows = np.flatnonzero(labels.any(axis=1))
+    found = [labels[row, _best_first(scores[row])[:k]].any() for row in rows]
+    return float(np.mean(found)) if found else 0.0
+
+
+def _best_first(scores: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+    return np.argsort(-scores, kind="stable")

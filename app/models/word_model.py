@@ -1,0 +1,94 @@
+"""The default word model: kernel ridge from clip statistics to label vectors (DESIGN 6, 13).
+
+A clip's words are ranked by the model's output; clips for a query of words by the cosine
+between their outputs and the query's label vector. Shapes: clips N, words V,
+statistics p (131 of app.analysis.symbol_features).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.errors import NotEnoughLabels
+from app.numerics.arrays import FloatArray
+from app.numerics.kernel_ridge import KernelRidge, fit_kernel_ridge
+
+WORD_MODEL_VERSION = 1
+
+MOST_DEVIATIONS = 10.0
+"""Standardised statistics saturate here: one broken clip must not stretch the kernel."""
+
+
+@dataclass(frozen=True, slots=True)
+class WordModel:
+    """mean, scale: (p,) standardise the statistics; ridge: maps them to V outputs."""
+
+    mean: FloatArray
+    scale: FloatArray
+    ridge: KernelRidge
+
+    def predict(self, statistics: FloatArray) -> FloatArray:
+        """(N, V) scores of the words for clips' `statistics` (N, p), in 0..1."""
+        rows = standardise(statistics, self.mean, self.scale)
+        return np.clip(self.ridge.predict(rows), 0.0, 1.0)
+
+    def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
+        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        arrays = {
+            "mean": self.mean,
+            "scale": self.scale,
+            "centres": self.ridge.centres,
+            "weights": self.ridge.weights,
+            "offset": self.ridge.offset,
+        }
+        meta = {
+            "version": WORD_MODEL_VERSION,
+            "width": self.ridge.width,
+            "penalty": self.ridge.penalty,
+        }
+        return arrays, meta
+
+    @classmethod
+    def from_arrays(
+        cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
+    ) -> WordModel:
+        """The record that to_arrays took apart. Raises ValueError on another version."""
+        if meta["version"] != WORD_MODEL_VERSION:
+            raise ValueError(f"word model of version {meta['version']}")
+        ridge = KernelRidge(
+            arrays["centres"], arrays["weights"], arrays["offset"], meta["width"], meta["penalty"]
+        )
+        return cls(arrays["mean"], arrays["scale"], ridge)
+
+
+def fit_word_model(statistics: FloatArray, labels: FloatArray, *, seed: int = 0) -> WordModel:
+    """Fit on `statistics` (n, p) and label vectors (n, V) of the labelled clips.
+
+    Raises NotEnoughLabels where there is no clip or no word.
+    """
+    if labels.shape[0] == 0 or labels.shape[1] == 0:
+        raise NotEnoughLabels("No clip has words.")
+    rows = np.asarray(statistics, dtype=np.float64)
+    mean, scale = rows.mean(axis=0), rows.std(axis=0)
+    scale = np.where(scale > 1e-6, scale, 1.0)  # a channel that never varies says nothing
+    ridge = fit_kernel_ridge(standardise(rows, mean, scale), labels, seed=seed)
+    return WordModel(mean, scale, ridge)
+
+
+def standardise(statistics: FloatArray, mean: FloatArray, scale: FloatArray) -> FloatArray:
+    """(N, p) `statistics` about `mean` in units of `scale`, limited to MOST_DEVIATIONS."""
+    deviations = (np.asarray(statistics, dtype=np.float64) - mean) / scale
+    return np.clip(deviations, -MOST_DEVIATIONS, MOST_DEVIATIONS)
+
+
+def clip_cosines(predicted: FloatArray, query: FloatArray) -> FloatArray:
+    """(N,) cosine in 0..1 between predicted scores (N, V) and a query's label vector (V,).
+
+    0 where either has no length.
+    """
+    lengths = np.linalg.norm(predicted, axis=1) * np.linalg.norm(query)
+    return np.asarray(predicted @ query / np.maximum(lengths, 1e-12))

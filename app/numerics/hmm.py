@@ -1,0 +1,141 @@
+"""Left-to-right hidden Markov models with diagonal Gaussian states (Takano, section 2.1).
+
+A model begins in its first state, stays or moves to the next one, and may end in any
+state: forcing the last one makes short samples impossible and divergences infinite
+(DESIGN 5). Everything is computed in the log domain. Shapes: frames T, states K,
+channels D, models M.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray, IntArray
+
+LEAST_PROBABILITY = 1e-10
+"""Transitions are floored here before their logarithm is taken, so that none is -inf."""
+
+
+@dataclass(frozen=True, slots=True)
+class GaussianHMM:
+    """A left-to-right model: transitions (K, K), rows sum to one, only stay and next are
+    not zero; means (K, D); variances (K, D), positive; units are those of the channels.
+    """
+
+    transitions: FloatArray
+    means: FloatArray
+    variances: FloatArray
+
+    @property
+    def states(self) -> int:
+        """K, the number of states."""
+        return int(self.means.shape[0])
+
+    def log_stay(self) -> FloatArray:
+        """(K,) log probability of staying in each state."""
+        stay = np.diagonal(self.transitions).astype(np.float64)
+        return np.log(np.maximum(stay, LEAST_PROBABILITY))
+
+    def log_move(self) -> FloatArray:
+        """(K - 1,) log probability of moving from each state to the next."""
+        move = np.diagonal(self.transitions, offset=1).astype(np.float64)
+        return np.log(np.maximum(move, LEAST_PROBABILITY))
+
+    def dwell(self) -> FloatArray:
+        """(K,) expected frames in each state, 1 / (1 - stay), at least one.
+
+        The last state has no way out: it is given the mean of the others.
+        """
+        leave = 1.0 - np.diagonal(self.transitions)[:-1].astype(np.float64)
+        frames = 1.0 / np.maximum(leave, 1e-4)
+        return np.append(frames, frames.mean() if frames.size else 1.0)
+
+    def expected_path(self) -> IntArray:
+        """(frames,) the state of each frame when every state lasts as long as expected.
+
+        States end at the rounded sum of the dwells before, so rounding does not pile up.
+        """
+        ends = np.maximum(np.rint(np.cumsum(self.dwell())), np.arange(1, self.states + 1))
+        return np.repeat(np.arange(self.states), np.diff(ends, prepend=0).astype(np.int64))
+
+
+def mean_trajectory(model: GaussianHMM) -> FloatArray:
+    """(frames, D) the model's means along its expected path: the motion it stands for."""
+    return np.asarray(model.means[model.expected_path()], dtype=np.float64)
+
+
+def sample(model: GaussianHMM, frames: int, rng: np.random.Generator) -> FloatArray:
+    """(frames, D) one sequence drawn from the model."""
+    stay = np.diagonal(model.transitions)
+    path = np.zeros(frames, dtype=np.int64)
+    moves = rng.random(frames)
+    for frame in range(1, frames):
+        before = path[frame - 1]
+        is_moving = before + 1 < model.states and moves[frame] >= stay[before]
+        path[frame] = before + is_moving
+    noise = rng.standard_normal((frames, model.means.shape[1]))
+    return np.asarray(model.means[path] + noise * np.sqrt(model.variances[path]))
+
+
+def log_emissions(sequence: FloatArray, means: FloatArray, variances: FloatArray) -> FloatArray:
+    """(T, K) log density of every frame of `sequence` (T, D) in every state.
+
+    means, variances: (K, D).
+    """
+    precision = 1.0 / variances
+    # (x - m)^2 / v summed over D as three products: (T, D) @ (D, K)
+    squares = (
+        (sequence**2) @ precision.T
+        - 2.0 * (sequence @ (means * precision).T)
+        + (means**2 * precision).sum(axis=1)
+    )
+    constant = np.log(2.0 * np.pi * variances).sum(axis=1)
+    return np.asarray(-0.5 * (squares + constant))
+
+
+def log_likelihood(model: GaussianHMM, sequence: FloatArray) -> float:
+    """log P(sequence (T, D) | model), summed over end states."""
+    emissions = log_emissions(sequence, model.means, model.variances)
+    last = forward(emissions, model.log_stay(), model.log_move())[-1]
+    return float(np.logaddexp.reduce(last))
+
+
+def log_likelihoods(models: Sequence[GaussianHMM], sequence: FloatArray) -> FloatArray:
+    """(M,) log P(sequence | model) of each model: which symbol is this motion (Takano 2.4)?"""
+    return np.array([log_likelihood(model, sequence) for model in models])
+
+
+def forward(emissions: FloatArray, log_stay: FloatArray, log_move: FloatArray) -> FloatArray:
+    """(T, K) log probability of the frames so far and of being in each state now.
+
+    emissions: (T, K) log densities; log_stay: (K,); log_move: (K - 1,).
+    One running sum over time for each state, instead of one step over states for each
+    frame: with c_t = sum of (stay + emission) up to t, a state entered at s has
+    log alpha_t = c_t + log sum_{s <= t} exp(enter_s - c_s).
+    """
+    frames, states = emissions.shape
+    stays = np.cumsum(emissions + log_stay, axis=0)
+    alpha = np.full((frames, states), -np.inf)
+    alpha[:, 0] = stays[:, 0] - log_stay[0]  # the first frame is not a transition
+    for state in range(1, states):
+        enter = alpha[:-1, state - 1] + log_move[state - 1] + emissions[1:, state]
+        alpha[1:, state] = stays[1:, state] + np.logaddexp.accumulate(enter - stays[1:, state])
+    return alpha
+
+
+def backward(emissions: FloatArray, log_stay: FloatArray, log_move: FloatArray) -> FloatArray:
+    """(T, K) log probability of the frames to come, given the state now; mirror of forward."""
+    frames, states = emissions.shape
+    stays = np.cumsum(emissions + log_stay, axis=0)
+    beta = np.zeros((frames, states))
+    beta[:, -1] = stays[-1, -1] - stays[:, -1]
+    for state in range(states - 2, -1, -1):
+        leave = np.empty(frames)
+        leave[:-1] = stays[:-1, state] + log_move[state]
+        leave[:-1] += emissions[1:, state + 1] + beta[1:, state + 1]
+        leave[-1] = stays[-1, state]  # the sequence ends in this state
+        beta[:, state] = np.logaddexp.accumulate(leave[::-1])[::-1] - stays[:, state]
+    return beta
