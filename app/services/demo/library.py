@@ -1,0 +1,120 @@
+"""The demo library: every actor's takes of every task, as BVH files with a manifest.
+
+Deterministic: the same bytes at every run. Files are in centimetres, Y up.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.errors import NotFound
+from app.formats.bvh_writer import write_bvh
+from app.services.demo.actors import ACTORS, Actor
+from app.services.demo.performance import Performance
+from app.services.demo.posing import local_rotations
+from app.services.demo.rig import skeleton_of
+from app.services.demo.take import enlivened, prepare
+from app.services.demo.tasks import TASKS
+from app.services.demo.words import words_for
+
+LICENSE = "CC0-1.0"
+SOURCE = "Kinedex demo"
+UNITS_PER_METRE = 100.0
+MANIFEST = "manifest.csv"
+COLUMNS: tuple[str, ...] = ("path", "source", "license", "person", "task", "words", "fps")
+
+
+@dataclass(frozen=True, slots=True)
+class DemoClip:
+    """One file of the demo library and what is known of it.
+
+    path: relative, with forward slashes; content: BVH; words: two to four; frame_rate: Hz;
+    keyposes: s, where poses are struck and held (dances only); beats: s (dances only).
+    """
+
+    path: str
+    content: bytes
+    person: str
+    task: str
+    words: tuple[str, ...]
+    frame_rate: float
+    keyposes: tuple[float, ...] = ()
+    beats: tuple[float, ...] = ()
+
+
+def demo_clips(
+    actors: Collection[str] | None = None,
+    tasks: Collection[str] | None = None,
+    takes: int = 3,
+) -> Iterator[DemoClip]:
+    """The clips of the named actors and tasks (all by default), `takes` of each.
+
+    Raises NotFound for an actor or task that the library does not have.
+    """
+    known = {actor.name: actor for actor in ACTORS}
+    _check(actors or (), known, "actor")
+    _check(tasks or (), TASKS, "task")
+    for actor in ACTORS:
+        for task in TASKS:
+            if (actors is None or actor.name in actors) and (tasks is None or task in tasks):
+                for number in range(1, takes + 1):
+                    yield _clip(actor, task, number)
+
+
+def _check(wanted: Collection[str], known: Collection[str], kind: str) -> None:
+    for name in wanted:
+        if name not in known:
+            raise NotFound(f"the demo library has no {kind} {name!r}, only {', '.join(known)}")
+
+
+def perform(actor: Actor, task: str, number: int) -> Performance:
+    """Take `number` of a task by an actor, as controls, with the small sway of the living."""
+    take = prepare(actor, task, number)
+    done = TASKS[task](take)
+    return Performance(
+        done.times, enlivened(done.controls, take, done.times), done.keyposes, done.beats
+    )
+
+
+def _clip(actor: Actor, task: str, number: int) -> DemoClip:
+    done = perform(actor, task, number)
+    rig = prepare(actor, task, number).rig
+    content = write_bvh(
+        skeleton_of(rig, actor.naming, UNITS_PER_METRE),
+        local_rotations(done.controls, rig),
+        done.controls.root * UNITS_PER_METRE,
+        actor.frame_rate,
+    )
+    return DemoClip(
+        path=f"{actor.name}/{task}_{number:02d}.bvh",
+        content=content,
+        person=actor.name,
+        task=task,
+        words=words_for(task, actor.name, number, actor.left_handed),
+        frame_rate=actor.frame_rate,
+        keyposes=done.keyposes,
+        beats=done.beats,
+    )
+
+
+def write_demo(directory: Path) -> int:
+    """Write all clips and their manifest.csv under `directory`; how many clips there are.
+
+    Files that are there already are written over.
+    """
+    clips = 0
+    directory.mkdir(parents=True, exist_ok=True)
+    with (directory / MANIFEST).open("w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(COLUMNS)
+        for clip in demo_clips():
+            target = directory / clip.path
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(clip.content)
+            words, fps = " ".join(clip.words), f"{clip.frame_rate:g}"
+            rows.writerow([clip.path, SOURCE, LICENSE, clip.person, clip.task, words, fps])
+            clips += 1
+    return clips
