@@ -1,0 +1,72 @@
+"""Rank the library against a query motion, by any method (DESIGN 7)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray
+from app.search.distances import Loader, QueryArrays, distances_to
+from app.search.index import VectorIndex
+from app.search.methods import Method
+from app.search.rank import IdArray, Ranking, behind, ranking
+from app.store.clip_filter import ClipFilter
+
+SHORTLIST = 200
+"""Clips that `fused` re-ranks."""
+DTW_WEIGHT = 1.0
+"""Weight of the DTW distance beside the vector's in `fused`."""
+
+SCALES = {
+    Method.FUSED: 2.0,
+    Method.VECTOR: 1.0,
+    Method.DTW: 1.0,
+    Method.MSV_DTW: 1.0,
+    Method.MSV_XCORR: 0.1,
+}
+"""Distance at which the score is one half: about that of two clips of unlike tasks."""
+
+
+def rank_by_example(
+    index: VectorIndex,
+    query: QueryArrays,
+    method: Method,
+    wanted: ClipFilter,
+    exclude: frozenset[str],
+    load: Loader,
+) -> Ranking:
+    """Every clip that passes the filter and is not excluded, from the nearest on."""
+    if method is Method.FUSED:
+        return _fused(index, query, wanted, exclude, load)
+    if method is Method.VECTOR:
+        near = index.nearest(query.vector, wanted, exclude)
+        return ranking(near.ids, near.distances)
+    ids = index.candidates(wanted, exclude).ids
+    return _known(ids, distances_to(query, list(ids), method, load))
+
+
+def _fused(
+    index: VectorIndex,
+    query: QueryArrays,
+    wanted: ClipFilter,
+    exclude: frozenset[str],
+    load: Loader,
+) -> Ranking:
+    """The shortlist by both distances, the rest behind it in the order of their vectors."""
+    near = index.nearest(query.vector, wanted, exclude)
+    first = ranking(near.ids, near.distances)
+    ids, vector = first.ids[:SHORTLIST], first.distances[:SHORTLIST]
+    warped = distances_to(query, list(ids), Method.DTW, load)
+    head = fuse(vector, warped)
+    tail = behind(head[np.isfinite(head)], vector, first.distances[SHORTLIST:])
+    return _known(first.ids, np.concatenate([head, tail]))
+
+
+def fuse(vector: FloatArray, warped: FloatArray) -> FloatArray:
+    """The distance of `fused` from those of its two stages, each (n,)."""
+    return vector + DTW_WEIGHT * warped
+
+
+def _known(ids: IdArray, distances: FloatArray) -> Ranking:
+    """The ranking without clips that were deleted while they were compared."""
+    there = np.isfinite(distances)
+    return ranking(ids[there], distances[there])

@@ -1,0 +1,73 @@
+"""Opaque cursors that page through a ranking.
+
+A cursor remembers the last hit of a page as (rank, distance, clip id) and a digest of the
+question. The next page starts behind that key, so that clips that arrive in between
+shift nothing; a cursor used with another question is refused.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import hashlib
+import json
+import math
+from dataclasses import dataclass
+
+from app.errors import BadField, Place
+
+
+@dataclass(frozen=True, slots=True)
+class Position:
+    """The last hit that was seen: its rank (from 1), distance and clip id."""
+
+    rank: int
+    distance: float
+    clip_id: str
+
+
+def digest(*parts: object) -> str:
+    """A short digest of what identifies a question: the same parts, the same digest."""
+    text = json.dumps([str(part) for part in parts])
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def encode(position: Position, question: str) -> str:
+    """A cursor for what follows `position` in the answer to `question` (a digest)."""
+    body = json.dumps([question, position.rank, position.distance, position.clip_id])
+    return base64.urlsafe_b64encode(body.encode()).decode().rstrip("=")
+
+
+def decode(cursor: str, question: str) -> Position:
+    """The position in a cursor; raises BadField where it is none, or of another question."""
+    try:
+        padded = cursor.encode("ascii") + b"=" * (-len(cursor) % 4)
+        found, rank, distance, clip_id = json.loads(base64.urlsafe_b64decode(padded))
+        position = Position(_rank(rank), _distance(distance), _text(clip_id))
+    except (ValueError, TypeError, binascii.Error) as problem:
+        raise _refused("this is no cursor that was given out") from problem
+    if found != question:
+        raise _refused("this cursor belongs to another question")
+    return position
+
+
+def _rank(value: object) -> int:
+    if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+        raise ValueError("rank")
+    return value
+
+
+def _distance(value: object) -> float:
+    if not isinstance(value, float | int) or not math.isfinite(value):
+        raise ValueError("distance")
+    return float(value)
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        raise TypeError("clip id")
+    return value
+
+
+def _refused(message: str) -> BadField:
+    return BadField("The cursor cannot be used.", places=[Place("cursor", message)])

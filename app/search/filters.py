@@ -1,0 +1,65 @@
+"""What narrows a search before anything is ranked (DESIGN 8, "Search input").
+
+A filter names any of `person task word license source` (a string, or an array meaning any
+of) and `min_duration max_duration` (seconds). All that are named must hold.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from app.errors import BadField, Place
+from app.store.clip_filter import ClipFilter
+
+LABEL_KEYS = ("person", "task", "word", "license", "source")
+DURATION_KEYS = ("min_duration", "max_duration")
+
+
+def parse_filter(given: Mapping[str, Any] | None) -> ClipFilter:
+    """Read a filter as a client sends it.
+
+    Raises BadField naming each unknown key and each value of a wrong kind.
+    """
+    places: list[Place] = []
+    values: dict[str, Any] = {}
+    for key, value in (given or {}).items():
+        try:
+            values[key] = _read(key, value)
+        except ValueError as problem:
+            places.append(Place(f"filter.{key}", str(problem)))
+    if places:
+        raise BadField("The filter cannot be used.", places=places)
+    return ClipFilter(**values)
+
+
+def _read(key: str, value: Any) -> tuple[str, ...] | float | None:
+    if key in LABEL_KEYS:
+        return _labels(key, value)
+    if key in DURATION_KEYS:
+        return _seconds(value)
+    known = ", ".join((*LABEL_KEYS, *DURATION_KEYS))
+    raise ValueError(f"there is no such filter; known are {known}")
+
+
+def _labels(key: str, value: Any) -> tuple[str, ...]:
+    if value is None:
+        return ()
+    values = [value] if isinstance(value, str) else value
+    if not isinstance(values, list | tuple) or not all(isinstance(v, str) for v in values):
+        raise ValueError("must be a string, or an array of strings")
+    if not values:
+        raise ValueError("an empty array would find nothing; leave the key out")
+    # Words are kept lower-cased; the other labels are names and stay as they are.
+    return tuple(v.strip().lower() if key == "word" else v for v in values)
+
+
+def _seconds(value: Any) -> float | None:
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError("must be a number of seconds")
+    if not math.isfinite(value) or value < 0:
+        raise ValueError("must be a number of seconds, zero or more")
+    return float(value)

@@ -1,0 +1,20 @@
+"""How two motions are compared in a search by example (DESIGN 7)."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+
+class Method(StrEnum):
+    """A way to rank clips against a query clip."""
+
+    FUSED = "fused"
+    """Shortlist by motion vector, re-rank by DTW, both distances summed; the default."""
+    VECTOR = "vector"
+    """Euclidean distance of the 128-float motion vectors."""
+    DTW = "dtw"
+    """Dynamic time warping of the body-frame features at 10 Hz, over every clip."""
+    MSV_DTW = "msv-dtw"
+    """Sun 2011, section 4: DTW of secondary vectors and distance of primary vectors."""
+    MSV_XCORR = "msv-xcorr"
+    """Sun 2011, section 4: 3 - D_xcorr, the cross-correlation likeness turned around."""

@@ -1,0 +1,210 @@
+"""Reading and analysing files where it can be killed (DESIGN 12).
+
+A file from outside is parsed in a child process with a limit on time and memory, so that
+hostile or monstrous content costs a failed clip and never the service. The children are
+kept, since importing the numerical libraries takes seconds. They die with their parent,
+even when it is killed.
+"""
+
+from __future__ import annotations
+
+import concurrent.futures
+import logging
+import multiprocessing
+import multiprocessing.connection
+import os
+import resource
+import signal
+import threading
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pebble
+
+from app.errors import (
+    AnalysisCrashed,
+    AnalysisTimedOut,
+    KinedexError,
+    Place,
+    StorageError,
+    TooLarge,
+)
+
+if TYPE_CHECKING:
+    from app.analysis.analyse import Analysis
+    from app.motion.recording import Recording
+
+_log = logging.getLogger(__name__)
+
+TASKS_PER_CHILD = 500
+"""A child is replaced after so many files, in case a library leaks."""
+_ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+class ChildDied(AnalysisCrashed):
+    """The analysis process died (out of memory, or killed)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """What to analyse: `content`, or the file at `path`; and what the client says of it.
+
+    roles: joint names by role name; for_search: leave out what only stored clips need.
+    """
+
+    content: bytes | None = None
+    path: str | None = None
+    frame_rate: float | None = None
+    metres_per_unit: float | None = None
+    roles: Mapping[str, str] | None = None
+    for_search: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What one analysis may take: seconds, MB of address space, frames, joints."""
+
+    seconds: float
+    memory_mb: int
+    frames: int
+    joints: int
+
+
+class AnalysisPool:
+    """Child processes that analyse files, `size` at a time; they start with the first order."""
+
+    def __init__(self, limits: Limits, *, size: int = 1) -> None:
+        self.limits = limits
+        self._pool = _new_pool(limits, size)
+
+    def submit(self, order: Order) -> concurrent.futures.Future[Analysis]:
+        """Begin an analysis; `outcome` reads what came of it. Cancelling kills the child."""
+        future: concurrent.futures.Future[Analysis] = self._pool.schedule(
+            analyse_order, args=(order, self.limits), timeout=self.limits.seconds
+        )
+        return future
+
+    def analyse(self, order: Order) -> Analysis:
+        """Analyse and wait; raises as `outcome` does."""
+        return self.outcome(self.submit(order))
+
+    def outcome(self, future: concurrent.futures.Future[Analysis]) -> Analysis:
+        """What a finished analysis came to.
+
+        Raises BadContent (or TooLarge) for what the content deserves: AnalysisTimedOut,
+        AnalysisCrashed, and the reader's own failures; ChildDied where the child was killed,
+        StorageError where the file cannot be read, CancelledError after `cancel`.
+        """
+        try:
+            return future.result()
+        except KinedexError:
+            raise
+        except TimeoutError as late:
+            raise AnalysisTimedOut(
+                f"The analysis took longer than {self.limits.seconds:g} s and was stopped."
+            ) from late
+        except pebble.ProcessExpired as death:
+            raise ChildDied(f"The analysis process died ({_how(death)}).") from death
+        except MemoryError as hunger:
+            raise AnalysisCrashed(
+                f"The analysis needs more memory than its limit of {self.limits.memory_mb} MB."
+            ) from hunger
+        except OSError as missing:
+            raise StorageError("The stored file cannot be read.") from missing
+        except Exception as surprise:
+            # A defect of ours; the clip must still end, with something to report.
+            _log.exception("analysis failed unexpectedly")
+            reason = f"The analysis failed unexpectedly ({type(surprise).__name__}: {surprise})."
+            raise AnalysisCrashed(reason) from surprise
+
+    def close(self) -> None:
+        """Kill the children and wait for them."""
+        self._pool.stop()
+        self._pool.join()
+
+
+def analyse_order(order: Order, limits: Limits) -> Analysis:
+    """Read, canonicalise and analyse one file, here and now (runs in the child).
+
+    Raises BadContent for what cannot be used, TooLarge beyond the limits.
+    """
+    from app.analysis import analyse
+    from app.formats.read import read_recording
+    from app.motion.canonical import canonicalise
+    from app.motion.joint_roles import JointRole
+
+    content = order.content if order.content is not None else Path(order.path or "").read_bytes()
+    recording = read_recording(content)
+    _check_size(recording, limits)
+    roles = {JointRole(role): joint for role, joint in (order.roles or {}).items()}
+    motion = canonicalise(
+        recording,
+        frame_rate=order.frame_rate,
+        metres_per_unit=order.metres_per_unit,
+        roles=roles or None,
+    )
+    return analyse.describe_for_search(motion) if order.for_search else analyse.analyse(motion)
+
+
+def _check_size(recording: Recording, limits: Limits) -> None:
+    frames, joints = recording.positions.shape[:2]
+    for noun, count, most in (("frames", frames, limits.frames), ("joints", joints, limits.joints)):
+        if count > most:
+            place = Place(noun, f"{count} {noun}, the limit is {most}")
+            raise TooLarge(f"The motion has more than {most} {noun}.", places=[place])
+
+
+def _new_pool(limits: Limits, size: int) -> pebble.ProcessPool:
+    for name in _ONE_THREAD:
+        # Children inherit this; one core each, and no thread stacks in their memory limit.
+        os.environ.setdefault(name, "1")
+    return pebble.ProcessPool(
+        max_workers=size,
+        max_tasks=TASKS_PER_CHILD,
+        initializer=_begin_child,
+        initargs=(limits.memory_mb,),
+        context=multiprocessing.get_context("spawn"),
+    )
+
+
+def _begin_child(memory_mb: int) -> None:
+    """Set up a child: die with the parent, load the libraries, then limit the memory."""
+    die_with_parent()
+    # A terminal's Ctrl-C goes to the whole group; the parent decides what becomes of children.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    import app.analysis.analyse
+    import app.formats.read
+    import app.motion.canonical  # noqa: F401
+
+    limit_memory(memory_mb)
+
+
+def die_with_parent() -> None:
+    """Have this child process exit at once when its parent is gone, however it went.
+
+    A thread waits on the pipe that the parent holds open. (Linux's PR_SET_PDEATHSIG would
+    fire when the parent's *thread* that started the child ends, and requests' threads end.)
+    """
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_exit_after, args=(parent.sentinel,), daemon=True).start()
+
+
+def _exit_after(sentinel: int) -> None:
+    multiprocessing.connection.wait([sentinel])
+    os._exit(1)
+
+
+def limit_memory(memory_mb: int) -> None:
+    """Let this process take `memory_mb` MB of address space, libraries included."""
+    limit = memory_mb * 2**20
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+
+
+def _how(death: pebble.ProcessExpired) -> str:
+    code = getattr(death, "exitcode", None)
+    if isinstance(code, int) and code < 0:
+        return f"killed by signal {-code}"
+    return f"exit code {code}"

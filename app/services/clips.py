@@ -1,0 +1,199 @@
+"""Clips: take in, list, look up, change, remove."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from app.errors import EmptyFile
+from app.formats.sniff import sniff
+from app.services import fields
+from app.services.library import Library
+from app.store import clip_listing, jobs, outcomes
+from app.store import clips as stored
+from app.store.clip_filter import ClipFilter
+from app.store.clip_record import Added, ClipChanges, ClipRecord
+from app.store.clip_record import NewClip as NewRow
+from app.store.engine import Tx
+from app.store.files import Readable, StagedFile
+from app.store.job_record import JobKind, JobRecord, NewJob
+from app.store.paging import Page
+
+SNIFF_BYTES = 64 * 2**10
+"""The first bytes of a file, by which its format is told."""
+UPLOAD_PRIORITY = 10
+BULK_PRIORITY = 20
+"""Clips of an import, and clips to be analysed again: lower goes first."""
+WORKER_DEATHS = 30
+"""A clip whose worker dies is tried again so often. It is seldom the clip's doing: content is
+parsed in a child process, whose death is counted by `job_max_attempts`."""
+PATCHABLE = ("name", "person", "task", "words", "license", "source", "frame_rate")
+
+
+@dataclass(frozen=True, slots=True)
+class NewClip:
+    """What a client says of a file that it hands in; `frame_rate` in Hz.
+
+    unit: metres per unit, or m, cm, mm, in, ...; roles: joint names by role; words: tidied
+    here. Strings may be empty, which is nothing said.
+    """
+
+    filename: str
+    name: str | None = None
+    person: str | None = None
+    task: str | None = None
+    words: tuple[str, ...] | None = None
+    license: str | None = None
+    source: str | None = None
+    frame_rate: float | str | None = None
+    unit: float | str | None = None
+    roles: Mapping[str, str] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Created:
+    """What became of content: its clip, the job that analyses it, None where none is needed."""
+
+    clip: ClipRecord
+    job: JobRecord | None
+    is_new: bool
+
+
+@dataclass(frozen=True, slots=True)
+class StoredFile:
+    """A clip's original bytes: where they are, the name they came with, how many."""
+
+    path: Path
+    name: str
+    size: int
+
+
+def create_clip(lib: Library, content: Readable, given: NewClip) -> Created:
+    """Store a file durably and queue its analysis; on return both survive kill -9.
+
+    The same bytes again give the clip that exists, queued again if it had failed. Raises
+    BadField, EmptyFile, UnknownFormat, TooLarge, DiskFull; then nothing is kept.
+    """
+    row = _described(given)
+    with lib.store.files.stage(content, max_bytes=lib.settings.max_upload_bytes) as staged:
+        check_content(staged)
+        with lib.store.write() as tx:
+            staged.keep()
+            return add(tx, row(staged))
+
+
+def add(tx: Tx, row: NewRow, priority: int = UPLOAD_PRIORITY) -> Created:
+    """Add a kept file's clip and queue its analysis, in the caller's transaction."""
+    added: Added = stored.add_or_get(tx, row)
+    if not added.needs_analysis:
+        return Created(added.clip, None, is_new=False)
+    job = enqueue_ingest(tx, added.clip.id, priority)
+    return Created(added.clip, job, is_new=True)
+
+
+def check_content(staged: StagedFile) -> None:
+    """Raise EmptyFile or UnknownFormat for what no reader would take."""
+    if staged.size == 0:
+        raise EmptyFile()
+    with staged.open() as file:
+        sniff(file.read(SNIFF_BYTES))
+
+
+def enqueue_ingest(tx: Tx, clip_id: str, priority: int) -> JobRecord:
+    """Queue a clip's analysis; one that is queued already is enough."""
+    return jobs.enqueue(
+        tx,
+        NewJob(
+            JobKind.INGEST,
+            clip_id=clip_id,
+            priority=priority,
+            max_attempts=WORKER_DEATHS,
+            dedupe_key=f"ingest:{clip_id}",
+        ),
+    )
+
+
+def list_clips(
+    lib: Library,
+    wanted: ClipFilter | None = None,
+    sort: str = "-created_at",
+    limit: int = 50,
+    cursor: str | None = None,
+) -> Page[ClipRecord]:
+    """One page of the clips that pass a filter. Raises BadField for a bad sort or cursor."""
+    with lib.store.read() as tx:
+        return clip_listing.list_clips(
+            tx, wanted or ClipFilter(), sort=sort, limit=limit, cursor=cursor
+        )
+
+
+def get_clip(lib: Library, clip_id: str) -> ClipRecord:
+    """A clip by id; raises ClipNotFound."""
+    with lib.store.read() as tx:
+        return stored.get(tx, clip_id)
+
+
+def update_clip(lib: Library, clip_id: str, changes: Mapping[str, Any]) -> ClipRecord:
+    """Change labels, or the frame rate, which has the clip analysed again under the same id.
+
+    A key that is absent stays; None takes a value away. Raises BadField, ClipNotFound.
+    """
+    tidy = _tidied(changes)
+    with lib.store.write() as tx:
+        before = stored.get(tx, clip_id)
+        after = stored.patch(tx, clip_id, tidy)
+        if after.frame_rate_override == before.frame_rate_override:
+            return after
+        enqueue_ingest(tx, clip_id, BULK_PRIORITY)
+        return stored.requeue(tx, clip_id)
+
+
+def delete_clip(lib: Library, clip_id: str) -> None:
+    """Remove a clip with all that was derived from it, and its file. Raises ClipNotFound."""
+    with lib.store.write() as tx:
+        gone = outcomes.remove_clip(tx, clip_id)
+    companions = (gone.skeleton_sha256,) if gone.skeleton_sha256 else ()
+    lib.store.drop_unreferenced([gone.sha256, *companions])
+
+
+def open_file(lib: Library, clip_id: str) -> StoredFile:
+    """The original bytes of a clip, whatever its state. Raises ClipNotFound."""
+    clip = get_clip(lib, clip_id)
+    return StoredFile(lib.store.files.path(clip.sha256), clip.file_name, clip.file_size)
+
+
+def _described(given: NewClip) -> Any:
+    """Check what a client says, before its bytes are read; completes the row with the file."""
+    file_name = fields.file_name(given.filename)
+    name = fields.text("name", given.name) or fields.stem(file_name)
+    said: dict[str, Any] = {
+        "person": fields.text("person", given.person),
+        "task": fields.text("task", given.task),
+        "words": fields.words(given.words) or (),
+        "license": fields.text("license", given.license),
+        "source": fields.text("source", given.source),
+        "frame_rate_override": fields.frame_rate(given.frame_rate),
+        "metres_per_unit_override": fields.metres_per_unit(given.unit),
+        "roles_override": fields.roles(given.roles),
+    }
+    return lambda staged: NewRow(staged.sha256, file_name, staged.size, name, **said)
+
+
+def _tidied(changes: Mapping[str, Any]) -> ClipChanges:
+    tidy: dict[str, Any] = {}
+    for key, value in changes.items():
+        if key not in PATCHABLE:
+            raise fields.bad_field(key, f"cannot be changed; what can: {', '.join(PATCHABLE)}")
+        if key == "words":
+            tidy["words"] = fields.words(value) or ()
+        elif key == "frame_rate":
+            tidy["frame_rate_override"] = fields.frame_rate(value)
+        else:
+            tidy[key] = fields.text(key, value)
+    if "name" in tidy and tidy["name"] is None:
+        raise fields.bad_field("name", "must not be empty")
+    return ClipChanges(**tidy)  # type: ignore[typeddict-item]
+
+

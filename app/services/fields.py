@@ -1,0 +1,118 @@
+"""What clients say about a clip: read, tidied and checked in one place.
+
+The same rules hold for a form, a JSON body, a manifest and the command line. Every
+function raises BadField naming the field.
+"""
+
+from __future__ import annotations
+
+import math
+import unicodedata
+from collections.abc import Iterable, Mapping
+
+from app.errors import BadField, Place
+from app.models.word_vocabulary import normalise_words
+from app.motion.joint_roles import JointRole
+
+MAX_TEXT = 300
+"""Characters in a name or label."""
+MAX_WORDS = 100
+"""Words on one clip."""
+MAX_FRAME_RATE = 2000.0
+"""Hz; above any motion capture."""
+
+UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+"""Metres per unit by name."""
+
+
+def bad_field(field: str, message: str) -> BadField:
+    """A BadField that names one field."""
+    return BadField(f"{field}: {message}", places=[Place(field, message)])
+
+
+def text(field: str, value: str | None) -> str | None:
+    """A label without surrounding space; None where nothing is left of it."""
+    if value is None:
+        return None
+    if not isinstance(value, str):
+        raise bad_field(field, "must be a string")
+    tidy = unicodedata.normalize("NFC", value).strip()
+    if len(tidy) > MAX_TEXT:
+        raise bad_field(field, f"must not be longer than {MAX_TEXT} characters")
+    if any(unicodedata.category(c) in ("Cc", "Cs") for c in tidy):
+        raise bad_field(field, "must not hold control characters")
+    return tidy or None
+
+
+def words(value: str | Iterable[str] | None) -> tuple[str, ...] | None:
+    """Words in lower case, each once, in the order given; a string is cut at spaces."""
+    if value is None:
+        return None
+    parts = value.split() if isinstance(value, str) else list(value)
+    tidy = normalise_words(filter(None, (text("words", part) for part in parts)))
+    if len(tidy) > MAX_WORDS:
+        raise bad_field("words", f"must not be more than {MAX_WORDS}")
+    return tidy
+
+
+def frame_rate(value: float | str | None) -> float | None:
+    """Frames a second, above 0 and not above 2000; an empty string is None."""
+    number = _number("frame_rate", value)
+    if number is not None and not 0 < number <= MAX_FRAME_RATE:
+        raise bad_field("frame_rate", f"must be above 0 and at most {MAX_FRAME_RATE:g} Hz")
+    return number
+
+
+def metres_per_unit(value: float | str | None) -> float | None:
+    """Metres in one unit of the file, from a number or a name (m, cm, mm, in, ...)."""
+    if isinstance(value, str) and value.strip().lower() in UNITS:
+        return UNITS[value.strip().lower()]
+    try:
+        number = _number("unit", value)
+    except BadField as problem:
+        known = ", ".join(UNITS)
+        raise bad_field("unit", f"must be one of {known}, or metres per unit") from problem
+    if number is not None and not 1e-6 <= number <= 1e3:
+        raise bad_field("unit", "must be between 0.000001 and 1000 metres")
+    return number
+
+
+def roles(value: Mapping[str, str] | None) -> dict[str, str] | None:
+    """Joint names by role, every role known and every name a string."""
+    if value is None:
+        return None
+    if not isinstance(value, Mapping):
+        raise bad_field("roles", "must be an object: joint names by role")
+    known = {role.value for role in JointRole}
+    for role, joint in value.items():
+        if role not in known:
+            raise bad_field(f"roles.{role}", f"there is no such role; known are {sorted(known)}")
+        if not isinstance(joint, str) or not joint:
+            raise bad_field(f"roles.{role}", "must be the name of a joint")
+    return dict(value) or None
+
+
+def _number(field: str, value: float | str | None) -> float | None:
+    if value is None or (isinstance(value, str) and not value.strip()):
+        return None
+    if isinstance(value, bool):
+        raise bad_field(field, "must be a number")
+    try:
+        number = float(value)
+    except (TypeError, ValueError) as problem:
+        raise bad_field(field, "must be a number") from problem
+    if not math.isfinite(number):
+        raise bad_field(field, "must be a finite number")
+    return number
+
+
+def file_name(value: str) -> str:
+    """The last part of a client's file name, safe to show and to offer for download."""
+    last = value.replace("\\", "/").rstrip("/").rpartition("/")[2]
+    tidy = "".join(c for c in unicodedata.normalize("NFC", last) if c.isprintable()).strip()
+    return tidy[-MAX_TEXT:] or "clip"
+
+
+def stem(name: str) -> str:
+    """A file name without its ending."""
+    return name.rpartition(".")[0] or name

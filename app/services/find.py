@@ -1,0 +1,198 @@
+"""Find motions by example and by words (DESIGN 7, 8)."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+from app.search import cursor as cursors
+from app.search.by_example import SCALES, rank_by_example
+from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays
+from app.search.filters import parse_filter
+from app.search.index import VECTOR
+from app.search.methods import Method
+from app.search.rank import Ranking, score
+from app.services import fields
+from app.services.hits import Hit, Hits
+from app.services.library import Library
+from app.services.query import Answered, Question, describe
+from app.services.word_ranking import rank_by_words, word_score
+from app.store import clips as stored
+from app.store.clip_filter import ClipFilter
+from app.store.files import Readable
+
+DEFAULT_LIMIT = 10
+MAX_LIMIT = 1000
+WORD_MODES = ("default", "cca")
+_NAMES = (VECTOR, FEATURES, RHO, EPSILON)
+
+Filter = ClipFilter | Mapping[str, Any] | None
+"""A filter that was read, or as a client sent it, or none."""
+
+
+@dataclass(frozen=True, slots=True)
+class MotionQuery:
+    """A search by example: exactly one of `clip_id` and `content`.
+
+    start, end: seconds, the part of the query that is meant; skeleton, frame_rate (Hz), unit,
+    roles: of an uploaded query; limit: 1 to 1,000.
+    """
+
+    clip_id: str | None = None
+    content: Readable | None = None
+    start: float | None = None
+    end: float | None = None
+    method: Method | str = Method.FUSED
+    limit: int = DEFAULT_LIMIT
+    filter: Filter = None
+    scope: str = "clips"
+    include_self: bool = False
+    cursor: str | None = None
+    skeleton: Readable | None = None
+    frame_rate: float | str | None = None
+    unit: float | str | None = None
+    roles: Mapping[str, str] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class WordQuery:
+    """A search by words: mode "default" (kernel ridge) or "cca" (Takano's correlated space)."""
+
+    words: Sequence[str]
+    mode: str = "default"
+    limit: int = DEFAULT_LIMIT
+    filter: Filter = None
+    cursor: str | None = None
+
+
+def find_motion(lib: Library, query: MotionQuery) -> Hits:
+    """Clips in order of likeness to a motion.
+
+    Raises BadField, ClipNotFound, ClipNotReady, and BadContent for an upload that cannot be
+    used.
+    """
+    began = time.perf_counter()
+    method, wanted = _method(query.method), _filter(query.filter)
+    _check(query.limit, query.scope)
+    version = lib.index.catch_up(lib.store)
+    asked = describe(lib, _question(query), _NAMES)
+    question = _fingerprint(asked, method, wanted, query)
+    exclude = frozenset({query.clip_id} if query.clip_id and not query.include_self else ())
+    found = rank_by_example(
+        lib.index,
+        _query_arrays(asked),
+        method,
+        wanted,
+        exclude,
+        partial(lib.arrays.get_many, lib.store),
+    )
+    page = _page(lib, found, question, query.limit, query.cursor, partial(score, scale=SCALES[method]))
+    return _timed(replace(page, method=method.value, library_version=version), began)
+
+
+def find_words(lib: Library, query: WordQuery) -> Hits:
+    """Clips in order of how well words describe them.
+
+    Raises BadField, ModelNotFitted. Words that the model does not know are told, and left out.
+    """
+    began = time.perf_counter()
+    wanted = _filter(query.filter)
+    words = fields.words(query.words)
+    if not words:
+        raise fields.bad_field("words", "at least one word is needed")
+    if query.mode not in WORD_MODES:
+        raise fields.bad_field("mode", f"must be one of {', '.join(WORD_MODES)}")
+    _check(query.limit, "clips")
+    version = lib.index.catch_up(lib.store)
+    found = rank_by_words(lib, words, query.mode, wanted)
+    question = cursors.digest("words", *words, query.mode, wanted, found.model)
+    page = _page(lib, found.ranking, question, query.limit, query.cursor, partial(word_score, query.mode))
+    page = replace(
+        page,
+        method=query.mode,
+        library_version=version,
+        unknown_words=found.unknown,
+        expanded={},
+    )
+    return _timed(page, began)
+
+
+def _question(query: MotionQuery) -> Question:
+    return Question(
+        clip_id=query.clip_id,
+        content=query.content,
+        start=query.start,
+        end=query.end,
+        skeleton=query.skeleton,
+        frame_rate=query.frame_rate,
+        unit=query.unit,
+        roles=query.roles,
+    )
+
+
+def _query_arrays(asked: Answered) -> QueryArrays:
+    vector, features, rho, epsilon = (asked.arrays[name] for name in _NAMES)
+    return QueryArrays(vector, features, rho, epsilon)
+
+
+def _fingerprint(
+    asked: Answered, method: Method, wanted: ClipFilter, query: MotionQuery
+) -> str:
+    """What binds a cursor to its question; an upload is known by its descriptors."""
+    content = hashlib.sha256(asked.arrays[FEATURES].tobytes()).hexdigest()
+    return cursors.digest(query.clip_id, content, method, wanted, query.include_self)
+
+
+def _page(
+    lib: Library,
+    found: Ranking,
+    question: str,
+    limit: int,
+    cursor: str | None,
+    to_score: Callable[[float], float],
+) -> Hits:
+    """One page of a ranking, its clips as they are now; those deleted meanwhile are left out."""
+    position = cursors.decode(cursor, question) if cursor is not None else None
+    start = found.after(position)
+    rank = position.rank if position else 0
+    ids = [str(clip_id) for clip_id in found.ids[start : start + limit]]
+    distances = [float(d) for d in found.distances[start : start + limit]]
+    with lib.store.read() as tx:
+        clips = stored.get_many(tx, ids)
+    hits = [
+        Hit(place, to_score(distance), distance, 0.0, clip.duration or 0.0, clip)
+        for place, (clip_id, distance) in enumerate(zip(ids, distances, strict=True), rank + 1)
+        if (clip := clips.get(clip_id)) is not None
+    ]
+    more = start + limit < len(found)
+    last = cursors.Position(rank + len(ids), distances[-1], ids[-1]) if more else None
+    return Hits("", 0.0, 0, tuple(hits), cursors.encode(last, question) if last else None)
+
+
+def _method(value: Method | str) -> Method:
+    try:
+        return Method(value)
+    except ValueError as problem:
+        known = ", ".join(method.value for method in Method)
+        raise fields.bad_field("method", f"must be one of {known}") from problem
+
+
+def _filter(value: Filter) -> ClipFilter:
+    return value if isinstance(value, ClipFilter) else parse_filter(value)
+
+
+def _check(limit: int, scope: str) -> None:
+    if not 1 <= limit <= MAX_LIMIT:
+        raise fields.bad_field("limit", f"must be from 1 to {MAX_LIMIT}")
+    if scope == "windows":
+        raise fields.bad_field("scope", "searching in windows is not there yet; use clips")
+    if scope != "clips":
+        raise fields.bad_field("scope", "must be clips")
+
+
+def _timed(hits: Hits, began: float) -> Hits:
+    return replace(hits, took_ms=(time.perf_counter() - began) * 1000.0)

@@ -1,0 +1,42 @@
+"""What searches answer with (DESIGN 8, "Hits")."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.store.clips import ClipRecord
+
+
+@dataclass(frozen=True, slots=True)
+class Hit:
+    """One clip found.
+
+    rank: from 1; score: 0..1, higher is closer, falls strictly with distance;
+    start, end: seconds, the part of the clip that was found (all of it with scope "clips").
+    """
+
+    rank: int
+    score: float
+    distance: float
+    start: float
+    end: float
+    clip: ClipRecord
+
+
+@dataclass(frozen=True, slots=True)
+class Hits:
+    """One page of a ranking.
+
+    method: how it was ranked; took_ms: milliseconds; library_version: what was searched;
+    next: cursor of the following page, None behind the last;
+    unknown_words: words of a word search that the model does not know;
+    expanded: known words that were used in place of unknown ones, by unknown word.
+    """
+
+    method: str
+    took_ms: float
+    library_version: int
+    items: tuple[Hit, ...]
+    next: str | None = None
+    unknown_words: tuple[str, ...] = ()
+    expanded: dict[str, tuple[str, ...]] | None = None

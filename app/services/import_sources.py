@@ -1,0 +1,137 @@
+"""Where the files of an import come from: a ZIP archive, a folder, or single files.
+
+All give the same thing, a list of `SourceFile`, each to be opened once; a file that must not
+be opened carries its problem instead. Nothing is ever unpacked to a path of the archive's
+choosing.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+import zipfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path, PurePosixPath
+from typing import IO, BinaryIO
+
+from app.errors import BadContent, KinedexError, Place, TooLarge, Unreadable
+
+_ENCRYPTED = 0x1
+_COMPRESSIONS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)
+_RATIO_COUNTS_FROM = 10 * 2**20
+"""Unpacked bytes below which an archive's ratio is of no concern."""
+
+
+@dataclass(frozen=True, slots=True)
+class ArchiveLimits:
+    """Most entries, largest unpacked size as a multiple of the archive's, bytes in one file."""
+
+    entries: int
+    ratio: float
+    file_bytes: int
+
+
+@dataclass(frozen=True, slots=True)
+class SourceFile:
+    """One file of an import: its path (relative, with /), and how to open it, or why not."""
+
+    path: str
+    open: Callable[[], IO[bytes]]
+    problem: KinedexError | None = None
+
+
+@contextmanager
+def archive_files(archive: BinaryIO | Path, limits: ArchiveLimits) -> Iterator[list[SourceFile]]:
+    """The files of a ZIP, in its order, readable within the `with` block.
+
+    Raises Unreadable where it is no ZIP, TooLarge where it holds too many entries or would
+    unpack to too much. Single bad entries carry their problem.
+    """
+    try:
+        opened = zipfile.ZipFile(archive)
+    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as problem:
+        raise Unreadable(f"The archive cannot be read as ZIP: {problem}.") from problem
+    with opened:
+        entries = [entry for entry in opened.infolist() if not _left_out(entry)]
+        _check_whole(entries, _size(archive), limits)
+        yield [_archive_file(opened, entry, limits) for entry in entries]
+
+
+def folder_files(folder: Path) -> list[SourceFile]:
+    """The files below a folder, sorted by path, hidden ones left out; links to folders too."""
+    found = []
+    for root, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        base = Path(root)
+        found += [base / name for name in sorted(names) if not name.startswith(".")]
+    return [SourceFile(f.relative_to(folder).as_posix(), partial(f.open, "rb")) for f in found]
+
+
+def single_file(path: Path) -> list[SourceFile]:
+    """One file by itself, under its own name."""
+    return [SourceFile(path.name, partial(path.open, "rb"))]
+
+
+def is_archive(path: Path) -> bool:
+    """Whether a path is a ZIP archive (by its content; .npz is one, and is not meant)."""
+    return path.is_file() and path.suffix.lower() != ".npz" and zipfile.is_zipfile(path)
+
+
+def _left_out(entry: zipfile.ZipInfo) -> bool:
+    """Folders, and what macOS and version control leave behind."""
+    parts = PurePosixPath(entry.filename).parts
+    hidden = any(part.startswith(".") and part not in (".", "..") for part in parts)
+    return entry.is_dir() or "__MACOSX" in parts or hidden
+
+
+def _check_whole(entries: list[zipfile.ZipInfo], size: int, limits: ArchiveLimits) -> None:
+    if len(entries) > limits.entries:
+        place = Place("archive", f"{len(entries)} entries, the limit is {limits.entries}")
+        raise TooLarge("The archive holds too many files.", places=[place])
+    unpacked = sum(entry.file_size for entry in entries)
+    if unpacked > max(size * limits.ratio, _RATIO_COUNTS_FROM):
+        message = f"{size} bytes would unpack to {unpacked}, more than {limits.ratio:g} times"
+        raise TooLarge("The archive unpacks to too much.", places=[Place("archive", message)])
+
+
+def _archive_file(
+    archive: zipfile.ZipFile, entry: zipfile.ZipInfo, limits: ArchiveLimits
+) -> SourceFile:
+    problem = _entry_problem(entry, limits)
+    return SourceFile(entry.filename, partial(_open_entry, archive, entry), problem)
+
+
+def _open_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> IO[bytes]:
+    try:
+        return archive.open(entry)
+    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, OSError) as problem:
+        raise Unreadable(f"The archive's entry cannot be read: {problem}.") from problem
+
+
+def _entry_problem(entry: zipfile.ZipInfo, limits: ArchiveLimits) -> KinedexError | None:
+    where = [Place(entry.filename, "refused")]
+    path = PurePosixPath(entry.filename.replace("\\", "/"))
+    if path.is_absolute() or ".." in path.parts or ":" in (path.parts or ("",))[0]:
+        return BadContent("The path leads out of the archive.", places=where)
+    if stat.S_ISLNK(entry.external_attr >> 16):
+        return BadContent("Links in an archive are not followed.", places=where)
+    if entry.flag_bits & _ENCRYPTED:
+        return BadContent("The entry is encrypted.", places=where)
+    if entry.compress_type not in _COMPRESSIONS:
+        return BadContent("The entry is compressed by an unknown method.", places=where)
+    if entry.file_size > limits.file_bytes:
+        message = f"{entry.file_size} bytes, the limit is {limits.file_bytes}"
+        return TooLarge("The file is too large.", places=[Place(entry.filename, message)])
+    return None
+
+
+def _size(archive: BinaryIO | Path) -> int:
+    if isinstance(archive, Path):
+        return archive.stat().st_size
+    position = archive.tell()
+    size = archive.seek(0, os.SEEK_END)
+    archive.seek(position)
+    return size

@@ -1,0 +1,284 @@
+"""Imports: many files at once, from a ZIP, a folder or single files.
+
+Each file becomes a clip with its own ingest job, in one transaction with the import's record
+of it. An import that is cut off goes on where it stopped, and the same files imported twice
+give the same clips.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+import zipfile
+import zlib
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+from app.errors import (
+    BadContent,
+    Canceled,
+    KinedexError,
+    NotFound,
+    Place,
+    StorageError,
+    UnknownFormat,
+    Unreadable,
+)
+from app.formats.sniff import sniff
+from app.services import fields
+from app.services.clips import BULK_PRIORITY, SNIFF_BYTES, WORKER_DEATHS, add, check_content
+from app.services.import_sources import (
+    ArchiveLimits,
+    SourceFile,
+    archive_files,
+    folder_files,
+    is_archive,
+    single_file,
+)
+from app.services.library import Library
+from app.services.manifest import MANIFEST_NAME, ManifestRow, read_manifest
+from app.store import imports as stored
+from app.store import jobs, leases
+from app.store.clip_record import ClipState
+from app.store.clip_record import NewClip as NewRow
+from app.store.files import Readable, StagedFile
+from app.store.ids import new_id
+from app.store.imports import ImportOutcome
+from app.store.job_record import ClaimedJob, JobKind, JobRecord, Lease, NewJob
+
+_log = logging.getLogger(__name__)
+
+IMPORT_PRIORITY = 10
+OWN_PRIORITY = -1_000_000_000
+"""Of an import that this process does itself: no worker may take it first."""
+
+Progress = Callable[[int, int, str], None]
+"""Told after each file: files done, files in all, the file's path."""
+_NOTHING = ManifestRow(line=0)
+
+
+def start_import(lib: Library, archive: Readable, filename: str) -> JobRecord:
+    """Store a ZIP durably and queue its import.
+
+    Raises EmptyFile, UnknownFormat for what is no ZIP, TooLarge, DiskFull.
+    """
+    with lib.store.files.stage(archive, max_bytes=lib.settings.max_archive_bytes) as staged:
+        with staged.open() as file:
+            if sniff(file.read(SNIFF_BYTES)) != "zip":
+                raise UnknownFormat("An import takes a ZIP archive.")
+        with lib.store.write() as tx:
+            staged.keep()
+            return jobs.enqueue(
+                tx,
+                NewJob(
+                    JobKind.IMPORT,
+                    file_sha256=staged.sha256,
+                    payload={"filename": fields.file_name(filename)},
+                    priority=IMPORT_PRIORITY,
+                    max_attempts=WORKER_DEATHS,
+                ),
+            )
+
+
+def unpack(
+    lib: Library, claimed: ClaimedJob, progress: Progress, should_stop: Callable[[], bool]
+) -> None:
+    """Do a claimed import: register every file, then leave the job to its clips' ingests.
+
+    `should_stop` is asked before each file; then Canceled is raised, and what was registered
+    stays. Raises BadContent or TooLarge where the archive as a whole cannot be used,
+    LeaseLost where the job was given to another worker.
+    """
+    if claimed.file_sha256 is None:
+        raise BadContent("The command that imported these files was interrupted: run it again.")
+    archive = lib.store.files.path(claimed.file_sha256)
+    with archive_files(archive, _limits(lib)) as files:
+        _register_all(lib, claimed.job.id, files, progress, should_stop)
+    _leave_to_clips(lib, claimed.lease)
+
+
+def import_path(lib: Library, path: Path, progress: Progress | None = None) -> JobRecord:
+    """Import a folder, a ZIP or a single file from this machine's disk.
+
+    Returns the import's job once every file is registered; it ends when a worker has analysed
+    the clips. Raises NotFound where there is no such path, and as `unpack` does.
+    """
+    with _sources(lib, path) as files:
+        claimed = _own_job(lib, path)
+        beat = _Heartbeat(lib, claimed.lease)
+
+        def told(done: int, total: int, name: str) -> None:
+            beat.if_due(done / max(total, 1))
+            if progress is not None:
+                progress(done, total, name)
+
+        _register_all(lib, claimed.job.id, files, told, lambda: False)
+    return _leave_to_clips(lib, claimed.lease)
+
+
+@contextmanager
+def _sources(lib: Library, path: Path) -> Iterator[list[SourceFile]]:
+    if path.is_dir():
+        yield folder_files(path)
+    elif is_archive(path):
+        with archive_files(path, _limits(lib)) as files:
+            yield files
+    elif path.is_file():
+        yield single_file(path)
+    else:
+        raise NotFound(f"There is no file or folder {path}.")
+
+
+def _own_job(lib: Library, path: Path) -> ClaimedJob:
+    """A job that this process has from the start; queued and claimed in one transaction."""
+    job = NewJob(
+        JobKind.IMPORT,
+        payload={"filename": fields.file_name(str(path))},
+        priority=OWN_PRIORITY,
+        max_attempts=1,
+    )
+    with lib.store.write() as tx:
+        created = jobs.enqueue(tx, job)
+        claimed = leases.claim(tx, [JobKind.IMPORT], new_id("import"), lib.settings.job_lease_s)
+        if claimed is None or claimed.job.id != created.id:
+            raise StorageError("Another import begins at this moment; try again.")
+        return claimed
+
+
+class _Heartbeat:
+    """Renews a lease from a loop that has other things to do."""
+
+    def __init__(self, lib: Library, lease: Lease) -> None:
+        self._lib, self._lease, self._last = lib, lease, time.monotonic()
+
+    def if_due(self, progress: float) -> None:
+        settings = self._lib.settings
+        if time.monotonic() - self._last < settings.job_heartbeat_s:
+            return
+        self._last = time.monotonic()
+        with self._lib.store.write() as tx:
+            leases.heartbeat(tx, self._lease, settings.job_lease_s, progress=progress)
+
+
+def _register_all(
+    lib: Library,
+    job_id: str,
+    files: Iterable[SourceFile],
+    progress: Progress,
+    should_stop: Callable[[], bool],
+) -> None:
+    listed = _each_once(files)
+    manifest = _manifest_rows(listed)
+    clips = [file for file in listed if not _is_manifest(file)]
+    absent = sorted(manifest.keys() - {file.path for file in clips})
+    with lib.store.read() as tx:
+        recorded = stored.recorded_paths(tx, job_id)
+    total = len(clips) + len(absent)
+    for done, file in enumerate(clips, 1):
+        if should_stop():
+            raise Canceled("The import was stopped.")
+        if file.path not in recorded:
+            _register(lib, job_id, file, manifest.get(file.path, _NOTHING))
+        progress(done, total, file.path)
+    for path in absent:
+        if path not in recorded:
+            _record_problem(lib, job_id, path, _absent(path, manifest[path]))
+
+
+def _register(lib: Library, job_id: str, file: SourceFile, row: ManifestRow) -> None:
+    """Store one file as a clip, or record why not; failures of the store are raised."""
+    try:
+        if problem := file.problem or row.problem:
+            raise problem
+        with file.open() as content:
+            _store_file(lib, job_id, file.path, content, row)
+    except StorageError:
+        raise
+    except KinedexError as problem:
+        _record_problem(lib, job_id, file.path, problem)
+    except (OSError, EOFError, RuntimeError, zipfile.BadZipFile, zlib.error) as problem:
+        reason = Unreadable(f"The file cannot be read: {problem}.")
+        _record_problem(lib, job_id, file.path, reason)
+
+
+def _store_file(
+    lib: Library, job_id: str, path: str, content: Readable, row: ManifestRow
+) -> None:
+    with lib.store.files.stage(content, max_bytes=lib.settings.max_upload_bytes) as staged:
+        check_content(staged)
+        with lib.store.write() as tx:
+            staged.keep()
+            created = add(tx, _new_row(path, row, staged), BULK_PRIORITY)
+            is_done = not created.is_new and created.clip.state is ClipState.READY
+            outcome = ImportOutcome.EXISTS if is_done else ImportOutcome.QUEUED
+            stored.add_entry(tx, job_id, path, outcome, clip_id=created.clip.id)
+
+
+def _new_row(path: str, row: ManifestRow, staged: StagedFile) -> NewRow:
+    file_name = fields.file_name(path)
+    return NewRow(
+        sha256=staged.sha256,
+        file_name=file_name,
+        file_size=staged.size,
+        name=row.name or fields.stem(file_name),
+        person=row.person,
+        task=row.task,
+        words=row.words or (),
+        license=row.license,
+        source=row.source,
+        frame_rate_override=row.frame_rate,
+        metres_per_unit_override=row.metres_per_unit,
+    )
+
+
+def _record_problem(lib: Library, job_id: str, path: str, problem: KinedexError) -> None:
+    with lib.store.write() as tx:
+        stored.add_entry(
+            tx, job_id, path, ImportOutcome.FAILED, problem=problem.as_problem()
+        )
+
+
+def _leave_to_clips(lib: Library, lease: Lease) -> JobRecord:
+    with lib.store.write() as tx:
+        return stored.wait_for_clips(tx, lease, "waiting for the clips' analyses")
+
+
+def _manifest_rows(files: Iterable[SourceFile]) -> dict[str, ManifestRow]:
+    """What every manifest among the files says, by path; a bad one fails the whole import."""
+    rows: dict[str, ManifestRow] = {}
+    for file in files:
+        if _is_manifest(file) and file.problem is None:
+            folder = file.path.rpartition("/")[0]
+            with file.open() as content:
+                rows |= read_manifest(content.read(), folder)
+    return rows
+
+
+def _is_manifest(file: SourceFile) -> bool:
+    return file.path.rpartition("/")[2] == MANIFEST_NAME
+
+
+def _each_once(files: Iterable[SourceFile]) -> list[SourceFile]:
+    """The files with paths that are storable, and different where an archive repeats one."""
+    seen: dict[str, int] = {}
+    listed = []
+    for file in files:
+        path = file.path.encode("utf-8", "replace").decode()
+        seen[path] = seen.get(path, 0) + 1
+        name = path if seen[path] == 1 else f"{path} ({seen[path]})"
+        listed.append(replace(file, path=name))
+    return listed
+
+
+def _absent(path: str, row: ManifestRow) -> KinedexError:
+    place = Place(f"{MANIFEST_NAME} line {row.line}", f"{path} is not there")
+    return BadContent("The manifest names a file that is not there.", places=[place])
+
+
+def _limits(lib: Library) -> ArchiveLimits:
+    settings = lib.settings
+    return ArchiveLimits(
+        settings.max_archive_entries, settings.max_archive_ratio, settings.max_upload_bytes
+    )

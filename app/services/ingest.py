@@ -1,0 +1,89 @@
+"""From a stored file to a ready clip: what the analysis needs, and what becomes of it.
+
+Everything that an analysis finds enters in one transaction with the clip's state, the
+library's version, the job and the imports that wait: a clip is ready wholly or not at all.
+"""
+
+from __future__ import annotations
+
+from app.analysis.analyse import ANALYSIS_VERSION, Analysis
+from app.errors import KinedexError, StorageError
+from app.motion.motion import Motion
+from app.services.analysis_pool import ChildDied, Order
+from app.services.library import Library
+from app.services.stored_motion import motion_arrays
+from app.store import clips as stored
+from app.store import leases, outcomes
+from app.store.clip_record import ClipFacts, ClipRecord, ClipWarning
+from app.store.engine import Tx
+from app.store.job_record import ClaimedJob
+
+RETRY_DELAY_S = 5.0
+"""Before a failure that may pass is tried again."""
+
+
+def order_for(lib: Library, clip: ClipRecord) -> Order:
+    """What to analyse for a clip. Raises NotFound where its file is gone."""
+    return Order(
+        path=str(lib.store.files.path(clip.sha256)),
+        frame_rate=clip.frame_rate_override,
+        metres_per_unit=clip.metres_per_unit_override,
+        roles=clip.roles_override,
+    )
+
+
+def finish(lib: Library, claimed: ClaimedJob, clip: ClipRecord, found: Analysis) -> bool:
+    """Make the clip ready; False where it was changed meanwhile and waits for another analysis.
+
+    `clip` is as it was when the analysis began. Raises LeaseLost, ClipNotFound, StorageError.
+    """
+    arrays = {**found.arrays, **motion_arrays(found.motion)}
+    with lib.store.write() as tx:
+        if _is_superseded(tx, clip):
+            leases.succeed(tx, claimed.lease, {"clip_id": clip.id, "superseded": True})
+            return False
+        outcomes.finish_ingest(tx, claimed.lease, clip.id, facts(found.motion), arrays)
+        return True
+
+
+def fail(lib: Library, claimed: ClaimedJob, clip: ClipRecord, problem: KinedexError) -> None:
+    """Fail the clip for its own reason; only what may pass is tried again. Raises LeaseLost."""
+    with lib.store.write() as tx:
+        if _is_superseded(tx, clip):
+            leases.succeed(tx, claimed.lease, {"clip_id": clip.id, "superseded": True})
+        elif _may_pass(problem) and claimed.lease.attempt < lib.settings.job_max_attempts:
+            outcomes.retry_or_fail(tx, claimed, problem.as_problem(), delay_s=RETRY_DELAY_S)
+        else:
+            outcomes.fail_job(tx, claimed, problem.as_problem())
+
+
+def facts(motion: Motion) -> ClipFacts:
+    """What a clip's row tells of its motion."""
+    return ClipFacts(
+        format=motion.format,
+        frames=motion.frames,
+        frame_rate=motion.frame_rate,
+        declared_frame_rate=motion.declared_frame_rate,
+        duration=motion.duration,
+        joints=len(motion.names),
+        metres_per_unit=motion.metres_per_unit,
+        roles={role.value: motion.names[joint] for role, joint in motion.roles.items()},
+        missing_roles=tuple(role.value for role in motion.missing_roles),
+        warnings=tuple(ClipWarning(c.code, c.detail, c.likely) for c in motion.cautions),
+        analysis_version=ANALYSIS_VERSION,
+    )
+
+
+def _is_superseded(tx: Tx, clip: ClipRecord) -> bool:
+    """Whether what the client says of the file has changed since the analysis began."""
+    now = stored.get(tx, clip.id)
+    return _said(now) != _said(clip)
+
+
+def _said(clip: ClipRecord) -> tuple[object, ...]:
+    return clip.frame_rate_override, clip.metres_per_unit_override, clip.roles_override
+
+
+def _may_pass(problem: KinedexError) -> bool:
+    """Whether trying again could help: a child that was killed, a store that failed."""
+    return isinstance(problem, ChildDied | StorageError)

@@ -1,0 +1,85 @@
+"""A library in use: its settings, store, index and what else the services share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+from app.config import Settings
+from app.search.array_cache import ArrayCache
+from app.search.index import VectorIndex
+from app.search.projections import Projections
+from app.services.analysis_pool import AnalysisPool, Limits
+from app.services.model_shelf import ModelShelf
+from app.store import schema
+from app.store.store import Store
+
+ARRAY_CACHE_BYTES = 128 * 2**20
+"""Descriptors kept in memory for re-ranking; the least recently used go first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Library:
+    """What every service call gets; one for each process, safe to share between threads.
+
+    pool analyses uploaded queries; a worker has a pool of its own.
+    """
+
+    settings: Settings
+    store: Store
+    index: VectorIndex
+    arrays: ArrayCache
+    models: ModelShelf
+    word_outputs: Projections
+    symbol_points: Projections
+    pool: AnalysisPool
+
+    @classmethod
+    def open(cls, settings: Settings, *, prepare: bool = True) -> Self:
+        """Open the library that the settings name, making it where there is none.
+
+        Raises DatabaseOutOfDate. `prepare=False` never writes.
+        """
+        (schema.prepare if prepare else schema.check)(settings.database)
+        kept = ArrayCache(ARRAY_CACHE_BYTES)
+        word_outputs, symbol_points = Projections(), Projections()
+
+        def forget(clip_ids: tuple[str, ...]) -> None:
+            for cache in (kept, word_outputs, symbol_points):
+                cache.forget(clip_ids)
+
+        return cls(
+            settings=settings,
+            store=Store.open(settings.database, settings.files_dir),
+            index=VectorIndex(on_change=forget),
+            arrays=kept,
+            models=ModelShelf(),
+            word_outputs=word_outputs,
+            symbol_points=symbol_points,
+            pool=AnalysisPool(query_limits(settings)),
+        )
+
+    def close(self) -> None:
+        """Stop the analysis processes and give back the connections."""
+        self.pool.close()
+        self.store.close()
+
+
+def query_limits(settings: Settings) -> Limits:
+    """What the analysis of an uploaded query may take."""
+    return Limits(
+        settings.query_timeout_s,
+        settings.analysis_memory_mb,
+        settings.max_frames,
+        settings.max_joints,
+    )
+
+
+def ingest_limits(settings: Settings) -> Limits:
+    """What the analysis of a clip may take."""
+    return Limits(
+        settings.analysis_timeout_s,
+        settings.analysis_memory_mb,
+        settings.max_frames,
+        settings.max_joints,
+    )

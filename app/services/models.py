@@ -1,0 +1,72 @@
+"""The fitted models of a library: what is in force, and when to fit again."""
+
+from __future__ import annotations
+
+from app.services.library import Library
+from app.store import jobs, library
+from app.store import models as stored
+from app.store.clip_filter import ClipFilter
+from app.store.clip_listing import count_clips
+from app.store.clip_record import ClipState
+from app.store.engine import Tx
+from app.store.job_record import JobKind, JobRecord, JobState, NewJob
+from app.store.models import ModelRecord
+
+FIT_PRIORITY = 30
+"""After every ingest."""
+LEAST_CLIPS = 10
+"""Ready clips below which nothing is fitted unasked."""
+FIT_KEY = "fit"
+_READY = ClipFilter(state=(ClipState.READY,))
+
+
+def list_models(lib: Library) -> tuple[ModelRecord, ...]:
+    """The model in force of each kind; `meta["figures"]` holds its held-out figures."""
+    with lib.store.read() as tx:
+        return stored.list_current(tx)
+
+
+def request_fit(lib: Library) -> JobRecord:
+    """Queue a fit of all models; one that is queued already is enough."""
+    with lib.store.write() as tx:
+        return enqueue_fit(tx)
+
+
+def enqueue_fit(tx: Tx) -> JobRecord:
+    """Queue a fit in the caller's transaction."""
+    return jobs.enqueue(tx, NewJob(JobKind.FIT, priority=FIT_PRIORITY, dedupe_key=FIT_KEY))
+
+
+def is_fit_due(tx: Tx, growth: float) -> bool:
+    """Whether the library has changed by the part `growth` since its last fit.
+
+    Counts clips that were added, analysed again or labelled anew, and those that are gone.
+    Never due while a fit or an ingest is still to end, or below LEAST_CLIPS ready clips.
+    """
+    ready = count_clips(tx, _READY)
+    if ready < LEAST_CLIPS or _is_open(tx, JobKind.FIT) or _is_open(tx, JobKind.INGEST):
+        return False
+    last = _last_fit(tx)
+    if last is None:
+        return True
+    version, size = last
+    changes = library.changed_since(tx, version)
+    return len(changes.changed) + len(changes.removed) >= max(growth * size, 1)
+
+
+def _last_fit(tx: Tx) -> tuple[int, int] | None:
+    """Library version and size that the last fit saw, whether or not it could fit anything."""
+    found = [(r.library_version, r.library_size) for r in stored.list_current(tx)]
+    for job in jobs.list_jobs(tx, kind=JobKind.FIT, state=JobState.SUCCEEDED, limit=1).items:
+        result = job.result or {}
+        found.append((int(result["library_version"]), int(result["library_size"])))
+    return max(found, default=None)
+
+
+def _is_open(tx: Tx, kind: JobKind) -> bool:
+    return any(
+        jobs.list_jobs(tx, kind=kind, state=state, limit=1).items
+        for state in (JobState.QUEUED, JobState.PROCESSING)
+    )
+
+

@@ -1,0 +1,139 @@
+"""The motion that a search or a recognition asks about: a stored clip, a part of one, or an upload."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from app.analysis.analyse import describe_for_search
+from app.errors import BadField, ClipNotReady, EmptyFile, FormatNotSupported, Place, TooLarge
+from app.motion.motion import Motion
+from app.numerics.arrays import FloatArray
+from app.services import fields
+from app.services.analysis_pool import Order
+from app.services.library import Library
+from app.services.stored_motion import load_motion
+from app.store import arrays
+from app.store import clips as stored
+from app.store.clip_record import ClipRecord, ClipState
+from app.store.files import Readable
+
+Arrays = Mapping[str, FloatArray]
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """Exactly one of `clip_id` and `content`, and what is said of it.
+
+    start, end: seconds, the part that is meant; skeleton, frame_rate, unit, roles: of an
+    upload only.
+    """
+
+    clip_id: str | None = None
+    content: Readable | None = None
+    start: float | None = None
+    end: float | None = None
+    skeleton: Readable | None = None
+    frame_rate: float | str | None = None
+    unit: float | str | None = None
+    roles: Mapping[str, str] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Answered:
+    """A question's descriptors by name, and the stored clip that it is about, if any."""
+
+    arrays: Arrays
+    clip: ClipRecord | None
+
+
+def describe(lib: Library, question: Question, names: tuple[str, ...]) -> Answered:
+    """The named descriptors of what is asked about; nothing of an upload is stored.
+
+    Raises BadField, ClipNotFound, ClipNotReady, TooLarge, and BadContent for an upload that
+    cannot be used.
+    """
+    if (question.clip_id is None) == (question.content is None):
+        places = [Place("clip_id", "exactly one of clip_id and file must be given")]
+        raise BadField("Give either a clip_id or a file.", places=places)
+    _check_part(question)
+    if question.clip_id is not None:
+        return _of_clip(lib, question, question.clip_id, names)
+    return Answered(_of_upload(lib, question), None)
+
+
+def ready_clip(lib: Library, clip_id: str) -> ClipRecord:
+    """A clip that is ready; raises ClipNotFound, ClipNotReady."""
+    with lib.store.read() as tx:
+        clip = stored.get(tx, clip_id)
+    if clip.state is not ClipState.READY:
+        raise ClipNotReady(f"The clip {clip_id} is {clip.state.value}.")
+    return clip
+
+
+def _of_clip(lib: Library, question: Question, clip_id: str, names: tuple[str, ...]) -> Answered:
+    for name in ("skeleton", "frame_rate", "unit", "roles"):
+        if getattr(question, name) not in (None, ""):
+            raise fields.bad_field(name, "goes with an uploaded file, not with a stored clip")
+    clip = ready_clip(lib, clip_id)
+    if question.start is None and question.end is None:
+        with lib.store.read() as tx:
+            return Answered({n: arrays.get_one(tx, clip_id, n) for n in names}, clip)
+    motion = cut(load_motion(lib, clip), question.start, question.end)
+    return Answered(describe_for_search(motion).arrays, clip)
+
+
+def _of_upload(lib: Library, question: Question) -> Arrays:
+    if question.skeleton is not None:
+        raise FormatNotSupported("ASF skeletons cannot be read yet.")
+    if question.start is not None or question.end is not None:
+        return _cut_upload(lib, question)
+    return lib.pool.analyse(_order(lib, question)).arrays
+
+
+def _cut_upload(lib: Library, question: Question) -> Arrays:
+    motion = lib.pool.analyse(replace(_order(lib, question), for_search=True)).motion
+    return describe_for_search(cut(motion, question.start, question.end)).arrays
+
+
+def _order(lib: Library, question: Question) -> Order:
+    return Order(
+        content=_read(question.content, lib.settings.max_upload_bytes),
+        frame_rate=fields.frame_rate(question.frame_rate),
+        metres_per_unit=fields.metres_per_unit(question.unit),
+        roles=fields.roles(question.roles),
+    )
+
+
+def _read(content: Readable | None, limit: int) -> bytes:
+    found = content.read(limit + 1) if content is not None else b""
+    if not found:
+        raise EmptyFile()
+    if len(found) > limit:
+        raise TooLarge(f"The file is larger than {limit} bytes.")
+    return found
+
+
+def cut(motion: Motion, start: float | None, end: float | None) -> Motion:
+    """The frames of `motion` from `start` to `end` seconds; raises BadField outside of it."""
+    first = 0.0 if start is None else start
+    last = motion.duration if end is None else end
+    if first >= motion.duration:
+        raise fields.bad_field("start", f"must be below the duration, {motion.duration:.3f} s")
+    if last > motion.duration + 1.0 / motion.frame_rate:
+        raise fields.bad_field("end", f"must not be beyond the duration, {motion.duration:.3f} s")
+    begin = math.floor(first * motion.frame_rate + 1e-6)
+    stop = max(begin + 1, math.ceil(last * motion.frame_rate - 1e-6))
+    return replace(motion, positions=np.ascontiguousarray(motion.positions[begin:stop]))
+
+
+def _check_part(question: Question) -> None:
+    for name in ("start", "end"):
+        value = getattr(question, name)
+        if value is not None and not (math.isfinite(value) and value >= 0):
+            raise fields.bad_field(name, "must be a number of seconds, zero or more")
+    if question.start is not None and question.end is not None and question.end <= question.start:
+        raise fields.bad_field("end", "must be after start")

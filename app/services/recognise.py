@@ -1,0 +1,89 @@
+"""Who does what, in which words (DESIGN 8, "recognize")."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.errors import ModelNotFitted
+from app.models.recognition import Answer
+from app.services import fields
+from app.services.library import Library
+from app.services.query import Question, describe
+from app.services.recognising import METHODS, recognise_sample
+from app.services.word_ranking import STATISTICS
+from app.store.files import Readable
+
+SAMPLE = "motion_sample"
+WORDS_SHOWN = 10
+
+WordScores = tuple[tuple[str, float], ...]
+"""(word, score 0..1), the best first."""
+
+
+@dataclass(frozen=True, slots=True)
+class RecogniseQuery:
+    """Exactly one of `clip_id` and `content`; method "default" or "multilinear".
+
+    known_person, known_task: what is known already; skeleton, frame_rate (Hz), unit, roles:
+    of an upload only.
+    """
+
+    clip_id: str | None = None
+    content: Readable | None = None
+    known_person: str | None = None
+    known_task: str | None = None
+    method: str = "default"
+    skeleton: Readable | None = None
+    frame_rate: float | str | None = None
+    unit: float | str | None = None
+    roles: Mapping[str, str] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Recognised:
+    """Person, task, and words with their scores, the best first."""
+
+    person: Answer
+    task: Answer
+    words: WordScores = field(default=())
+
+
+def recognise(lib: Library, query: RecogniseQuery) -> Recognised:
+    """Who does what in which words.
+
+    Words are left out where no word model could be fitted. Raises BadField, ClipNotFound,
+    ClipNotReady, ModelNotFitted, and BadContent for an upload that cannot be used.
+    """
+    if query.method not in METHODS:
+        raise fields.bad_field("method", f"must be one of {', '.join(METHODS)}")
+    question = Question(
+        clip_id=query.clip_id,
+        content=query.content,
+        skeleton=query.skeleton,
+        frame_rate=query.frame_rate,
+        unit=query.unit,
+        roles=query.roles,
+    )
+    asked = describe(lib, question, (SAMPLE, STATISTICS))
+    found = recognise_sample(
+        lib,
+        asked.arrays[SAMPLE],
+        query.method,
+        known_person=fields.text("known_person", query.known_person),
+        known_task=fields.text("known_task", query.known_task),
+    )
+    return Recognised(found.person, found.task, words_of(lib, asked.arrays[STATISTICS]))
+
+
+def words_of(lib: Library, statistics: np.ndarray) -> WordScores:
+    """The best words for a clip's `symbol_statistics` (79,); none without a word model."""
+    try:
+        model = lib.models.default_words(lib.store)
+    except ModelNotFitted:
+        return ()
+    scores = model.model.predict(statistics[None])[0]
+    best = np.argsort(-scores, kind="stable")[:WORDS_SHOWN]
+    return tuple((model.vocabulary.words[i], float(scores[i])) for i in best if scores[i] > 0)

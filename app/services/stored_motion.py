@@ -1,0 +1,51 @@
+"""The canonical motion of a ready clip, as it was stored by its ingest."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.motion.joint_roles import JointRole
+from app.motion.motion import Motion
+from app.services.library import Library
+from app.store import arrays
+from app.store.clip_record import ClipRecord
+
+POSITIONS, PARENTS, JOINT_NAMES = "positions", "parents", "joint_names"
+
+
+def motion_arrays(motion: Motion) -> dict[str, NDArray[Any]]:
+    """What of a motion is stored beside its descriptors.
+
+    positions: (frames, joints, 3) float32 metres; parents: (joints,) int32; joint_names: JSON
+    text as bytes.
+    """
+    names = json.dumps(motion.names).encode()
+    return {
+        POSITIONS: motion.positions.astype(np.float32),
+        PARENTS: motion.parents.astype(np.int32),
+        JOINT_NAMES: np.frombuffer(names, dtype=np.uint8),
+    }
+
+
+def load_motion(lib: Library, clip: ClipRecord) -> Motion:
+    """The motion of a ready clip, at its own frame rate."""
+    with lib.store.read() as tx:
+        positions, parents, text = (
+            arrays.get_one(tx, clip.id, name) for name in (POSITIONS, PARENTS, JOINT_NAMES)
+        )
+    names: list[str] = json.loads(text.tobytes())
+    return Motion(
+        format=clip.format or "",
+        names=tuple(names),
+        parents=parents,
+        positions=positions,
+        roles={JointRole(role): names.index(joint) for role, joint in clip.roles.items()},
+        missing_roles=tuple(JointRole(role) for role in clip.missing_roles),
+        frame_rate=clip.frame_rate or 1.0,
+        declared_frame_rate=clip.declared_frame_rate,
+        metres_per_unit=clip.metres_per_unit or 1.0,
+    )

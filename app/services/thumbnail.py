@@ -1,0 +1,125 @@
+"""A clip as a small picture: a few stick figures over time, seen from a good side.
+
+The side is chosen so that the picture is widest: the horizontal direction in which the
+joints vary most around the hips becomes the picture's x axis (a walk is seen from its side,
+a waving person from the front). No scripts, no outside references: safe to embed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from xml.sax.saxutils import escape
+
+import numpy as np
+
+from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.numerics.arrays import FloatArray
+
+WIDTH, HEIGHT = 320, 180
+MARGIN = 12.0
+"""Pixels left free on each side."""
+POSES = 6
+"""Figures in a picture; fewer where the clip has fewer frames."""
+
+_R = JointRole
+_LIMBS: tuple[tuple[str, tuple[JointRole, ...]], ...] = (
+    ("far", (_R.HIPS, _R.LEFT_KNEE, _R.LEFT_FOOT)),
+    ("far", (_R.NECK, _R.LEFT_SHOULDER, _R.LEFT_ELBOW, _R.LEFT_HAND)),
+    ("trunk", (_R.HIPS, _R.NECK, _R.HEAD)),
+    ("near", (_R.HIPS, _R.RIGHT_KNEE, _R.RIGHT_FOOT)),
+    ("near", (_R.NECK, _R.RIGHT_SHOULDER, _R.RIGHT_ELBOW, _R.RIGHT_HAND)),
+)
+_COLOURS = {"far": "#c2622d", "trunk": "#2b3440", "near": "#1f6f8b"}
+_COLUMN = {role: index for index, role in enumerate(SUN_ROLES)}
+
+
+def thumbnail(positions: FloatArray, title: str) -> str:
+    """An SVG of 320 x 180 from (frames, 13, 3) metres, Y up, in Sun's order of roles.
+
+    Time runs from left to right and from pale to full colour; the left limbs are orange,
+    the right ones blue.
+    """
+    chosen = _spread(positions)
+    flat = _project(chosen, _widest_direction(positions))
+    placed, head, ground = _place(flat)
+    figures = "".join(
+        _figure(points, head, opacity)
+        for points, opacity in zip(placed, _opacities(len(placed)), strict=True)
+    )
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
+        f'width="{WIDTH}" height="{HEIGHT}" role="img">'
+        f"<title>{escape(_printable(title))}</title>"
+        f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#f6f4ef"/>'
+        f'<path d="M0 {ground:.1f}H{WIDTH}" stroke="#d5cfc2" stroke-width="1.5"/>'
+        f'<g fill="none" stroke-width="3" stroke-linecap="round" stroke-linejoin="round">'
+        f"{figures}</g></svg>"
+    )
+
+
+def _spread(positions: FloatArray) -> FloatArray:
+    """(poses, 13, 3): frames at the middles of equal parts of the clip."""
+    frames = len(positions)
+    poses = min(POSES, frames)
+    middles = (np.arange(poses) + 0.5) * frames / poses
+    return np.asarray(positions[middles.astype(int)], dtype=np.float64)
+
+
+def _widest_direction(positions: FloatArray) -> FloatArray:
+    """(2,) horizontal unit vector (x, z) along which the body extends and moves most."""
+    hips = positions[:, [_COLUMN[_R.HIPS]], :]
+    around = (positions - hips)[:, :, [0, 2]].reshape(-1, 2).astype(np.float64)
+    _, vectors = np.linalg.eigh(around.T @ around)
+    direction: FloatArray = vectors[:, -1]
+    travelled = (hips[-1, 0] - hips[0, 0])[[0, 2]]
+    # Whoever travels goes to the right; else the sign is fixed, so that pictures are stable.
+    sign = float(direction @ travelled)
+    if abs(sign) < 0.05:
+        sign = float(direction[np.argmax(np.abs(direction))])
+    return direction if sign >= 0 else -direction
+
+
+def _project(poses: FloatArray, direction: FloatArray) -> FloatArray:
+    """(poses, 13, 2) metres: along `direction` from the hips, and height above the floor."""
+    hips = poses[:, [_COLUMN[_R.HIPS]], :]
+    across = (poses - hips)[:, :, [0, 2]] @ direction
+    height = poses[:, :, 1] - poses[:, :, 1].min()
+    return np.stack([across, height], axis=-1)
+
+
+def _place(flat: FloatArray) -> tuple[FloatArray, float, float]:
+    """Pixels (poses, 13, 2), the head's radius, and the floor's y."""
+    lefts, rights = flat[:, :, 0].min(axis=1), flat[:, :, 0].max(axis=1)
+    head_size = 0.12 * max(float(flat[:, :, 1].max()), 1e-3)
+    needed = float((rights - lefts).sum()) + head_size * (len(flat) + 1)
+    tallest = float(flat[:, :, 1].max()) + head_size
+    scale = min((WIDTH - 2 * MARGIN) / max(needed, 1e-3), (HEIGHT - 2 * MARGIN) / tallest)
+    gap = (WIDTH - 2 * MARGIN - scale * float((rights - lefts).sum())) / (len(flat) + 1)
+    starts = MARGIN + gap + np.concatenate([[0.0], np.cumsum(scale * (rights - lefts) + gap)[:-1]])
+    ground = HEIGHT - MARGIN - (HEIGHT - 2 * MARGIN - scale * tallest) / 3
+    x = starts[:, None] + scale * (flat[:, :, 0] - lefts[:, None])
+    y = ground - scale * flat[:, :, 1]
+    return np.stack([x, y], axis=-1), 0.5 * scale * head_size, ground
+
+
+def _figure(points: FloatArray, head: float, opacity: float) -> str:
+    """One figure from its 13 points (13, 2) in pixels."""
+    limbs = "".join(
+        f'<path d="{_line(points, roles)}" stroke="{_COLOURS[side]}"/>' for side, roles in _LIMBS
+    )
+    x, y = points[_COLUMN[_R.HEAD]]
+    circle = f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{head:.1f}" fill="{_COLOURS["trunk"]}"/>'
+    return f'<g opacity="{opacity:.2f}">{limbs}{circle}</g>'
+
+
+def _line(points: FloatArray, roles: tuple[JointRole, ...]) -> str:
+    return "M" + "L".join(f"{points[_COLUMN[r]][0]:.1f} {points[_COLUMN[r]][1]:.1f}" for r in roles)
+
+
+def _opacities(count: int) -> Iterator[float]:
+    return (0.4 + 0.6 * (i + 1) / count for i in range(count))
+
+
+def _printable(title: str) -> str:
+    """Without the characters that XML does not allow."""
+    return "".join(c for c in title if c.isprintable())

@@ -1,0 +1,151 @@
+"""Ready clips to look at: their motion, keyposes, descriptors, and a small picture."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.analysis.keyposes import Keyposes, find_keyposes
+from app.motion.body_frame import body_track
+from app.motion.joint_roles import SUN_ROLES
+from app.motion.resampling import resample
+from app.numerics.arrays import FloatArray
+from app.services import fields
+from app.services.library import Library
+from app.services.query import ready_clip
+from app.services.stored_motion import load_motion
+from app.services.thumbnail import thumbnail
+from app.store import arrays
+
+MAX_FPS = 1000.0
+KEYPOSE_METHODS = ("rms", "printed")
+
+
+@dataclass(frozen=True, slots=True)
+class MotionView:
+    """A motion to draw: positions (frames, joints, 3) float32, metres, Y up; parents, -1 a root."""
+
+    frame_rate: float
+    joint_names: tuple[str, ...]
+    parents: tuple[int, ...]
+    positions: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class KeyposesView:
+    """Keyposes at the analysis rate (30 Hz), with the pose at each.
+
+    found: frames, times, beats and energy curves; poses: (keyposes, 13, 3) metres.
+    """
+
+    found: Keyposes
+    frame_rate: float
+    poses: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class DescriptorView:
+    """A clip's descriptors.
+
+    msv_lambda: weight; msv_rho: (13,); msv_epsilon: (n,); motion_vector: (128,);
+    symbol_states: K; symbol_means, symbol_variances: (K, 26); analysis_version: of them all.
+    """
+
+    msv_lambda: float
+    msv_rho: FloatArray
+    msv_epsilon: FloatArray
+    motion_vector: FloatArray
+    symbol_states: int
+    symbol_means: FloatArray
+    symbol_variances: FloatArray
+    analysis_version: int
+
+
+def motion(
+    lib: Library, clip_id: str, fps: float | None = None, joints: str = "all"
+) -> MotionView:
+    """A clip's motion, resampled by time to `fps`, all joints or Sun's 13 ("roles").
+
+    Raises BadField, ClipNotFound, ClipNotReady.
+    """
+    if joints not in ("all", "roles"):
+        raise fields.bad_field("joints", "must be all or roles")
+    if fps is not None and not (math.isfinite(fps) and 0 < fps <= MAX_FPS):
+        raise fields.bad_field("fps", f"must be above 0 and at most {MAX_FPS:g}")
+    stored = load_motion(lib, ready_clip(lib, clip_id))
+    names, parents, positions = stored.names, tuple(stored.parents.tolist()), stored.positions
+    if joints == "roles":
+        names, parents = tuple(role.value for role in SUN_ROLES), _role_parents()
+        positions = stored.role_positions()
+    if fps is not None and fps != stored.frame_rate:
+        positions = resample(positions, stored.frame_rate, fps)
+    positions = np.ascontiguousarray(positions, dtype=np.float32)
+    return MotionView(fps or stored.frame_rate, names, parents, positions)
+
+
+def keyposes(
+    lib: Library,
+    clip_id: str,
+    method: str = "rms",
+    t1: float | None = None,
+    t2: float | None = None,
+) -> KeyposesView:
+    """A clip's keyposes by Perera's thresholds T1 and T2 (defaults where None).
+
+    Raises BadField, ClipNotFound, ClipNotReady.
+    """
+    if method not in KEYPOSE_METHODS:
+        raise fields.bad_field("method", f"must be one of {', '.join(KEYPOSE_METHODS)}")
+    for name, value in (("t1", t1), ("t2", t2)):
+        if value is not None and not (math.isfinite(value) and value > 0):
+            raise fields.bad_field(name, "must be a number above 0")
+    track = body_track(load_motion(lib, ready_clip(lib, clip_id)))
+    thresholds = {name: value for name, value in (("t1", t1), ("t2", t2)) if value is not None}
+    found = find_keyposes(track, method=method, **thresholds)
+    return KeyposesView(found, track.rate, track.positions[found.frames])
+
+
+def descriptor(lib: Library, clip_id: str) -> DescriptorView:
+    """A clip's descriptors. Raises ClipNotFound, ClipNotReady."""
+    clip = ready_clip(lib, clip_id)
+    names = (
+        "msv_lambda",
+        "msv_rho",
+        "msv_epsilon",
+        "motion_vector",
+        "symbol_means",
+        "symbol_variances",
+    )
+    found: dict[str, NDArray[Any]] = {}
+    with lib.store.read() as tx:
+        for name in names:
+            found[name] = arrays.get_one(tx, clip_id, name)
+    return DescriptorView(
+        msv_lambda=float(found["msv_lambda"][0]),
+        msv_rho=found["msv_rho"],
+        msv_epsilon=found["msv_epsilon"],
+        motion_vector=found["motion_vector"],
+        symbol_states=len(found["symbol_means"]),
+        symbol_means=found["symbol_means"],
+        symbol_variances=found["symbol_variances"],
+        analysis_version=clip.analysis_version or 0,
+    )
+
+
+def thumbnail_svg(lib: Library, clip_id: str) -> str:
+    """A clip as an SVG of a few stick figures. Raises ClipNotFound, ClipNotReady."""
+    clip = ready_clip(lib, clip_id)
+    with lib.store.read() as tx:
+        positions = arrays.get_one(tx, clip_id, "role_positions")
+    return thumbnail(positions, clip.name)
+
+
+def _role_parents() -> tuple[int, ...]:
+    """Each role's neighbour towards the trunk; the hips are the root."""
+    order = {role: index for index, role in enumerate(SUN_ROLES)}
+    nearer = (order[role.towards_trunk()] for role in SUN_ROLES)
+    return tuple(-1 if parent == own else parent for own, parent in enumerate(nearer))
