@@ -1,9 +1,9 @@
 """The beat of a motion, estimated from its energy (DESIGN 5 and 13).
 
-Dancers come to rest on beats, so that energy has minima there. The logarithm of energy
-makes the minima as strong as the maxima; its spectrum, summed over harmonics, has a peak
-at the beat; half and double are then compared, since a sum over harmonics cannot tell them
-apart. Where no rhythm explains the energy there are no beats.
+Dancers come to rest on beats, so energy has minima there. The logarithm of energy makes
+the minima as strong as the maxima; the peak of its spectrum, summed over harmonics, is the
+beat or a simple ratio of it, since harmonics cannot tell those apart; the phases of the
+deep minima can. Where the minima keep no common beat there is none.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
+from scipy.signal import find_peaks
 
 from app.numerics.arrays import FloatArray
 
@@ -22,7 +23,7 @@ HARMONICS = 4
 LEAST_BEATS = 4
 """Fewer in a clip are no rhythm."""
 
-LEAST_CONFIDENCE = 0.35
+LEAST_CONFIDENCE = 0.9
 """Below, no beats are reported."""
 
 TREND = 2.0
@@ -34,17 +35,26 @@ FLOOR = 0.05
 STEP = 0.002
 """Relative step of the tempo grid."""
 
-OCTAVE_GAIN = 0.1
-"""How much more of the energy half the tempo must explain to be preferred."""
+RATIOS = (1 / 3, 1 / 2, 2 / 3, 1.0, 3 / 2, 2.0, 3.0)
+"""What the spectrum's strongest tempo may be mistaken for."""
 
-PHASES = 64
+ABOUT_AS_WELL = 0.1
+
+REFINED = np.exp(np.arange(-0.03, 0.0305, 0.001))
+"""Relative changes of tempo tried in the end."""
+
+DEEP = 1.2
+"""Prominence of the minima that count, in standard deviations of log energy."""
+
+TEMPI = 30.0
+"""Tempi that may meet the minima by accident, about; see `_confidence`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Beats:
     """A steady beat: `times` (beats,) seconds; `tempo` beats per minute, None where none.
 
-    confidence: 0..1, the share of the changes of log energy that the rhythm explains.
+    confidence: 0..1, how surely the minima's common beat is no accident.
     """
 
     times: FloatArray
@@ -52,34 +62,41 @@ class Beats:
     confidence: float
 
 
-NO_BEATS = Beats(np.zeros(0), None, 0.0)
-
-
 def find_beats(energy: FloatArray, rate: float) -> Beats:
     """The beat of an energy curve (n,) of `rate` Hz; no times where there is no rhythm."""
     slowest = max(SLOWEST / 60, LEAST_BEATS * rate / max(len(energy), 1))
-    if slowest >= FASTEST / 60 or not energy.max(initial=0.0) > 0:
-        return NO_BEATS
     signal = _log_energy(energy, rate)
-    if not signal.any():
-        return NO_BEATS
-    frequencies = np.exp(np.arange(np.log(slowest), np.log(FASTEST / 60), STEP))
-    best = _octave(signal, _strongest(signal, frequencies, rate), slowest, rate)
-    confidence = _explained(signal, best, rate)
+    minima = _deep_minima(signal) / rate
+    if slowest >= FASTEST / 60 or len(minima) < LEAST_BEATS:
+        return Beats(np.zeros(0), None, 0.0)
+    frequency = _on_minima(minima, _strongest(signal, slowest, rate), slowest)
+    confidence = _confidence(minima, frequency)
     if confidence < LEAST_CONFIDENCE:
         return Beats(np.zeros(0), None, confidence)
-    return Beats(_beat_times(signal, best, rate), 60.0 * best, confidence)
+    times = _beat_times(minima, frequency, (len(energy) - 1) / rate)
+    return Beats(times, 60.0 * frequency, confidence)
 
 
 def _log_energy(energy: FloatArray, rate: float) -> FloatArray:
-    """(n,) logarithm of energy without its slow changes."""
-    floor = max(FLOOR * float(np.median(energy)), 1e-6 * float(energy.max()))
-    level = np.log(energy + floor)
+    """(n,) logarithm of energy without its slow changes; zeros for what does not move."""
+    highest = float(energy.max(initial=0.0))
+    if not highest > 0:
+        return np.zeros(len(energy))
+    level = np.log(energy + max(FLOOR * float(np.median(energy)), 1e-6 * highest))
     return np.asarray(level - gaussian_filter1d(level, TREND * rate, mode="reflect"))
 
 
-def _strongest(signal: FloatArray, frequencies: FloatArray, rate: float) -> float:
+def _deep_minima(signal: FloatArray) -> FloatArray:
+    spread = float(signal.std())
+    if not spread > 0:
+        return np.zeros(0)
+    minima, _ = find_peaks(-signal, prominence=DEEP * spread)
+    return np.asarray(minima, dtype=np.float64)
+
+
+def _strongest(signal: FloatArray, slowest: float, rate: float) -> float:
     """The frequency (Hz) whose harmonics together carry most."""
+    frequencies = np.exp(np.arange(np.log(slowest), np.log(FASTEST / 60), STEP))
     strength = np.zeros(len(frequencies))
     for harmonic in range(1, HARMONICS + 1):
         strength += _amplitudes(signal, harmonic * frequencies, rate) / np.sqrt(harmonic)
@@ -87,41 +104,36 @@ def _strongest(signal: FloatArray, frequencies: FloatArray, rate: float) -> floa
 
 
 def _amplitudes(signal: FloatArray, frequencies: FloatArray, rate: float) -> FloatArray:
+    """(frequencies,) of a Hann-windowed `signal` (n,), 0 from half its `rate` on."""
     times = np.arange(len(signal)) / rate
     waves = np.exp(-2j * np.pi * frequencies[:, None] * times)
     amplitudes = np.abs(waves @ (signal * np.hanning(len(signal))))
     return np.asarray(np.where(frequencies < rate / 2, amplitudes, 0.0))
 
 
-def _octave(signal: FloatArray, frequency: float, slowest: float, rate: float) -> float:
-    """Half or double the frequency where that tells the energy better."""
-    here = _explained(signal, frequency, rate)
-    half, double = frequency / 2, frequency * 2
-    if half >= slowest and _explained(signal, half, rate) > here + OCTAVE_GAIN:
-        return half
-    if double <= FASTEST / 60 and _explained(signal, double, rate) > here - OCTAVE_GAIN:
-        return double
-    return frequency
+def _on_minima(minima: FloatArray, frequency: float, slowest: float) -> float:
+    """The simple ratio of `frequency`, and what is close to it, that the minima keep best.
+
+    Of those kept about as well it is the slowest: each beat of a tempo is one of its double.
+    """
+    near = [frequency * ratio for ratio in RATIOS]
+    kept = {f: _common_phase(minima, f) for f in near if slowest <= f <= FASTEST / 60}
+    best = min(f for f, phase in kept.items() if phase >= max(kept.values()) - ABOUT_AS_WELL)
+    return float(max(best * REFINED, key=lambda f: _common_phase(minima, f)))
 
 
-def _explained(signal: FloatArray, frequency: float, rate: float) -> float:
-    """Share of the variance that the harmonics of `frequency` explain, for their number."""
-    angles = 2 * np.pi * frequency * np.arange(len(signal)) / rate
-    orders = np.arange(1, min(HARMONICS, int(rate / 2 / frequency)) + 1)
-    waves = np.hstack([np.cos(angles[:, None] * orders), np.sin(angles[:, None] * orders)])
-    fitted, *_ = np.linalg.lstsq(waves, signal, rcond=None)
-    left = float(np.square(signal - waves @ fitted).sum() / np.square(signal).sum())
-    freedom = len(signal) - waves.shape[1]
-    return float(np.clip(1.0 - left * len(signal) / max(freedom, 1), 0.0, 1.0))
+def _common_phase(times: FloatArray, frequency: float) -> float:
+    """Length of the mean phase vector of `times` (k,): 1 if all are on one beat."""
+    return float(np.abs(np.exp(2j * np.pi * frequency * times).mean()))
 
 
-def _beat_times(signal: FloatArray, frequency: float, rate: float) -> FloatArray:
-    """Times of the beats, in the phase at which they meet the least energy."""
-    duration = (len(signal) - 1) / rate
-    grid = np.arange(len(signal)) / rate
-    shifts = np.arange(PHASES) / PHASES / frequency
-    levels = [
-        np.interp(np.arange(shift, duration, 1 / frequency), grid, signal).mean()
-        for shift in shifts
-    ]
-    return np.arange(shifts[int(np.argmin(levels))], duration, 1 / frequency)
+def _confidence(minima: FloatArray, frequency: float) -> float:
+    """Rayleigh's test: k times at random meet a beat as well with probability exp(-k R^2)."""
+    chance = np.exp(-len(minima) * _common_phase(minima, frequency) ** 2)
+    return float(np.clip(1.0 - TEMPI * chance, 0.0, 1.0))
+
+
+def _beat_times(minima: FloatArray, frequency: float, duration: float) -> FloatArray:
+    """Times of the beats within the clip, in the phase of the minima."""
+    angle = np.angle(np.exp(2j * np.pi * frequency * minima).mean()) / (2 * np.pi)
+    return np.asarray(np.arange((angle % 1.0) / frequency, duration, 1.0 / frequency))

@@ -29,6 +29,9 @@ LEAST_SWING = 0.15
 LEAST_TRAVEL = 0.3
 """Body lengths that the hips must travel in a cycle: kicks and dances on the spot do not."""
 
+LACKING = 0.15
+"""Share of a cycle that a short clip may lack."""
+
 LEFT_FOOT = SUN_ROLES.index(JointRole.LEFT_FOOT)
 RIGHT_FOOT = SUN_ROLES.index(JointRole.RIGHT_FOOT)
 FORWARD = 2
@@ -37,12 +40,29 @@ FORWARD = 2
 def gait_cycles(track: BodyTrack) -> list[tuple[int, int]]:
     """(first, stop) frames of each gait cycle of `track`, in order; empty where none."""
     split = foot_split(track)
-    crossings = np.flatnonzero((split[:-1] <= 0) & (split[1:] > 0)) + 1
-    return [
-        (int(first), int(stop))
-        for first, stop in pairwise(crossings)
-        if _is_stride(track, split[first:stop], int(first), int(stop))
-    ]
+    cuts = list(pairwise(_upward(split))) or _lone_cycle(split)
+    return [cut for cut in cuts if _is_stride(track, split, *cut)]
+
+
+def _upward(split: FloatArray) -> list[int]:
+    """Frames at which (n,) `split` has just become positive."""
+    return [int(frame) + 1 for frame in np.flatnonzero((split[:-1] <= 0) & (split[1:] > 0))]
+
+
+def _lone_cycle(split: FloatArray) -> list[tuple[int, int]]:
+    """The cycle of a clip too short for two upward crossings, timed by the downward ones.
+
+    It starts or ends at the upward crossing; up to LACKING of it may be cut off.
+    """
+    upward, downward = _upward(split), _upward(-split)
+    if len(upward) != 1 or len(downward) != 2:
+        return []
+    middle, length = upward[0], downward[1] - downward[0]
+    for first, stop in ((middle, middle + length), (middle - length, middle)):
+        held = max(first, 0), min(stop, len(split))
+        if held[1] - held[0] >= (1 - LACKING) * length:
+            return [held]
+    return []
 
 
 def foot_split(track: BodyTrack) -> FloatArray:
@@ -52,10 +72,12 @@ def foot_split(track: BodyTrack) -> FloatArray:
 
 
 def _is_stride(track: BodyTrack, split: FloatArray, first: int, stop: int) -> bool:
+    """Whether frames first..stop-1 last, swing and travel as two steps do."""
+    within = split[first:stop]
     seconds = (stop - first) / track.rate
     if not SHORTEST_CYCLE <= seconds <= LONGEST_CYCLE:
         return False
     last = min(stop, track.frames - 1)
     travel = np.linalg.norm((track.origin[last] - track.origin[first])[[0, FORWARD]])
-    parted = min(split.max(), -split.min()) >= LEAST_SWING
+    parted = min(within.max(), -within.min()) >= LEAST_SWING
     return bool(parted and travel / track.body_length >= LEAST_TRAVEL)
