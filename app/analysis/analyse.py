@@ -2,7 +2,9 @@
 
 Arrays (float32 unless told otherwise; n frames at 30 Hz, m at 10 Hz):
 role_positions (n, 13, 3) metres, world; features_10hz (m, 82); motion_vector (128,);
-msv_lambda (1,), msv_rho (13,), msv_epsilon (n,).
+msv_lambda (1,), msv_rho (13,), msv_epsilon (n,); motion_sample (1250,); symbol_statistics
+(131,); and of the motion symbol with K states symbol_means (K, 26), symbol_variances (K, 26),
+symbol_transitions (K, K).
 """
 
 from __future__ import annotations
@@ -12,8 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.frame_features import features_at_10hz, frame_features
+from app.analysis.motion_sample import motion_sample
+from app.analysis.motion_symbol import describe_symbol
 from app.analysis.motion_vector import motion_vector
 from app.analysis.motion_volume import decompose
+from app.analysis.symbol_features import symbol_features, symbol_statistics
 from app.motion.body_frame import BodyTrack, body_track
 from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
@@ -33,11 +38,14 @@ class Analysis:
 def analyse(motion: Motion) -> Analysis:
     """All arrays of `motion`. Deterministic; raises TooShort or NotHuman."""
     track = body_track(motion)
-    return Analysis(motion, _for_search(track))
+    return Analysis(motion, _for_search(track) | describe_symbol(track))
 
 
 def describe_for_search(motion: Motion) -> Analysis:
-    """The arrays that finding like motions needs: all but the motion symbol, some 10 ms."""
+    """The arrays that finding and recognising need: all but the motion symbol, which is slow.
+
+    Some 10 ms for 5 s of motion; each array is the same as from `analyse`.
+    """
     return Analysis(motion, _for_search(body_track(motion)))
 
 
@@ -51,5 +59,7 @@ def _for_search(track: BodyTrack) -> dict[str, FloatArray]:
         "msv_lambda": np.array([volume.weight]),
         "msv_rho": volume.primary,
         "msv_epsilon": volume.secondary,
+        "motion_sample": motion_sample(track),
+        "symbol_statistics": symbol_statistics(symbol_features(track), track.rate),
     }
     return {name: array.astype(np.float32) for name, array in arrays.items()}
