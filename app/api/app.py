@@ -13,6 +13,7 @@ from fastapi_offline import FastAPIOffline
 from app.api.docs import STATIC, install_docs
 from app.api.envelope import Envelope
 from app.api.errors import install_handlers
+from app.api.examples import example_ids
 from app.api.limits import BodyLimit
 from app.api.loading import Loading
 from app.api.metrics import install_metrics
@@ -35,8 +36,9 @@ from app.services.library import Library
 
 _SUMMARY = "Search human motion by example and by words, and ask who does what."
 _DESCRIPTION = """\
-Store a clip with `POST /v1/clips`, follow its job, then search with its id: replace `CLIP_ID`
-in the examples by an id that `GET /v1/clips` shows.
+Store a clip with `POST /v1/clips`, follow its job until the clip is `ready`, then search with
+its id. The examples name the newest clip and job of this library, so they can be run as they
+are; where you read `CLIP_ID`, reload this page once there is a clip.
 
 Times are ISO 8601 in UTC, durations seconds. Lists are `{"items": [...], "next": cursor}`.
 Every failure is a problem (RFC 9457, `application/problem+json`).
@@ -56,13 +58,15 @@ def create_app(settings: Settings) -> FastAPI:
         description=_DESCRIPTION,
         license_info={"name": "Apache-2.0", "identifier": "Apache-2.0"},
         lifespan=_lifespan,
+        generate_unique_id_function=lambda route: route.name,
     )
     app.state.settings = settings
+    app.state.library = None
     install_handlers(app)
     for module in _ROUTES:
         app.include_router(module.router)
     install_docs(app)
-    describe(app, [MotionSearch, Recognize])
+    describe(app, [MotionSearch, Recognize], lambda: example_ids(app.state.library))
     # The last one added is the outermost.
     app.add_middleware(BodyLimit, settings=settings)
     install_metrics(app)

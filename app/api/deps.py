@@ -52,7 +52,7 @@ class Allows:
         """Raises Unauthorized without a valid key, Forbidden where its role is too low."""
         given = bearer.credentials if bearer is not None else header
         with lib.store.read() as tx:
-            if _is_open(lib, tx):
+            if is_open(lib, tx):
                 _refuse_other_sites(request)
                 return
             key = keys.verify(tx, given) if given else None
@@ -66,7 +66,8 @@ reads = Depends(Allows(KeyRole.READ))
 writes = Depends(Allows(KeyRole.WRITE))
 
 
-def _is_open(lib: Library, tx: Tx) -> bool:
+def is_open(lib: Library, tx: Tx) -> bool:
+    """Whether no key is asked for: none was ever made, and only this machine can call."""
     # A revoked key counts too: revoking the last one must not open the door.
     settings = lib.settings
     local = settings.listens_on_loopback and not settings.require_keys

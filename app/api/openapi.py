@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+import json
+from collections.abc import Callable, Mapping, Sequence
+from typing import Annotated, Any
 
-from fastapi import FastAPI
+from fastapi import FastAPI, Path
 from fastapi.openapi.utils import get_openapi
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
@@ -30,6 +31,10 @@ _DESCRIPTIONS = {
 _EVERYWHERE = (401, 403, 422, 500)
 
 
+ClipId = Annotated[str, Path(openapi_examples={"a clip": {"value": "CLIP_ID"}})]
+JobId = Annotated[str, Path(openapi_examples={"a job": {"value": "JOB_ID"}})]
+
+
 def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """The `responses=` of a route: problems of these statuses and of those that any call has."""
     schema = {"$ref": _REF.format(model="Problem")}
@@ -44,21 +49,21 @@ def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 def body(
     *,
-    json: type[BaseModel] | None = None,
-    json_examples: Mapping[str, Any] | None = None,
+    model: type[BaseModel] | None = None,
+    examples: Mapping[str, Any] | None = None,
     form: type[BaseModel] | None = None,
     files: Mapping[str, str] | None = None,
     needed: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """The `openapi_extra=` of a route that reads JSON as `json` or a form as `form` and `files`.
+    """The `openapi_extra=` of a route that reads JSON as `model` or a form as `form` and `files`.
 
     files: what each file is, by field name; needed: the fields of the form that must come.
     """
     content: dict[str, Any] = {}
-    if json is not None:
+    if model is not None:
         content["application/json"] = {
-            "schema": {"$ref": _REF.format(model=json.__name__)},
-            "examples": {name: {"value": value} for name, value in (json_examples or {}).items()},
+            "schema": {"$ref": _REF.format(model=model.__name__)},
+            "examples": {name: {"value": value} for name, value in (examples or {}).items()},
         }
     if form is not None:
         content["multipart/form-data"] = {"schema": _form_schema(form, files or {}, needed)}
@@ -80,15 +85,30 @@ def _form_schema(
     return schema
 
 
-def describe(app: FastAPI, bodies: Sequence[type[BaseModel]]) -> None:
-    """Make `app.openapi()` tell also the schemas of `bodies` and of problems; made once."""
+def describe(
+    app: FastAPI, bodies: Sequence[type[BaseModel]], ids: Callable[[], Mapping[str, str]]
+) -> None:
+    """Make `app.openapi()` tell also the schemas of `bodies` and of problems; made once.
+
+    ids: what CLIP_ID and JOB_ID in the examples are replaced by, so that they can be run.
+    """
 
     def openapi() -> dict[str, Any]:
         if app.openapi_schema is None:
             app.openapi_schema = _build(app, bodies)
-        return app.openapi_schema
+        return _filled(app.openapi_schema, ids())
 
     app.openapi = openapi  # type: ignore[method-assign]  # FastAPI's documented way
+
+
+def _filled(told: dict[str, Any], ids: Mapping[str, str]) -> dict[str, Any]:
+    if not ids:
+        return told
+    text = json.dumps(told)
+    for placeholder, identity in ids.items():
+        text = text.replace(json.dumps(placeholder), json.dumps(identity))
+    filled: dict[str, Any] = json.loads(text)
+    return filled
 
 
 def _build(app: FastAPI, bodies: Sequence[type[BaseModel]]) -> dict[str, Any]:
@@ -101,9 +121,8 @@ def _build(app: FastAPI, bodies: Sequence[type[BaseModel]]) -> dict[str, Any]:
         tags=app.openapi_tags,
         license_info=app.license_info,
     )
-    _, extra = models_json_schema(
-        [(model, "validation") for model in (*bodies, Problem)], ref_template=_REF
-    )
+    told_too: list[type[BaseModel]] = [*bodies, Problem]
+    _, extra = models_json_schema([(model, "validation") for model in told_too], ref_template=_REF)
     schemas = told.setdefault("components", {}).setdefault("schemas", {})
     schemas.update(extra.get("$defs", {}))
     return told

@@ -10,7 +10,7 @@ from starlette.datastructures import UploadFile
 
 from app.api.bodies import read_form, require_json, required
 from app.api.deps import Lib, reads, writes
-from app.api.openapi import body, refusals
+from app.api.openapi import ClipId, body, refusals
 from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch, ClipQuery
 from app.api.schemas.jobs import Job
 from app.services import clips
@@ -77,7 +77,7 @@ def list_clips(lib: Lib, query: Annotated[ClipQuery, Query()]) -> ClipList:
 
 
 @router.get("/{clip_id}", dependencies=[reads], responses=refusals(404))
-def get_clip(lib: Lib, clip_id: str) -> Clip:
+def get_clip(lib: Lib, clip_id: ClipId) -> Clip:
     """One clip."""
     return Clip.of(clips.get_clip(lib, clip_id))
 
@@ -87,13 +87,13 @@ def get_clip(lib: Lib, clip_id: str) -> Clip:
     dependencies=[writes, Depends(require_json)],
     responses=refusals(400, 404, 409, 413, 415),
 )
-def update_clip(lib: Lib, clip_id: str, patch: ClipPatch) -> Clip:
+def update_clip(lib: Lib, clip_id: ClipId, patch: ClipPatch) -> Clip:
     """Correct what is said of a clip."""
     return Clip.of(clips.update_clip(lib, clip_id, patch.model_dump(exclude_unset=True)))
 
 
 @router.delete("/{clip_id}", status_code=204, dependencies=[writes], responses=refusals(404))
-def delete_clip(lib: Lib, clip_id: str) -> None:
+def delete_clip(lib: Lib, clip_id: ClipId) -> None:
     """Forget a clip, its file and all that was computed from it."""
     clips.delete_clip(lib, clip_id)
 
@@ -107,7 +107,7 @@ def delete_clip(lib: Lib, clip_id: str) -> None:
         **refusals(404),
     },
 )
-def get_file(lib: Lib, clip_id: str) -> FileResponse:
+def get_file(lib: Lib, clip_id: ClipId) -> FileResponse:
     """The original file, as an attachment: it is foreign content and never shown as a page."""
     file = clips.open_file(lib, clip_id)
     return FileResponse(

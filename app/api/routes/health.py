@@ -25,7 +25,7 @@ def livez() -> Alive:
     return Alive()
 
 
-@router.get("/readyz", responses=refusals(503))
+@router.get("/readyz", responses={503: refusals(503)[503]})
 def readyz(lib: Lib) -> Ready:
     """200 once the index is loaded, 503 before. Needs no key."""
     if not lib.index.is_loaded:

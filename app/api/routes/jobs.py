@@ -11,7 +11,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from app.api.deps import Lib, reads, writes
-from app.api.openapi import refusals
+from app.api.openapi import JobId, refusals
 from app.api.schemas.jobs import Job, JobList, JobQuery
 from app.errors import JobNotFound
 from app.services import jobs
@@ -27,23 +27,23 @@ POLL_SECONDS = 0.25
 @router.get("", dependencies=[reads], responses=refusals())
 def list_jobs(lib: Lib, query: Annotated[JobQuery, Query()]) -> JobList:
     """Jobs, the newest first."""
-    page = jobs.list_jobs(lib, query.limit, query.cursor)
+    page = jobs.list_jobs(lib, query.kind, query.state, query.limit, query.cursor)
     return JobList(items=[Job.of(job) for job in page.items], next=page.next)
 
 
 @router.get("/{job_id}", dependencies=[reads], responses=refusals(404))
-def get_job(lib: Lib, job_id: str) -> Job:
+def get_job(lib: Lib, job_id: JobId) -> Job:
     """One job."""
     return Job.of(jobs.get_job(lib, job_id))
 
 
 @router.delete("/{job_id}", status_code=202, dependencies=[writes], responses=refusals(404, 409))
-def cancel_job(lib: Lib, job_id: str) -> Job:
+def cancel_job(lib: Lib, job_id: JobId) -> Job:
     """Ask a job to stop; one that has ended stays as it is."""
     return Job.of(jobs.cancel_job(lib, job_id))
 
 
-def _existing(lib: Lib, job_id: str) -> JobRecord:
+def _existing(lib: Lib, job_id: JobId) -> JobRecord:
     # Before the stream begins, while a 404 can still be answered.
     return jobs.get_job(lib, job_id)
 

@@ -26,7 +26,10 @@ async def _query(request: Request) -> RecogniseQuery:
     if not is_multipart(request):
         sent = await read_json(request, Recognize)
         return RecogniseQuery(
-            clip_id=sent.clip_id, known_person=sent.known_person, known_task=sent.known_task
+            clip_id=sent.clip_id,
+            known_person=sent.known_person,
+            known_task=sent.known_task,
+            method=sent.method,
         )
     form, uploads = await read_form(request, RecognizeForm, QUERY_FILES)
     exactly_one(form.clip_id, uploads)
@@ -35,6 +38,7 @@ async def _query(request: Request) -> RecogniseQuery:
         content=file_of(uploads, "file"),
         known_person=form.known_person,
         known_task=form.known_task,
+        method=form.method,
         skeleton=file_of(uploads, "skeleton"),
         frame_rate=form.frame_rate,
         unit=form.unit,
@@ -46,9 +50,7 @@ async def _query(request: Request) -> RecogniseQuery:
     "",
     dependencies=[reads],
     responses=refusals(400, 404, 409, 413, 415, 507),
-    openapi_extra=body(
-        json=Recognize, json_examples=_EXAMPLES, form=RecognizeForm, files=QUERY_FILES
-    ),
+    openapi_extra=body(model=Recognize, examples=_EXAMPLES, form=RecognizeForm, files=QUERY_FILES),
 )
 def recognize(lib: Lib, query: Annotated[RecogniseQuery, Depends(_query)]) -> Recognition:
     """Say who it is, what they do and in which words; `label` is null when it is unknown."""
@@ -56,5 +58,5 @@ def recognize(lib: Lib, query: Annotated[RecogniseQuery, Depends(_query)]) -> Re
     return Recognition(
         person=Answer.of(found.person),
         task=Answer.of(found.task),
-        words=[WordScore(word=word, score=score) for word, score in found.words],
+        words=[WordScore(word=word, score=min(score, 1.0)) for word, score in found.words],
     )

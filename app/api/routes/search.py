@@ -81,8 +81,8 @@ async def _uploaded_query(request: Request) -> MotionQuery:
     dependencies=[reads],
     responses=refusals(400, 404, 409, 413, 415, 507),
     openapi_extra=body(
-        json=MotionSearch,
-        json_examples=_MOTION_EXAMPLES,
+        model=MotionSearch,
+        examples=_MOTION_EXAMPLES,
         form=MotionSearchForm,
         files=QUERY_FILES,
     ),

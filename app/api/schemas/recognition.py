@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import ConfigDict, Field
 
 from app.api.schemas.base import Incoming, Outgoing
@@ -11,6 +13,9 @@ from app.models.recognition import Answer as FoundAnswer
 
 
 class _Known(Incoming):
+    method: Literal["default", "multilinear"] = Field(
+        "default", description="The recogniser; multilinear is Vasilescu 2002."
+    )
     known_person: Label | None = Field(None, description="Recognise the task given the person.")
     known_task: Label | None = Field(None, description="Recognise the person given the task.")
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from app.api.schemas.base import Incoming, Outgoing
+from app.motion.joint_roles import SUN_ROLES
+from app.services.views import DescriptorView, KeyposesView
 
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 
@@ -15,7 +19,7 @@ class MotionQueryParameters(Incoming):
     """How a clip's motion is wanted."""
 
     fps: float | None = Field(
-        None, ge=1, le=240, description="Resampled by time; default: the clip's own rate."
+        None, gt=0, le=1000, description="Resampled by time; default: the clip's own rate."
     )
     joints: Literal["all", "roles"] = Field(
         "all", description="All joints, or the 13 of Sun's figure 2 in its order."
@@ -38,17 +42,17 @@ class KeyposeQuery(Incoming):
         "rms", description="RMS of joint speeds, or equations 1 and 2 as printed."
     )
     t1: float | None = Field(
-        None, ge=0, le=100, description="Of the median local maximum; below it a minimum is small."
+        None, gt=0, le=100, description="Of the median local maximum; below it a minimum is small."
     )
     t2: float | None = Field(
-        None, ge=0, le=100, description="Of the median local maximum; a drop beyond it is deep."
+        None, gt=0, le=100, description="Of the median local maximum; a drop beyond it is deep."
     )
 
 
 class Energy(Outgoing):
-    """Energy curves, a value a frame."""
+    """Energy curves, a value a frame, body lengths a second."""
 
-    global_: list[float] = Field(alias="global", serialization_alias="global")
+    global_: list[float] = Field(alias="global")
     local: list[float]
 
 
@@ -67,26 +71,76 @@ class Keyposes(Outgoing):
     poses: list[list[Point]] = Field(description="(keyposes, 13, 3), metres, Y up.")
     energy: Energy
 
+    @classmethod
+    def of(cls, view: KeyposesView) -> Keyposes:
+        """Keyposes as they go over the wire."""
+        found = view.found
+        return cls(
+            method=str(found.method),
+            t1=found.t1,
+            t2=found.t2,
+            frame_rate=view.frame_rate,
+            tempo=found.beats.tempo,
+            beats=plain(found.beats.times),
+            frames=found.frames.tolist(),
+            times=plain(found.times),
+            roles=[role.value for role in SUN_ROLES],
+            poses=plain(view.poses),
+            energy=Energy(
+                **{"global": plain(found.global_energy)}, local=plain(found.local_energy)
+            ),
+        )
+
 
 class VolumeFactors(Outgoing):
     """Rank-1 factors of the motion sequence volume (Sun 2011)."""
 
-    lambda_: float = Field(alias="lambda", serialization_alias="lambda")
+    lambda_: float = Field(alias="lambda")
     rho: list[float] = Field(description="Primary vector, (13,).")
     epsilon: list[float] = Field(description="Secondary vector, (frames,) at 30 Hz.")
 
 
 class SymbolSummary(Outgoing):
-    """The motion symbol: a left-to-right hidden Markov model."""
+    """The motion symbol: a left-to-right Gaussian hidden Markov model."""
 
     states: int
-    features: int
+    means: list[list[float]] = Field(description="(states, 26) features.")
+    variances: list[list[float]] = Field(description="(states, 26).")
+
+
+class Versions(Outgoing):
+    """What computed it."""
+
+    analysis: int
 
 
 class Descriptor(Outgoing):
     """What a clip is compared by."""
 
     msv: VolumeFactors
-    motion_vector: list[float]
-    symbol: SymbolSummary | None
-    versions: dict[str, int]
+    motion_vector: list[float] = Field(description="(128,).")
+    symbol: SymbolSummary
+    versions: Versions
+
+    @classmethod
+    def of(cls, view: DescriptorView) -> Descriptor:
+        """A descriptor as it goes over the wire."""
+        return cls(
+            msv=VolumeFactors(
+                **{"lambda": view.msv_lambda},
+                rho=plain(view.msv_rho),
+                epsilon=plain(view.msv_epsilon),
+            ),
+            motion_vector=plain(view.motion_vector),
+            symbol=SymbolSummary(
+                states=view.symbol_states,
+                means=plain(view.symbol_means),
+                variances=plain(view.symbol_variances),
+            ),
+            versions=Versions(analysis=view.analysis_version),
+        )
+
+
+def plain(values: NDArray[Any]) -> Any:
+    """Numbers as nested lists, exactly."""
+    return values.astype(np.float64).tolist()

@@ -1,0 +1,31 @@
+"""Ids for the examples of `/docs`, so that a reader can run them as they stand."""
+
+from __future__ import annotations
+
+from app.api.deps import is_open
+from app.services.library import Library
+from app.store import clip_listing, jobs
+from app.store.clip_filter import ClipFilter
+from app.store.clip_record import ClipState
+
+_READY = ClipFilter(state=(ClipState.READY,))
+
+
+def example_ids(library: Library | None) -> dict[str, str]:
+    """The newest ready clip and the newest job, by placeholder.
+
+    Empty where a key is needed: the description is for everyone, ids are not.
+    """
+    if library is None:
+        return {}
+    with library.store.read() as tx:
+        if not is_open(library, tx):
+            return {}
+        clips = clip_listing.list_clips(tx, _READY, limit=1).items
+        newest = jobs.list_jobs(tx, limit=1).items
+    ids = {}
+    if clips:
+        ids["CLIP_ID"] = clips[0].id
+    if newest:
+        ids["JOB_ID"] = newest[0].id
+    return ids

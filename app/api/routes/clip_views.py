@@ -1,0 +1,82 @@
+"""Looking at a clip: its motion, keyposes, descriptor and picture."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Request, Response
+
+from app.api.deps import Lib, reads
+from app.api.openapi import ClipId, refusals
+from app.api.schemas.views import (
+    Descriptor,
+    KeyposeQuery,
+    Keyposes,
+    Motion,
+    MotionQueryParameters,
+)
+from app.api.streams import OCTETS, as_json, as_octets, wants_octets
+from app.errors import BadField, Place
+from app.services import clips, views
+from app.services.library import Library
+
+router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
+
+_OCTETS = {"schema": {"type": "string", "format": "binary"}}
+_SHAPE = {
+    "description": "`frames,joints,3`, with octet streams.",
+    "schema": {"type": "string"},
+    "required": False,
+}
+
+
+@router.get(
+    "/motion",
+    response_model=Motion,
+    responses={
+        200: {"content": {OCTETS: _OCTETS}, "headers": {"X-Shape": _SHAPE}},
+        **refusals(404, 409),
+    },
+)
+def get_motion(
+    lib: Lib, request: Request, clip_id: ClipId, wanted: Annotated[MotionQueryParameters, Query()]
+) -> Response:
+    """Joint positions: JSON, or little-endian float32 for `Accept: application/octet-stream`."""
+    _check_length(lib, clip_id, wanted.fps)
+    view = views.motion(lib, clip_id, wanted.fps, wanted.joints)
+    return as_octets(view) if wants_octets(request) else as_json(view)
+
+
+def _check_length(lib: Library, clip_id: str, fps: float | None) -> None:
+    most = lib.settings.max_frames
+    if fps is not None and fps * (clips.get_clip(lib, clip_id).duration or 0.0) > most:
+        places = [Place("query.fps", f"would make more than {most} frames")]
+        raise BadField("The motion would be too long.", places=places)
+
+
+@router.get("/keyposes", responses=refusals(404, 409))
+def get_keyposes(lib: Lib, clip_id: ClipId, wanted: Annotated[KeyposeQuery, Query()]) -> Keyposes:
+    """Beats, keyposes and energy curves (Perera 2009, section 3)."""
+    return Keyposes.of(views.keyposes(lib, clip_id, wanted.method, wanted.t1, wanted.t2))
+
+
+@router.get("/descriptor", responses=refusals(404, 409))
+def get_descriptor(lib: Lib, clip_id: ClipId) -> Descriptor:
+    """What the clip is compared by."""
+    return Descriptor.of(views.descriptor(lib, clip_id))
+
+
+@router.get(
+    "/thumbnail.svg",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "A few stick figures over time.",
+            "content": {"image/svg+xml": {"schema": {"type": "string"}}},
+        },
+        **refusals(404, 409),
+    },
+)
+def get_thumbnail(lib: Lib, clip_id: ClipId) -> Response:
+    """The clip as a small picture."""
+    return Response(views.thumbnail_svg(lib, clip_id), media_type="image/svg+xml")

@@ -1,0 +1,76 @@
+"""A motion as an answer: JSON written piece by piece, or raw float32.
+
+A long clip has tens of millions of numbers, which as Python objects would take gigabytes;
+neither form ever holds more than a few frames of them.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+
+import numpy as np
+from fastapi import Request
+from fastapi.responses import Response, StreamingResponse
+
+from app.services.views import MotionView
+
+OCTETS = "application/octet-stream"
+FRAMES_AT_ONCE = 256
+DECIMALS = 6
+"""Of a metre: a micrometre."""
+
+
+def wants_octets(request: Request) -> bool:
+    """Whether the client would rather have octets than JSON, which is what it gets unasked."""
+    weights = dict(_weights(request.headers.get("accept", "")))
+    octets = weights.get(OCTETS, 0.0)
+    anything = weights.get("*/*", 0.0)
+    json_weight = weights.get("application/json", weights.get("application/*", anything))
+    return octets > 0 and octets >= json_weight
+
+
+def as_octets(view: MotionView) -> Response:
+    """Little-endian float32 in C order; X-Shape tells frames, joints and 3."""
+    content = np.ascontiguousarray(view.positions, dtype="<f4")
+    headers = {
+        "X-Shape": ",".join(str(size) for size in content.shape),
+        "X-Frame-Rate": f"{view.frame_rate:.9g}",
+        "Content-Length": str(content.nbytes),
+        "Vary": "Accept",
+    }
+    return StreamingResponse(_octets(content), media_type=OCTETS, headers=headers)
+
+
+def as_json(view: MotionView) -> Response:
+    """The members of the schema `Motion`."""
+    return StreamingResponse(_json(view), media_type="application/json", headers={"Vary": "Accept"})
+
+
+def _octets(content: np.ndarray[tuple[int, ...], np.dtype[np.float32]]) -> Iterator[bytes]:
+    for start in range(0, len(content), FRAMES_AT_ONCE):
+        yield content[start : start + FRAMES_AT_ONCE].tobytes()
+
+
+def _json(view: MotionView) -> Iterator[str]:
+    head = {
+        "frame_rate": view.frame_rate,
+        "joint_names": view.joint_names,
+        "parents": view.parents,
+    }
+    yield json.dumps(head)[:-1] + ', "positions": ['
+    for start in range(0, len(view.positions), FRAMES_AT_ONCE):
+        part = view.positions[start : start + FRAMES_AT_ONCE].astype(np.float64)
+        frames = json.dumps(np.round(part, DECIMALS).tolist(), separators=(",", ":"))
+        yield ("," if start else "") + frames[1:-1]
+    yield "]}"
+
+
+def _weights(accept: str) -> Iterator[tuple[str, float]]:
+    for part in accept.split(","):
+        kind, *parameters = (piece.strip().lower() for piece in part.split(";"))
+        weight = next((p[2:] for p in parameters if p.startswith("q=")), "1")
+        try:
+            yield kind, float(weight)
+        except ValueError:
+            yield kind, 0.0
