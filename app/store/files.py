@@ -74,7 +74,7 @@ class FileStore:
         Raises TooLarge beyond `max_bytes` and DiskFull; then nothing is left.
         """
         with _disk_failures():
-            self._temporaries.mkdir(parents=True, exist_ok=True)
+            _make_synced(self._temporaries)
         temporary = self._temporaries / new_id("up")
         try:
             with _disk_failures():

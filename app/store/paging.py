@@ -7,10 +7,10 @@ never make one of the others appear twice or not at all.
 from __future__ import annotations
 
 import base64
-import binascii
 import json
+import math
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import Generic, TypeVar
 
 from sqlalchemy import ColumnElement, and_, or_
@@ -50,9 +50,9 @@ def read_cursor(cursor: str, sort: str, kind: type[Value]) -> Position:
     """The position that a cursor of the same sort holds; raises BadField at "cursor"."""
     try:
         said, value, row_id = json.loads(_unpad(cursor))
-        if said == sort and isinstance(row_id, str):
-            return Position(_as_kind(value, kind), row_id)
-    except (ValueError, TypeError, binascii.Error, RecursionError):
+        if said == sort:
+            return Position(_as_kind(value, kind), _as_text(row_id))
+    except (ValueError, TypeError, OverflowError, RecursionError):
         pass
     raise BadField(
         "The cursor is not one that this list gave",
@@ -83,12 +83,31 @@ def _unpad(cursor: str) -> bytes:
 
 
 def _as_kind(value: object, kind: type[Value]) -> Value:
-    if kind is datetime and isinstance(value, str):
-        moment = datetime.fromisoformat(value)
-        if moment.tzinfo is not None:
-            return moment
-    elif kind is str and isinstance(value, str):
-        return value
-    elif kind is float and isinstance(value, int | float) and not isinstance(value, bool):
-        return float(value)
-    raise ValueError
+    if kind is str:
+        return _as_text(value)
+    if kind is datetime:
+        return _as_moment(value)
+    return _as_number(value)
+
+
+def _as_text(value: object) -> str:
+    if not isinstance(value, str):
+        raise TypeError
+    value.encode()  # a lone surrogate is valid JSON, but no database takes it
+    return value
+
+
+def _as_moment(value: object) -> datetime:
+    moment = datetime.fromisoformat(_as_text(value))
+    if moment.tzinfo is None:
+        raise ValueError
+    return moment.astimezone(UTC)
+
+
+def _as_number(value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise TypeError
+    number = float(value)
+    if not math.isfinite(number):
+        raise ValueError
+    return number

@@ -1,0 +1,86 @@
+"""A store on the real database: SQLite files, made once and copied for each test."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.store import clips, jobs, schema
+from app.store.clip_record import ClipFacts, ClipRecord, ClipWarning, NewClip
+from app.store.job_record import JobKind, JobRecord, NewJob
+from app.store.store import Store
+
+
+@pytest.fixture(scope="session")
+def empty_database(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("database") / "empty.sqlite3"
+    schema.upgrade(f"sqlite:///{path}")
+    return path
+
+
+@pytest.fixture
+def database_url(empty_database: Path, tmp_path: Path) -> str:
+    path = tmp_path / "kinedex.sqlite3"
+    shutil.copy(empty_database, path)
+    return f"sqlite:///{path}"
+
+
+@pytest.fixture
+def store(database_url: str, tmp_path: Path) -> Iterator[Store]:
+    opened = Store.open(database_url, tmp_path / "files")
+    yield opened
+    opened.close()
+
+
+def new_clip(name: str, **fields: Any) -> NewClip:
+    sha256 = hashlib.sha256(name.encode()).hexdigest()
+    return NewClip(sha256=sha256, file_name=f"{name}.bvh", file_size=7, name=name, **fields)
+
+
+def facts(**changes: Any) -> ClipFacts:
+    values: dict[str, Any] = {
+        "format": "bvh",
+        "frames": 90,
+        "frame_rate": 30.0,
+        "declared_frame_rate": 120.0,
+        "duration": 3.0,
+        "joints": 22,
+        "metres_per_unit": 0.01,
+        "roles": {"hips": "Hips"},
+        "missing_roles": ("left_hand",),
+        "warnings": (ClipWarning("frame_rate_suspect", "looks like 60", 60.0),),
+        "analysis_version": 1,
+    }
+    return ClipFacts(**values | changes)
+
+
+AddClip = Callable[..., ClipRecord]
+AddJob = Callable[..., JobRecord]
+
+
+@pytest.fixture
+def add_clip(store: Store) -> AddClip:
+    """Adds a clip; `ready=True` (or a dict of facts) makes it ready."""
+
+    def add(name: str, *, ready: bool | dict[str, Any] = False, **fields: Any) -> ClipRecord:
+        with store.write() as tx:
+            clip = clips.add_or_get(tx, new_clip(name, **fields)).clip
+            if ready is False:
+                return clip
+            return clips.set_ready(tx, clip.id, facts(**(ready if ready is not True else {})))
+
+    return add
+
+
+@pytest.fixture
+def add_job(store: Store) -> AddJob:
+    def add(kind: JobKind = JobKind.INGEST, **fields: Any) -> JobRecord:
+        with store.write() as tx:
+            return jobs.enqueue(tx, NewJob(kind, **fields))
+
+    return add

@@ -1,0 +1,210 @@
+"""Leases: each job to one worker at a time, and to the next one when that one dies."""
+
+from __future__ import annotations
+
+import multiprocessing
+import signal
+import threading
+import time
+from collections import Counter
+from datetime import timedelta
+from pathlib import Path
+
+import pytest
+
+from app.errors import LeaseLost
+from app.store import jobs, leases
+from app.store.ids import utc_now
+from app.store.job_record import ClaimedJob, JobKind, JobState
+from app.store.store import Store
+from tests.store.conftest import AddJob
+
+ALL = tuple(JobKind)
+LATER = timedelta(minutes=5)
+
+
+def claim(store: Store, owner: str = "worker", *, after: timedelta = timedelta()) -> ClaimedJob:
+    claimed = claim_or_none(store, owner, after=after)
+    assert claimed is not None
+    return claimed
+
+
+def claim_or_none(
+    store: Store, owner: str = "worker", *, after: timedelta = timedelta()
+) -> ClaimedJob | None:
+    with store.write() as tx:
+        return leases.claim(tx, ALL, owner, lease_s=30, now=utc_now() + after)
+
+
+def test_the_most_urgent_comes_first_then_the_oldest(store: Store, add_job: AddJob) -> None:
+    old, background, urgent, new = (
+        add_job(priority=priority, payload={"n": n}) for n, priority in enumerate((0, 10, -1, 0))
+    )
+    order = [claim(store) for _ in range(4)]
+    assert [each.job.id for each in order] == [urgent.id, old.id, new.id, background.id]
+    assert [each.payload["n"] for each in order] == [2, 0, 3, 1]
+    assert claim_or_none(store) is None
+
+
+def test_only_the_kinds_that_are_asked_for(store: Store, add_job: AddJob) -> None:
+    add_job(JobKind.FIT)
+    with store.write() as tx:
+        assert not leases.is_any_claimable(tx, [JobKind.INGEST])
+        assert leases.is_any_claimable(tx, [JobKind.FIT])
+        assert leases.claim(tx, [JobKind.INGEST], "worker", 30) is None
+
+
+def test_a_claimed_job_is_processing(store: Store, add_job: AddJob) -> None:
+    add_job()
+    job = claim(store).job
+    assert (job.state, job.finished_at) == (JobState.PROCESSING, None)
+    assert job.started_at is not None
+    assert job.started_at >= job.created_at
+
+
+def test_a_heartbeat_keeps_the_lease_and_tells_progress(store: Store, add_job: AddJob) -> None:
+    add_job()
+    lease = claim(store).lease
+    with store.write() as tx:
+        much_later = utc_now() + LATER
+        canceled = leases.heartbeat(tx, lease, 30, progress=1.5, detail="half", now=much_later)
+        job = jobs.get(tx, lease.job_id)
+    assert not canceled
+    assert (job.progress, job.detail) == (1.0, "half")
+    assert claim_or_none(store, after=LATER) is None
+    assert claim_or_none(store, after=2 * LATER) is not None
+
+
+def test_who_lost_the_lease_can_settle_nothing(store: Store, add_job: AddJob) -> None:
+    add_job()
+    slow = claim(store, "slow").lease
+    quick = claim(store, "quick", after=LATER).lease
+    assert quick.attempt == 2
+    settlers = [
+        lambda tx, lease: leases.succeed(tx, lease),
+        lambda tx, lease: leases.fail(tx, lease, {}),
+        lambda tx, lease: leases.heartbeat(tx, lease, 30),
+        leases.give_back,
+        leases.park,
+        leases.end_canceled,
+        lambda tx, lease: leases.retry_later(tx, lease, 1),
+    ]
+    for settle in settlers:
+        with pytest.raises(LeaseLost), store.write() as tx:
+            settle(tx, slow)
+    with store.write() as tx:
+        done = leases.succeed(tx, quick, {"n": 1})
+    assert (done.state, done.progress, done.result) == (JobState.SUCCEEDED, 1.0, {"n": 1})
+    with pytest.raises(LeaseLost), store.write() as tx:
+        leases.succeed(tx, quick)
+
+
+def test_the_same_worker_has_to_claim_again_too(store: Store, add_job: AddJob) -> None:
+    add_job()
+    first = claim(store).lease
+    claim(store, after=LATER)
+    with pytest.raises(LeaseLost), store.write() as tx:
+        leases.succeed(tx, first)
+
+
+def test_attempts_run_out(store: Store, add_job: AddJob) -> None:
+    add_job(max_attempts=2)
+    for attempt in (1, 2):
+        assert claim(store, after=attempt * LATER).lease.attempt == attempt
+    assert claim_or_none(store, after=3 * LATER) is None
+    with store.write() as tx:
+        assert leases.exhausted(tx) == ()
+        (spent,) = leases.exhausted(tx, now=utc_now() + 3 * LATER)
+    assert spent.lease.attempt == 2
+
+
+def test_a_job_given_back_was_not_tried(store: Store, add_job: AddJob) -> None:
+    add_job(max_attempts=1)
+    for _ in range(3):
+        lease = claim(store).lease
+        assert lease.attempt == 1
+        with store.write() as tx:
+            assert leases.give_back(tx, lease).state is JobState.QUEUED
+
+
+def test_a_job_to_be_retried_waits_and_counts(store: Store, add_job: AddJob) -> None:
+    add_job()
+    with store.write() as tx:
+        leases.retry_later(tx, claim_in(tx), delay_s=60)
+    assert claim_or_none(store) is None
+    assert claim(store, after=timedelta(seconds=61)).lease.attempt == 2
+
+
+def claim_in(tx: leases.Tx) -> leases.Lease:
+    claimed = leases.claim(tx, ALL, "worker", 30)
+    assert claimed is not None
+    return claimed.lease
+
+
+def test_threads_claim_each_job_once(store: Store, add_job: AddJob) -> None:
+    expected = {add_job().id for _ in range(30)}
+    taken: Counter[str] = Counter()
+
+    def work(owner: str) -> None:
+        while (claimed := claim_or_none(store, owner)) is not None:
+            taken[claimed.job.id] += 1
+
+    threads = [threading.Thread(target=work, args=(f"worker {n}",)) for n in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert taken == dict.fromkeys(expected, 1)
+
+
+def _claim_all(url: str, directory: Path, owner: str) -> None:
+    store = Store.open(url, directory)
+    while (claimed := claim_or_none(store, owner)) is not None:
+        with store.write() as tx:
+            leases.succeed(tx, claimed.lease, {"by": owner})
+    store.close()
+
+
+def test_processes_claim_each_job_once(
+    store: Store, database_url: str, tmp_path: Path, add_job: AddJob
+) -> None:
+    ids = [add_job(max_attempts=1).id for _ in range(40)]
+    spawn = multiprocessing.get_context("spawn")
+    processes = [
+        spawn.Process(target=_claim_all, args=(database_url, tmp_path, f"worker {n}"))
+        for n in range(2)
+    ]
+    for process in processes:
+        process.start()
+    for process in processes:
+        process.join(60)
+    # A job that two had claimed would have raised LeaseLost in one of them.
+    assert [process.exitcode for process in processes] == [0, 0]
+    with store.read() as tx:
+        assert {jobs.get(tx, job_id).state for job_id in ids} == {JobState.SUCCEEDED}
+
+
+def _claim_and_hang(url: str, directory: Path) -> None:
+    store = Store.open(url, directory)
+    with store.write() as tx:
+        leases.claim(tx, ALL, "doomed", lease_s=0.3)
+    with store.write() as tx:  # dies inside a write transaction too
+        tx.exec_driver_sql("UPDATE jobs SET detail = 'torn'")
+        signal.raise_signal(signal.SIGKILL)
+
+
+def test_a_killed_worker_leaves_its_job_to_the_next(
+    store: Store, database_url: str, tmp_path: Path, add_job: AddJob
+) -> None:
+    job = add_job()
+    spawn = multiprocessing.get_context("spawn")
+    process = spawn.Process(target=_claim_and_hang, args=(database_url, tmp_path))
+    process.start()
+    process.join(60)
+    assert process.exitcode == -signal.SIGKILL
+    with store.read() as tx:
+        left = jobs.get(tx, job.id)
+    assert (left.state, left.detail) == (JobState.PROCESSING, None)
+    time.sleep(0.4)
+    again = claim(store, "next")
+    assert (again.job.id, again.lease.attempt) == (job.id, 2)

@@ -1,0 +1,58 @@
+"""Fitted models: the newest of a kind is in force, old ones go."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from sqlalchemy import func, select
+
+from app.errors import ModelNotFitted
+from app.store import models
+from app.store.engine import Tx
+from app.store.models import ModelRecord
+from app.store.store import Store
+from app.store.tables import model_arrays
+
+
+def save(tx: Tx, kind: str, value: float) -> ModelRecord:
+    arrays = {"weights": np.full((2, 3), value)}
+    meta = {"words": ["run"], "figures": {"map": 0.5}}
+    return models.save(tx, kind, meta=meta, arrays=arrays, library_version=7, library_size=5)
+
+
+def test_nothing_is_fitted_at_first(store: Store) -> None:
+    with store.read() as tx:
+        assert models.list_current(tx) == ()
+        assert models.current_versions(tx) == {}
+        with pytest.raises(ModelNotFitted, match="words"):
+            models.current(tx, "words")
+
+
+def test_the_newest_is_in_force(store: Store) -> None:
+    with store.write() as tx:
+        save(tx, "words", 1.0)
+        other = save(tx, "multilinear", 9.0)
+        newest = save(tx, "words", 2.0)
+    with store.read() as tx:
+        assert models.current(tx, "words") == newest
+        assert models.current_versions(tx) == {"multilinear": 1, "words": 2}
+        assert models.list_current(tx) == (other, newest)
+        weights = models.load_arrays(tx, newest.id)["weights"]
+    np.testing.assert_array_equal(weights, np.full((2, 3), 2.0))
+    assert not weights.flags.writeable
+    assert newest.meta["figures"] == {"map": 0.5}
+
+
+def test_old_ones_go_with_their_arrays(store: Store) -> None:
+    with store.write() as tx:
+        for value in range(5):
+            save(tx, "words", value)
+        count = tx.execute(select(func.count()).select_from(model_arrays)).scalar_one()
+    assert count == models.KEPT_VERSIONS
+
+
+def test_figures_that_are_no_numbers_are_refused(store: Store) -> None:
+    with pytest.raises(Exception, match="JSON"), store.write() as tx:
+        models.save(
+            tx, "words", meta={"map": float("nan")}, arrays={}, library_version=0, library_size=0
+        )

@@ -1,0 +1,78 @@
+"""The schema: migrations and tables agree, and a database of another version is refused."""
+
+from __future__ import annotations
+
+import multiprocessing
+from pathlib import Path
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.migration import MigrationContext
+from sqlalchemy import create_mock_engine, text
+
+from app.errors import DatabaseOutOfDate
+from app.store import schema
+from app.store.engine import Database
+from app.store.store import Store
+from app.store.tables import metadata
+
+
+def test_migrations_and_tables_agree(store: Store) -> None:
+    with store.read() as tx:
+        context = MigrationContext.configure(tx, opts={"compare_type": True})
+        assert compare_metadata(context, metadata) == []
+
+
+def test_tables_can_be_made_on_postgresql() -> None:
+    statements: list[str] = []
+    engine = create_mock_engine("postgresql+psycopg://", lambda sql, *_, **__: None)
+    engine = create_mock_engine(
+        "postgresql+psycopg://",
+        lambda sql, *_, **__: statements.append(str(sql.compile(dialect=engine.dialect))),
+    )
+    metadata.create_all(engine, checkfirst=False)
+    assert sum("CREATE TABLE" in statement for statement in statements) == len(metadata.tables)
+
+
+def test_an_empty_database_is_prepared_and_prepared_again(tmp_path: Path) -> None:
+    url = f"sqlite:///{tmp_path}/new.sqlite3"
+    assert schema.state(url).is_empty
+    with pytest.raises(DatabaseOutOfDate, match="kinedex db upgrade"):
+        schema.check(url)
+    schema.prepare(url)
+    schema.prepare(url)
+    schema.check(url)
+    assert schema.upgrade(url).is_current
+
+
+def test_an_older_database_is_not_upgraded_unasked(database_url: str) -> None:
+    _set_revision(database_url, None)
+    with pytest.raises(DatabaseOutOfDate, match="kinedex db upgrade"):
+        schema.prepare(database_url)
+
+
+def test_a_newer_database_is_refused(database_url: str) -> None:
+    _set_revision(database_url, "9999")
+    with pytest.raises(DatabaseOutOfDate, match="newer Kinedex"):
+        schema.prepare(database_url)
+
+
+def test_two_processes_may_prepare_at_once(tmp_path: Path) -> None:
+    url = f"sqlite:///{tmp_path}/shared.sqlite3"
+    spawn = multiprocessing.get_context("spawn")
+    processes = [spawn.Process(target=schema.prepare, args=(url,)) for _ in range(3)]
+    for process in processes:
+        process.start()
+    for process in processes:
+        process.join(60)
+    assert [process.exitcode for process in processes] == [0, 0, 0]
+    schema.check(url)
+
+
+def _set_revision(url: str, revision: str | None) -> None:
+    database = Database(url)
+    with database.write() as tx:
+        tx.execute(text("DELETE FROM alembic_version"))
+        if revision is not None:
+            tx.execute(text("INSERT INTO alembic_version VALUES (:r)"), {"r": revision})
+    database.close()

@@ -1,0 +1,88 @@
+"""Settings: where they come from, and what they never show."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from app.config import CONFIG_FILE_ENV, load_settings, settings_table
+from app.errors import ConfigurationError
+
+
+@pytest.fixture(autouse=True)
+def _clean(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    for name in [name for name in os.environ if name.startswith("KINEDEX_")]:
+        monkeypatch.delenv(name)
+    monkeypatch.chdir(tmp_path)
+
+
+def test_defaults_are_safe_and_local() -> None:
+    settings = load_settings()
+    assert (settings.host, settings.port) == ("127.0.0.1", 8000)
+    assert settings.listens_on_loopback
+    assert settings.database == "sqlite:///data/kinedex.sqlite3"
+    assert settings.files_dir == Path("data/files")
+
+
+def test_flags_win_over_the_environment_and_that_over_the_file(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    Path("kinedex.toml").write_text('port = 1\nhost = "::1"\nmax_frames = 7\n')
+    monkeypatch.setenv("KINEDEX_PORT", "2")
+    monkeypatch.setenv("KINEDEX_HOST", "0.0.0.0")
+    settings = load_settings(port=3, host=None)
+    assert (settings.port, settings.host, settings.max_frames) == (3, "0.0.0.0", 7)
+    assert not settings.listens_on_loopback
+
+
+def test_a_named_file_must_exist(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(CONFIG_FILE_ENV, "nowhere.toml")
+    with pytest.raises(ConfigurationError, match=r"nowhere\.toml"):
+        load_settings()
+    Path("nowhere.toml").write_text("port = 9\n")
+    assert load_settings().port == 9
+
+
+@pytest.mark.parametrize("content", ["port = ", "prot = 1\n", 'port = "x"\n'])
+def test_a_wrong_file_is_a_configuration_error(content: str) -> None:
+    Path("kinedex.toml").write_text(content)
+    with pytest.raises(ConfigurationError):
+        load_settings()
+
+
+def test_wrong_values_are_named_but_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("KINEDEX_PORT", "hunter2")
+    with pytest.raises(ConfigurationError, match="KINEDEX_PORT") as failure:
+        load_settings()
+    assert [place.location for place in failure.value.places] == ["KINEDEX_PORT"]
+    assert "hunter2" not in str(failure.value)
+
+
+def test_the_password_of_the_database_is_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("KINEDEX_DATABASE_URL", "postgresql://me:hunter2@db/kinedex")
+    settings = load_settings()
+    assert "hunter2" in settings.database
+    assert "hunter2" not in repr(settings) + str(settings) + settings.model_dump_json()
+
+
+def test_the_table_lists_every_setting_with_its_description() -> None:
+    rows = {row.env: row for row in settings_table()}
+    assert all(row.description.endswith(".") for row in rows.values())
+    assert rows["KINEDEX_PORT"].default == "8000"
+    assert rows["KINEDEX_REQUIRE_KEYS"].default == "false"
+    assert CONFIG_FILE_ENV in rows
+
+
+def test_each_default_in_the_table_is_what_one_would_set(monkeypatch: pytest.MonkeyPatch) -> None:
+    for row in settings_table():
+        if row.default and row.env != CONFIG_FILE_ENV:
+            monkeypatch.setenv(row.env, row.default)
+    assert load_settings().model_dump() == _defaults(monkeypatch)
+
+
+def _defaults(monkeypatch: pytest.MonkeyPatch) -> dict[str, object]:
+    for row in settings_table():
+        monkeypatch.delenv(row.env, raising=False)
+    return load_settings().model_dump()
