@@ -1,0 +1,118 @@
+"""All that a library has learned about words, as one record that is fitted and swapped whole.
+
+Holds the vocabulary, the default word model, and for the mode `cca` the symbol space and
+the correlated space, which need LEAST_CLIPS labelled clips. Shapes: clips N, words V.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.errors import NotEnoughLabels
+from app.models.correlated_space import LEAST_CLIPS, CorrelatedSpace, fit_correlated_space
+from app.models.symbol_space import SymbolSpace, fit_symbol_space
+from app.models.word_model import WordModel, clip_cosines, fit_word_model
+from app.models.word_vocabulary import WordVocabulary
+from app.numerics.arrays import FloatArray
+from app.numerics.hmm import GaussianHMM
+
+Arrays = dict[str, np.ndarray[Any, Any]]
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryWords:
+    """vocabulary: V words; model: the default; space: of all symbols; correlated: None
+    where too few clips have words.
+    """
+
+    vocabulary: WordVocabulary
+    model: WordModel
+    space: SymbolSpace
+    correlated: CorrelatedSpace | None
+
+    def word_scores(self, statistics: FloatArray) -> FloatArray:
+        """(N, V) how well each word tells each clip, 0..1, by its statistics (N, p)."""
+        return self.model.predict(statistics)
+
+    def word_scores_cca(self, points: FloatArray) -> FloatArray:
+        """(N, V) the same in the correlated space, by symbol coordinates (N, d), 0..1.
+
+        Raises NotEnoughLabels where there is no correlated space.
+        """
+        return (self._correlated().word_cosines(points) + 1.0) / 2.0
+
+    def clip_scores(self, scores: FloatArray, query: FloatArray) -> FloatArray:
+        """(N,) closeness 0..1 of clips, by their word_scores (N, V), to a label vector (V,)."""
+        return clip_cosines(scores, query)
+
+    def clip_scores_cca(self, points: FloatArray, query: FloatArray) -> FloatArray:
+        """(N,) the same in the correlated space, by symbol coordinates (N, d).
+
+        Raises NotEnoughLabels where there is no correlated space.
+        """
+        return (self._correlated().clip_cosines(points, query) + 1.0) / 2.0
+
+    def _correlated(self) -> CorrelatedSpace:
+        if self.correlated is None:
+            raise NotEnoughLabels(f"The mode cca needs {LEAST_CLIPS} clips that have words.")
+        return self.correlated
+
+    def to_arrays(self) -> tuple[Arrays, dict[str, Any]]:
+        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        parts: dict[str, WordModel | SymbolSpace | CorrelatedSpace | None]
+        parts = {"model": self.model, "space": self.space, "correlated": self.correlated}
+        arrays: Arrays = {}
+        meta: dict[str, Any] = {"words": list(self.vocabulary.words)}
+        for part, record in parts.items():
+            if record is not None:
+                own, meta[part] = record.to_arrays()
+                arrays |= {f"{part}.{name}": array for name, array in own.items()}
+        return arrays, meta
+
+    @classmethod
+    def from_arrays(
+        cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
+    ) -> LibraryWords:
+        """The record that to_arrays took apart. Raises ModelNotFitted on another version."""
+        correlated = None
+        if "correlated" in meta:
+            own = _part(arrays, "correlated")
+            correlated = CorrelatedSpace.from_arrays(own, meta["correlated"])
+        return cls(
+            WordVocabulary(tuple(meta["words"])),
+            WordModel.from_arrays(_part(arrays, "model"), meta["model"]),
+            SymbolSpace.from_arrays(_part(arrays, "space"), meta["space"]),
+            correlated,
+        )
+
+
+def fit_library_words(
+    symbols: Sequence[GaussianHMM],
+    statistics: FloatArray,
+    label_sets: Sequence[Sequence[str]],
+    *,
+    seed: int = 0,
+) -> LibraryWords:
+    """Fit on all clips: symbols N, statistics (N, p), label sets N (empty: not labelled).
+
+    Deterministic for a seed. Raises NotEnoughLabels where no clip has words.
+    """
+    vocabulary = WordVocabulary.of(label_sets)
+    labels = vocabulary.label_matrix(label_sets)
+    labelled = np.flatnonzero(labels.any(axis=1))
+    model = fit_word_model(np.asarray(statistics)[labelled], labels[labelled], seed=seed)
+    space = fit_symbol_space(symbols, seed=seed)
+    correlated = None
+    if len(labelled) >= LEAST_CLIPS:
+        points = space.place([symbols[int(row)] for row in labelled])
+        correlated = fit_correlated_space(points, labels[labelled])
+    return LibraryWords(vocabulary, model, space, correlated)
+
+
+def _part(arrays: Mapping[str, np.ndarray[Any, Any]], part: str) -> Arrays:
+    prefix = f"{part}."
+    return {k.removeprefix(prefix): v for k, v in arrays.items() if k.startswith(prefix)}

@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.models.ranking_figures import (
+    average_precision,
+    f_where_recall_is_precision,
+    mean_average_precision,
+    mean_precision_at_k,
+    nearest_neighbour_rate,
+    precision_at_k,
+    top_k_rate,
+)
+
+SCORES = np.array([0.9, 0.1, 0.8, 0.5])
+RELEVANT = np.array([True, False, False, True])
+
+
+def test_average_precision_is_equation_20() -> None:
+    assert average_precision(SCORES, RELEVANT) == pytest.approx((1 / 1 + 2 / 3) / 2)
+    assert average_precision(SCORES, ~RELEVANT) == pytest.approx((1 / 2 + 2 / 4) / 2)
+    assert average_precision(SCORES, np.zeros(4, dtype=bool)) == 0.0
+
+
+def test_precision_at_k() -> None:
+    assert precision_at_k(SCORES, RELEVANT, 1) == 1.0
+    assert precision_at_k(SCORES, RELEVANT, 2) == 0.5
+
+
+def test_means_leave_out_queries_without_an_answer() -> None:
+    scores = np.stack([SCORES, SCORES, SCORES])
+    relevant = np.stack([RELEVANT, ~RELEVANT, np.zeros(4, dtype=bool)])
+    assert nearest_neighbour_rate(scores, relevant) == 0.5
+    assert mean_precision_at_k(scores, relevant, 4) == 0.5
+    expected = (average_precision(SCORES, RELEVANT) + average_precision(SCORES, ~RELEVANT)) / 2
+    assert mean_average_precision(scores, relevant) == pytest.approx(expected)
+    assert mean_average_precision(scores, np.zeros_like(relevant)) == 0.0
+
+
+def test_f_counts_all_pairs_at_once() -> None:
+    scores = np.array([[0.9, 0.8], [0.1, 0.7]])
+    relevant = np.array([[True, False], [False, True]])
+    assert f_where_recall_is_precision(scores, relevant) == 0.5
+    assert f_where_recall_is_precision(scores, relevant & False) == 0.0
+
+
+def test_top_k_counts_clips_of_which_any_word_is_found() -> None:
+    scores = np.array([[0.9, 0.8, 0.1], [0.9, 0.8, 0.1], [0.0, 0.0, 0.0]])
+    labels = np.array([[False, True, True], [False, False, True], [False, False, False]])
+    assert top_k_rate(scores, labels, 2) == 0.5
+    assert top_k_rate(scores, labels, 3) == 1.0
+
+
+def test_equal_scores_keep_their_order() -> None:
+    assert precision_at_k(np.zeros(4), RELEVANT, 1) == 1.0

@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+import pytest
+
+from app.errors import NotEnoughLabels
+from app.models import word_figures
+from app.models.word_figures import held_out_word_figures
+from tests.models.word_clips import word_clips
+
+
+def test_every_method_beats_the_prior_on_clips_that_can_be_told_apart() -> None:
+    symbols, statistics, words = word_clips(6)
+    groups = [str(row) for row in range(len(words))]
+    found = held_out_word_figures(symbols, statistics, words, groups)
+    assert (found.clips, found.words, found.folds) == (24, 7, 5)
+    figures = {one.method: one for one in found.figures}
+    assert list(figures) == ["prior", "default", "cca", "cca-distance"]
+    assert figures["default"].word_f > figures["prior"].word_f
+    assert figures["default"].top_3_recognition > 0.9
+    assert figures["default"].set_map > figures["prior"].set_map + 0.1
+    assert figures["cca"].set_map > figures["prior"].set_map + 0.1
+
+
+def test_a_copy_in_another_fold_does_not_teach_the_answer() -> None:
+    """Each recording twice under one group: its words, which no other has, stay unknown."""
+    symbols, statistics, _ = word_clips(2)
+    words = [(f"only_{row}",) for row in range(8)]
+    groups = [f"r{row}" for row in range(8)]
+    figures = held_out_word_figures(symbols * 2, [*statistics] * 2, words * 2, groups * 2).figures
+    assert all(one.top_3_recognition == 0.0 for one in figures if one.method == "default")
+
+
+def test_unlabelled_clips_do_not_count_and_large_libraries_are_sampled(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    symbols, statistics, words = word_clips(4)
+    groups = [str(row) for row in range(len(words))]
+    words[0] = words[5] = ()
+    assert held_out_word_figures(symbols, statistics, words, groups).clips == 14
+    monkeypatch.setattr(word_figures, "MOST_CLIPS", 9)
+    assert held_out_word_figures(symbols, statistics, words, groups).clips == 9
+
+
+@pytest.mark.parametrize("count", [0, 1, 3])
+def test_too_few_clips_are_refused(count: int) -> None:
+    symbols, statistics, words = word_clips(1)
+    with pytest.raises(NotEnoughLabels):
+        held_out_word_figures(symbols[:count], statistics[:count], words[:count], ["a"] * count)
