@@ -126,7 +126,7 @@ ACTORS: tuple[Actor, ...] = (
             knee_lift=1.7,
             bounce=1.9,
             twist=1.3,
-            stance=0.1,
+            stance=0.13,
             turnout=radians(4),
         ),
         left_handed=True,

@@ -154,6 +154,6 @@ def _arc(distance: FloatArray, heading: float, curvature: float, axis: int) -> F
     """X (axis 0) or Z (axis 1) after `distance` along an arc."""
     turn = np.cos if axis == 0 else np.sin
     if abs(curvature) < 1e-9:
-        return distance * (np.sin(heading) if axis == 0 else np.cos(heading))
+        return np.asarray(distance * (np.sin(heading) if axis == 0 else np.cos(heading)))
     change = turn(heading + curvature * distance) - turn(heading)
     return np.asarray(change * (-1.0 if axis == 0 else 1.0) / curvature)

@@ -126,7 +126,8 @@ def _pose_arm(world: FloatArray, controls: Controls, rig: Rig, side: int) -> Non
 
 
 def _shoulder(arm: Arm, sign: float) -> FloatArray:
-    return about_x(-arm.flex) @ about_z(sign * arm.abduct) @ about_y(-sign * arm.twist)
+    lifted = about_x(-arm.flex) @ about_z(sign * arm.abduct)
+    return np.asarray(lifted @ about_y(-sign * arm.twist))
 
 
 def _shoulder_rise(arm: Arm) -> FloatArray:
@@ -169,7 +170,7 @@ def _two_links(away: FloatArray, hinge: FloatArray, rig: Rig) -> tuple[FloatArra
 
 
 def _sided(offset: FloatArray, side: int) -> FloatArray:
-    return offset * np.array([SIGNS[side], 1.0, 1.0])
+    return np.asarray(offset * np.array([SIGNS[side], 1.0, 1.0]))
 
 
 def _third(turn: Turn, share: float) -> Turn:
@@ -177,7 +178,7 @@ def _third(turn: Turn, share: float) -> Turn:
 
 
 def _matrices(turn: Turn) -> FloatArray:
-    return about_y(turn.yaw) @ about_x(turn.pitch) @ about_z(turn.roll)
+    return np.asarray(about_y(turn.yaw) @ about_x(turn.pitch) @ about_z(turn.roll))
 
 
 def about_x(angle: FloatArray) -> FloatArray:

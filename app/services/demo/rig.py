@@ -116,33 +116,23 @@ def skeleton_of(rig: Rig, naming: Naming, units_per_metre: float = 100.0) -> Ske
     )
 
 
-def _sided(limb: str, pattern: str) -> list[str]:
-    """One side's arm and leg names; `pattern` holds the side, `limb` is a comma list."""
-    return [pattern.format(name) for name in limb.split(",")]
+def _both_sides(left: str, right: str, limb: tuple[str, ...]) -> tuple[str, ...]:
+    return (*(left.format(part) for part in limb), *(right.format(part) for part in limb))
 
 
-_MOTIONBUILDER = (
-    "Hips,LowerBack,Spine,Spine1,Neck,Head".split(",")
-    + _sided("Shoulder,Arm,ForeArm,Hand", "Left{}")
-    + _sided("Shoulder,Arm,ForeArm,Hand", "Right{}")
-    + _sided("UpLeg,Leg,Foot,ToeBase", "Left{}")
-    + _sided("UpLeg,Leg,Foot,ToeBase", "Right{}")
+_LIMBS = (
+    *_both_sides("Left{}", "Right{}", ("Shoulder", "Arm", "ForeArm", "Hand")),
+    *_both_sides("Left{}", "Right{}", ("UpLeg", "Leg", "Foot", "ToeBase")),
 )
-_MIXAMO = [
-    "mixamorig:" + name
-    for name in ["Hips", "Spine", "Spine1", "Spine2", "Neck", "Head", *_MOTIONBUILDER[6:]]
-]
-_UNREAL = (
-    "pelvis,spine_01,spine_02,spine_03,neck_01,head".split(",")
-    + _sided("clavicle,upperarm,lowerarm,hand", "{}_l")
-    + _sided("clavicle,upperarm,lowerarm,hand", "{}_r")
-    + _sided("thigh,calf,foot,ball", "{}_l")
-    + _sided("thigh,calf,foot,ball", "{}_r")
-)
+_MIXAMO_TRUNK = ("Hips", "Spine", "Spine1", "Spine2", "Neck", "Head")
 
 NAMES: dict[Naming, tuple[str, ...]] = {
-    Naming.MOTIONBUILDER: tuple(_MOTIONBUILDER),
-    Naming.MIXAMO: tuple(_MIXAMO),
-    Naming.UNREAL: tuple(_UNREAL),
+    Naming.MOTIONBUILDER: ("Hips", "LowerBack", "Spine", "Spine1", "Neck", "Head", *_LIMBS),
+    Naming.MIXAMO: tuple("mixamorig:" + name for name in (*_MIXAMO_TRUNK, *_LIMBS)),
+    Naming.UNREAL: (
+        *("pelvis", "spine_01", "spine_02", "spine_03", "neck_01", "head"),
+        *_both_sides("{}_l", "{}_r", ("clavicle", "upperarm", "lowerarm", "hand")),
+        *_both_sides("{}_l", "{}_r", ("thigh", "calf", "foot", "ball")),
+    ),
 }
 """(22,) joint names by convention, in the order of the indices above."""

@@ -7,6 +7,7 @@ held against them.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import pi
 
 import numpy as np
@@ -105,9 +106,7 @@ FIGURES: tuple[Figure, ...] = (
         (_HOME, _foot(0.0, tapping=True)),
         0.3,
     ),
-    Figure(
-        (-0.12, 0.16), (0.0, 0.08, 0.0), (-0.2, 0.1, 0.0), _both(_GOAL), (_HOME, _foot(-0.24))
-    ),
+    Figure((-0.12, 0.16), (0.0, 0.08, 0.0), (-0.2, 0.1, 0.0), _both(_GOAL), (_HOME, _foot(-0.24))),
 )
 
 
@@ -150,7 +149,7 @@ def _weights(times: FloatArray, struck: FloatArray, beat: float) -> FloatArray:
     arrivals = struck - 0.5 * HOLD * beat
     done = [np.ones(len(times))] + [ease((times - at + move) / move) for at in arrivals]
     done.append(np.zeros(len(times)))
-    return np.array([here - after for here, after in zip(done[:-1], done[1:], strict=True)])
+    return np.array([here - after for here, after in pairwise(done)])
 
 
 def _figured(

@@ -13,11 +13,11 @@ from math import pi, radians
 import numpy as np
 
 from app.numerics.arrays import FloatArray
-from app.services.demo.controls import Arm, Controls, Foot, Turn, bent, standing
+from app.services.demo.controls import Controls, Foot, Turn, bent, standing
 from app.services.demo.curves import Key, keyed, periodic, softened
 from app.services.demo.performance import Performance
 from app.services.demo.posing import highest_root
-from app.services.demo.rig import LEFT, RIGHT, SIDES, SIGNS, Rig
+from app.services.demo.rig import LEFT, RIGHT, SIDES
 from app.services.demo.take import Take
 
 GRAVITY = 9.81
@@ -66,14 +66,14 @@ WALK = Gait(
     ),
     travel=(
         (0.0, 0.0),
-        (0.05, 0.012),
-        (0.2, 0.12),
+        (0.06, 0.008),
+        (0.2, 0.11),
         (0.5, 0.54),
         (0.8, 0.93),
         (0.95, 1.0),
         (1.0, 1.0),
     ),
-    lift=((0.0, 0.0), (0.06, 0.003), (0.25, 0.035), (0.55, 0.03), (0.8, 0.033), (1.0, 0.0)),
+    lift=((0.0, 0.0), (0.06, 0.006), (0.25, 0.035), (0.55, 0.03), (0.8, 0.033), (1.0, 0.0)),
     elbow=(0.0, radians(14)),
     swing=radians(21),
     lean=0.0,
@@ -131,7 +131,7 @@ def run(take: Take) -> Performance:
 def _go(take: Take, gait: Gait, seconds: float) -> Performance:
     times, style, rig = take.clock(seconds), take.actor.style, take.rig
     # Froude: the time of a stride grows with the square root of the leg.
-    stride_time = gait.stride_time * np.sqrt(rig.leg / 0.85) / take.pace**0.7
+    stride_time = gait.stride_time * np.sqrt(rig.leg / 0.85) / take.pace**0.6
     stride = gait.stride * rig.leg * style.step * take.size**0.35
     phase = take.phase + times / stride_time
     still = standing(take.actor, rig, len(times))
@@ -161,7 +161,7 @@ def _foot(
     place = still.place.copy()
     place[:, 0] *= _narrowing(gait)
     # A run lifts the feet high anyway; there is less room for style before the thigh is met.
-    eager = (style.knee_lift * take.size) ** (1.0 if gait is WALK else 0.3)
+    eager = (style.knee_lift * take.size) ** (0.7 if gait is WALK else 0.3)
     place[:, 1] = keyed(swing, gait.lift) * take.rig.leg * eager
     place[:, 2] = landing + stride * keyed(swing, gait.travel)
     pitch = periodic(within, gait.pitch) * (0.55 + 0.45 * min(style.energy, 1.1))
@@ -177,7 +177,7 @@ def _narrowing(gait: Gait) -> float:
 def _trunk(controls: Controls, take: Take, gait: Gait, phase: FloatArray) -> Controls:
     """Pelvis and shoulders turn against each other; the head looks ahead."""
     style = take.actor.style
-    turn = 2.0 * pi * phase
+    turn = 2.0 * pi * (phase if gait is WALK else phase + 0.08)
     # At the left foot's strike (phase 0) the left hip is ahead: the pelvis is turned right.
     yaw = -radians(5) * style.twist * np.cos(turn)
     roll = radians(3.2) * style.sway**0.7 * np.cos(turn - 2.0 * pi * 0.18)
@@ -195,11 +195,13 @@ def _arms(controls: Controls, take: Take, gait: Gait, phase: FloatArray) -> Cont
     """Each arm swings with the other side's leg, the elbow bending on the way forward."""
     style = take.actor.style
     base, bend = gait.elbow
+    # A runner's feet are furthest apart in the air, some way before the strike.
+    early = 0.0 if gait is WALK else 0.12
     arms = []
     for side in SIDES:
         arm = controls.arms[side]
-        forward = -np.cos(2.0 * pi * (phase + 0.5 * side - 0.03))
-        late = -np.cos(2.0 * pi * (phase + 0.5 * side - 0.08))
+        forward = -np.cos(2.0 * pi * (phase + 0.5 * side + early - 0.03))
+        late = -np.cos(2.0 * pi * (phase + 0.5 * side + early - 0.08))
         swing = gait.swing * style.arm_swing * take.size
         arms.append(
             replace(
@@ -242,8 +244,8 @@ def _carried(
 
 
 def _vault(phase: FloatArray, gait: Gait) -> FloatArray:
-    """Walking: highest over the middle of each stance, about 4 cm between low and high."""
-    return 0.024 * np.cos(4.0 * pi * (phase - 0.5 * gait.duty))
+    """Walking: highest over the middle of each stance, about 4 cm from low to high; leg lengths."""
+    return np.asarray(0.024 * np.cos(4.0 * pi * (phase - 0.5 * gait.duty)))
 
 
 def _bound(phase: FloatArray, gait: Gait, stride_time: float) -> FloatArray:

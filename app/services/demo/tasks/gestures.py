@@ -86,14 +86,12 @@ def bow(take: Take) -> Performance:
     controls = standing(take.actor, take.rig, len(times))
     depth = ease((times - begin) / (low - begin)) - ease((times - held) / (up - held))
     lag = softened(depth, times, 0.07)
-    controls = _folded(times, controls, take, depth, lag)
+    controls = _folded(controls, take, depth, lag)
     controls = within_reach(controls, take.rig, times)
     return Performance(times, bent(controls, take.heading, 0.0))
 
 
-def _folded(
-    times: FloatArray, controls: Controls, take: Take, depth: FloatArray, lag: FloatArray
-) -> Controls:
+def _folded(controls: Controls, take: Take, depth: FloatArray, lag: FloatArray) -> Controls:
     """Hips fold and go back, spine and neck follow, the arms hang or slide to the thighs."""
     size, leg = np.clip(take.size, 0.75, 1.25), take.rig.leg
     hips, back = 0.72 * size * depth, 0.42 * size * lag
@@ -118,5 +116,3 @@ def _folded(
         head=replace(controls.head, pitch=controls.head.pitch + 0.3 * lag),
         arms=(arms[0], arms[1]),
     )
-
-

@@ -109,7 +109,12 @@ def _height(
 
 
 def _foot(
-    times: FloatArray, still: Foot, jumps: list[Jump], above: FloatArray, pitch: FloatArray, leg: float
+    times: FloatArray,
+    still: Foot,
+    jumps: list[Jump],
+    above: FloatArray,
+    pitch: FloatArray,
+    leg: float,
 ) -> Foot:
     """Both feet leave and land together; in the air they hang below the pelvis.
 
@@ -123,7 +128,7 @@ def _foot(
         u = np.clip((times - one.off) / (one.down - one.off), 0.0, 1.0)
         high = np.where(flying, np.maximum(above, 0.0), 0.0)
         hang = 1.0 - np.exp(-high / STRETCH)
-        aloft += high - STRETCH * hang + 0.06 * np.sin(np.pi * u) ** 4
+        aloft += high - STRETCH * hang + 0.03 * np.sin(np.pi * u) ** 4
         hanging += hang
     place = still.place.copy()
     place[:, 1] += aloft * leg
@@ -177,8 +182,10 @@ def _bent_and_swung(
     spine, head = list(pelvis), list(pelvis)
     for one in jumps:
         apex = 0.5 * (one.off + one.down)
-        arm += [(one.begin, None), (one.lowest - 0.14, behind), (one.off + 0.05, above)]
-        arm += [(apex + 0.05, above), (one.absorbed, balance), (one.upright + 0.1, None)]
+        arm += [(one.begin, None), (one.lowest - 0.14, behind), (one.off + 0.02, above)]
+        # Still arms in the air: then the hips fall as the centre of mass does.
+        arm += [(0.4 * apex + 0.6 * one.down, above), (one.absorbed, balance)]
+        arm += [(one.upright + 0.1, None)]
         for keys, size in ((pelvis, 0.5), (spine, 0.42), (head, -0.45)):
             keys += [
                 (one.begin, (0.0, 0.0, 0.0)),

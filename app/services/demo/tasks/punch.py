@@ -97,36 +97,14 @@ def _weight(take: Take, blows: list[_Blow]) -> list[PlaceKey]:
     return keys
 
 
-def _upper_body(
-    times: FloatArray, controls: Controls, take: Take, blows: list[_Blow]
-) -> Controls:
-    style, size = take.actor.style, take.size
-    spread = 0.5 * style.arms_out
-    guard = ArmPose(0.42, 0.12 + spread, 0.3, 2.15 + 0.15 * style.elbows, 0.0)
-    # The fist at the height of the shoulder, whatever the trunk's lean; tired ones punch low.
-    level = 1.5 + 0.3 + style.stoop - 0.25 * max(0.0, 1.0 - size)
-    hit = ArmPose(level, 0.3 * spread, 0.6, 0.14, 0.0)
-    arms: list[list[ArmKey]] = [[(0.0, guard)], [(0.0, guard)]]
-    stance = (-0.32, 0.02, 0.0)
-    pelvis: list[TurnKey] = [(0.0, stance)]
-    spine: list[TurnKey] = [(0.0, (-0.12, 0.14, 0.0))]
-    for blow in blows:
-        covering = replace(guard, elbow=guard.elbow + 0.1, flex=guard.flex + 0.1)
-        for side in (LEFT, RIGHT):
-            pose = hit if side == blow.fist else covering
-            arms[side] += [(blow.begin, guard), (blow.hit, pose), (blow.hit + 0.03, pose)]
-            arms[side] += [(blow.back, guard)]
-        turn = (0.55 if blow.fist == RIGHT else -0.18) * style.twist**0.5 * size**0.5
-        pelvis += [(blow.begin, stance), (blow.hit, (stance[0] + turn, 0.06, 0.0))]
-        pelvis += [(blow.back, stance)]
-        spine += [(blow.begin, (-0.12, 0.14, 0.0)), (blow.back, (-0.12, 0.14, 0.0))]
-        spine.insert(-1, (blow.hit, (-0.12 + 0.9 * turn, 0.17, 0.0)))
-    gaze = [_gaze(p, s) for p, s in zip(_at(pelvis), _at(spine), strict=True)]
+def _upper_body(times: FloatArray, controls: Controls, take: Take, blows: list[_Blow]) -> Controls:
+    arms = _fists(take, blows)
+    pelvis, spine, head = _turning(take, blows)
     return replace(
         controls,
         pelvis=turned(times, controls.pelvis, pelvis, 0.035),
         spine=turned(times, controls.spine, spine, 0.04),
-        head=turned(times, controls.head, gaze, 0.05),
+        head=turned(times, controls.head, head, 0.05),
         arms=(
             arm_through(times, controls.arms[LEFT], arms[LEFT], 0.022),
             arm_through(times, controls.arms[RIGHT], arms[RIGHT], 0.022),
@@ -135,10 +113,33 @@ def _upper_body(
     )
 
 
-def _at(keys: list[TurnKey]) -> list[TurnKey]:
-    return sorted(keys)
+def _fists(take: Take, blows: list[_Blow]) -> tuple[list[ArmKey], list[ArmKey]]:
+    """Both fists in the guard; one goes out and back, the other covers meanwhile."""
+    style = take.actor.style
+    spread = 0.5 * style.arms_out
+    guard = ArmPose(0.42, 0.12 + spread, 0.3, 2.15 + 0.15 * style.elbows, 0.0)
+    cover = replace(guard, elbow=guard.elbow + 0.1, flex=guard.flex + 0.1)
+    # The fist at the height of the shoulder, whatever the trunk's lean; tired ones punch low.
+    level = 1.5 + 0.3 + style.stoop - 0.25 * max(0.0, 1.0 - take.size)
+    hit = ArmPose(level, 0.3 * spread, 0.6, 0.14, 0.0)
+    arms: tuple[list[ArmKey], list[ArmKey]] = ([(0.0, guard)], [(0.0, guard)])
+    for blow in blows:
+        for side in (LEFT, RIGHT):
+            pose = hit if side == blow.fist else cover
+            arms[side].append((blow.begin, guard))
+            arms[side].extend([(blow.hit, pose), (blow.hit + 0.03, pose), (blow.back, guard)])
+    return arms
 
 
-def _gaze(pelvis: TurnKey, spine: TurnKey) -> TurnKey:
-    """The eyes stay on the opponent whatever the trunk does; the chin a little down."""
-    return (pelvis[0], (-(pelvis[1][0] + spine[1][0]), 0.03, 0.0))
+def _turning(take: Take, blows: list[_Blow]) -> tuple[list[TurnKey], list[TurnKey], list[TurnKey]]:
+    """Keys of pelvis, spine and head: the trunk turns into each blow, the eyes stay ahead."""
+    will = take.actor.style.twist**0.5 * take.size**0.5
+    stance, coiled = (-0.32, 0.02, 0.0), (-0.12, 0.14, 0.0)
+    moments: list[tuple[float, float]] = [(0.0, 0.0)]
+    for blow in blows:
+        turn = (0.55 if blow.fist == RIGHT else -0.18) * will
+        moments += [(blow.begin, 0.0), (blow.hit, turn), (blow.back, 0.0)]
+    pelvis = [(t, (stance[0] + w, stance[1] + 0.04 * (w != 0.0), 0.0)) for t, w in moments]
+    spine = [(t, (coiled[0] + 0.9 * w, coiled[1] + 0.03 * (w != 0.0), 0.0)) for t, w in moments]
+    head = [(t, (-(stance[0] + coiled[0] + 1.9 * w), 0.03, 0.0)) for t, w in moments]
+    return pelvis, spine, head
