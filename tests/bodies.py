@@ -90,3 +90,8 @@ def _standing(frames: int) -> FloatArray:
 def _move(body: FloatArray, role: str, **by: FloatArray) -> None:
     for axis, values in by.items():
         body[:, SUN_ROLES.index(JointRole(role)), "xyz".index(axis)] += values
+
+
+def place(body: FloatArray, role: JointRole, by: FloatArray) -> None:
+    """Move one joint of (frames, 13, 3) by (frames, 3), in place."""
+    body[:, SUN_ROLES.index(role)] += by

@@ -87,10 +87,9 @@ def _log_energy(energy: FloatArray, rate: float) -> FloatArray:
 
 
 def _deep_minima(signal: FloatArray) -> FloatArray:
-    spread = float(signal.std())
-    if not spread > 0:
+    if not signal.any():
         return np.zeros(0)
-    minima, _ = find_peaks(-signal, prominence=DEEP * spread)
+    minima, _ = find_peaks(-signal, prominence=DEEP * float(signal.std()))
     return np.asarray(minima, dtype=np.float64)
 
 

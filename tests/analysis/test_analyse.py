@@ -1,0 +1,39 @@
+"""The analysis of a clip: names, shapes, types; the same each time; little motion too."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.analysis.analyse import analyse, describe_for_search
+from app.numerics.arrays import FloatArray
+from tests.bodies import motion_of, standing, walking, waving
+
+BODIES = {"walk": walking(turn=0.3), "wave": waving(), "still": standing(90), "two": standing(2)}
+
+
+@pytest.mark.parametrize("body", BODIES.values(), ids=BODIES.keys())
+def test_arrays_are_finite_float32_of_the_promised_shapes(body: FloatArray) -> None:
+    arrays = analyse(motion_of(body)).arrays
+    n, states = len(body), len(arrays["symbol_means"])
+    shapes = {
+        "role_positions": (n, 13, 3), "features_10hz": ((n - 1) // 3 + 1, 82),
+        "motion_vector": (128,), "msv_lambda": (1,), "msv_rho": (13,), "msv_epsilon": (n,),
+        "motion_sample": (1250,), "symbol_statistics": (131,), "symbol_means": (states, 26),
+        "symbol_variances": (states, 26), "symbol_transitions": (states, states),
+    }  # fmt: skip
+    assert {name: array.shape for name, array in arrays.items()} == shapes
+    assert all(array.dtype == np.float32 for array in arrays.values())
+    assert all(np.isfinite(array).all() for array in arrays.values())
+
+
+def test_the_same_motion_gives_the_same_bytes() -> None:
+    one, other = (analyse(motion_of(BODIES["walk"])).arrays for _ in range(2))
+    assert all(one[name].tobytes() == other[name].tobytes() for name in one)
+
+
+def test_a_query_is_described_as_a_stored_clip_is() -> None:
+    stored = analyse(motion_of(BODIES["walk"])).arrays
+    query = describe_for_search(motion_of(BODIES["walk"])).arrays
+    assert set(stored) - set(query) == {"symbol_means", "symbol_variances", "symbol_transitions"}
+    assert all(stored[name].tobytes() == query[name].tobytes() for name in query)
