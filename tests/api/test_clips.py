@@ -1,0 +1,197 @@
+"""Clips over HTTP, against a running service."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import Any
+
+import httpx2
+import numpy as np
+import pytest
+
+from app.services.demo import DemoClip, demo_clips
+from tests.api.conftest import assert_problem
+from tests.live import Live
+
+CLIP_FIELDS = {
+    *("id", "name", "state", "format", "sha256", "person", "task", "words", "license"),
+    *("source", "frames", "frame_rate", "declared_frame_rate", "duration", "joints"),
+    *("roles", "missing_roles", "warnings", "created_at", "error"),
+}
+JOB_FIELDS = {
+    *("id", "kind", "state", "progress", "detail"),
+    *("created_at", "started_at", "finished_at", "result", "error"),
+}
+
+
+def _post(client: httpx2.Client, content: bytes, name: str = "a.bvh", **data: str) -> Any:
+    return client.post("/v1/clips", files={"file": (name, content)}, data=data)
+
+
+def test_an_upload_is_acknowledged_then_ready(demo_service: Live, take: DemoClip) -> None:
+    answer = demo_service.upload(take, license="CC0-1.0", source="test")
+    assert answer.status_code == 202
+    told = answer.json()
+    assert set(told) == {"clip", "job"}
+    assert set(told["clip"]) == CLIP_FIELDS
+    assert set(told["job"]) == JOB_FIELDS
+    assert told["clip"]["state"] == "queued"
+    assert told["clip"]["sha256"] == hashlib.sha256(take.content).hexdigest()
+    job = demo_service.wait_for_job(told["job"]["id"])
+    assert (job["state"], job["progress"]) == ("succeeded", 1.0)
+    with demo_service.client() as client:
+        clip = client.get(f"/v1/clips/{told['clip']['id']}").json()
+        assert clip["state"] == "ready"
+        assert clip["person"] == "chika"
+        assert clip["words"] == list(take.words)
+        assert clip["license"] == "CC0-1.0"
+        assert clip["error"] is None
+        assert clip["joints"] > 13
+        assert clip["roles"]["hips"]
+        assert clip["duration"] == pytest.approx(clip["frames"] / clip["frame_rate"])
+        again = demo_service.upload(take)
+        assert again.status_code == 200
+        assert again.json()["clip"]["id"] == clip["id"]
+        assert client.delete(f"/v1/clips/{clip['id']}").status_code == 204
+        assert_problem(client.get(f"/v1/clips/{clip['id']}"), 404, "clip_not_found")
+
+
+def test_words_of_a_form_are_separated_by_spaces(idle: httpx2.Client) -> None:
+    answer = _post(idle, _tiny(1), words="Walk left_leg  slow").json()
+    assert answer["clip"]["words"] == ["walk", "left_leg", "slow"]
+
+
+def test_lists_page_through_everything_once(demo: httpx2.Client) -> None:
+    whole = [c["id"] for c in demo.get("/v1/clips", params={"limit": 1000}).json()["items"]]
+    seen, cursor = [], None
+    while True:
+        params = {"limit": 5} | ({"cursor": cursor} if cursor else {})
+        page = demo.get("/v1/clips", params=params).json()
+        seen += [clip["id"] for clip in page["items"]]
+        if (cursor := page["next"]) is None:
+            break
+    assert seen == whole
+
+
+@pytest.mark.parametrize(
+    ("params", "field", "values"),
+    [
+        ({"person": "ada"}, "person", {"ada"}),
+        ({"task": ["walk", "kick"]}, "task", {"walk", "kick"}),
+        ({"state": "ready", "person": "bruno"}, "person", {"bruno"}),
+    ],
+)
+def test_lists_are_filtered(
+    demo: httpx2.Client, params: dict[str, Any], field: str, values: set[str]
+) -> None:
+    items = demo.get("/v1/clips", params=params | {"limit": 100}).json()["items"]
+    assert {clip[field] for clip in items} == values
+
+
+def test_patch_changes_only_what_is_sent(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    path = f"/v1/clips/{walk['id']}"
+    changed = demo.patch(path, json={"source": "elsewhere", "words": ["walk", "slow"]}).json()
+    assert changed["source"] == "elsewhere"
+    assert changed["words"] == ["walk", "slow"]
+    assert changed["person"] == walk["person"]
+    back = demo.patch(path, json={"source": walk["source"], "words": walk["words"]}).json()
+    assert back == walk
+
+
+def test_the_file_comes_back_as_an_attachment(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    answer = demo.get(f"/v1/clips/{walk['id']}/file")
+    assert hashlib.sha256(answer.content).hexdigest() == walk["sha256"]
+    assert answer.headers["content-disposition"].startswith("attachment;")
+    assert answer.headers["content-type"] == "application/octet-stream"
+    assert answer.headers["x-content-type-options"] == "nosniff"
+
+
+NAMES = ["../../etc/passwd", 'a"b\r\nX-Evil: 1.bvh', "日本.bvh", "..", "\\x", "n\0l.bvh"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_file_names_of_others_do_no_harm(idle: httpx2.Client, name: str) -> None:
+    content = _tiny(100 + NAMES.index(name))
+    clip = _post(idle, content, name).json()["clip"]
+    answer = idle.get(f"/v1/clips/{clip['id']}/file")
+    assert answer.content == content
+    assert "x-evil" not in answer.headers
+    assert "/" not in clip["name"]
+
+
+def test_motion_as_json_and_as_octets_agree(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    path = f"/v1/clips/{walk['id']}/motion"
+    told = demo.get(path).json()
+    assert set(told) == {"frame_rate", "joint_names", "parents", "positions"}
+    positions = np.array(told["positions"])
+    assert positions.shape == (walk["frames"], walk["joints"], 3)
+    assert len(told["joint_names"]) == len(told["parents"]) == walk["joints"]
+    octets = demo.get(path, headers={"Accept": "application/octet-stream"})
+    shape = tuple(int(size) for size in octets.headers["x-shape"].split(","))
+    raw = np.frombuffer(octets.content, dtype="<f4").reshape(shape)
+    np.testing.assert_allclose(raw, positions, atol=1e-6)
+
+
+def test_motion_is_resampled_and_reduced_to_roles(
+    demo: httpx2.Client, walk: dict[str, Any]
+) -> None:
+    told = demo.get(f"/v1/clips/{walk['id']}/motion", params={"fps": 10, "joints": "roles"}).json()
+    assert told["frame_rate"] == 10
+    assert len(told["joint_names"]) == 13
+    assert len(told["positions"]) == pytest.approx(walk["duration"] * 10, abs=1)
+
+
+def test_keyposes_tell_curves_and_poses(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    told = demo.get(f"/v1/clips/{walk['id']}/keyposes", params={"method": "printed"}).json()
+    assert told["method"] == "printed"
+    assert len(told["frames"]) == len(told["times"]) == len(told["poses"])
+    assert len(told["energy"]["global"]) == len(told["energy"]["local"])
+    assert np.array(told["poses"]).reshape(-1, 13, 3).shape[0] == len(told["frames"])
+
+
+def test_descriptor_tells_what_is_compared(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    told = demo.get(f"/v1/clips/{walk['id']}/descriptor").json()
+    assert len(told["motion_vector"]) == 128
+    assert len(told["msv"]["rho"]) == 13
+    assert told["msv"]["lambda"] > 0
+    assert told["symbol"]["states"] == len(told["symbol"]["means"])
+    assert told["versions"]["analysis"] >= 1
+
+
+def test_thumbnail_is_a_picture(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    answer = demo.get(f"/v1/clips/{walk['id']}/thumbnail.svg")
+    assert answer.headers["content-type"].startswith("image/svg+xml")
+    assert answer.text.startswith("<svg")
+
+
+def test_a_clip_that_is_not_ready_says_so(idle: httpx2.Client) -> None:
+    clip = _post(idle, _tiny(2)).json()["clip"]
+    for view in ("motion", "keyposes", "descriptor", "thumbnail.svg"):
+        assert_problem(idle.get(f"/v1/clips/{clip['id']}/{view}"), 409, "clip_not_ready")
+
+
+def test_bad_content_fails_with_its_place(demo_service: Live) -> None:
+    bad = next(demo_clips(["dele"], ["walk"], takes=1)).content
+    lines = bad.split(b"\n")
+    lines[-3] = b"one two three"
+    with demo_service.client() as client:
+        answer = _post(client, b"\n".join(lines))
+        assert answer.status_code == 202
+        job = demo_service.wait_for_job(answer.json()["job"]["id"])
+        assert job["state"] == "failed"
+        clip = client.get(f"/v1/clips/{answer.json()['clip']['id']}").json()
+        assert clip["state"] == "failed"
+        assert clip["error"]["code"] == "unreadable"
+        assert clip["error"]["errors"][0]["location"].startswith("line ")
+        again = _post(client, b"\n".join(lines))
+        assert again.status_code == 202
+        assert again.json()["clip"]["id"] == clip["id"]
+
+
+def _tiny(salt: int) -> bytes:
+    """A small BVH, no two alike; nobody analyses it."""
+    return (
+        "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition "
+        "Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n"
+        f"MOTION\nFrames: 1\nFrame Time: 0.01\n{salt} 0 0 0 0 0\n"
+    ).encode()

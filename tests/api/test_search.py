@@ -1,0 +1,146 @@
+"""Searches and recognition over HTTP."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import httpx2
+import pytest
+
+from app.services.demo import DemoClip
+from tests.api.conftest import assert_problem
+from tests.api.test_clips import CLIP_FIELDS
+
+METHODS = ["fused", "vector", "dtw", "msv-dtw", "msv-xcorr"]
+
+
+def _search(client: httpx2.Client, **body: Any) -> dict[str, Any]:
+    answer = client.post("/v1/search/motion", json=body)
+    assert answer.status_code == 200, answer.text
+    told: dict[str, Any] = answer.json()
+    return told
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_hits_have_their_shape(demo: httpx2.Client, walk: dict[str, Any], method: str) -> None:
+    told = _search(demo, clip_id=walk["id"], method=method, limit=5)
+    assert set(told) == {"method", "took_ms", "library_version", "items", "next"}
+    assert told["method"] == method
+    assert [hit["rank"] for hit in told["items"]] == [1, 2, 3, 4, 5]
+    for hit in told["items"]:
+        assert set(hit) == {"rank", "score", "distance", "start", "end", "clip"}
+        assert set(hit["clip"]) == CLIP_FIELDS
+        assert 0 <= hit["score"] <= 1
+        assert hit["clip"]["id"] != walk["id"]
+    distances = [hit["distance"] for hit in told["items"]]
+    assert distances == sorted(distances)
+
+
+def test_the_nearest_do_the_same(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    told = _search(demo, clip_id=walk["id"], limit=1)
+    assert told["items"][0]["clip"]["task"] == "walk"
+
+
+def test_the_query_itself_when_asked_for(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    told = _search(demo, clip_id=walk["id"], limit=1, include_self=True)
+    assert told["items"][0]["clip"]["id"] == walk["id"]
+
+
+def test_pages_go_through_the_whole_ranking(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    whole = [hit["clip"]["id"] for hit in _search(demo, clip_id=walk["id"], limit=1000)["items"]]
+    seen: list[str] = []
+    cursor: dict[str, str] = {}
+    while True:
+        told = _search(demo, clip_id=walk["id"], limit=4, **cursor)
+        seen += [hit["clip"]["id"] for hit in told["items"]]
+        if told["next"] is None:
+            break
+        cursor = {"cursor": told["next"]}
+    assert seen == whole
+
+
+def test_filters_narrow(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    for given in ({"task": "kick"}, {"task": ["kick"], "person": ["ada", "bruno"]}):
+        told = _search(demo, clip_id=walk["id"], filter=given, limit=100)
+        assert {hit["clip"]["task"] for hit in told["items"]} == {"kick"}
+
+
+def test_an_upload_searches_as_a_stored_clip_does(demo: httpx2.Client, take: DemoClip) -> None:
+    before = demo.get("/v1/clips", params={"limit": 1000}).json()["items"]
+    answer = demo.post(
+        "/v1/search/motion",
+        files={"file": ("query.bvh", take.content)},
+        data={"limit": "3", "filter": json.dumps({"person": "ada"}), "method": "vector"},
+    )
+    assert answer.status_code == 200, answer.text
+    told = answer.json()
+    assert len(told["items"]) == 3
+    assert told["items"][0]["clip"]["task"] == "walk"
+    assert {hit["clip"]["person"] for hit in told["items"]} == {"ada"}
+    assert demo.get("/v1/clips", params={"limit": 1000}).json()["items"] == before
+
+
+def test_an_upload_that_cannot_be_used_names_its_place(demo: httpx2.Client, take: DemoClip) -> None:
+    broken = take.content[: len(take.content) // 2]
+    answer = demo.post("/v1/search/motion", files={"file": ("query.bvh", broken)})
+    assert answer.status_code == 422
+    assert answer.json()["errors"]
+
+
+def test_a_part_outside_of_the_clip(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    answer = demo.post("/v1/search/motion", json={"clip_id": walk["id"], "start": 1e5})
+    assert_problem(answer, 422, "bad_field", "body.start")
+
+
+def test_a_cursor_of_another_question(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    cursor = _search(demo, clip_id=walk["id"], limit=1)["next"]
+    body = {"clip_id": walk["id"], "method": "vector", "cursor": cursor}
+    answer = demo.post("/v1/search/motion", json=body)
+    assert_problem(answer, 422, "bad_field", "body.cursor")
+
+
+@pytest.mark.parametrize("mode", ["default", "cca"])
+def test_words_find_motions(demo: httpx2.Client, mode: str) -> None:
+    body = {"words": ["walk", "zzyzx"], "mode": mode, "limit": 3}
+    told = demo.post("/v1/search/words", json=body).json()
+    assert set(told) >= {"items", "unknown_words", "expanded", "method", "next", "took_ms"}
+    assert told["unknown_words"] == ["zzyzx"]
+    assert told["items"][0]["clip"]["task"] == "walk"
+
+
+@pytest.mark.parametrize("method", ["default", "multilinear"])
+def test_recognition_of_a_stored_clip(
+    demo: httpx2.Client, walk: dict[str, Any], method: str
+) -> None:
+    told = demo.post("/v1/recognize", json={"clip_id": walk["id"], "method": method}).json()
+    assert set(told) == {"person", "task", "words"}
+    for factor in ("person", "task"):
+        assert set(told[factor]) == {"label", "known", "score", "candidates"}
+    assert told["task"]["candidates"][0]["label"] == "walk"
+    assert told["person"]["candidates"][0]["label"] == walk["person"]
+    assert all(set(word) == {"word", "score"} for word in told["words"])
+
+
+def test_recognition_of_an_upload(demo: httpx2.Client, take: DemoClip) -> None:
+    answer = demo.post(
+        "/v1/recognize", files={"file": ("a", take.content)}, data={"known_task": "walk"}
+    )
+    assert answer.status_code == 200, answer.text
+    told = answer.json()["task"]
+    assert (told["label"], told["known"]) == ("walk", True)
+
+
+def test_labels_are_counted(demo: httpx2.Client) -> None:
+    for path, name in (("persons", "ada"), ("tasks", "walk"), ("words", "walk")):
+        told = demo.get(f"/v1/{path}").json()
+        assert told["next"] is None
+        assert {item["name"]: item["count"] for item in told["items"]}[name] > 0
+
+
+def test_models_tell_what_they_were_fitted_on(demo: httpx2.Client) -> None:
+    told = demo.get("/v1/models").json()["items"]
+    assert told
+    for model in told:
+        assert set(model) >= {"id", "kind", "version", "library_version", "library_size", "figures"}
+        assert model["library_size"] >= 12

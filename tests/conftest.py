@@ -1,0 +1,34 @@
+"""Services that run for the whole session; a test that changes settings starts its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from app.services.demo import demo_clips
+from tests.live import Live, serve
+
+ACTORS = ("ada", "bruno")
+TASKS = ("walk", "wave", "kick")
+
+
+@pytest.fixture(scope="session")
+def idle_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
+    """The API without a worker: what is uploaded stays queued."""
+    with serve(tmp_path_factory.mktemp("idle") / "data") as live:
+        yield live
+
+
+@pytest.fixture(scope="session")
+def demo_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
+    """API and worker over two actors' takes of three tasks, 12 clips, analysed and fitted."""
+    with serve(tmp_path_factory.mktemp("demo") / "data", worker=True) as live:
+        clips = demo_clips(ACTORS, TASKS, takes=2)
+        answers = [live.upload(clip).json() for clip in clips]
+        for answer in answers:
+            assert live.wait_for_job(answer["job"]["id"])["state"] == "succeeded"
+        with live.client() as client:
+            job = client.post("/v1/models/fit").json()["job"]
+        assert live.wait_for_job(job["id"])["state"] == "succeeded"
+        yield live
