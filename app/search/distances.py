@@ -73,7 +73,7 @@ def _by_volume_dtw(query: QueryArrays, columns: list[list[FloatArray]]) -> Float
 
 def _by_volume_correlation(query: QueryArrays, columns: list[list[FloatArray]]) -> FloatArray:
     likeness = cross_correlations(query.rho, query.epsilon, np.stack(columns[0]), columns[1])
-    return np.maximum(LARGEST_CROSS_CORRELATION - likeness, 0.0)
+    return np.asarray(np.maximum(LARGEST_CROSS_CORRELATION - likeness, 0.0))
 
 
 _Comparison = Callable[[QueryArrays, list[list[FloatArray]]], FloatArray]

@@ -77,9 +77,7 @@ class VectorIndex:
             self._version, self._loaded = changes.version, True
             return self._version
 
-    def candidates(
-        self, wanted: ClipFilter, exclude: frozenset[str] = frozenset()
-    ) -> Candidates:
+    def candidates(self, wanted: ClipFilter, exclude: frozenset[str] = frozenset()) -> Candidates:
         """The clips that pass a filter, without distances."""
         with self._lock:
             rows = self._rows.passing(wanted, exclude)

@@ -103,8 +103,14 @@ class Rows:
         return mask
 
     def _columns(self) -> list[np.ndarray]:
-        return [self.ids, self.vectors, self.squares, self.durations, self.words,
-                *self.named.values()]
+        return [
+            self.ids,
+            self.vectors,
+            self.squares,
+            self.durations,
+            self.words,
+            *self.named.values(),
+        ]
 
     def _grow(self) -> None:
         """Double the capacity when it is used up."""

@@ -17,6 +17,7 @@ import resource
 import signal
 import threading
 from collections.abc import Mapping
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -77,13 +78,19 @@ class AnalysisPool:
 
     def __init__(self, limits: Limits, *, size: int = 1) -> None:
         self.limits = limits
+        self._size = size
         self._pool = _new_pool(limits, size)
+        self._lock = threading.Lock()
 
     def submit(self, order: Order) -> concurrent.futures.Future[Analysis]:
         """Begin an analysis; `outcome` reads what came of it. Cancelling kills the child."""
-        future: concurrent.futures.Future[Analysis] = self._pool.schedule(
-            analyse_order, args=(order, self.limits), timeout=self.limits.seconds
-        )
+        with self._lock:
+            if not self._pool.active:
+                # A pool whose idle children were all killed is broken for good.
+                self._pool = _new_pool(self.limits, self._size)
+            future: concurrent.futures.Future[Analysis] = self._pool.schedule(
+                analyse_order, args=(order, self.limits), timeout=self.limits.seconds
+            )
         return future
 
     def analyse(self, order: Order) -> Analysis:
@@ -105,6 +112,8 @@ class AnalysisPool:
             raise AnalysisTimedOut(
                 f"The analysis took longer than {self.limits.seconds:g} s and was stopped."
             ) from late
+        except BrokenProcessPool as death:
+            raise ChildDied("The analysis processes died.") from death
         except pebble.ProcessExpired as death:
             raise ChildDied(f"The analysis process died ({_how(death)}).") from death
         except MemoryError as hunger:
@@ -121,7 +130,7 @@ class AnalysisPool:
 
     def close(self) -> None:
         """Kill the children and wait for them."""
-        self._pool.stop()
+        self._pool.stop()  # type: ignore[no-untyped-call]
         self._pool.join()
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from app.errors import EmptyFile
 from app.formats.sniff import sniff
@@ -194,6 +194,4 @@ def _tidied(changes: Mapping[str, Any]) -> ClipChanges:
             tidy[key] = fields.text(key, value)
     if "name" in tidy and tidy["name"] is None:
         raise fields.bad_field("name", "must not be empty")
-    return ClipChanges(**tidy)  # type: ignore[typeddict-item]
-
-
+    return cast(ClipChanges, tidy)

@@ -90,7 +90,9 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
         exclude,
         partial(lib.arrays.get_many, lib.store),
     )
-    page = _page(lib, found, question, query.limit, query.cursor, partial(score, scale=SCALES[method]))
+    page = _page(
+        lib, found, question, query.limit, query.cursor, partial(score, scale=SCALES[method])
+    )
     return _timed(replace(page, method=method.value, library_version=version), began)
 
 
@@ -110,7 +112,7 @@ def find_words(lib: Library, query: WordQuery) -> Hits:
     version = lib.index.catch_up(lib.store)
     found = rank_by_words(lib, words, query.mode, wanted)
     question = cursors.digest("words", *words, query.mode, wanted, found.model)
-    page = _page(lib, found.ranking, question, query.limit, query.cursor, partial(word_score, query.mode))
+    page = _page(lib, found.ranking, question, query.limit, query.cursor, word_score)
     page = replace(
         page,
         method=query.mode,
@@ -139,9 +141,7 @@ def _query_arrays(asked: Answered) -> QueryArrays:
     return QueryArrays(vector, features, rho, epsilon)
 
 
-def _fingerprint(
-    asked: Answered, method: Method, wanted: ClipFilter, query: MotionQuery
-) -> str:
+def _fingerprint(asked: Answered, method: Method, wanted: ClipFilter, query: MotionQuery) -> str:
     """What binds a cursor to its question; an upload is known by its descriptors."""
     content = hashlib.sha256(asked.arrays[FEATURES].tobytes()).hexdigest()
     return cursors.digest(query.clip_id, content, method, wanted, query.include_self)

@@ -67,17 +67,21 @@ def folder_files(folder: Path) -> list[SourceFile]:
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         base = Path(root)
         found += [base / name for name in sorted(names) if not name.startswith(".")]
-    return [SourceFile(f.relative_to(folder).as_posix(), partial(f.open, "rb")) for f in found]
+    return [SourceFile(f.relative_to(folder).as_posix(), partial(_open_file, f)) for f in found]
 
 
 def single_file(path: Path) -> list[SourceFile]:
     """One file by itself, under its own name."""
-    return [SourceFile(path.name, partial(path.open, "rb"))]
+    return [SourceFile(path.name, partial(_open_file, path))]
 
 
 def is_archive(path: Path) -> bool:
     """Whether a path is a ZIP archive (by its content; .npz is one, and is not meant)."""
     return path.is_file() and path.suffix.lower() != ".npz" and zipfile.is_zipfile(path)
+
+
+def _open_file(path: Path) -> IO[bytes]:
+    return path.open("rb")
 
 
 def _left_out(entry: zipfile.ZipInfo) -> bool:

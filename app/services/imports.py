@@ -7,19 +7,19 @@ give the same clips.
 
 from __future__ import annotations
 
-import logging
-import time
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from app.errors import (
     BadContent,
     Canceled,
     KinedexError,
+    LeaseLost,
     NotFound,
     Place,
     StorageError,
@@ -43,12 +43,11 @@ from app.store import imports as stored
 from app.store import jobs, leases
 from app.store.clip_record import ClipState
 from app.store.clip_record import NewClip as NewRow
+from app.store.engine import Tx
 from app.store.files import Readable, StagedFile
 from app.store.ids import new_id
 from app.store.imports import ImportOutcome
 from app.store.job_record import ClaimedJob, JobKind, JobRecord, Lease, NewJob
-
-_log = logging.getLogger(__name__)
 
 IMPORT_PRIORITY = 10
 OWN_PRIORITY = -1_000_000_000
@@ -95,7 +94,7 @@ def unpack(
         raise BadContent("The command that imported these files was interrupted: run it again.")
     archive = lib.store.files.path(claimed.file_sha256)
     with archive_files(archive, _limits(lib)) as files:
-        _register_all(lib, claimed.job.id, files, progress, should_stop)
+        _register_all(_Doing(lib, claimed.lease), files, progress, should_stop)
     _leave_to_clips(lib, claimed.lease)
 
 
@@ -107,14 +106,8 @@ def import_path(lib: Library, path: Path, progress: Progress | None = None) -> J
     """
     with _sources(lib, path) as files:
         claimed = _own_job(lib, path)
-        beat = _Heartbeat(lib, claimed.lease)
-
-        def told(done: int, total: int, name: str) -> None:
-            beat.if_due(done / max(total, 1))
-            if progress is not None:
-                progress(done, total, name)
-
-        _register_all(lib, claimed.job.id, files, told, lambda: False)
+        told = progress or (lambda *_: None)
+        _register_all(_Doing(lib, claimed.lease), files, told, lambda: False)
     return _leave_to_clips(lib, claimed.lease)
 
 
@@ -147,24 +140,31 @@ def _own_job(lib: Library, path: Path) -> ClaimedJob:
         return claimed
 
 
-class _Heartbeat:
-    """Renews a lease from a loop that has other things to do."""
+@dataclass(frozen=True, slots=True)
+class _Doing:
+    """An import in hand: the library, the right to its job."""
 
-    def __init__(self, lib: Library, lease: Lease) -> None:
-        self._lib, self._lease, self._last = lib, lease, time.monotonic()
+    lib: Library
+    lease: Lease
 
-    def if_due(self, progress: float) -> None:
-        settings = self._lib.settings
-        if time.monotonic() - self._last < settings.job_heartbeat_s:
-            return
-        self._last = time.monotonic()
-        with self._lib.store.write() as tx:
-            leases.heartbeat(tx, self._lease, settings.job_lease_s, progress=progress)
+    def record(self, tx: Tx, path: str, outcome: ImportOutcome, **values: Any) -> None:
+        """Record a file in the transaction that stores it, and renew the lease there.
+
+        Raises LeaseLost where another worker has the import, Canceled where it is to end; the
+        transaction is then undone.
+        """
+        if leases.heartbeat(tx, self.lease, self.lib.settings.job_lease_s):
+            raise Canceled("The import was canceled.")
+        stored.add_entry(tx, self.lease.job_id, path, outcome, **values)
+
+    def record_problem(self, path: str, problem: KinedexError) -> None:
+        """Record why a file became no clip."""
+        with self.lib.store.write() as tx:
+            self.record(tx, path, ImportOutcome.FAILED, problem=problem.as_problem())
 
 
 def _register_all(
-    lib: Library,
-    job_id: str,
+    doing: _Doing,
     files: Iterable[SourceFile],
     progress: Progress,
     should_stop: Callable[[], bool],
@@ -173,39 +173,37 @@ def _register_all(
     manifest = _manifest_rows(listed)
     clips = [file for file in listed if not _is_manifest(file)]
     absent = sorted(manifest.keys() - {file.path for file in clips})
-    with lib.store.read() as tx:
-        recorded = stored.recorded_paths(tx, job_id)
+    with doing.lib.store.read() as tx:
+        recorded = stored.recorded_paths(tx, doing.lease.job_id)
     total = len(clips) + len(absent)
     for done, file in enumerate(clips, 1):
         if should_stop():
             raise Canceled("The import was stopped.")
         if file.path not in recorded:
-            _register(lib, job_id, file, manifest.get(file.path, _NOTHING))
+            _register(doing, file, manifest.get(file.path, _NOTHING))
         progress(done, total, file.path)
     for path in absent:
         if path not in recorded:
-            _record_problem(lib, job_id, path, _absent(path, manifest[path]))
+            doing.record_problem(path, _absent(path, manifest[path]))
 
 
-def _register(lib: Library, job_id: str, file: SourceFile, row: ManifestRow) -> None:
+def _register(doing: _Doing, file: SourceFile, row: ManifestRow) -> None:
     """Store one file as a clip, or record why not; failures of the store are raised."""
     try:
         if problem := file.problem or row.problem:
             raise problem
         with file.open() as content:
-            _store_file(lib, job_id, file.path, content, row)
-    except StorageError:
+            _store_file(doing, file.path, content, row)
+    except (StorageError, LeaseLost, Canceled):
         raise
     except KinedexError as problem:
-        _record_problem(lib, job_id, file.path, problem)
+        doing.record_problem(file.path, problem)
     except (OSError, EOFError, RuntimeError, zipfile.BadZipFile, zlib.error) as problem:
-        reason = Unreadable(f"The file cannot be read: {problem}.")
-        _record_problem(lib, job_id, file.path, reason)
+        doing.record_problem(file.path, Unreadable(f"The file cannot be read: {problem}."))
 
 
-def _store_file(
-    lib: Library, job_id: str, path: str, content: Readable, row: ManifestRow
-) -> None:
+def _store_file(doing: _Doing, path: str, content: Readable, row: ManifestRow) -> None:
+    lib = doing.lib
     with lib.store.files.stage(content, max_bytes=lib.settings.max_upload_bytes) as staged:
         check_content(staged)
         with lib.store.write() as tx:
@@ -213,7 +211,7 @@ def _store_file(
             created = add(tx, _new_row(path, row, staged), BULK_PRIORITY)
             is_done = not created.is_new and created.clip.state is ClipState.READY
             outcome = ImportOutcome.EXISTS if is_done else ImportOutcome.QUEUED
-            stored.add_entry(tx, job_id, path, outcome, clip_id=created.clip.id)
+            doing.record(tx, path, outcome, clip_id=created.clip.id)
 
 
 def _new_row(path: str, row: ManifestRow, staged: StagedFile) -> NewRow:
@@ -231,13 +229,6 @@ def _new_row(path: str, row: ManifestRow, staged: StagedFile) -> NewRow:
         frame_rate_override=row.frame_rate,
         metres_per_unit_override=row.metres_per_unit,
     )
-
-
-def _record_problem(lib: Library, job_id: str, path: str, problem: KinedexError) -> None:
-    with lib.store.write() as tx:
-        stored.add_entry(
-            tx, job_id, path, ImportOutcome.FAILED, problem=problem.as_problem()
-        )
 
 
 def _leave_to_clips(lib: Library, lease: Lease) -> JobRecord:

@@ -84,10 +84,15 @@ def _row(line: int, record: dict[str, str]) -> ManifestRow:
             metres_per_unit=fields.metres_per_unit(record.get("unit")),
         )
     except BadField as problem:
-        places = [Place(f"{MANIFEST_NAME} line {line}: {p.location}", p.message)
-                  for p in problem.places]
-        return ManifestRow(line, problem=BadField(
-            f"Line {line} of {MANIFEST_NAME} cannot be used: {problem.detail}", places=places))
+        places = [
+            Place(f"{MANIFEST_NAME} line {line}: {p.location}", p.message) for p in problem.places
+        ]
+        return ManifestRow(
+            line,
+            problem=BadField(
+                f"Line {line} of {MANIFEST_NAME} cannot be used: {problem.detail}", places=places
+            ),
+        )
 
 
 def _repeated(line: int) -> ManifestRow:

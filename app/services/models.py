@@ -68,5 +68,3 @@ def _is_open(tx: Tx, kind: JobKind) -> bool:
         jobs.list_jobs(tx, kind=kind, state=state, limit=1).items
         for state in (JobState.QUEUED, JobState.PROCESSING)
     )
-
-

@@ -1,4 +1,4 @@
-"""The motion that a search or a recognition asks about: a stored clip, a part of one, or an upload."""
+"""What a search or a recognition asks about: a stored clip, a part of one, or an upload."""
 
 from __future__ import annotations
 
@@ -89,14 +89,10 @@ def _of_clip(lib: Library, question: Question, clip_id: str, names: tuple[str, .
 def _of_upload(lib: Library, question: Question) -> Arrays:
     if question.skeleton is not None:
         raise FormatNotSupported("ASF skeletons cannot be read yet.")
-    if question.start is not None or question.end is not None:
-        return _cut_upload(lib, question)
-    return lib.pool.analyse(_order(lib, question)).arrays
-
-
-def _cut_upload(lib: Library, question: Question) -> Arrays:
-    motion = lib.pool.analyse(replace(_order(lib, question), for_search=True)).motion
-    return describe_for_search(cut(motion, question.start, question.end)).arrays
+    found = lib.pool.analyse(_order(lib, question))
+    if question.start is None and question.end is None:
+        return found.arrays
+    return describe_for_search(cut(found.motion, question.start, question.end)).arrays
 
 
 def _order(lib: Library, question: Question) -> Order:
@@ -105,6 +101,7 @@ def _order(lib: Library, question: Question) -> Order:
         frame_rate=fields.frame_rate(question.frame_rate),
         metres_per_unit=fields.metres_per_unit(question.unit),
         roles=fields.roles(question.roles),
+        for_search=True,
     )
 
 

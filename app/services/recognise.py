@@ -8,15 +8,18 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.errors import ModelNotFitted
-from app.models.recognition import Answer
+from app.models.multilinear import recognise_multilinear
+from app.models.recogniser import recognise as recognise_by_default
+from app.models.recognition import Answer, Recognition
+from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.library import Library
 from app.services.query import Question, describe
-from app.services.recognising import METHODS, recognise_sample
 from app.services.word_ranking import STATISTICS
 from app.store.files import Readable
 
 SAMPLE = "motion_sample"
+METHODS = ("default", "multilinear")
 WORDS_SHOWN = 10
 
 WordScores = tuple[tuple[str, float], ...]
@@ -68,22 +71,25 @@ def recognise(lib: Library, query: RecogniseQuery) -> Recognised:
         roles=query.roles,
     )
     asked = describe(lib, question, (SAMPLE, STATISTICS))
-    found = recognise_sample(
-        lib,
-        asked.arrays[SAMPLE],
-        query.method,
-        known_person=fields.text("known_person", query.known_person),
-        known_task=fields.text("known_task", query.known_task),
-    )
+    found = _who_does_what(lib, asked.arrays[SAMPLE], query)
     return Recognised(found.person, found.task, words_of(lib, asked.arrays[STATISTICS]))
 
 
-def words_of(lib: Library, statistics: np.ndarray) -> WordScores:
+def _who_does_what(lib: Library, sample: FloatArray, query: RecogniseQuery) -> Recognition:
+    """Person and task of a motion sample (1250,)."""
+    person = fields.text("known_person", query.known_person)
+    task = fields.text("known_task", query.known_task)
+    if query.method == "multilinear":
+        return recognise_multilinear(lib.models.multilinear(lib.store).model, sample, person, task)
+    return recognise_by_default(lib.models.recogniser(lib.store).model, sample, person, task)
+
+
+def words_of(lib: Library, statistics: FloatArray) -> WordScores:
     """The best words for a clip's `symbol_statistics` (79,); none without a word model."""
     try:
-        model = lib.models.default_words(lib.store)
+        model = lib.models.words(lib.store).model
     except ModelNotFitted:
         return ()
-    scores = model.model.predict(statistics[None])[0]
+    scores = model.word_scores(statistics[None])[0]
     best = np.argsort(-scores, kind="stable")[:WORDS_SHOWN]
     return tuple((model.vocabulary.words[i], float(scores[i])) for i in best if scores[i] > 0)

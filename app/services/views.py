@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.analysis.keyposes import Keyposes, find_keyposes
+from app.analysis.keyposes import T1, T2, Keyposes, find_keyposes
 from app.motion.body_frame import body_track
 from app.motion.joint_roles import SUN_ROLES
 from app.motion.resampling import resample
@@ -65,9 +65,7 @@ class DescriptorView:
     analysis_version: int
 
 
-def motion(
-    lib: Library, clip_id: str, fps: float | None = None, joints: str = "all"
-) -> MotionView:
+def motion(lib: Library, clip_id: str, fps: float | None = None, joints: str = "all") -> MotionView:
     """A clip's motion, resampled by time to `fps`, all joints or Sun's 13 ("roles").
 
     Raises BadField, ClipNotFound, ClipNotReady.
@@ -104,8 +102,7 @@ def keyposes(
         if value is not None and not (math.isfinite(value) and value > 0):
             raise fields.bad_field(name, "must be a number above 0")
     track = body_track(load_motion(lib, ready_clip(lib, clip_id)))
-    thresholds = {name: value for name, value in (("t1", t1), ("t2", t2)) if value is not None}
-    found = find_keyposes(track, method=method, **thresholds)
+    found = find_keyposes(track, method=method, t1=t1 or T1, t2=t2 or T2)
     return KeyposesView(found, track.rate, track.positions[found.frames])
 
 

@@ -1,18 +1,18 @@
-"""Rank clips against words, and words against a clip, by the fitted word models."""
+"""Rank clips against words by the fitted word models (Takano, section 2; DESIGN 6)."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from app.models.word_model import clip_cosines
+from app.analysis.motion_symbol import symbol_from_arrays
+from app.models.library_words import LibraryWords
 from app.numerics.arrays import FloatArray
-from app.numerics.hmm import GaussianHMM
-from app.search.rank import Ranking, ranking, score
+from app.search.rank import Ranking, ranking
 from app.services.library import Library
-from app.services.model_shelf import CcaModel, DefaultWords
 from app.store import arrays
 from app.store.clip_filter import ClipFilter
 
@@ -29,72 +29,66 @@ class WordRanking:
     unknown: tuple[str, ...]
 
 
-def rank_by_words(
-    lib: Library, words: Sequence[str], mode: str, wanted: ClipFilter
-) -> WordRanking:
-    """All clips that pass the filter; none where no word is known. Raises ModelNotFitted."""
-    if mode == "cca":
-        return _by_cca(lib, words, wanted)
-    model = lib.models.default_words(lib.store)
-    query = model.vocabulary.query(words)
+def rank_by_words(lib: Library, words: Sequence[str], mode: str, wanted: ClipFilter) -> WordRanking:
+    """All clips that pass the filter; none where no word is known.
+
+    Distance is 1 - the model's score, so that it is comparable between queries. Raises
+    ModelNotFitted, and NotEnoughLabels where mode "cca" could not be fitted.
+    """
+    fitted = lib.models.words(lib.store)
+    query = fitted.model.vocabulary.query(words)
     if not query.known:
-        return WordRanking(_nothing(), model.id, query.unknown)
-    ids, predicted = lib.word_outputs.of(
-        model.id,
-        _candidates(lib, wanted),
-        lambda missing: predict_words(lib, model, missing),
-    )
-    distances = 1.0 - clip_cosines(predicted, query.vector) if ids else np.zeros(0)
-    return WordRanking(_ranked(ids, distances), model.id, query.unknown)
+        return WordRanking(
+            ranking(np.empty(0, dtype=object), np.zeros(0)), fitted.id, query.unknown
+        )
+    scores_of = _cca_scores if mode == "cca" else _default_scores
+    candidates = list(lib.index.candidates(wanted).ids)
+    ids, scores = scores_of(lib, fitted.id, fitted.model, candidates, query.vector)
+    return WordRanking(_ranked(ids, 1.0 - scores), fitted.id, query.unknown)
 
 
-def word_score(mode: str, distance: float) -> float:
-    """0..1: the cosine that the default mode ranks by; a falling function of cca's distance."""
-    return score(distance) if mode == "cca" else max(1.0 - distance, 0.0)
+def word_score(distance: float) -> float:
+    """The model's score, 0..1, from the distance of a ranking by words."""
+    return 1.0 - distance
 
 
-def predict_words(lib: Library, model: DefaultWords, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
+def _default_scores(
+    lib: Library, model_id: str, model: LibraryWords, clip_ids: list[str], query: FloatArray
+) -> tuple[list[str], FloatArray]:
+    ids, outputs = lib.word_outputs.of(model_id, clip_ids, partial(_predict, lib, model))
+    return ids, model.clip_scores(outputs, query) if ids else np.zeros(0)
+
+
+def _cca_scores(
+    lib: Library, model_id: str, model: LibraryWords, clip_ids: list[str], query: FloatArray
+) -> tuple[list[str], FloatArray]:
+    ids, points = lib.symbol_points.of(model_id, clip_ids, partial(_place, lib, model))
+    return ids, model.clip_scores_cca(points, query) if ids else np.zeros(0)
+
+
+def _predict(lib: Library, model: LibraryWords, clip_ids: list[str]) -> dict[str, FloatArray]:
     """(V,) scores of the vocabulary's words by clip id."""
     with lib.store.read() as tx:
         statistics = arrays.get_many(tx, clip_ids, STATISTICS)
     if not statistics:
         return {}
-    predicted = model.model.predict(np.stack(list(statistics.values())))
-    return dict(zip(statistics, predicted.astype(np.float32), strict=True))
+    predicted = model.word_scores(np.stack(list(statistics.values())))
+    return dict(zip(statistics, predicted, strict=True))
 
 
-def place_symbols(lib: Library, model: CcaModel, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
+def _place(lib: Library, model: LibraryWords, clip_ids: list[str]) -> dict[str, FloatArray]:
     """(d,) coordinates in the symbol space by clip id."""
     with lib.store.read() as tx:
-        parts = [arrays.get_many(tx, clip_ids, name) for name in SYMBOL_ARRAYS]
-    there = [clip_id for clip_id in clip_ids if all(clip_id in part for part in parts)]
-    symbols = [GaussianHMM(*(part[clip_id] for part in parts)) for clip_id in there]
-    return dict(zip(there, model.symbols.place(symbols), strict=True))
-
-
-def _by_cca(lib: Library, words: Sequence[str], wanted: ClipFilter) -> WordRanking:
-    model = lib.models.cca(lib.store)
-    query = model.vocabulary.query(words)
-    if not query.known:
-        return WordRanking(_nothing(), model.id, query.unknown)
-    ids, points = lib.symbol_points.of(
-        model.id,
-        _candidates(lib, wanted),
-        lambda missing: place_symbols(lib, model, missing),
-    )
-    distances = model.space.clip_distances(points, query.vector) if ids else np.zeros(0)
-    return WordRanking(_ranked(ids, distances), model.id, query.unknown)
-
-
-def _candidates(lib: Library, wanted: ClipFilter) -> list[str]:
-    return list(lib.index.candidates(wanted).ids)
+        parts = {name: arrays.get_many(tx, clip_ids, name) for name in SYMBOL_ARRAYS}
+    there = [clip_id for clip_id in clip_ids if all(clip_id in part for part in parts.values())]
+    symbols = [
+        symbol_from_arrays({name: part[clip_id] for name, part in parts.items()})
+        for clip_id in there
+    ]
+    return dict(zip(there, model.space.place(symbols), strict=True))
 
 
 def _ranked(ids: list[str], distances: FloatArray) -> Ranking:
     named = np.empty(len(ids), dtype=object)
     named[:] = ids
     return ranking(named, distances)
-
-
-def _nothing() -> Ranking:
-    return Ranking(np.empty(0, dtype=object), np.zeros(0))

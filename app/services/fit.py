@@ -1,0 +1,114 @@
+"""Fit all models of a library, each with its held-out figures, each swapped in whole."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from app.errors import NotEnoughLabels
+from app.models.library_words import fit_library_words
+from app.models.multilinear import fit_multilinear
+from app.models.recogniser import fit_recogniser
+from app.models.recognition_figures import held_out_recognition_figures, unknown_figures
+from app.models.word_figures import held_out_word_figures
+from app.services.model_shelf import ModelKind
+from app.services.training import TrainingSet, read_training_set
+from app.store import models
+from app.store.store import Store
+
+_log = logging.getLogger(__name__)
+
+Meta = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """A fitted model as it is stored; figures: held out, by method."""
+
+    arrays: dict[str, Any]
+    meta: Meta
+    figures: Meta
+
+
+def fit_library(store: Store) -> dict[str, Any]:
+    """Fit and save every model that the labels allow; says what came of each.
+
+    The result holds `library_version` and `library_size` of what was fitted on, and for each
+    kind its `outcome`: "fitted" with version and figures, or "skipped" with the reason. A model
+    that fails does not keep the others from being fitted.
+    """
+    training = read_training_set(store)
+    outcomes = {kind.value: _fit_one(store, training, kind) for kind in ModelKind}
+    return {
+        "library_version": training.library_version,
+        "library_size": len(training),
+        "models": outcomes,
+    }
+
+
+def _fit_one(store: Store, training: TrainingSet, kind: ModelKind) -> dict[str, Any]:
+    try:
+        fit = _FITS[kind](training)
+    except NotEnoughLabels as reason:
+        return {"outcome": "skipped", "reason": reason.detail}
+    except Exception as defect:  # noqa: BLE001
+        # A defect in one model must not cost the others; it is told where it is looked for.
+        _log.exception("the %s model could not be fitted", kind.value)
+        return {"outcome": "failed", "reason": f"{type(defect).__name__}: {defect}"}
+    with store.write() as tx:
+        record = models.save(
+            tx,
+            kind.value,
+            meta={"model": fit.meta, "figures": fit.figures},
+            arrays=fit.arrays,
+            library_version=training.library_version,
+            library_size=len(training),
+        )
+    return {"outcome": "fitted", "version": record.version, "figures": fit.figures}
+
+
+def _fit_words(training: TrainingSet) -> Fit:
+    model = fit_library_words(training.symbols, training.statistics, training.label_sets)
+    arrays, meta = model.to_arrays()
+    return Fit(arrays, meta, word_figures(training))
+
+
+def word_figures(training: TrainingSet) -> Meta:
+    """Held-out figures of the word models beside the prior, or why there are none."""
+    try:
+        found = held_out_word_figures(
+            training.symbols, training.statistics, training.label_sets, training.groups
+        )
+    except NotEnoughLabels as reason:
+        return {"reason": reason.detail}
+    return asdict(found) | {"figures": [asdict(figures) for figures in found.figures]}
+
+
+def recognition_figures(training: TrainingSet) -> dict[str, dict[str, float]]:
+    """Held-out shares recognised by method: "default", "multilinear" and "prior"."""
+    return held_out_recognition_figures(
+        training.samples, training.persons, training.tasks, training.groups
+    )
+
+
+def _fit_recogniser(training: TrainingSet) -> Fit:
+    model = fit_recogniser(training.samples, training.persons, training.tasks, training.groups)
+    arrays, meta = model.to_arrays()
+    figures: Meta = {"held_out": recognition_figures(training)}
+    return Fit(arrays, meta, figures | {"unknown": unknown_figures(model)})
+
+
+def _fit_multilinear(training: TrainingSet) -> Fit:
+    # Its held-out figures stand beside those of the default recogniser.
+    model = fit_multilinear(training.samples, training.persons, training.tasks)
+    arrays, meta = model.to_arrays()
+    return Fit(arrays, meta, {})
+
+
+_FITS: dict[ModelKind, Callable[[TrainingSet], Fit]] = {
+    ModelKind.WORDS: _fit_words,
+    ModelKind.RECOGNISER: _fit_recogniser,
+    ModelKind.MULTILINEAR: _fit_multilinear,
+}

@@ -1,0 +1,80 @@
+"""What the models of a library are fitted on, read from the store at one moment."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.analysis.motion_symbol import symbol_from_arrays
+from app.models.folds import recording_of
+from app.numerics.arrays import FloatArray
+from app.numerics.hmm import GaussianHMM
+from app.store import arrays, clip_listing, clips, library
+from app.store.clip_filter import ClipFilter
+from app.store.clip_record import ClipRecord, ClipState
+from app.store.store import Store
+
+SYMBOLS = ("symbol_transitions", "symbol_means", "symbol_variances")
+NAMES = (*SYMBOLS, "symbol_statistics", "motion_sample")
+READY = ClipFilter(state=(ClipState.READY,))
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingSet:
+    """N ready clips, sorted by id, at a library version.
+
+    groups: (N,) clips of one recording share a name; symbols: N; statistics: (N, 79);
+    samples: (N, 1250).
+    """
+
+    library_version: int
+    clips: tuple[ClipRecord, ...]
+    groups: tuple[str, ...]
+    symbols: tuple[GaussianHMM, ...]
+    statistics: FloatArray
+    samples: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.clips)
+
+    @property
+    def persons(self) -> Sequence[str | None]:
+        """(N,) who moves."""
+        return [clip.person for clip in self.clips]
+
+    @property
+    def tasks(self) -> Sequence[str | None]:
+        """(N,) what is done."""
+        return [clip.task for clip in self.clips]
+
+    @property
+    def label_sets(self) -> Sequence[tuple[str, ...]]:
+        """(N,) in which words."""
+        return [clip.words for clip in self.clips]
+
+
+def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
+    """All ready clips that pass a filter, in one snapshot."""
+    with store.read() as tx:
+        version = library.version(tx)
+        ids = sorted(clip_listing.list_ids(tx, wanted))
+        found = {name: arrays.get_many(tx, ids, name) for name in NAMES}
+        whole = [clip_id for clip_id in ids if all(clip_id in part for part in found.values())]
+        records = clips.get_many(tx, whole)
+    return TrainingSet(
+        library_version=version,
+        clips=tuple(records[clip_id] for clip_id in whole),
+        groups=tuple(recording_of(records[clip_id].file_name) for clip_id in whole),
+        symbols=tuple(
+            symbol_from_arrays({name: found[name][clip_id] for name in SYMBOLS})
+            for clip_id in whole
+        ),
+        statistics=_stacked([found["symbol_statistics"][clip_id] for clip_id in whole]),
+        samples=_stacked([found["motion_sample"][clip_id] for clip_id in whole]),
+    )
+
+
+def _stacked(rows: list[FloatArray]) -> FloatArray:
+    return np.stack(rows).astype(np.float64) if rows else np.zeros((0, 0))

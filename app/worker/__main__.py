@@ -1,0 +1,35 @@
+"""`python -m app.worker`: one worker process, until SIGTERM or SIGINT.
+
+Started as a package so that multiprocessing does not import this module, and with it the
+whole worker, into every analysis process.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+
+from app.config import load_settings
+from app.errors import KinedexError
+from app.logs import configure_logging
+from app.worker.loop import run_worker
+
+
+def main() -> int:
+    """Work until told to stop; 1 where the settings or the database do not allow it."""
+    stop = threading.Event()
+    for sign in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(sign, lambda *_: stop.set())
+    try:
+        settings = load_settings()
+        configure_logging(settings.log_level.upper())
+        run_worker(settings, stop)
+    except KinedexError as problem:
+        print(f"kinedex worker: {problem.detail}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

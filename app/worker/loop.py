@@ -1,0 +1,211 @@
+"""The worker: claim a job, have it done, settle it; and beat while it lasts.
+
+One thread does it all, so that a worker that hangs stops beating and its jobs go to another.
+What a killed worker had in hand is claimed again when its leases expire. A worker that is
+told to stop gives its jobs back as if they had not been tried.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
+from contextlib import contextmanager, suppress
+from typing import Any
+
+from app.config import Settings
+from app.errors import KinedexError, LeaseLost, NotFound, StorageError
+from app.logs import job_id
+from app.services import models
+from app.services.library import Library
+from app.store import leases, outcomes, queue
+from app.store.ids import new_id
+from app.store.job_record import ClaimedJob, JobKind
+from app.worker.running import Running
+from app.worker.starting import Bench
+
+_log = logging.getLogger(__name__)
+
+READ_AHEAD = 1
+"""Clips claimed beyond the processes, so that none waits while the last one is stored."""
+FIT_CHECK_S = 2.0
+"""Between looks at whether a fit is due, while there is nothing else to do."""
+STOP_WITHIN_S = 10.0
+"""For work in hand to end when the worker is told to stop."""
+STORE_PAUSE_S = 1.0
+"""Before the store is tried again after it failed."""
+
+
+def run_worker(
+    settings: Settings,
+    stop_event: threading.Event,
+    *,
+    until: Callable[[Library], bool] | None = None,
+) -> None:
+    """Work until `stop_event` is set, or `until` holds (asked when there is nothing to claim)."""
+    lib = Library.open(settings)
+    try:
+        swept = lib.store.sweep_files()
+        _log.info("worker begins", extra={"fields": {"swept_files": swept}})
+        worker = Worker(lib)
+        try:
+            worker.run(stop_event, until)
+        finally:
+            worker.close()
+    finally:
+        lib.close()
+
+
+class Worker:
+    """Works on a library's jobs."""
+
+    def __init__(self, lib: Library) -> None:
+        self.lib = lib
+        self.owner = f"{new_id('worker')}@{socket.gethostname()}:{os.getpid()}"
+        self._bench = Bench(lib)
+        self._running: list[Running] = []
+        self._last_beat = time.monotonic()
+        self._last_fit_check = 0.0
+
+    def run(self, stop: threading.Event, until: Callable[[Library], bool] | None = None) -> None:
+        """Work until told to stop, or until `until` holds with nothing left to claim."""
+        while not stop.is_set():
+            try:
+                self._settle_finished()
+                self._beat_if_due()
+                is_idle = not self._claim_all()
+                if is_idle and not self._running:
+                    if until is not None and until(self.lib):
+                        return
+                    self._request_fit_if_due()
+            except StorageError:
+                _log.exception("the store failed; trying again")
+                stop.wait(STORE_PAUSE_S)
+            self._wait(stop)
+
+    def close(self) -> None:
+        """Give back what is in hand, and end the processes."""
+        for running in self._running:
+            running.stop()
+        # An import's thread must have stopped before another worker goes on with it.
+        wait(_futures(self._running), timeout=STOP_WITHIN_S)
+        for running in self._running:
+            with suppress(LeaseLost, NotFound, StorageError), self.lib.store.write() as tx:
+                outcomes.give_back(tx, running.claimed)
+        self._running = []
+        self._bench.close()
+
+    def _settle_finished(self) -> None:
+        for running in [r for r in self._running if r.future.done()]:
+            with _job_named(running.claimed.job.id):
+                self._settle(running)
+            self._running.remove(running)
+
+    def _settle(self, running: Running) -> None:
+        try:
+            running.settle()
+        except LeaseLost:
+            _log.warning("job %s was given to another worker", running.claimed.job.id)
+        except CancelledError:
+            _log.info("job %s was stopped", running.claimed.job.id)
+
+    def _beat_if_due(self) -> None:
+        settings = self.lib.settings
+        if not self._running or time.monotonic() - self._last_beat < settings.job_heartbeat_s:
+            return
+        self._last_beat = time.monotonic()
+        for running in list(self._running):
+            progress, detail = running.progress()
+            try:
+                with self.lib.store.write() as tx:
+                    is_canceled = leases.heartbeat(
+                        tx,
+                        running.claimed.lease,
+                        settings.job_lease_s,
+                        progress=progress,
+                        detail=detail,
+                    )
+            except LeaseLost:
+                self._drop(running)
+            else:
+                if is_canceled:
+                    self._cancel(running)
+
+    def _cancel(self, running: Running) -> None:
+        self._drop(running)
+        with suppress(LeaseLost), self.lib.store.write() as tx:
+            outcomes.finish_canceled(tx, running.claimed)
+
+    def _drop(self, running: Running) -> None:
+        running.stop()
+        self._running.remove(running)
+
+    def _claim_all(self) -> bool:
+        """Claim what there is room for; whether anything was claimed."""
+        has_claimed = False
+        while kinds := self._kinds_with_room():
+            with self.lib.store.read() as tx:
+                if not queue.is_work_waiting(tx, kinds):
+                    break
+            with self.lib.store.write() as tx:
+                claimed = queue.take(tx, kinds, self.owner, self.lib.settings.job_lease_s)
+            if claimed is None:
+                break
+            has_claimed = True
+            self._begin(claimed)
+        return has_claimed
+
+    def _kinds_with_room(self) -> list[JobKind]:
+        held = [running.claimed.job.kind for running in self._running]
+        busy = held.count(JobKind.INGEST) + held.count(JobKind.FIT)
+        kinds = []
+        if busy < self._bench.slots + READ_AHEAD:
+            kinds.append(JobKind.INGEST)
+        if JobKind.IMPORT not in held:
+            kinds.append(JobKind.IMPORT)
+        if busy < self._bench.slots and JobKind.FIT not in held:
+            kinds.append(JobKind.FIT)
+        return kinds
+
+    def _begin(self, claimed: ClaimedJob) -> None:
+        try:
+            self._running.append(self._bench.begin(claimed))
+        except KinedexError as problem:
+            with suppress(LeaseLost), self.lib.store.write() as tx:
+                outcomes.fail_job(tx, claimed, problem.as_problem())
+
+    def _request_fit_if_due(self) -> None:
+        if time.monotonic() - self._last_fit_check < FIT_CHECK_S:
+            return
+        self._last_fit_check = time.monotonic()
+        with self.lib.store.read() as tx:
+            is_due = models.is_fit_due(tx, self.lib.settings.refit_growth)
+        if is_due:
+            with self.lib.store.write() as tx:
+                models.enqueue_fit(tx)
+
+    def _wait(self, stop: threading.Event) -> None:
+        """Until something finishes, or it is time to look for work again."""
+        pause = self.lib.settings.job_poll_s
+        if self._running:
+            wait(_futures(self._running), timeout=pause, return_when=FIRST_COMPLETED)
+        else:
+            stop.wait(pause)
+
+
+def _futures(running: Iterable[Running]) -> list[Future[Any]]:
+    return [each.future for each in running]
+
+
+@contextmanager
+def _job_named(name: str) -> Iterator[None]:
+    """Logs within carry the job's id."""
+    token = job_id.set(name)
+    try:
+        yield
+    finally:
+        job_id.reset(token)

@@ -1,0 +1,76 @@
+"""How each kind of claimed job is begun."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import threading
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any
+
+import pebble
+
+from app.errors import KinedexError
+from app.services import imports, ingest
+from app.services.analysis_pool import AnalysisPool, die_with_parent
+from app.services.fit_process import fit_in_child
+from app.services.library import Library, ingest_limits
+from app.store import clips
+from app.store.job_record import ClaimedJob, JobKind
+from app.worker.running import Running, RunningFit, RunningIngest, RunningThread
+
+
+class Bench:
+    """The processes and threads that a worker works with."""
+
+    def __init__(self, lib: Library) -> None:
+        self.lib = lib
+        self.slots = lib.settings.analysis_processes or os.cpu_count() or 1
+        self._analyses = AnalysisPool(ingest_limits(lib.settings), size=self.slots)
+        self._threads = ThreadPoolExecutor(1, thread_name_prefix="import")
+
+    def begin(self, claimed: ClaimedJob) -> Running:
+        """Begin a job. Raises ClipNotFound where its clip is gone, NotFound for its file."""
+        if claimed.job.kind is JobKind.INGEST:
+            return self._begin_ingest(claimed)
+        if claimed.job.kind is JobKind.IMPORT:
+            return self._begin_import(claimed)
+        return RunningFit(self.lib, claimed, _fit_in_process(self.lib))
+
+    def close(self) -> None:
+        """End all processes and threads."""
+        self._analyses.close()
+        self._threads.shutdown()
+
+    def _begin_ingest(self, claimed: ClaimedJob) -> Running:
+        with self.lib.store.read() as tx:
+            clip = clips.get(tx, claimed.clip_id or "")
+        try:
+            future = self._analyses.submit(ingest.order_for(self.lib, clip))
+        except KinedexError as problem:
+            future = Future()
+            future.set_exception(problem)
+        return RunningIngest(self.lib, self._analyses, claimed, clip, future)
+
+    def _begin_import(self, claimed: ClaimedJob) -> Running:
+        stopping = threading.Event()
+        told: list[tuple[float, str]] = [(0.0, "")]
+
+        def progress(done: int, total: int, path: str) -> None:
+            told[0] = (done / max(total, 1), f"{done} of {total} files: {path}")
+
+        future = self._threads.submit(imports.unpack, self.lib, claimed, progress, stopping.is_set)
+        return RunningThread(self.lib, claimed, future, stopping, told)
+
+
+def _fit_in_process(lib: Library) -> Future[dict[str, Any]]:
+    """A fit in a process of its own, so that its memory is given back."""
+    pool = pebble.ProcessPool(
+        max_workers=1,
+        max_tasks=1,
+        initializer=die_with_parent,
+        context=multiprocessing.get_context("spawn"),
+    )
+    future: Future[dict[str, Any]] = pool.schedule(fit_in_child, args=(lib.settings,))
+    pool.close()  # type: ignore[no-untyped-call]
+    return future
