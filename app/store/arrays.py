@@ -56,7 +56,7 @@ def get_many(
         )
         if version is not None:
             query = query.where(clip_arrays.c.version == version)
-        for clip_id, dtype, shape, data in tx.execute(query):
+        for clip_id, dtype, shape, data in tx.execute(query).all():
             found[clip_id] = from_blob(dtype, shape, data)
     return {clip_id: found[clip_id] for clip_id in clip_ids if clip_id in found}
 

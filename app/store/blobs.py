@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any, TypedDict
 
 import numpy as np
@@ -13,10 +13,10 @@ KINDS = "biuf"
 
 
 class Blob(TypedDict):
-    """The columns that hold an array: dtype as numpy writes it (`<f4`), shape, bytes."""
+    """The columns that hold an array: dtype as numpy writes it (`<f4`), shape as `300x13x3`."""
 
     dtype: str
-    shape: list[int]
+    shape: str
     data: bytes
 
 
@@ -25,9 +25,16 @@ def to_blob(array: NDArray[Any]) -> Blob:
     if array.dtype.kind not in KINDS:
         raise ValueError(f"arrays of dtype {array.dtype} are not stored")
     little = array.astype(array.dtype.newbyteorder("<"), copy=False)
-    return Blob(dtype=little.dtype.str, shape=list(array.shape), data=little.tobytes(order="C"))
+    shape = "x".join(str(length) for length in array.shape)
+    return Blob(dtype=little.dtype.str, shape=shape, data=little.tobytes(order="C"))
 
 
-def from_blob(dtype: str, shape: Sequence[int], data: bytes) -> NDArray[Any]:
+def from_blob(dtype: str, shape: str, data: bytes) -> NDArray[Any]:
     """The array, read-only, without a copy of its bytes."""
-    return np.frombuffer(data, dtype=np.dtype(dtype)).reshape(tuple(shape))
+    return np.frombuffer(data, dtype=np.dtype(dtype)).reshape(_lengths(shape))
+
+
+@lru_cache(maxsize=1024)
+def _lengths(shape: str) -> tuple[int, ...]:
+    # Cached: an index reads very many arrays of one shape.
+    return tuple(int(length) for length in shape.split("x") if length)

@@ -132,7 +132,7 @@ clip_arrays = Table(
     Column("name", String, primary_key=True),
     Column("version", Integer, nullable=False),
     Column("dtype", String, nullable=False),
-    _json("shape", nullable=False),
+    Column("shape", String, nullable=False),
     Column("data", LargeBinary, nullable=False),
 )
 
@@ -193,7 +193,7 @@ model_arrays = Table(
     Column("model_id", String, ForeignKey("models.id", ondelete="CASCADE"), primary_key=True),
     Column("name", String, primary_key=True),
     Column("dtype", String, nullable=False),
-    _json("shape", nullable=False),
+    Column("shape", String, nullable=False),
     Column("data", LargeBinary, nullable=False),
 )
 

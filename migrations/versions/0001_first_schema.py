@@ -141,7 +141,7 @@ def upgrade() -> None:
         sa.Column("name", sa.String(), nullable=False),
         sa.Column("version", sa.Integer(), nullable=False),
         sa.Column("dtype", sa.String(), nullable=False),
-        sa.Column("shape", sa.JSON(none_as_null=True), nullable=False),
+        sa.Column("shape", sa.String(), nullable=False),
         sa.Column("data", sa.LargeBinary(), nullable=False),
         sa.ForeignKeyConstraint(
             ["clip_id"], ["clips.id"], name=op.f("fk_clip_arrays_clip_id_clips"), ondelete="CASCADE"
@@ -187,7 +187,7 @@ def upgrade() -> None:
         sa.Column("model_id", sa.String(), nullable=False),
         sa.Column("name", sa.String(), nullable=False),
         sa.Column("dtype", sa.String(), nullable=False),
-        sa.Column("shape", sa.JSON(none_as_null=True), nullable=False),
+        sa.Column("shape", sa.String(), nullable=False),
         sa.Column("data", sa.LargeBinary(), nullable=False),
         sa.ForeignKeyConstraint(
             ["model_id"],

@@ -47,7 +47,7 @@ def test_a_taken_clip_is_processing_and_then_ready(store: Store) -> None:
         assert states(tx, clip, claimed) == (ClipState.PROCESSING, JobState.PROCESSING)
     with store.write() as tx:
         outcomes.finish_ingest(tx, claimed.lease, clip.id, facts(), FOUND)
-    with store.read() as tx:
+    with store.write() as tx:
         assert states(tx, clip, claimed) == (ClipState.READY, JobState.SUCCEEDED)
         assert library.changed_since(tx, 0).changed == (clip.id,)
         assert arrays.get_one(tx, clip.id, "motion_vector").shape == (128,)
