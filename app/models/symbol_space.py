@@ -17,7 +17,7 @@ import numpy as np
 
 from app.errors import ModelNotFitted
 from app.models.symbol_arrays import pack_symbols, unpack_symbols
-from app.numerics.arrays import FloatArray
+from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.hmm import GaussianHMM
 from app.numerics.hmm_divergence import symmetric_divergences
 from app.numerics.mds import metric_mds, place
@@ -66,12 +66,17 @@ class SymbolSpace:
 
 def fit_symbol_space(symbols: Sequence[GaussianHMM], *, seed: int = 0) -> SymbolSpace:
     """Fit on `symbols` (N >= 1); deterministic for a seed."""
-    chosen = np.arange(len(symbols))
-    if len(symbols) > WHOLE_LIBRARY:
-        chosen = np.sort(np.random.RandomState(seed).permutation(len(symbols))[:LANDMARKS])
-    landmarks = tuple(symbols[int(row)] for row in chosen)
+    landmarks = tuple(symbols[int(row)] for row in landmark_rows(len(symbols), seed=seed))
     points = metric_mds(symbol_distances(landmarks, landmarks), DIMENSIONS)
     return SymbolSpace(landmarks, points)
+
+
+def landmark_rows(count: int, *, seed: int = 0) -> IntArray:
+    """(L,) which of `count` symbols are landmarks, sorted; all of a small library."""
+    rows = np.arange(count)
+    if count > WHOLE_LIBRARY:
+        rows = np.sort(np.random.RandomState(seed).permutation(count)[:LANDMARKS])
+    return rows
 
 
 def symbol_distances(left: Sequence[GaussianHMM], right: Sequence[GaussianHMM]) -> FloatArray:

@@ -20,11 +20,12 @@ from app.models.ranking_figures import (
     mean_average_precision,
     top_k_rate,
 )
-from app.models.symbol_space import fit_symbol_space
+from app.models.symbol_space import DIMENSIONS, landmark_rows, symbol_distances
 from app.models.word_model import clip_cosines, fit_word_model
 from app.models.word_vocabulary import WordVocabulary
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.hmm import GaussianHMM
+from app.numerics.mds import metric_mds, place
 
 FOLDS = 5
 MOST_CLIPS = 1000
@@ -56,9 +57,11 @@ class WordEvaluation:
 
 @dataclass(frozen=True, slots=True)
 class _Clips:
-    """Labelled clips: symbols (N), statistics (N, p), labels (N, V), fold (N,)."""
+    """Labelled clips: distances (N, N) of their symbols, statistics (N, p), labels (N, V),
+    fold (N,).
+    """
 
-    symbols: Sequence[GaussianHMM]
+    distances: FloatArray
     statistics: FloatArray
     labels: FloatArray
     fold: IntArray
@@ -100,8 +103,9 @@ def held_out_word_figures(
     vocabulary = WordVocabulary.of(labels)
     own_groups = [groups[row] for row in chosen]
     folds = min(FOLDS, len(set(own_groups)))
+    own_symbols = [symbols[row] for row in chosen]
     clips = _Clips(
-        [symbols[row] for row in chosen],
+        symbol_distances(own_symbols, own_symbols),
         np.asarray(statistics)[chosen],
         vocabulary.label_matrix(labels),
         grouped_folds(own_groups, folds, seed=seed),
@@ -183,8 +187,12 @@ def _each(score: Callable[[FloatArray], FloatArray]) -> Callable[[FloatArray], F
 def _correlated(
     clips: _Clips, training: IntArray, held: IntArray
 ) -> tuple[CorrelatedSpace, FloatArray]:
-    """The space of the training rows and where the held-out ones (n, d) lie in it."""
-    symbols = fit_symbol_space([clips.symbols[row] for row in training])
-    points = symbols.place(clips.symbols)
+    """The space of the training rows and where the held-out ones (n, d) lie in it.
+
+    As fit_symbol_space does, but from distances that are computed once for all folds.
+    """
+    rows = training[landmark_rows(len(training))]
+    landmarks = metric_mds(clips.distances[np.ix_(rows, rows)], DIMENSIONS)
+    points = place(clips.distances[:, rows], landmarks)
     space = fit_correlated_space(points[training], clips.labels[training])
     return space, points[held]
