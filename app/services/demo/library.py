@@ -15,7 +15,7 @@ from app.formats.bvh_writer import write_bvh
 from app.services.demo.actors import ACTORS, Actor
 from app.services.demo.performance import Performance
 from app.services.demo.posing import local_rotations
-from app.services.demo.rig import skeleton_of
+from app.services.demo.rig import build_rig, skeleton_of
 from app.services.demo.take import enlivened, prepare
 from app.services.demo.tasks import TASKS
 from app.services.demo.words import words_for
@@ -81,7 +81,7 @@ def perform(actor: Actor, task: str, number: int) -> Performance:
 
 def _clip(actor: Actor, task: str, number: int) -> DemoClip:
     done = perform(actor, task, number)
-    rig = prepare(actor, task, number).rig
+    rig = build_rig(actor)
     content = write_bvh(
         skeleton_of(rig, actor.naming, UNITS_PER_METRE),
         local_rotations(done.controls, rig),

@@ -14,6 +14,9 @@ from app.services.demo.controls import Controls, Turn
 from app.services.demo.curves import wobble
 from app.services.demo.rig import Rig, build_rig
 
+GRAVITY = 9.81
+"""m/s^2."""
+
 
 @dataclass(frozen=True, slots=True)
 class Take:
@@ -42,7 +45,7 @@ class Take:
 
 def prepare(actor: Actor, task: str, number: int) -> Take:
     """Take `number` (from 1) of a task by an actor."""
-    # crc32 and RandomState are both frozen for good: the same files on every machine.
+    # crc32 and RandomState's stream are both frozen for good: the same draws everywhere.
     draw = np.random.RandomState(crc32(f"{actor.name}/{task}/{number}".encode()))
     return Take(
         actor=actor,

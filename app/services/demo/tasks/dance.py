@@ -143,11 +143,13 @@ def _struck(take: Take, beats: int) -> list[int]:
 def _weights(times: FloatArray, struck: FloatArray, beat: float) -> FloatArray:
     """(figures, frames) share of each figure, summing to 1; figure 0 is where it starts.
 
-    A transition takes what the hold leaves of one beat, and ends half a hold early.
+    A transition takes all that the holds leave, so that slow steps are slow, and nobody
+    stands like a statue; it ends half a hold before the beat.
     """
-    move = (1.0 - HOLD) * beat
-    arrivals = struck - 0.5 * HOLD * beat
-    done = [np.ones(len(times))] + [ease((times - at + move) / move) for at in arrivals]
+    moves = np.diff(struck, prepend=struck[0] - beat) - HOLD * beat
+    ends = struck - 0.5 * HOLD * beat
+    done: list[FloatArray] = [np.ones(len(times))]
+    done += [ease((times - end) / move + 1.0) for end, move in zip(ends, moves, strict=True)]
     done.append(np.zeros(len(times)))
     return np.array([here - after for here, after in pairwise(done)])
 

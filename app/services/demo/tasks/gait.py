@@ -18,10 +18,8 @@ from app.services.demo.curves import Key, keyed, periodic, softened
 from app.services.demo.performance import Performance
 from app.services.demo.posing import highest_root
 from app.services.demo.rig import LEFT, RIGHT, SIDES
-from app.services.demo.take import Take
+from app.services.demo.take import GRAVITY, Take
 
-GRAVITY = 9.81
-"""m/s^2."""
 NEARLY_STRAIGHT = 0.9985
 """The most of a leg's length that is used in going: knees stretch further than at ease."""
 

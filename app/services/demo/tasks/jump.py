@@ -14,10 +14,8 @@ from app.services.demo.keys import ArmKey, ArmPose, TurnKey, arm_through, turned
 from app.services.demo.performance import Performance
 from app.services.demo.posing import highest_root
 from app.services.demo.rig import SIDES
-from app.services.demo.take import Take
+from app.services.demo.take import GRAVITY, Take
 
-GRAVITY = 9.81
-"""m/s^2."""
 ON_TOES = radians(-48)
 """Pitch of the feet as they leave the ground."""
 SPARE = 0.03
