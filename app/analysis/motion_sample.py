@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.motion.body_frame import BodyTrack
-from app.motion.gait import gait_cycles
+from app.motion.gait import foot_split, gait_cycles
 from app.motion.resampling import low_pass, resample_to, sample_at
 from app.numerics.arrays import FloatArray
 
@@ -37,11 +37,22 @@ def motion_sample(track: BodyTrack) -> FloatArray:
 
 def mean_cycle(track: BodyTrack, cycles: list[tuple[int, int]]) -> FloatArray:
     """(32, 13, 3) mean over `cycles` of the body-frame positions at 32 phases of each."""
-    phases = np.arange(SAMPLES) / SAMPLES
-    poses = [_cycle_poses(track, first, stop - first, phases) for first, stop in cycles]
-    return np.asarray(np.mean(poses, axis=0))
+    split = foot_split(track)
+    ends = [(_crossing(split, first), _crossing(split, stop)) for first, stop in cycles]
+    return np.asarray(np.mean([_phases(track, *cycle) for cycle in ends], axis=0))
 
 
-def _cycle_poses(track: BodyTrack, first: int, length: int, phases: FloatArray) -> FloatArray:
-    smooth = low_pass(track.local, length / SAMPLES)
-    return sample_at(smooth, first + length * phases)
+def _phases(track: BodyTrack, start: float, end: float) -> FloatArray:
+    """(32, 13, 3) positions at 32 phases of the cycle between two times, in frames."""
+    smooth = low_pass(track.local, (end - start) / SAMPLES)
+    return sample_at(smooth, start + (end - start) * np.arange(SAMPLES) / SAMPLES)
+
+
+def _crossing(split: FloatArray, frame: int) -> float:
+    """When `split` (n,) rises through zero just before `frame`, in frames.
+
+    A cycle cut at whole frames would be out of phase by as much as the stride of one.
+    """
+    if not 0 < frame < len(split) or not split[frame - 1] <= 0 < split[frame]:
+        return float(frame)
+    return float(frame - split[frame] / (split[frame] - split[frame - 1]))

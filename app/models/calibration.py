@@ -1,0 +1,108 @@
+"""How far a recogniser's evidence can be believed: temperature, and the threshold of unknown.
+
+evidence: (n, labels) log evidence of each label; novelty: (n,) log evidence of something
+new less that of all that is known; truth: (n,) label index, NEW where the label was not
+among the training clips. All from held-out clips.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+
+NEW = -1
+
+TEMPERATURES = np.geomspace(1.0, 100.0, 25)
+SCALES = np.geomspace(0.5, 100.0, 25)
+
+USUAL_FALSE_REJECTION = 0.02
+"""Known clips refused where the library is too small to hold anything out as unknown."""
+
+_FAR = 1e30
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """temperature: divides log evidence; threshold: novelty above it is unknown; scale:
+    novelty over which belief in being known falls off; known_novelty, new_novelty: sorted
+    novelties of held-out clips, from which error rates at any threshold follow."""
+
+    temperature: float
+    threshold: float
+    scale: float
+    known_novelty: FloatArray
+    new_novelty: FloatArray
+
+    def beliefs(self, evidence: FloatArray, novelty: FloatArray) -> FloatArray:
+        """(n, labels) belief in each label, 0..1, each row's sum = belief in being known."""
+        known = sigmoid((self.threshold - novelty) / self.scale)
+        return softmax(evidence / self.temperature) * known[:, None]
+
+    def error_rates(self, threshold: float | None = None) -> tuple[float, float]:
+        """(false acceptance of new, false rejection of known), shares of held-out clips."""
+        at = self.threshold if threshold is None else threshold
+        accepted = float((self.new_novelty <= at).mean()) if len(self.new_novelty) else 0.0
+        rejected = float((self.known_novelty > at).mean()) if len(self.known_novelty) else 0.0
+        return accepted, rejected
+
+
+def fit_calibration(evidence: FloatArray, novelty: FloatArray, truth: IntArray) -> Calibration:
+    """Calibrate on held-out clips; sensible constants where there are none."""
+    known = truth != NEW
+    threshold = _threshold(novelty[known], novelty[~known])
+    return Calibration(
+        temperature=_temperature(evidence[known], truth[known]),
+        threshold=threshold,
+        scale=_scale(novelty - threshold, known),
+        known_novelty=np.sort(novelty[known]),
+        new_novelty=np.sort(novelty[~known]),
+    )
+
+
+def softmax(logs: FloatArray) -> FloatArray:
+    """(n, k) rows of log weights to shares that sum to 1."""
+    shares = np.exp(logs - logs.max(axis=1, keepdims=True, initial=-_FAR))
+    return np.asarray(shares / np.maximum(shares.sum(axis=1, keepdims=True), 1e-300))
+
+
+def sigmoid(x: FloatArray) -> FloatArray:
+    """1 / (1 + exp(-x)) without overflow."""
+    return np.asarray(0.5 * (1 + np.tanh(0.5 * x)))
+
+
+def _temperature(evidence: FloatArray, truth: IntArray) -> float:
+    """The temperature under which the true labels are likeliest; 1 without held-out clips."""
+    if not len(truth):
+        return 1.0
+    rows = np.arange(len(truth))
+    loss = [
+        -np.log(np.maximum(softmax(evidence / t)[rows, truth], 1e-12)).mean() for t in TEMPERATURES
+    ]
+    return float(TEMPERATURES[int(np.argmin(loss))])
+
+
+def _threshold(known: FloatArray, new: FloatArray) -> float:
+    """The novelty that best parts known from new, both weighing the same."""
+    if not len(known):
+        return 0.0
+    if not len(new):
+        return max(float(np.quantile(known, 1 - USUAL_FALSE_REJECTION)), 0.0)
+    cuts = np.unique(np.concatenate([known, new]))
+    cuts = np.concatenate([[cuts[0] - 1.0], (cuts[1:] + cuts[:-1]) / 2, [cuts[-1] + 1.0]])
+    accepted = np.searchsorted(np.sort(new), cuts, side="right") / len(new)
+    rejected = 1 - np.searchsorted(np.sort(known), cuts, side="right") / len(known)
+    best = np.flatnonzero(accepted + rejected <= (accepted + rejected).min() + 1e-12)
+    return float(np.median(cuts[best]))  # the middle of the gap where they part cleanly
+
+
+def _scale(beyond: FloatArray, known: BoolArray) -> float:
+    """The fall-off under which what held-out clips turned out to be is likeliest."""
+    if known.all() or not known.any():
+        return 1.0
+    weight = np.where(known, 0.5 / known.sum(), 0.5 / (~known).sum())
+    side = np.where(known, -1.0, 1.0)
+    loss = [(weight * np.logaddexp(0, -side * beyond / s)).sum() for s in SCALES]
+    return float(SCALES[int(np.argmin(loss))])

@@ -1,0 +1,171 @@
+"""Hypotheses on a clip: this person doing this task, or something new, each a Gaussian.
+
+Shapes: points (n, d), coordinates of motion samples; hypotheses (h,).
+Five kinds, each with a covariance of its own, estimated from how far real cells lie from
+what would have been predicted without them:
+- SEEN: a cell of the library; covariance within cells (this alone is LDA on cells, and
+  nearest cell mean where each has one take);
+- UNSEEN: a known person at a known task, never recorded together, predicted by effects;
+- NEW_PERSON: anyone at a known task; NEW_TASK: a known person at anything;
+- NEW_BOTH: any human motion.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from app.models.cells import Cells, cell_means, fit_effects
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+
+SHRINKAGE = 0.1
+"""Share of each covariance that is replaced by a sphere of the same volume of variance."""
+
+SMALLEST_VARIANCE = 1e-6
+"""Floor of a mean variance, body lengths squared: identical takes must not divide by 0."""
+
+LEAST_FREEDOM = 5
+"""Repeated takes below which the covariance within cells is taken from elsewhere."""
+
+MOST_UNSEEN = 20_000
+"""Combinations never recorded; in a library with more they are left out."""
+
+
+class Kind(IntEnum):
+    """What a hypothesis says is new."""
+
+    SEEN = 0
+    UNSEEN = 1
+    NEW_PERSON = 2
+    NEW_TASK = 3
+    NEW_BOTH = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Hypotheses:
+    """means: (h, d), whitened by their kind; person, task: (h,) label indices, -1 for new;
+    kind: (h,); spread: (h,) factor on the covariance; whiteners: (5, d, d), a point is
+    whitened by `point @ whiteners[kind]`; log_scale: (5,) half the log determinants."""
+
+    means: FloatArray
+    person: IntArray
+    task: IntArray
+    kind: IntArray
+    spread: FloatArray
+    whiteners: FloatArray
+    log_scale: FloatArray
+
+    def log_likelihoods(self, points: FloatArray) -> FloatArray:
+        """(n, h) log densities of `points` (n, d), up to a constant."""
+        dimensions = points.shape[1]
+        out = np.empty((len(points), len(self.kind)))
+        for kind in Kind:
+            chosen = np.flatnonzero(self.kind == kind)
+            white, means = points @ self.whiteners[kind], self.means[chosen]
+            cross = 2 * white @ means.T
+            squares = (white**2).sum(1)[:, None] - cross + (means**2).sum(1)
+            spread = self.spread[chosen]
+            volume = self.log_scale[kind] + 0.5 * dimensions * np.log(spread)
+            out[:, chosen] = -0.5 * np.maximum(squares, 0) / spread - volume
+        return out
+
+
+@dataclass(frozen=True, slots=True)
+class _Group:
+    """Hypotheses of one kind before whitening; fields as in Hypotheses."""
+
+    kind: Kind
+    means: FloatArray
+    person: IntArray
+    task: IntArray
+    covariance: FloatArray
+    spread: FloatArray
+
+
+def fit_hypotheses(points: FloatArray, cells: Cells) -> Hypotheses:
+    """All hypotheses that the labelled `points` (clips, d) in `cells` allow."""
+    means = cell_means(points, cells)
+    total = shrunk(np.cov(means.T, bias=True).reshape(2 * [points.shape[1]]))
+    unseen = _unseen(means, cells, total)
+    seen = _seen(points, means, cells, 0.5 * unseen.covariance)
+    tasks = _by_label(Kind.NEW_PERSON, means, cells.task, len(cells.tasks), total)
+    persons = _by_label(Kind.NEW_TASK, means, cells.person, len(cells.persons), total)
+    nobody = np.array([-1])
+    centre = means.mean(axis=0, keepdims=True)
+    new = _Group(Kind.NEW_BOTH, centre, nobody, nobody, total, np.ones(1))
+    return _whitened([seen, unseen, tasks, persons, new])
+
+
+def shrunk(covariance: FloatArray, share: float = SHRINKAGE) -> FloatArray:
+    """(d, d) pulled towards the sphere of its mean variance, so that it can be inverted."""
+    size = max(len(covariance), 1)
+    mean = max(float(np.trace(covariance)) / size, SMALLEST_VARIANCE)
+    return (1 - share) * covariance + share * mean * np.eye(len(covariance))
+
+
+def _seen(points: FloatArray, means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
+    """`stand_in` (d, d) is the covariance where there are hardly any repeated takes."""
+    full = np.flatnonzero(cells.full)
+    in_full = np.isin(cells.member, full)
+    deviations = points[in_full] - means[cells.member[in_full]]
+    freedom = len(deviations) - len(full)
+    enough = freedom >= LEAST_FREEDOM
+    within = shrunk(deviations.T @ deviations / freedom) if enough else stand_in
+    spread = 1 + 1 / cells.takes[full]
+    return _Group(Kind.SEEN, means[full], cells.person[full], cells.task[full], within, spread)
+
+
+def _unseen(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
+    effects = fit_effects(means, cells)
+    person, task = np.nonzero(_missing(cells))
+    enough = len(effects.errors) >= LEAST_FREEDOM
+    spread = _second_moment(effects.errors) if enough else stand_in
+    predicted = effects.predict(person, task)
+    return _Group(Kind.UNSEEN, predicted, person, task, spread, np.ones(len(person)))
+
+
+def _missing(cells: Cells) -> BoolArray:
+    """(persons, tasks) whether the two were never recorded together; none if too many."""
+    missing = np.ones((len(cells.persons), len(cells.tasks)), dtype=bool)
+    full = cells.full
+    missing[cells.person[full], cells.task[full]] = False
+    return np.asarray(missing & (missing.sum() <= MOST_UNSEEN))
+
+
+def _by_label(
+    kind: Kind, means: FloatArray, label: IntArray, labels: int, stand_in: FloatArray
+) -> _Group:
+    """One hypothesis a label: the mean of its cells, each cell weighing the same."""
+    has = np.flatnonzero(label >= 0)
+    counts = np.bincount(label[has], minlength=labels)
+    centres = np.zeros((labels, means.shape[1]))
+    np.add.at(centres, label[has], means[has])
+    centres /= np.maximum(counts, 1)[:, None]
+    several = has[counts[label[has]] > 1]
+    others = counts[label[several]] - 1
+    errors = (means[several] - centres[label[several]]) * (1 + 1 / others)[:, None]
+    covariance = _second_moment(errors) if len(errors) >= LEAST_FREEDOM else stand_in
+    index, nobody = np.arange(labels), np.full(labels, -1)
+    person, task = (nobody, index) if kind is Kind.NEW_PERSON else (index, nobody)
+    return _Group(kind, centres, person, task, covariance, np.ones(labels))
+
+
+def _second_moment(errors: FloatArray) -> FloatArray:
+    return shrunk(errors.T @ errors / len(errors))
+
+
+def _whitened(groups: list[_Group]) -> Hypotheses:
+    factors = [np.linalg.cholesky(group.covariance) for group in groups]
+    whiteners = [np.linalg.inv(factor).T for factor in factors]
+    white = [group.means @ by for group, by in zip(groups, whiteners, strict=True)]
+    return Hypotheses(
+        means=np.concatenate(white),
+        person=np.concatenate([group.person for group in groups]),
+        task=np.concatenate([group.task for group in groups]),
+        kind=np.repeat([int(group.kind) for group in groups], [len(g.means) for g in groups]),
+        spread=np.concatenate([group.spread for group in groups]),
+        whiteners=np.stack(whiteners),
+        log_scale=np.array([float(np.log(np.diag(factor)).sum()) for factor in factors]),
+    )

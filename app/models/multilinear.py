@@ -1,0 +1,179 @@
+"""The multilinear model of Vasilescu 2002: signatures of persons, parameters of actions.
+
+D (persons P, tasks T, samples) = Z x_1 P x_2 A x_3 J (eq. 3), from cell means; missing
+cells are completed by person and task effects added up (app.models.cells). The sample mode
+is kept in PCA coordinates (d <= 100, uncentred, so nothing is taken away from the paper's
+tensor but what no cell has). Recognition as in section 5 where the other factor is known;
+where neither is, the cell whose motion p_n, a_m reconstruct is nearest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.errors import NotEnoughLabels
+from app.models.calibration import softmax
+from app.models.cells import Cells, cell_means, find_cells, fit_effects
+from app.models.recognition import Recognition, answer, given
+from app.numerics.arrays import FloatArray
+from app.numerics.nmode_svd import NModeSVD, nmode_svd
+from app.numerics.principal_axes import PrincipalAxes, principal_axes
+from app.numerics.tensor import mode_product
+
+MULTILINEAR_VERSION = 1
+
+DIMENSIONS = 100
+"""Coordinates of the sample mode."""
+
+SMALLEST_SINGULAR = 0.005
+"""Relative cut-off of the pseudo-inverses of B_a and C_p: slices filled by completion are
+nearly of low rank, and inverting what is left would magnify noise."""
+
+MOST_CELLS = 20_000
+"""Persons x tasks; the tensor of a larger library would not fit a small machine."""
+
+RADIUS_SHARE = 95.0
+"""Percentile of the training clips' distances that counts as near."""
+
+RADIUS_SLACK = 1.5
+"""Held-out takes lie further out than those of the fit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Multilinear:
+    """persons (P,), tasks (T,) sorted labels; svd: core and the mode matrices persons
+    (P, R1) whose rows are signatures, actions (T, R2), and eigenmotions (d, R3) in the
+    coordinates of `axes`; radius: distance in those coordinates beyond which a clip is of
+    no cell."""
+
+    persons: tuple[str, ...]
+    tasks: tuple[str, ...]
+    axes: PrincipalAxes
+    svd: NModeSVD
+    radius: float
+
+    def signature(self, sample: FloatArray, task: str) -> FloatArray:
+        """(R1,) p = B_a^-T d of a motion sample (1250,) of `task` (section 5)."""
+        core, (_, actions, motions) = self.svd.core, self.svd.factors
+        row = actions[[self.tasks.index(task)]]
+        basis = mode_product(mode_product(core, row, 1), motions, 2)[:, 0, :]
+        return _coordinates(basis, self.axes.project(sample))
+
+    def action(self, sample: FloatArray, person: str) -> FloatArray:
+        """(R2,) a = C_p^-T d of a motion sample (1250,) by `person` (section 5)."""
+        core, (people, _, motions) = self.svd.core, self.svd.factors
+        row = people[[self.persons.index(person)]]
+        basis = mode_product(mode_product(core, row, 0), motions, 2)[0]
+        return _coordinates(basis, self.axes.project(sample))
+
+    def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
+        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        people, actions, motions = self.svd.factors
+        arrays = {
+            "centre": self.axes.centre,
+            "axes": self.axes.axes,
+            "core": self.svd.core,
+            "people": people,
+            "actions": actions,
+            "motions": motions,
+        }
+        meta = {
+            "version": MULTILINEAR_VERSION,
+            "persons": list(self.persons),
+            "tasks": list(self.tasks),
+            "radius": self.radius,
+        }
+        return arrays, meta
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> Multilinear:
+        """The record that to_arrays took apart. Raises ValueError on another version."""
+        if meta["version"] != MULTILINEAR_VERSION:
+            raise ValueError(f"multilinear model of version {meta['version']}")
+        factors = (arrays["people"], arrays["actions"], arrays["motions"])
+        return cls(
+            tuple(meta["persons"]),
+            tuple(meta["tasks"]),
+            PrincipalAxes(arrays["centre"], arrays["axes"]),
+            NModeSVD(arrays["core"], factors),
+            float(meta["radius"]),
+        )
+
+
+def fit_multilinear(
+    samples: FloatArray,
+    persons: Sequence[str | None],
+    tasks: Sequence[str | None],
+    ranks: tuple[int | None, int | None] = (None, None),
+) -> Multilinear:
+    """Fit on motion samples (clips, 1250) that have both labels; others are left out.
+
+    ranks: columns kept of the person and action matrices, None for all.
+    Raises NotEnoughLabels without two persons or two tasks, or with too many of both.
+    """
+    use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
+    cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
+    if min(len(cells.persons), len(cells.tasks)) < 2:
+        raise NotEnoughLabels("The multilinear model needs two persons and two tasks.")
+    if len(cells.persons) * len(cells.tasks) > MOST_CELLS:
+        raise NotEnoughLabels(f"The multilinear model holds {MOST_CELLS} persons x tasks.")
+    axes = principal_axes(np.asarray(samples)[use], DIMENSIONS, centred=False)
+    points = axes.project(np.asarray(samples)[use])
+    tensor = complete_tensor(cell_means(points, cells), cells)
+    svd = nmode_svd(tensor, [*ranks, None])
+    own = svd.reconstruct()[cells.person[cells.member], cells.task[cells.member]]
+    reach = np.percentile(np.linalg.norm(points - own, axis=1), RADIUS_SHARE)
+    return Multilinear(cells.persons, cells.tasks, axes, svd, float(reach * RADIUS_SLACK))
+
+
+def complete_tensor(means: FloatArray, cells: Cells) -> FloatArray:
+    """(P, T, d) of cell `means` (cells, d), missing cells by person + task effects."""
+    persons, tasks = len(cells.persons), len(cells.tasks)
+    person, task = np.divmod(np.arange(persons * tasks), tasks)
+    predicted = fit_effects(means, cells).predict(person, task)
+    tensor = predicted.reshape(persons, tasks, means.shape[1])
+    tensor[cells.person, cells.task] = means
+    return tensor
+
+
+def recognise_multilinear(
+    record: Multilinear,
+    sample: FloatArray,
+    known_person: str | None = None,
+    known_task: str | None = None,
+) -> Recognition:
+    """Who does what in one motion sample (1250,), given what the asker knows.
+
+    Scores are shares by nearness, not probabilities; a clip beyond the radius of every
+    cell is unknown. A known label that the library lacks counts as not given for the other.
+    """
+    far = np.linalg.norm(record.svd.reconstruct() - record.axes.project(sample), axis=2)
+    person = given(known_person, record.persons) if known_person else None
+    task = given(known_task, record.tasks) if known_task else None
+    to_persons, to_tasks = far.min(axis=1), far.min(axis=0)
+    if known_task in record.tasks:
+        people = record.svd.factors[0]
+        to_persons = np.linalg.norm(record.signature(sample, known_task) - people, axis=1)
+    if known_person in record.persons:
+        actions = record.svd.factors[1]
+        to_tasks = np.linalg.norm(record.action(sample, known_person) - actions, axis=1)
+    near = bool(far.min() <= record.radius)
+    return Recognition(
+        person or answer(record.persons, _shares(to_persons), near),
+        task or answer(record.tasks, _shares(to_tasks), near),
+    )
+
+
+def _coordinates(basis: FloatArray, point: FloatArray) -> FloatArray:
+    """The row c with c @ basis nearest to `point`: (R, d) and (d,) -> (R,)."""
+    return np.asarray(point @ np.linalg.pinv(basis, rcond=SMALLEST_SINGULAR))
+
+
+def _shares(distances: FloatArray) -> FloatArray:
+    """(n,) distances to shares that sum to 1; the smallest distance sets the scale."""
+    scale = max(float(distances.min()), 1e-9)
+    return np.asarray(softmax(-0.5 * ((distances / scale) ** 2)[None])[0])

@@ -1,0 +1,62 @@
+"""Answers to who does what: value types shared by every recogniser."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray
+
+MAX_CANDIDATES = 10
+"""Candidates that an answer lists."""
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A label and the share of belief in it, 0..1."""
+
+    label: str
+    score: float
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """Who, or what: label is None when unknown; candidates by falling score, sum at most 1.
+
+    score: belief in `label`, or, when unknown, in the best candidate (0 without any).
+    """
+
+    label: str | None
+    known: bool
+    score: float
+    candidates: tuple[Candidate, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Recognition:
+    """Both answers for one clip."""
+
+    person: Answer
+    task: Answer
+
+
+NO_ANSWER = Answer(label=None, known=False, score=0.0)
+"""For a factor that the library has no labels of."""
+
+
+def answer(labels: Sequence[str], scores: FloatArray, known: bool) -> Answer:
+    """The answer from one score a label, (labels,), each 0..1 and together at most 1."""
+    if not labels:
+        return NO_ANSWER
+    order = np.argsort(-scores, kind="stable")[:MAX_CANDIDATES]
+    best = tuple(Candidate(labels[i], float(scores[i])) for i in order)
+    return Answer(best[0].label if known else None, known, best[0].score, best)
+
+
+def given(label: str, labels: Sequence[str]) -> Answer:
+    """The answer where the asker said it: known if the library has that label."""
+    if label not in labels:
+        return NO_ANSWER
+    return Answer(label, True, 1.0, (Candidate(label, 1.0),))

@@ -1,0 +1,42 @@
+from __future__ import annotations
+
+import numpy as np
+
+from app.models.calibration import fit_calibration, softmax
+
+NONE = np.zeros((0, 2)), np.zeros(0), np.zeros(0, dtype=int)
+
+
+def test_the_threshold_parts_known_from_new() -> None:
+    novelty = np.array([-9.0, -7.0, 1.0, 3.0])
+    found = fit_calibration(np.zeros((4, 2)), novelty, np.array([0, 1, -1, -1]))
+    assert -7.0 < found.threshold < 1.0
+    assert found.error_rates() == (0.0, 0.0)
+    assert found.error_rates(5.0) == (1.0, 0.0)
+    assert found.error_rates(-20.0) == (0.0, 1.0)
+
+
+def test_evidence_that_is_often_wrong_is_believed_less() -> None:
+    rng = np.random.default_rng(0)
+    evidence = 20 * rng.normal(size=(200, 3))
+    right = evidence.argmax(axis=1)
+    wrong = np.where(rng.random(200) < 0.4, rng.integers(0, 3, 200), right)
+    sure = fit_calibration(evidence, np.zeros(200), right)
+    unsure = fit_calibration(evidence, np.zeros(200), wrong)
+    assert unsure.temperature > 3 * sure.temperature
+
+
+def test_beliefs_sum_to_the_belief_in_being_known() -> None:
+    found = fit_calibration(np.zeros((4, 2)), np.array([-9.0, -7, 1, 3]), np.array([0, 1, -1, -1]))
+    beliefs = found.beliefs(np.array([[2.0, 1.0]] * 3), np.array([-1e9, found.threshold, 1e9]))
+    np.testing.assert_allclose(beliefs.sum(axis=1), [1.0, 0.5, 0.0], atol=1e-9)
+
+
+def test_nothing_held_out_still_calibrates() -> None:
+    found = fit_calibration(*NONE)
+    assert (found.temperature, found.threshold, found.scale) == (1.0, 0.0, 1.0)
+    assert found.error_rates() == (0.0, 0.0)
+
+
+def test_softmax_survives_impossible_labels() -> None:
+    np.testing.assert_allclose(softmax(np.array([[-np.inf, 0.0, -1e9]])), [[0.0, 1.0, 0.0]])

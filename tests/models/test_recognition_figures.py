@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+import pytest
+
+from app.models.recogniser import fit_recogniser
+from app.models.recognition_figures import held_out_recognition_figures, unknown_figures
+from tests.models.factor_clips import factor_clips
+
+
+def test_models_stand_beside_the_prior() -> None:
+    clips = factor_clips(persons=4, tasks=5, takes=3)
+    groups = [str(i) for i in range(len(clips.persons))]
+    figures = held_out_recognition_figures(clips.samples, clips.persons, clips.tasks, groups)
+    assert set(figures) == {"default", "multilinear", "prior"}
+    for method in ("default", "multilinear"):
+        assert figures[method]["both"] > 0.9
+        assert figures[method]["clips"] == 60
+    assert figures["prior"]["person"] <= 0.25
+    assert figures["prior"]["task"] <= 0.2
+
+
+def test_a_recording_is_never_on_both_sides() -> None:
+    clips = factor_clips(persons=4, tasks=5, takes=3)
+    cells = [f"{p} {t}" for p, t in zip(clips.persons, clips.tasks, strict=True)]
+    apart = held_out_recognition_figures(
+        clips.samples, clips.tasks, cells, cells
+    )  # the cell's own name can never be guessed when all its takes are held out
+    assert apart["default"]["task"] == 0.0
+
+
+def test_a_library_without_persons_has_task_figures_only() -> None:
+    clips = factor_clips(persons=3, tasks=4, takes=3)
+    none: list[str | None] = [None] * len(clips.tasks)
+    groups = [str(i) for i in range(len(clips.tasks))]
+    figures = held_out_recognition_figures(clips.samples, none, clips.tasks, groups)
+    assert "multilinear" not in figures
+    assert figures["default"]["task"] > 0.9
+    assert "person" not in figures["default"]
+
+
+def test_errors_on_the_unknown_are_told() -> None:
+    clips = factor_clips()
+    figures = unknown_figures(fit_recogniser(clips.samples, clips.persons, clips.tasks))
+    assert set(figures) == {"person", "task"}
+    for shares in figures.values():
+        errors = shares["false_acceptance"] + shares["false_rejection"]
+        assert shares["balanced_accuracy"] == pytest.approx(1 - errors / 2)
+        assert shares["balanced_accuracy"] > 0.75
