@@ -22,11 +22,12 @@ from app.numerics.arrays import FloatArray
 
 MAX_JOINT_FRAMES = 20_000_000
 """Joints times frames: about 800 MB of positions, rotations and translations."""
-BLOCK_JOINT_FRAMES = 65_536
-"""Frames are solved in blocks of about this many joints, so that temporaries stay small."""
+BLOCK_JOINT_FRAMES = 16_384
+"""Frames are solved in blocks of about this many joints, so that temporaries stay
+small and in the processor's cache."""
 
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
-_MOTION = re.compile(rb"^[ \t]*MOTION[ \t]*:?[ \t]*$", re.IGNORECASE | re.MULTILINE)
+_MOTION = re.compile(rb"^[ \t]*MOTION[ \t]*(?::[ \t]*)?$", re.IGNORECASE | re.MULTILINE)
 
 
 def read_bvh(content: bytes) -> Recording:

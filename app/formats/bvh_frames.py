@@ -9,23 +9,26 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
 from app.errors import TooLarge
-from app.formats.numbers import excerpt, parse_numbers
+from app.formats.numbers import check_magnitudes, excerpt, parse_any_numbers
 from app.formats.places import unreadable
 from app.motion.recording import Caution
 from app.numerics.arrays import FloatArray
 
 MAX_FRAMES = 1_000_000
 """More than two hours at 120 Hz."""
+MAX_HEADER_LINE = 200
+"""Bytes of a header line that are looked at: patterns cost more than linear time."""
 SLOWEST_RATE = 1.0
 FASTEST_RATE = 2000.0
 """Hz; a declared rate outside is no rate."""
 NEAR_WHOLE = 1e-4
 """A rate this near to a whole number (relative) was rounded when its period was printed."""
-BLOCK_LINES = 4096
+BLOCK_LINES = 1024
 
 _FRAMES = re.compile(rb"\s*frames\s*:?\s*(\S*)\s*", re.IGNORECASE)
 _FRAME_TIME = re.compile(rb"\s*frame\s*time\s*:?\s*(\S*)\s*", re.IGNORECASE)
@@ -72,14 +75,14 @@ def _filled_lines(text: bytes, first_line: int) -> Iterator[tuple[int, bytes]]:
 
 
 def _declared_frames(line: int, text: bytes) -> int:
-    match = _FRAMES.fullmatch(text)
+    match = _FRAMES.fullmatch(text[:MAX_HEADER_LINE])
     if match is None or not re.fullmatch(rb"\d{1,18}", match.group(1)):
         raise unreadable(line, f"expected 'Frames:' and a number, found {excerpt(text)}")
     return int(match.group(1))
 
 
 def _frame_rate(line: int, text: bytes) -> tuple[float | None, tuple[Caution, ...]]:
-    match = _FRAME_TIME.fullmatch(text)
+    match = _FRAME_TIME.fullmatch(text[:MAX_HEADER_LINE])
     if match is None:
         raise unreadable(line, f"expected 'Frame Time:' and seconds, found {excerpt(text)}")
     try:
@@ -98,34 +101,40 @@ def _whole_where_near(rate: float) -> float:
 
 
 def _rows(lines: Iterator[tuple[int, bytes]], channels: int) -> FloatArray:
-    """(frames, channels): each frame begins on a line of its own and may go on over more."""
+    """(frames, channels), read block by block."""
     blocks: list[FloatArray] = []
+    while len(block := _block(lines, channels)):
+        blocks.append(block)
+        if len(blocks) * BLOCK_LINES > MAX_FRAMES:
+            raise TooLarge(f"expected at most {MAX_FRAMES} frames")
+    return np.concatenate(blocks) if blocks else np.zeros((0, channels))
+
+
+def _block(lines: Iterator[tuple[int, bytes]], channels: int) -> FloatArray:
+    """Up to BLOCK_LINES frames; each begins on a line of its own and may go on over more."""
     rows: list[FloatArray] = []
-    for line, text in lines:
-        row = parse_numbers(text, line, expected=channels)
+    numbers: list[int] = []
+    for line, text in islice(lines, BLOCK_LINES):
+        row = parse_any_numbers(text, line, expected=channels)
         if len(row) < channels:
             row = _continued(row, lines, line, channels)
         if len(row) != channels:
             raise unreadable(line, f"expected {channels} numbers, found {len(row)}")
         rows.append(row)
-        if len(rows) == BLOCK_LINES:
-            blocks.append(np.stack(rows))
-            rows.clear()
-        if len(blocks) * BLOCK_LINES + len(rows) > MAX_FRAMES:
-            raise TooLarge(f"line {line}: expected at most {MAX_FRAMES} frames")
-    if rows:
-        blocks.append(np.stack(rows))
-    return np.concatenate(blocks) if blocks else np.zeros((0, channels))
+        numbers.append(line)
+    block = np.stack(rows) if rows else np.zeros((0, channels))
+    check_magnitudes(block, numbers)
+    return block
 
 
 def _continued(
     row: FloatArray, lines: Iterator[tuple[int, bytes]], line: int, channels: int
 ) -> FloatArray:
-    """`row` with the lines that follow it, until it is full or longer."""
+    """`row` with the lines that follow it, if they fill it up exactly."""
     parts, found = [row], len(row)
     while found < channels:
         number, text = next(lines, (line, b""))
-        parts.append(parse_numbers(text, number))
+        parts.append(parse_any_numbers(text, number))
         if not len(parts[-1]):
             break
         found += len(parts[-1])

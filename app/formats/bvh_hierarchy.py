@@ -26,7 +26,7 @@ MAX_JOINTS = 2000
 MAX_NAME_LENGTH = 200
 MAX_CHANNELS = 12
 """Channels of one joint: position and rotation need six, odd writers repeat some."""
-MAX_HIERARCHY_BYTES = 10_000_000
+MAX_HIERARCHY_BYTES = 2_000_000
 
 _TOKEN = re.compile(rb"[{}]|[^\s{}]+|\n")
 _NUMBERLIKE = re.compile(rb"[-+.,\d]|nan|inf", re.IGNORECASE)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from app.errors import Unreadable
 from app.formats.places import unreadable
 from app.numerics.arrays import FloatArray
 
@@ -13,16 +14,47 @@ MAX_MAGNITUDE = 1e9
 
 
 def parse_numbers(text: bytes, line: int, expected: int | None = None) -> FloatArray:
-    """The finite numbers (n,) float64 that stand in `text`, which is line `line`.
+    """The numbers (n,) float64 within MAX_MAGNITUDE that stand in `text`, line `line`.
 
     A comma separates numbers unless, read as a decimal point, it gives just the
     `expected` number of them. Raises Unreadable naming the line.
     """
+    numbers = parse_any_numbers(text, line, expected)
+    check_magnitudes(numbers[None], [line])
+    return numbers
+
+
+def parse_any_numbers(text: bytes, line: int, expected: int | None = None) -> FloatArray:
+    """As `parse_numbers`, but NaN and what is too large passes; `check_magnitudes` finds
+    them in many lines at once, which is cheaper."""
     if b"," in text:
         text = _without_commas(text, expected)
     if b"_" in text:  # numpy reads 1_0 as 10
         raise unreadable(line, f"expected numbers, found {excerpt(text)}")
-    return _checked(text.split(), line)
+    tokens = text.split()
+    try:
+        return np.array(tokens, dtype=np.float64)
+    except ValueError:
+        bad = next(token for token in tokens if not _is_number(token))
+        raise unreadable(line, f"expected a number, found {excerpt(bad)}") from None
+
+
+def check_magnitudes(rows: FloatArray, lines: Sequence[int]) -> None:
+    """Raise Unreadable naming the first of `lines` (n,) whose row of `rows` (n, numbers)
+    holds NaN or a number beyond MAX_MAGNITUDE."""
+    if not rows.size or max(rows.max(), -rows.min()) <= MAX_MAGNITUDE:  # False for NaN
+        return
+    row, column = np.argwhere(~(np.abs(rows) <= MAX_MAGNITUDE))[0]
+    limit = f"±{MAX_MAGNITUDE:g}"
+    raise unreadable(lines[row], f"expected numbers within {limit}, found {rows[row, column]}")
+
+
+def _is_number(token: bytes) -> bool:
+    try:
+        float(token)
+    except ValueError:
+        return False
+    return True
 
 
 def _without_commas(text: bytes, expected: int | None) -> bytes:
@@ -30,29 +62,6 @@ def _without_commas(text: bytes, expected: int | None) -> bytes:
     if expected is not None and len(separated.split()) != expected == len(text.split()):
         return text.replace(b",", b".")
     return separated
-
-
-def _checked(tokens: list[bytes], line: int) -> FloatArray:
-    try:
-        numbers = np.array(tokens, dtype=np.float64)
-    except ValueError:
-        raise _first_bad(tokens, line) from None
-    if numbers.size and not max(numbers.max(), -numbers.min()) <= MAX_MAGNITUDE:
-        raise _first_bad(tokens, line)
-    return numbers
-
-
-def _first_bad(tokens: list[bytes], line: int) -> Unreadable:
-    for token in tokens:
-        try:
-            good = abs(float(token)) <= MAX_MAGNITUDE
-        except ValueError:
-            good = False
-        if not good:
-            return unreadable(
-                line, f"expected a number within ±{MAX_MAGNITUDE:g}, found {excerpt(token)}"
-            )
-    return unreadable(line, "expected numbers")
 
 
 def excerpt(text: bytes, length: int = 40) -> str:

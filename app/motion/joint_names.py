@@ -24,7 +24,7 @@ _MIDDLE: dict[JointRole, tuple[str, ...]] = {
     JointRole.HIPS: ("hips", "pelvis", "spinebase", "hipcenter", "midhip", "hip"),
     JointRole.CHEST: (
         "chest", "upperchest", "thorax", "chestlower", "upperback", "spineshoulder",
-        "spine3", "spine2", "spine1",
+        "chest4", "chest3", "chest2", "spine3", "spine2", "spine1",
     ),
     JointRole.NECK: ("neck", "necklower", "lowerneck", "neck1", "spineshoulder", "c7"),
     JointRole.HEAD: ("head", "skull"),
@@ -57,8 +57,8 @@ _PREFIX = re.compile(
 _NOISE = frozenset(("joint", "jnt", "bone", "bn"))
 """What rigs put elsewhere in a joint's name."""
 _SIDES: dict[str, Side] = {
-    "left": "left", "l": "left", "lft": "left", "lf": "left",
-    "right": "right", "r": "right", "rgt": "right", "rt": "right",
+    "left": "left", "l": "left", "lft": "left",
+    "right": "right", "r": "right", "rgt": "right",
 }  # fmt: skip
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 

@@ -44,17 +44,14 @@ def _about_axis(angle: FloatArray, axis: int) -> FloatArray:
 
 def multiply(left: FloatArray, right: FloatArray) -> FloatArray:
     """Hamilton product (..., 4) of two arrays of quaternions (..., 4)."""
-    a, b, c, d = np.moveaxis(left, -1, 0)
-    e, f, g, h = np.moveaxis(right, -1, 0)
-    return np.stack(
-        [
-            a * e - b * f - c * g - d * h,
-            a * f + b * e + c * h - d * g,
-            a * g - b * h + c * e + d * f,
-            a * h + b * g - c * f + d * e,
-        ],
-        axis=-1,
-    )
+    a, b, c, d = (left[..., i] for i in range(4))
+    e, f, g, h = (right[..., i] for i in range(4))
+    product = np.empty(np.broadcast_shapes(left.shape, right.shape))
+    product[..., 0] = a * e - b * f - c * g - d * h
+    product[..., 1] = a * f + b * e + c * h - d * g
+    product[..., 2] = a * g - b * h + c * e + d * f
+    product[..., 3] = a * h + b * g - c * f + d * e
+    return product
 
 
 def rotate(quaternions: FloatArray, vectors: FloatArray) -> FloatArray:
@@ -67,7 +64,11 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
     # np.cross spends most of its time on moving axes.
     x, y, z = a[..., 0], a[..., 1], a[..., 2]
     u, v, w = b[..., 0], b[..., 1], b[..., 2]
-    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    product[..., 0] = y * w - z * v
+    product[..., 1] = z * u - x * w
+    product[..., 2] = x * v - y * u
+    return product
 
 
 def quaternions_to_matrices(quaternions: FloatArray) -> FloatArray:

@@ -29,6 +29,8 @@ METRES_PER_UNIT: dict[str, float] = {
 """Names that a client may use; "cmu" is the unit of CMU's ASF/AMC files (1 / .45 inch)."""
 TYPICAL_STATURE = 1.7
 """Metres."""
+SMALLEST_STATURE = 1e-6
+"""In any unit; below it a body has no size."""
 USUAL_STATURES = (1.35, 2.15)
 """Metres; outside we say that the unit is a guess."""
 FARTHEST_FACTOR = 1.6
@@ -73,7 +75,7 @@ def stature(positions: FloatArray, roles: Mapping[JointRole, int]) -> float:
 def judge_unit(positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
     """The unit of positions (frames, joints, 3) that makes the person most ordinary."""
     height = stature(positions, roles)
-    if height <= 0:
+    if height < SMALLEST_STATURE:
         detail = "the body has no size, so its unit cannot be judged; taken as metres"
         return Unit(1.0, (Caution("unit_guessed", detail),))
     scales = np.array(list(METRES_PER_UNIT.values()))

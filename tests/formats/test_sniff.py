@@ -1,0 +1,87 @@
+"""Formats are known by their first bytes."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from contextlib import suppress
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.errors import EmptyFile, FormatNotSupported, KinedexError, UnknownFormat
+from app.formats.read import READERS, read_recording
+from app.formats.sniff import sniff
+from tests.formats.samples import bvh
+from tests.real_clips import manifest, real_clips
+
+
+def zipped(name: str) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        archive.writestr(name, "x")
+    return buffer.getvalue()
+
+
+def npy() -> bytes:
+    buffer = io.BytesIO()
+    np.save(buffer, np.zeros(3))
+    return buffer.getvalue()
+
+
+SAMPLES = [
+    ("bvh", bvh()),
+    ("bvh", b"\xef\xbb\xbf\r\n  hierarchy\r\nROOT"),
+    ("asf", b"# AST/ASF file\n:version 1.10\n"),
+    ("amc", b"#!OML:ASF\n:FULLY-SPECIFIED\n:DEGREES\n1\n"),
+    ("fbx", b"Kaydara FBX Binary  \x00\x1a\x00"),
+    ("fbx", b"; FBX 7.3.0 project file\n"),
+    ("c3d", b"\x02\x50" + bytes(510)),
+    ("npy", npy()),
+    ("npz", zipped("poses.npy")),
+    ("zip", zipped("clip.bvh")),
+]
+
+
+@pytest.mark.parametrize(("name", "content"), SAMPLES)
+def test_known_formats(name: str, content: bytes) -> None:
+    assert sniff(content) == name
+
+
+@pytest.mark.parametrize("content", [b"", b" \r\n\t"])
+def test_nothing_is_empty(content: bytes) -> None:
+    with pytest.raises(EmptyFile):
+        sniff(content)
+
+
+@pytest.mark.parametrize(
+    "content", [b"hello", b"%PDF-1.7", bytes(1000), b"\x89PNG", b"a HIERARCHY"]
+)
+def test_others_are_unknown(content: bytes) -> None:
+    with pytest.raises(UnknownFormat):
+        sniff(content)
+
+
+@given(st.binary(max_size=100))
+def test_noise_raises_nothing_but_our_own_failures(noise: bytes) -> None:
+    with suppress(KinedexError):
+        read_recording(noise)
+
+
+def test_known_formats_without_a_reader_are_named() -> None:
+    for name, content in SAMPLES:
+        if name not in READERS:
+            with pytest.raises(FormatNotSupported, match=name.upper()):
+                read_recording(content)
+
+
+def test_read_recording_reads_what_it_can() -> None:
+    assert read_recording(bvh()).format == "bvh"
+
+
+def test_real_files_are_known_by_content() -> None:
+    for row in manifest()[::10] + [r for r in manifest() if not r["path"].endswith(".bvh")]:
+        content = (real_clips() / row["path"]).read_bytes()
+        assert sniff(content) == row["path"].rsplit(".")[-1]

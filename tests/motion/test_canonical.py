@@ -1,0 +1,99 @@
+"""One form for every recording: metres, Y up, roles, rate and unit settled."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.errors import BadField, NotHuman, Unreadable
+from app.motion.canonical import canonicalise
+from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.recording import Caution, Recording
+from tests.people import CONVENTIONS, ROLES, person
+
+R = JointRole
+
+
+def without(recording: Recording, *parts: str) -> Recording:
+    """The recording without the joints whose role ends so."""
+    keep = [i for i, role in enumerate(ROLES) if not role.endswith(parts)]
+    renumber = {old: new for new, old in enumerate(keep)}
+    skeleton = recording.skeleton
+    parents = [renumber.get(int(skeleton.parents[i]), -1) for i in keep]
+    smaller = replace(
+        skeleton,
+        names=tuple(skeleton.names[i] for i in keep),
+        parents=np.array(parents),
+        offsets=skeleton.offsets[keep],
+    )
+    return replace(recording, skeleton=smaller, positions=recording.positions[:, keep])
+
+
+def test_a_person_in_centimetres_and_z_up() -> None:
+    plain = person(CONVENTIONS["DAZ"])
+    lying_axes = plain.positions[..., [0, 2, 1]] * np.array([100, -100, 100], dtype=np.float32)
+    offsets = plain.skeleton.offsets[:, [0, 2, 1]] * np.array([100, -100, 100])
+    skeleton = replace(plain.skeleton, offsets=offsets)
+    motion = canonicalise(replace(plain, positions=lying_axes, skeleton=skeleton))
+    assert motion.metres_per_unit == 0.01
+    assert np.allclose(motion.positions, plain.positions, atol=1e-5)
+    assert motion.positions.dtype == np.float32
+    assert [caution.code for caution in motion.cautions] == ["up_axis_guessed"]
+    assert motion.missing_roles == ()
+
+
+def test_what_the_client_says_wins() -> None:
+    motion = canonicalise(
+        person(CONVENTIONS["DAZ"]),
+        frame_rate=60,
+        metres_per_unit=2.0,
+        roles={R.HEAD: "neck", R.NECK: "chest"},
+    )
+    assert (motion.frame_rate, motion.declared_frame_rate) == (60, 30)
+    assert motion.metres_per_unit == 2.0
+    assert motion.names[motion.roles[R.HEAD]] == "neck"
+
+
+@pytest.mark.parametrize("value", [0, -1, float("nan"), float("inf"), 1e9])
+def test_impossible_words_of_a_client_are_refused(value: float) -> None:
+    for field in ("frame_rate", "metres_per_unit"):
+        with pytest.raises(BadField) as caught:
+            canonicalise(person(), **{field: value})
+        assert caught.value.places
+
+
+def test_an_unknown_role_is_refused() -> None:
+    with pytest.raises(BadField):
+        canonicalise(person(), roles={"tail": "j0"})
+
+
+def test_no_frame_rate_is_refused_unless_the_client_knows() -> None:
+    silent = person(frame_rate=None)
+    doubt = Caution("frame_time_unusable", "line 9: expected a frame time in seconds, found '0'")
+    with pytest.raises(Unreadable, match="line 9"):
+        canonicalise(replace(silent, cautions=(doubt,)))
+    assert canonicalise(silent, frame_rate=25).frame_rate == 25
+
+
+def test_no_arms_are_analysed_as_far_as_it_goes() -> None:
+    armless = without(person(CONVENTIONS["MotionBuilder"]), "shoulder", "elbow", "hand")
+    motion = canonicalise(armless)
+    missing = {role for role in SUN_ROLES if role.endswith(("shoulder", "elbow", "hand"))}
+    assert set(motion.missing_roles) == missing
+    assert "roles_missing" in [caution.code for caution in motion.cautions]
+    assert motion.role_positions().shape == (40, 13, 3)
+
+
+def test_no_legs_are_no_human() -> None:
+    legless = without(person(CONVENTIONS["MotionBuilder"]), "leg", "knee", "foot", "toes")
+    with pytest.raises(NotHuman, match="left_knee, right_knee"):
+        canonicalise(legless)
+
+
+@pytest.mark.parametrize("frames", [1, 2, 3])
+def test_the_shortest_clips(frames: int) -> None:
+    motion = canonicalise(person(CONVENTIONS["SMPL"], frames=frames))
+    assert motion.frames == frames
+    assert np.isfinite(motion.positions).all()

@@ -1,0 +1,25 @@
+"""Where the real clips are, for the tests that measure on them; nothing is copied."""
+
+from __future__ import annotations
+
+import csv
+import os
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def real_clips() -> Path:
+    """The folder of real clips, from KINEDEX_DATA_SET or beside the clone; else skips loudly."""
+    folder = Path(os.environ.get("KINEDEX_DATA_SET") or ROOT / ".." / "shared" / "data")
+    if not (folder / "manifest.csv").is_file():
+        pytest.skip("REAL CLIPS ABSENT: set KINEDEX_DATA_SET to the folder with manifest.csv")
+    return folder
+
+
+def manifest() -> list[dict[str, str]]:
+    """The rows of the real clips' manifest."""
+    with (real_clips() / "manifest.csv").open(newline="") as lines:
+        return list(csv.DictReader(lines))
