@@ -25,7 +25,7 @@ WIDTHS = (0.125, 0.25, 0.5, 0.75, 1.0, 1.5, 2.5)
 PENALTIES = (1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0, 3.0)
 """Candidates for the ridge penalty."""
 
-_BLOCK = 4000
+_BLOCK = 1000
 """Rows handled at once: bounds memory to _BLOCK * m floats."""
 
 
