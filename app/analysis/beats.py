@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.fft import next_fast_len, rfft, rfftfreq
 from scipy.ndimage import gaussian_filter1d
 from scipy.signal import find_peaks
 
@@ -34,6 +35,9 @@ FLOOR = 0.05
 
 STEP = 0.002
 """Relative step of the tempo grid."""
+
+FINENESS = 8
+"""How many times longer than the signal its transform is, so that its peaks are seen."""
 
 RATIOS = (1 / 3, 1 / 2, 2 / 3, 1.0, 3 / 2, 2.0, 3.0)
 """What the spectrum's strongest tempo may be mistaken for."""
@@ -104,10 +108,9 @@ def _strongest(signal: FloatArray, slowest: float, rate: float) -> float:
 
 def _amplitudes(signal: FloatArray, frequencies: FloatArray, rate: float) -> FloatArray:
     """(frequencies,) of a Hann-windowed `signal` (n,), 0 from half its `rate` on."""
-    times = np.arange(len(signal)) / rate
-    waves = np.exp(-2j * np.pi * frequencies[:, None] * times)
-    amplitudes = np.abs(waves @ (signal * np.hanning(len(signal))))
-    return np.asarray(np.where(frequencies < rate / 2, amplitudes, 0.0))
+    length = next_fast_len(FINENESS * len(signal), real=True)
+    spectrum = np.abs(rfft(signal * np.hanning(len(signal)), length))
+    return np.asarray(np.interp(frequencies, rfftfreq(length, 1 / rate), spectrum, right=0.0))
 
 
 def _on_minima(minima: FloatArray, frequency: float, slowest: float) -> float:

@@ -94,9 +94,10 @@ def _on_beats(
 ) -> list[int]:
     """For each beat (in frames) its candidate by global, else by local energy."""
     reach = SEARCH * (float(np.median(np.diff(beats))) if len(beats) > 1 else LONE_BEAT)
+    curves = [(curve, _median_maximum(curve)) for curve in (whole, own)]
     found = []
     for beat in beats:
-        candidates = (_near_beat(curve, beat, reach, t1, t2) for curve in (whole, own))
+        candidates = (_near_beat(c, beat, reach, t1 * unit, t2 * unit) for c, unit in curves)
         found += [frame for frame in candidates if frame is not None][:1]
     return found
 
@@ -107,15 +108,16 @@ def _median_maximum(curve: FloatArray) -> float:
     return float(np.median(curve[peaks])) if len(peaks) else float(curve.max())
 
 
-def _near_beat(curve: FloatArray, beat: float, reach: float, t1: float, t2: float) -> int | None:
+def _near_beat(
+    curve: FloatArray, beat: float, reach: float, small: float, drop: float
+) -> int | None:
     """The least-energy frame around a beat, if it is small, or far below what is around it."""
     first, stop = max(0, round(beat - reach)), min(len(curve), round(beat + reach) + 1)
     if first >= stop:
         return None
-    around, unit = curve[first:stop], _median_maximum(curve)
+    around = curve[first:stop]
     lowest = first + int(np.argmin(around))
-    low, drop = float(curve[lowest]), float(around.max() - curve[lowest])
-    rests = low < t1 * unit or drop > t2 * unit
+    rests = curve[lowest] < small or around.max() - curve[lowest] > drop
     return lowest if rests and _is_minimum(curve, lowest) else None
 
 

@@ -17,6 +17,9 @@ from app.numerics.arrays import FloatArray
 SAMPLES = 32
 """Poses in a sample."""
 
+AROUND = 12
+"""Frames kept on both sides of a cycle; more than a low-pass at its ends looks at."""
+
 SAMPLE_LENGTH = SAMPLES * 13 * 3 + 2
 """Numbers in a motion sample: 1250."""
 
@@ -44,8 +47,10 @@ def mean_cycle(track: BodyTrack, cycles: list[tuple[int, int]]) -> FloatArray:
 
 def _phases(track: BodyTrack, start: float, end: float) -> FloatArray:
     """(32, 13, 3) positions at 32 phases of the cycle between two times, in frames."""
-    smooth = low_pass(track.local, (end - start) / SAMPLES)
-    return sample_at(smooth, start + (end - start) * np.arange(SAMPLES) / SAMPLES)
+    # filtering the whole clip for each of its cycles would cost their product
+    first = max(0, int(start) - AROUND)
+    smooth = low_pass(track.local[first : int(end) + AROUND + 1], (end - start) / SAMPLES)
+    return sample_at(smooth, start - first + (end - start) * np.arange(SAMPLES) / SAMPLES)
 
 
 def _crossing(split: FloatArray, frame: int) -> float:

@@ -30,12 +30,12 @@ def self_similarity(points: FloatArray, *, q: int = 2, threshold: float = 0.0) -
     """
     if q not in (1, 2):
         raise ValueError("q must be 1 or 2")
-    differences = points[:, :, None] - points[:, None]
-    distances: FloatArray = (
-        np.abs(differences).sum(axis=-1)
-        if q == 1
-        else np.sqrt(np.einsum("fijk,fijk->fij", differences, differences))
-    )
+    # axis by axis: (frames, joints, joints, 3) of a long clip would not fit
+    distances: FloatArray = np.zeros((*points.shape[:2], points.shape[1]))
+    for axis in np.moveaxis(points, -1, 0):
+        distances += np.abs(axis[:, :, None] - axis[:, None]) ** q
+    if q == 2:
+        np.sqrt(distances, out=distances)
     return (distances <= threshold).astype(np.float64) if threshold > 0 else distances
 
 
