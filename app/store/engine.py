@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Connection, Engine, create_engine, event
+from sqlalchemy import Connection, Engine, create_engine, event, func, select
 from sqlalchemy.engine import URL, make_url
 from sqlalchemy.exc import ArgumentError, DBAPIError
 
@@ -26,6 +26,7 @@ BUSY_TIMEOUT_S = 30.0
 POOL_SIZE = 8
 POOL_OVERFLOW = 56  # above the 40 threads that FastAPI runs, so that a reader never waits
 WRITES_OPTION = "kinedex_writes"
+MIGRATION_LOCK = 0x6B696E65  # "kine": any number that no one else locks
 
 Tx = Connection
 """A running transaction, as `Database.read()` and `Database.write()` give it."""
@@ -57,6 +58,14 @@ class Database:
         """
         with self._my_turn(), _storage_failures(), self._writer.begin() as connection:
             yield connection
+
+    @contextmanager
+    def migrate(self) -> Iterator[Tx]:
+        """A write transaction that keeps any other process from migrating meanwhile."""
+        with self.write() as tx:
+            if not self._is_sqlite:  # whose writers take turns anyway
+                tx.execute(select(func.pg_advisory_xact_lock(MIGRATION_LOCK)))
+            yield tx
 
     def close(self) -> None:
         """Gives back all connections."""

@@ -14,7 +14,7 @@ from typing import Any
 from sqlalchemy import RowMapping, func, insert, select, update
 
 from app.store import jobs as job_repository
-from app.store import leases
+from app.store import leases, library
 from app.store.clip_record import ClipState
 from app.store.engine import Tx
 from app.store.ids import utc_now
@@ -105,6 +105,8 @@ def waiting_on(tx: Tx, clip_id: str) -> tuple[str, ...]:
 
 def settle_if_done(tx: Tx, job_id: str) -> JobRecord:
     """Ends an unpacked import whose clips are all done; else brings its progress up to date."""
+    # Where writers overlap, the last two clips must not each see the other as unfinished.
+    library.lock(tx)
     row = job_repository.get_row(tx, job_id)
     if row["state"] != JobState.PROCESSING.value or row["owner"] is not None:
         return job_repository.to_record(row)

@@ -49,7 +49,7 @@ def upgrade(database_url: str) -> SchemaState:
     # Rebuilding a table under enforced foreign keys would delete what refers to it.
     database = Database(database_url, foreign_keys=False)
     try:
-        with database.write() as tx:
+        with database.migrate() as tx:
             command.upgrade(_config(tx), "head")
             return _state(tx)
     finally:

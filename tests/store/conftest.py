@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from app.store import clips, jobs, schema
 from app.store.clip_record import ClipFacts, ClipRecord, ClipWarning, NewClip
@@ -58,6 +59,11 @@ def facts(**changes: Any) -> ClipFacts:
     }
     return ClipFacts(**values | changes)
 
+
+ON_ONE_STORE = settings(
+    max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+"""For properties whose examples share a test's store."""
 
 AddClip = Callable[..., ClipRecord]
 AddJob = Callable[..., JobRecord]

@@ -8,7 +8,7 @@ import json
 from collections.abc import Callable
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from app.errors import BadField
@@ -152,7 +152,9 @@ def test_bad_cursors_name_the_field(store: Store, cursor: str) -> None:
     assert [place.location for place in failure.value.places] == ["cursor"]
 
 
-@settings(max_examples=50, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(
     cursor=st.one_of(st.text(), st.binary().map(lambda b: base64.urlsafe_b64encode(b).decode())),
     sort=st.sampled_from(["name", "-duration", "created_at"]),

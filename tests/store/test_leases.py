@@ -15,7 +15,7 @@ import pytest
 from app.errors import LeaseLost
 from app.store import jobs, leases
 from app.store.ids import utc_now
-from app.store.job_record import ClaimedJob, JobKind, JobState
+from app.store.job_record import ClaimedJob, JobKind, JobState, NewJob
 from app.store.store import Store
 from tests.store.conftest import AddJob
 
@@ -141,8 +141,14 @@ def claim_in(tx: leases.Tx) -> leases.Lease:
     return claimed.lease
 
 
-def test_threads_claim_each_job_once(store: Store, add_job: AddJob) -> None:
-    expected = {add_job().id for _ in range(30)}
+def queue_many(store: Store, count: int) -> list[str]:
+    with store.write() as tx:
+        new = NewJob(JobKind.INGEST, max_attempts=1)
+        return [jobs.enqueue(tx, new).id for _ in range(count)]
+
+
+def test_threads_claim_each_job_once(store: Store) -> None:
+    expected = set(queue_many(store, 20))
     taken: Counter[str] = Counter()
 
     def work(owner: str) -> None:
@@ -165,10 +171,8 @@ def _claim_all(url: str, directory: Path, owner: str) -> None:
     store.close()
 
 
-def test_processes_claim_each_job_once(
-    store: Store, database_url: str, tmp_path: Path, add_job: AddJob
-) -> None:
-    ids = [add_job(max_attempts=1).id for _ in range(40)]
+def test_processes_claim_each_job_once(store: Store, database_url: str, tmp_path: Path) -> None:
+    ids = queue_many(store, 20)
     spawn = multiprocessing.get_context("spawn")
     processes = [
         spawn.Process(target=_claim_all, args=(database_url, tmp_path, f"worker {n}"))
