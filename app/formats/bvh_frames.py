@@ -22,7 +22,7 @@ from app.numerics.arrays import FloatArray
 MAX_FRAMES = 1_000_000
 """More than two hours at 120 Hz."""
 MAX_HEADER_LINE = 200
-"""Bytes of a header line that are looked at: patterns cost more than linear time."""
+"""Bytes of the longest header line: patterns cost more than linear time."""
 SLOWEST_RATE = 1.0
 FASTEST_RATE = 2000.0
 """Hz; a declared rate outside is no rate."""
@@ -75,14 +75,14 @@ def _filled_lines(text: bytes, first_line: int) -> Iterator[tuple[int, bytes]]:
 
 
 def _declared_frames(line: int, text: bytes) -> int:
-    match = _FRAMES.fullmatch(text[:MAX_HEADER_LINE])
+    match = _header(_FRAMES, text)
     if match is None or not re.fullmatch(rb"\d{1,18}", match.group(1)):
         raise unreadable(line, f"expected 'Frames:' and a number, found {excerpt(text)}")
     return int(match.group(1))
 
 
 def _frame_rate(line: int, text: bytes) -> tuple[float | None, tuple[Caution, ...]]:
-    match = _FRAME_TIME.fullmatch(text[:MAX_HEADER_LINE])
+    match = _header(_FRAME_TIME, text)
     if match is None:
         raise unreadable(line, f"expected 'Frame Time:' and seconds, found {excerpt(text)}")
     try:
@@ -93,6 +93,10 @@ def _frame_rate(line: int, text: bytes) -> tuple[float | None, tuple[Caution, ..
         detail = f"line {line}: expected a frame time in seconds, found {excerpt(match.group(1))}"
         return None, (Caution("frame_time_unusable", detail),)
     return _whole_where_near(1 / period), ()
+
+
+def _header(pattern: re.Pattern[bytes], text: bytes) -> re.Match[bytes] | None:
+    return pattern.fullmatch(text) if len(text) <= MAX_HEADER_LINE else None
 
 
 def _whole_where_near(rate: float) -> float:
