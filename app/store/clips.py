@@ -158,11 +158,19 @@ def _set_words(tx: Tx, clip_id: str, words: Sequence[str]) -> None:
 
 
 def _enter(tx: Tx, clip_id: str, state: ClipState, **values: Any) -> ClipRecord:
-    before = get(tx, clip_id)
-    if ClipState.READY in (before.state, state):
+    before = _state_of(tx, clip_id)
+    if ClipState.READY in (before, state):
         values["changed_version"] = library.bump(tx)
     tx.execute(update(clips).where(clips.c.id == clip_id).values(state=state.value, **values))
     return get(tx, clip_id)
+
+
+def _state_of(tx: Tx, clip_id: str) -> ClipState:
+    """The state alone, for every step of every ingest; raises ClipNotFound."""
+    state = tx.execute(select(clips.c.state).where(clips.c.id == clip_id)).scalar_one_or_none()
+    if state is None:
+        raise ClipNotFound(f"There is no clip with the id {clip_id!r}")
+    return ClipState(state)
 
 
 def _load(tx: Tx, clip_ids: Collection[str]) -> list[ClipRecord]:

@@ -16,7 +16,7 @@ from app.store import clip_listing
 from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord, ClipState
 from app.store.store import Store
-from tests.store.conftest import AddClip
+from tests.store.conftest import ON_ONE_STORE, AddClip
 
 CLIPS: tuple[tuple[str, str | None, str | None, tuple[str, ...], float | None], ...] = (
     ("Walk 100%", "anna", "walk", ("walk", "slow"), 2.0),
@@ -152,9 +152,7 @@ def test_bad_cursors_name_the_field(store: Store, cursor: str) -> None:
     assert [place.location for place in failure.value.places] == ["cursor"]
 
 
-@settings(
-    max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@ON_ONE_STORE
 @given(
     cursor=st.one_of(st.text(), st.binary().map(lambda b: base64.urlsafe_b64encode(b).decode())),
     sort=st.sampled_from(["name", "-duration", "created_at"]),

@@ -13,7 +13,7 @@ from app.store import clips, library, outcomes
 from app.store.clip_record import ClipState
 from app.store.engine import Tx
 from app.store.store import Store
-from tests.store.conftest import AddClip, facts, new_clip
+from tests.store.conftest import ON_ONE_STORE, AddClip, facts, new_clip
 
 PROBLEM = {"code": "unreadable"}
 Change = Callable[[Tx, str], object]
@@ -62,9 +62,7 @@ ACTIONS: dict[str, Callable[[Tx, str], object]] = {
 }
 
 
-@settings(
-    max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@ON_ONE_STORE
 @given(steps=st.lists(st.tuples(st.sampled_from("abc"), st.sampled_from(["sync", *ACTIONS]))))
 def test_an_index_that_catches_up_now_and_then_knows_the_ready_clips(
     store: Store, steps: list[tuple[str, str]]
