@@ -1,0 +1,67 @@
+"""The demo: a library of generated motions, ingested and served."""
+
+from __future__ import annotations
+
+import tempfile
+import threading
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+import typer
+
+from app.cli.library import fit_if_due, follow, register, working
+from app.cli.serve import Host, Port
+from app.cli.settings import open_library, settings_of
+from app.config import Settings
+from app.logs import configure_logging
+from app.services.demo.library import write_demo
+from app.services.exposure import refuse_exposure_without_keys
+from app.worker.supervisor import supervise
+
+READY_POLL_S = 0.25
+QUIET = "WARNING"
+"""The demo talks to a person: below this, nothing is logged unless they ask for it."""
+
+
+def demo(context: typer.Context, host: Host = None, port: Port = None) -> None:
+    """Make the demo library, ingest it, serve it, and print where.
+
+    Run again, it serves what is there: clips that are in the library are passed over.
+    """
+    settings = settings_of(context, host=host, port=port)
+    configure_logging(QUIET)
+    settings.data_dir.mkdir(parents=True, exist_ok=True)
+    refuse_exposure_without_keys(settings)
+    _fill(context)
+    announcer = threading.Thread(target=_announce, args=(settings,), daemon=True)
+    announcer.start()
+    quiet = settings.model_copy(update={"log_level": QUIET.lower()})
+    raise typer.Exit(supervise(quiet))
+
+
+def _fill(context: typer.Context) -> None:
+    with open_library(context) as lib, tempfile.TemporaryDirectory() as folder:
+        count = write_demo(Path(folder))
+        typer.echo(f"The demo library: {count} clips, generated here.")
+        job = register(lib, Path(folder))
+        with working(lib):
+            follow(lib, job.id, "analysing")
+            fit_if_due(lib)
+
+
+def _announce(settings: Settings) -> None:
+    """Print the URL once the service can answer searches."""
+    url = f"http://{settings.host}:{settings.port}"
+    pause = threading.Event()
+    while not _is_ready(f"{url}/readyz"):
+        pause.wait(READY_POLL_S)
+    typer.echo(f"Kinedex is ready at {url} (Ctrl-C stops it).")
+
+
+def _is_ready(url: str) -> bool:
+    try:
+        with urllib.request.urlopen(url, timeout=2):  # noqa: S310 - our own address
+            return True
+    except (urllib.error.URLError, OSError):
+        return False

@@ -1,0 +1,172 @@
+"""Search and recognise."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from app.api.schemas.clips import Clip
+from app.api.schemas.recognition import Answer
+from app.cli.output import AsJson, print_json, print_table
+from app.cli.settings import open_library
+from app.errors import BadField, Place
+from app.search.methods import Method
+from app.services import find, recognise
+from app.services.hits import Hits
+from app.store.files import Readable
+
+Query = Annotated[str, typer.Argument(help="A motion file, or the id of a stored clip.")]
+FrameRate = Annotated[float | None, typer.Option(help="Of a file: overrides what it declares.")]
+Unit = Annotated[str | None, typer.Option(help="Of a file: m, cm, mm, in, or metres per unit.")]
+
+
+def search(
+    context: typer.Context,
+    query: Annotated[
+        str | None, typer.Argument(help="A motion file, or the id of a stored clip.")
+    ] = None,
+    words: Annotated[
+        list[str] | None, typer.Option("--words", help="A word; may be given several times.")
+    ] = None,
+    method: Annotated[Method, typer.Option(help="Of a search by example.")] = Method.FUSED,
+    mode: Annotated[str, typer.Option(help="Of a search by words: default or cca.")] = "default",
+    start: Annotated[float | None, typer.Option(help="Seconds: search by a part.")] = None,
+    end: Annotated[float | None, typer.Option(help="Seconds: where the part ends.")] = None,
+    limit: Annotated[int, typer.Option(help="Most hits, 1 to 1000.")] = 10,
+    filter_json: Annotated[
+        str | None, typer.Option("--filter", help='JSON, as {"task": ["walk", "run"]}.')
+    ] = None,
+    frame_rate: FrameRate = None,
+    unit: Unit = None,
+    as_json: AsJson = False,
+) -> None:
+    """Find motions like one (a file or a stored clip), or motions for words."""
+    if (query is None) == (not words):
+        raise typer.BadParameter("give either a file or clip id, or --words")
+    wanted = _filter(filter_json)
+    with open_library(context) as lib:
+        if words:
+            asked = find.WordQuery(_split(words), mode, limit, wanted)
+            hits = find.find_words(lib, asked)
+        else:
+            with _content(query or "") as (clip_id, content):
+                hits = find.find_motion(
+                    lib,
+                    find.MotionQuery(
+                        clip_id=clip_id,
+                        content=content,
+                        start=start,
+                        end=end,
+                        method=method,
+                        limit=limit,
+                        filter=wanted,
+                        frame_rate=frame_rate,
+                        unit=unit,
+                    ),
+                )
+    _show(hits, as_json)
+
+
+def recognize(
+    context: typer.Context,
+    query: Query,
+    known_person: Annotated[str | None, typer.Option(help="The person, if known.")] = None,
+    known_task: Annotated[str | None, typer.Option(help="The task, if known.")] = None,
+    method: Annotated[str, typer.Option(help="default or multilinear.")] = "default",
+    frame_rate: FrameRate = None,
+    unit: Unit = None,
+    as_json: AsJson = False,
+) -> None:
+    """Tell who it is, what they do, and in which words."""
+    with open_library(context) as lib, _content(query) as (clip_id, content):
+        found = recognise.recognise(
+            lib,
+            recognise.RecogniseQuery(
+                clip_id=clip_id,
+                content=content,
+                known_person=known_person,
+                known_task=known_task,
+                method=method,
+                frame_rate=frame_rate,
+                unit=unit,
+            ),
+        )
+    answers = {"person": Answer.of(found.person), "task": Answer.of(found.task)}
+    if as_json:
+        words = [{"word": word, "score": score} for word, score in found.words]
+        shown = {name: answer.model_dump(mode="json") for name, answer in answers.items()}
+        print_json({**shown, "words": words})
+        return
+    rows = [(name, _told(answer), answer.score) for name, answer in answers.items()]
+    print_table(("", "answer", "score"), rows)
+    print_table(("word", "score"), list(found.words))
+
+
+def _told(answer: Answer) -> str:
+    if answer.known and answer.label is not None:
+        return answer.label
+    nearest = answer.candidates[0].label if answer.candidates else "nothing"
+    return f"unknown (nearest: {nearest})"
+
+
+def _split(words: list[str]) -> list[str]:
+    return [word for part in words for word in part.split()]
+
+
+def _filter(text: str | None) -> dict[str, Any]:
+    try:
+        wanted = json.loads(text) if text else {}
+    except ValueError as problem:
+        raise BadField("The filter is not JSON.", places=[Place("filter", str(problem))]) from None
+    if not isinstance(wanted, dict):
+        raise BadField("The filter must be a JSON object.", places=[Place("filter", str(text))])
+    return wanted
+
+
+@contextmanager
+def _content(query: str) -> Iterator[tuple[str | None, Readable | None]]:
+    """A file's content where there is such a file, else the query as a clip's id."""
+    path = Path(query)
+    if not path.is_file():
+        yield query, None
+        return
+    with path.open("rb") as content:
+        yield None, content
+
+
+def _show(hits: Hits, as_json: bool) -> None:
+    if as_json:
+        items = [
+            {
+                "rank": hit.rank,
+                "score": hit.score,
+                "distance": hit.distance,
+                "start": hit.start,
+                "end": hit.end,
+                "clip": Clip.of(hit.clip).model_dump(mode="json"),
+            }
+            for hit in hits.items
+        ]
+        print_json(
+            {
+                "method": hits.method,
+                "took_ms": hits.took_ms,
+                "library_version": hits.library_version,
+                "items": items,
+                "next": hits.next,
+                "unknown_words": list(hits.unknown_words),
+            }
+        )
+        return
+    rows = [
+        (hit.rank, hit.score, hit.clip.name, hit.clip.person, hit.clip.task, hit.clip.id)
+        for hit in hits.items
+    ]
+    print_table(("rank", "score", "name", "person", "task", "id"), rows)
+    if hits.unknown_words:
+        typer.echo(f"No clip carries: {', '.join(hits.unknown_words)}", err=True)

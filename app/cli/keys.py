@@ -1,0 +1,61 @@
+"""API keys: create, list, revoke (DESIGN 12)."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from app.cli.output import AsJson, print_json, print_table
+from app.cli.settings import open_library
+from app.store import keys
+from app.store.keys import KeyRole
+
+program = typer.Typer(help="API keys.", no_args_is_help=True)
+
+
+@program.command("create")
+def create(
+    context: typer.Context,
+    role: Annotated[KeyRole, typer.Option(help="What the key allows.")] = KeyRole.READ,
+    name: Annotated[str, typer.Option(help="Whose or what the key is for.")] = "",
+    as_json: AsJson = False,
+) -> None:
+    """Make a key. It is shown once; only its hash is kept."""
+    with open_library(context) as lib, lib.store.write() as tx:
+        made = keys.create(tx, role, name)
+    if as_json:
+        print_json({"id": made.record.id, "role": made.record.role.value, "key": made.secret})
+        return
+    typer.echo(made.secret)
+    typer.echo("Keep it: it is not shown again. Send it as `Authorization: Bearer ...`.", err=True)
+
+
+@program.command("list")
+def list_keys(context: typer.Context, as_json: AsJson = False) -> None:
+    """Show the keys, without their secrets."""
+    with open_library(context) as lib, lib.store.read() as tx:
+        records = keys.list_keys(tx)
+    columns = ("id", "role", "name", "created_at", "revoked_at")
+    rows = [
+        (
+            record.id,
+            record.role.value,
+            record.name,
+            record.created_at.isoformat(),
+            record.revoked_at.isoformat() if record.revoked_at else None,
+        )
+        for record in records
+    ]
+    if as_json:
+        print_json([dict(zip(columns, row, strict=True)) for row in rows])
+    else:
+        print_table(columns, rows)
+
+
+@program.command("revoke")
+def revoke(context: typer.Context, key_id: str) -> None:
+    """Make a key worthless from now on."""
+    with open_library(context) as lib, lib.store.write() as tx:
+        keys.revoke(tx, key_id)
+    typer.echo(f"Key {key_id} is revoked.")

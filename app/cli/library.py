@@ -1,0 +1,128 @@
+"""Putting clips into the library, and analysing them anew."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from app.api.schemas.jobs import Job
+from app.cli.output import AsJson, print_json, print_table, progress_bar
+from app.cli.settings import open_library
+from app.services import imports, jobs, models
+from app.services.library import Library
+from app.store.job_record import JobKind, JobRecord, JobState
+from app.worker.loop import run_worker
+
+POLL_S = 0.2
+ENDED = frozenset({JobState.SUCCEEDED, JobState.FAILED, JobState.CANCELED})
+PROGRESS_STEPS = 1000
+"""A job tells its progress as a part of one; the bar counts steps."""
+FAILURE = 1
+RECENT = 10
+
+
+def import_clips(
+    context: typer.Context,
+    path: Annotated[Path, typer.Argument(help="A folder, a ZIP, or a motion file.")],
+    wait: Annotated[
+        bool, typer.Option(help="Analyse now; --no-wait leaves that to the worker.")
+    ] = True,
+    as_json: AsJson = False,
+) -> None:
+    """Import a folder (with or without manifest.csv), a ZIP or a file.
+
+    What is there already is passed over, so an import that was cut off can be run again.
+    """
+    with open_library(context) as lib:
+        job = register(lib, path)
+        if wait:
+            with working(lib):
+                job = follow(lib, job.id, "analysing")
+                fit_if_due(lib)
+    if as_json:
+        print_json(Job.of(job).model_dump(mode="json"))
+    elif wait:
+        show_import(job)
+    else:
+        typer.echo(f"{job.id}: registered; the worker analyses it.")
+    if job.state in (JobState.FAILED, JobState.CANCELED):
+        raise typer.Exit(FAILURE)
+
+
+def register(lib: Library, path: Path) -> JobRecord:
+    """Take in every file below `path`, with a progress bar."""
+    with progress_bar() as bar:
+        task = bar.add_task("registering", total=None)
+        return imports.import_path(
+            lib, path, lambda done, total, _: bar.update(task, completed=done, total=total)
+        )
+
+
+@contextmanager
+def working(lib: Library) -> Iterator[None]:
+    """A worker in this process; it shares the work with one that runs elsewhere."""
+    stop = threading.Event()
+    worker = threading.Thread(target=run_worker, args=(lib.settings, stop), name="worker")
+    worker.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        worker.join()
+
+
+def follow(lib: Library, job_id: str, doing: str) -> JobRecord:
+    """Show a job's progress until it has ended."""
+    with progress_bar() as bar:
+        task = bar.add_task(doing, total=PROGRESS_STEPS)
+        while True:
+            job = jobs.get_job(lib, job_id)
+            bar.update(task, completed=round(job.progress * PROGRESS_STEPS))
+            if job.state in ENDED:
+                return job
+            time.sleep(POLL_S)
+
+
+def fit_if_due(lib: Library) -> None:
+    """Have the models fitted where the library has changed enough, and wait for that."""
+    waiting = _open_fit(lib)
+    if waiting is None:
+        with lib.store.read() as tx:
+            is_due = models.is_fit_due(tx, lib.settings.refit_growth)
+        waiting = models.request_fit(lib) if is_due else None
+    if waiting is not None:
+        follow(lib, waiting.id, "fitting models")
+
+
+def _open_fit(lib: Library) -> JobRecord | None:
+    """A fit that is queued or being done, by this worker or another."""
+    recent = jobs.list_jobs(lib, kind=JobKind.FIT, limit=RECENT).items
+    return next((job for job in recent if job.state not in ENDED), None)
+
+
+def show_import(job: JobRecord) -> None:
+    """How many files came to what, and every failure with its reason."""
+    result = job.result or {}
+    failures = [entry for entry in result.get("files", []) if entry["outcome"] == "failed"]
+    if result:
+        there = result["ready"] + result["exists"]
+        typer.echo(
+            f"{there} of {result['total']} files are in the library ({result['ready']} new)."
+        )
+    if failures:
+        print_table(
+            ("failed", "why"), [(entry["path"], _reason(entry["error"])) for entry in failures]
+        )
+    if job.error:
+        typer.echo(f"kinedex: {job.error['detail']}", err=True)
+
+
+def _reason(problem: dict[str, Any]) -> str:
+    places = [f"{place['location']}: {place['message']}" for place in problem["errors"]]
+    return " ".join([problem["detail"], *places])

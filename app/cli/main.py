@@ -1,0 +1,69 @@
+"""The program: its commands, and how a failure ends it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app import __version__
+from app.cli import db, demo, evaluate, find, fit, keys, library, serve
+from app.cli.settings import remember
+from app.errors import KinedexError
+
+USAGE_ERROR = 2
+FAILURE = 1
+
+program = typer.Typer(
+    name="kinedex",
+    help="A self-hosted search engine for human motion.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+)
+program.command("serve")(serve.serve)
+program.command("worker")(serve.worker)
+program.command("demo")(demo.demo)
+program.command("import")(library.import_clips)
+program.command("search")(find.search)
+program.command("recognize")(find.recognize)
+program.command("fit")(fit.fit)
+program.add_typer(evaluate.program, name="evaluate")
+program.add_typer(keys.program, name="keys")
+program.add_typer(db.program, name="db")
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"kinedex {__version__}")
+        raise typer.Exit
+
+
+@program.callback()
+def settings(
+    context: typer.Context,
+    data_dir: Annotated[
+        Path | None, typer.Option(help="Directory of the database and files [KINEDEX_DATA_DIR].")
+    ] = None,
+    database_url: Annotated[
+        str | None, typer.Option(help="Database [KINEDEX_DATABASE_URL].")
+    ] = None,
+    _version: Annotated[
+        bool,
+        typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
+    """Flags that every command takes, before its name; all else comes from KINEDEX_*."""
+    remember(context, data_dir=data_dir, database_url=database_url)
+
+
+def main() -> None:
+    """Run the command line; a failure of ours is told in words and ends with status 1."""
+    try:
+        program()
+    except KinedexError as failure:
+        typer.echo(f"kinedex: {failure.detail}", err=True)
+        for place in failure.places:
+            typer.echo(f"  {place.location}: {place.message}", err=True)
+        sys.exit(FAILURE)

@@ -1,0 +1,46 @@
+"""Run the service: API and worker."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from typing import Annotated
+
+import typer
+
+from app.cli.settings import settings_of
+from app.logs import configure_logging
+from app.services.exposure import refuse_exposure_without_keys
+from app.store import schema
+from app.worker.loop import run_worker
+from app.worker.supervisor import supervise
+
+Host = Annotated[str | None, typer.Option(help="Address to listen on [KINEDEX_HOST].")]
+Port = Annotated[int | None, typer.Option(help="Port to listen on [KINEDEX_PORT].")]
+
+
+def serve(
+    context: typer.Context,
+    host: Host = None,
+    port: Port = None,
+    with_worker: Annotated[
+        bool, typer.Option("--worker/--no-worker", help="Whether to run a worker beside the API.")
+    ] = True,
+) -> None:
+    """Serve the API and do the work, until stopped; each process is restarted if it dies."""
+    settings = settings_of(context, host=host, port=port)
+    configure_logging(settings.log_level.upper())
+    settings.data_dir.mkdir(parents=True, exist_ok=True)
+    schema.prepare(settings.database)
+    refuse_exposure_without_keys(settings)
+    raise typer.Exit(supervise(settings, with_worker))
+
+
+def worker(context: typer.Context) -> None:
+    """Do the queued work, until stopped; any number of workers share one library."""
+    settings = settings_of(context)
+    configure_logging(settings.log_level.upper())
+    stop = threading.Event()
+    for sign in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(sign, lambda *_: stop.set())
+    run_worker(settings, stop)

@@ -1,0 +1,32 @@
+"""The settings that a command runs with: its flags over the environment over the file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import typer
+
+from app.config import Settings, load_settings
+from app.services.library import Library
+
+
+def remember(context: typer.Context, **flags: Any) -> None:
+    """Keep the program's own flags for the command that follows."""
+    context.obj = flags
+
+
+def settings_of(context: typer.Context, **flags: Any) -> Settings:
+    """The settings in force; a flag of None counts as not given. Raises ConfigurationError."""
+    return load_settings(**{**(context.obj or {}), **flags})
+
+
+@contextmanager
+def open_library(context: typer.Context) -> Iterator[Library]:
+    """The library of the settings, closed at the end."""
+    library = Library.open(settings_of(context))
+    try:
+        yield library
+    finally:
+        library.close()
