@@ -57,9 +57,9 @@ def dtw_distances(
     if not len(query) or (len(lengths) and not lengths.min()):
         raise ValueError("cannot warp an empty sequence")
     totals = np.empty(len(lengths))
+    centre = query.mean(axis=0)  # differences of small numbers keep more digits
     for chosen in _batches(lengths, len(query)):
-        stacked = _stacked([candidates[i] for i in chosen], query.shape[1])
-        cost = _costs(query, stacked)
+        cost = _costs(query - centre, _stacked([candidates[i] for i in chosen], centre))
         if band is not None:
             _forbid_outside(cost, lengths[chosen], band)
         totals[chosen] = _accumulate(cost, lengths[chosen])
@@ -84,12 +84,12 @@ def _batches(lengths: IntArray, frames: int) -> list[IntArray]:
     return batches
 
 
-def _stacked(candidates: list[FloatArray], dimensions: int) -> FloatArray:
-    """(m, c, d): candidates side by side, zeros after their ends."""
+def _stacked(candidates: list[FloatArray], centre: FloatArray) -> FloatArray:
+    """(m, c, d): candidates side by side, less `centre` (d,), zeros after their ends."""
     longest = max(len(candidate) for candidate in candidates)
-    stacked = np.zeros((longest, len(candidates), dimensions), dtype=np.float32)
+    stacked = np.zeros((longest, len(candidates), len(centre)), dtype=np.float32)
     for index, candidate in enumerate(candidates):
-        stacked[: len(candidate), index] = _as_table(candidate)
+        np.subtract(_as_table(candidate), centre, out=stacked[: len(candidate), index])
     return stacked
 
 
@@ -99,13 +99,12 @@ def _costs(query: FloatArray, stacked: FloatArray) -> FloatArray:
         differences = query[:, :, None] - stacked[None, :, :, 0]
         return np.asarray(np.abs(differences, out=differences))
     frames, count, dimensions = stacked.shape
-    centre = query.mean(axis=0)  # differences of small numbers keep more digits
-    rows, columns = query - centre, stacked.reshape(-1, dimensions) - centre
-    lengths = np.einsum("nd,nd->n", rows, rows)[:, None], np.einsum("kd,kd->k", columns, columns)
-    squares = rows @ (-2.0 * columns.T)
-    squares += lengths[0]
-    squares += lengths[1]
-    _retake_close(squares, rows, columns, TOO_CLOSE * lengths[1])
+    columns = stacked.reshape(-1, dimensions)
+    lengths = np.einsum("kd,kd->k", columns, columns)
+    squares = (-2.0 * query) @ columns.T
+    squares += np.einsum("nd,nd->n", query, query)[:, None]
+    squares += lengths
+    _retake_close(squares, query, columns, TOO_CLOSE * lengths)
     return np.asarray(np.sqrt(squares, out=squares).reshape(len(query), frames, count))
 
 
