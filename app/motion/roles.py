@@ -110,10 +110,9 @@ class _Ancestry:
         good = dict(named)
         for limb in _LIMBS:
             chain = [role for role in limb if role in good]
-            for upper, lower in pairwise(chain):
-                if good[upper] not in self.above(good[lower]):
-                    for role in chain:
-                        good.pop(role, None)
+            if any(good[upper] not in self.above(good[lower]) for upper, lower in pairwise(chain)):
+                for role in chain:
+                    del good[role]
         hips, branching = good.get(_R.HIPS), self._branching(good, _R.LEFT_KNEE)
         if hips is not None and branching is not None and hips not in self.above(branching):
             del good[_R.HIPS]

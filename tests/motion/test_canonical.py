@@ -6,11 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from app.errors import BadField, NotHuman, Unreadable
 from app.motion.canonical import canonicalise
 from app.motion.joint_roles import SUN_ROLES, JointRole
 from app.motion.recording import Caution, Recording
+from app.motion.skeleton import Skeleton
 from tests.people import CONVENTIONS, ROLES, person
 
 R = JointRole
@@ -90,6 +93,34 @@ def test_no_legs_are_no_human() -> None:
     legless = without(person(CONVENTIONS["MotionBuilder"]), "leg", "knee", "foot", "toes")
     with pytest.raises(NotHuman, match="left_knee, right_knee"):
         canonicalise(legless)
+
+
+NAMES = sorted({name for names in CONVENTIONS.values() for name in names.values()})
+
+
+@settings(max_examples=100, deadline=None)
+@given(data=st.data(), frames=st.integers(1, 40), size=st.sampled_from([0.0, 1e-20, 1.0, 1e8]))
+def test_strange_skeletons_end_in_a_motion_or_our_own_failure(
+    data: st.DataObject, frames: int, size: float
+) -> None:
+    names = data.draw(st.lists(st.sampled_from(NAMES), min_size=1, max_size=30))
+    parents = [data.draw(st.integers(-1, joint - 1)) for joint in range(len(names))]
+    rng = np.random.default_rng(data.draw(st.integers(0, 1000)))
+    recording = Recording(
+        format="bvh",
+        skeleton=Skeleton(tuple(names), np.array(parents), size * rng.normal(size=(len(names), 3))),
+        positions=(size * rng.normal(size=(frames, len(names), 3))).astype(np.float32),
+        rotations=None,
+        translations=None,
+        frame_rate=data.draw(st.sampled_from([1.0, 30.0, 2000.0])),
+    )
+    try:
+        motion = canonicalise(recording)
+    except NotHuman:
+        return
+    assert np.isfinite(motion.positions).all()
+    assert len(set(motion.roles.values())) == len(motion.roles)
+    assert motion.role_positions().shape == (frames, 13, 3)
 
 
 @pytest.mark.parametrize("frames", [1, 2, 3])
