@@ -128,10 +128,15 @@ class AnalysisPool:
             reason = f"The analysis failed unexpectedly ({type(surprise).__name__}: {surprise})."
             raise AnalysisCrashed(reason) from surprise
 
+    def rest(self) -> None:
+        """Give back the memory of idle children; the next order starts new ones."""
+        with self._lock:
+            _end(self._pool)
+            self._pool = _new_pool(self.limits, self._size)
+
     def close(self) -> None:
         """Kill the children and wait for them."""
-        self._pool.stop()  # type: ignore[no-untyped-call]
-        self._pool.join()
+        _end(self._pool)
 
 
 def analyse_order(order: Order, limits: Limits) -> Analysis:
@@ -176,6 +181,11 @@ def _new_pool(limits: Limits, size: int) -> pebble.ProcessPool:
         initargs=(limits.memory_mb,),
         context=multiprocessing.get_context("spawn"),
     )
+
+
+def _end(pool: pebble.ProcessPool) -> None:
+    pool.stop()  # type: ignore[no-untyped-call]
+    pool.join()
 
 
 def _begin_child(memory_mb: int) -> None:

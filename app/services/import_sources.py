@@ -86,9 +86,13 @@ def _open_file(path: Path) -> IO[bytes]:
 
 def _left_out(entry: zipfile.ZipInfo) -> bool:
     """Folders, and what macOS and version control leave behind."""
-    parts = PurePosixPath(entry.filename).parts
+    parts = _path_of(entry).parts
     hidden = any(part.startswith(".") and part not in (".", "..") for part in parts)
     return entry.is_dir() or "__MACOSX" in parts or hidden
+
+
+def _path_of(entry: zipfile.ZipInfo) -> PurePosixPath:
+    return PurePosixPath(entry.filename.replace("\\", "/"))
 
 
 def _check_whole(entries: list[zipfile.ZipInfo], size: int, limits: ArchiveLimits) -> None:
@@ -117,7 +121,7 @@ def _open_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> IO[bytes]:
 
 def _entry_problem(entry: zipfile.ZipInfo, limits: ArchiveLimits) -> KinedexError | None:
     where = [Place(entry.filename, "refused")]
-    path = PurePosixPath(entry.filename.replace("\\", "/"))
+    path = _path_of(entry)
     if path.is_absolute() or ".." in path.parts or ":" in (path.parts or ("",))[0]:
         return BadContent("The path leads out of the archive.", places=where)
     if stat.S_ISLNK(entry.external_attr >> 16):

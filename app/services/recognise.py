@@ -85,7 +85,7 @@ def _who_does_what(lib: Library, sample: FloatArray, query: RecogniseQuery) -> R
 
 
 def words_of(lib: Library, statistics: FloatArray) -> WordScores:
-    """The best words for a clip's `symbol_statistics` (79,); none without a word model."""
+    """The best words for a clip's `symbol_statistics` (131,); none without a word model."""
     try:
         model = lib.models.words(lib.store).model
     except ModelNotFitted:

@@ -18,7 +18,7 @@ from app.numerics.arrays import FloatArray
 WIDTH, HEIGHT = 320, 180
 MARGIN = 12.0
 """Pixels left free on each side."""
-POSES = 6
+POSES = 5
 """Figures in a picture; fewer where the clip has fewer frames."""
 
 _R = JointRole

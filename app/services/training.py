@@ -25,7 +25,7 @@ READY = ClipFilter(state=(ClipState.READY,))
 class TrainingSet:
     """N ready clips, sorted by id, at a library version.
 
-    groups: (N,) clips of one recording share a name; symbols: N; statistics: (N, 79);
+    groups: (N,) clips of one recording share a name; symbols: N; statistics: (N, 131);
     samples: (N, 1250).
     """
 
@@ -66,7 +66,7 @@ def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
     return TrainingSet(
         library_version=version,
         clips=tuple(records[clip_id] for clip_id in whole),
-        groups=tuple(recording_of(records[clip_id].file_name) for clip_id in whole),
+        groups=tuple(_recording(records[clip_id]) for clip_id in whole),
         symbols=tuple(
             symbol_from_arrays({name: found[name][clip_id] for name in SYMBOLS})
             for clip_id in whole
@@ -74,6 +74,14 @@ def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
         statistics=_stacked([found["symbol_statistics"][clip_id] for clip_id in whole]),
         samples=_stacked([found["motion_sample"][clip_id] for clip_id in whole]),
     )
+
+
+def _recording(clip: ClipRecord) -> str:
+    """What files of one recording share: their name but for its ending, and their labels.
+
+    The labels are there because libraries call takes of different people by the same name.
+    """
+    return f"{recording_of(clip.file_name)}|{clip.person}|{clip.task}"
 
 
 def _stacked(rows: list[FloatArray]) -> FloatArray:

@@ -70,6 +70,7 @@ class Worker:
         self._running: list[Running] = []
         self._last_beat = time.monotonic()
         self._last_fit_check = 0.0
+        self._expects_work = True
 
     def run(self, stop: threading.Event, until: Callable[[Library], bool] | None = None) -> None:
         """Work until told to stop, or until `until` holds with nothing left to claim."""
@@ -148,16 +149,23 @@ class Worker:
         """Claim what there is room for; whether anything was claimed."""
         has_claimed = False
         while kinds := self._kinds_with_room():
-            with self.lib.store.read() as tx:
-                if not queue.is_work_waiting(tx, kinds):
-                    break
-            with self.lib.store.write() as tx:
-                claimed = queue.take(tx, kinds, self.owner, self.lib.settings.job_lease_s)
+            claimed = self._take(kinds)
             if claimed is None:
                 break
             has_claimed = True
             self._begin(claimed)
         return has_claimed
+
+    def _take(self, kinds: list[JobKind]) -> ClaimedJob | None:
+        """The next job. An idle worker only reads; one that just found work looks for more."""
+        if not self._expects_work:
+            with self.lib.store.read() as tx:
+                if not queue.is_work_waiting(tx, kinds):
+                    return None
+        with self.lib.store.write() as tx:
+            claimed = queue.take(tx, kinds, self.owner, self.lib.settings.job_lease_s)
+        self._expects_work = claimed is not None
+        return claimed
 
     def _kinds_with_room(self) -> list[JobKind]:
         held = [running.claimed.job.kind for running in self._running]
@@ -172,6 +180,8 @@ class Worker:
         return kinds
 
     def _begin(self, claimed: ClaimedJob) -> None:
+        if claimed.job.kind is JobKind.FIT and not self._running:
+            self._bench.rest()
         try:
             self._running.append(self._bench.begin(claimed))
         except KinedexError as problem:

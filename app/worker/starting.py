@@ -37,6 +37,10 @@ class Bench:
             return self._begin_import(claimed)
         return RunningFit(self.lib, claimed, _fit_in_process(self.lib))
 
+    def rest(self) -> None:
+        """Give back the memory of idle analysis processes."""
+        self._analyses.rest()
+
     def close(self) -> None:
         """End all processes and threads."""
         self._analyses.close()
@@ -72,5 +76,11 @@ def _fit_in_process(lib: Library) -> Future[dict[str, Any]]:
         context=multiprocessing.get_context("spawn"),
     )
     future: Future[dict[str, Any]] = pool.schedule(fit_in_child, args=(lib.settings,))
-    pool.close()  # type: ignore[no-untyped-call]
+    # Ended from a thread of its own: the callback runs in one that the end waits for.
+    future.add_done_callback(lambda _: threading.Thread(target=_end, args=(pool,)).start())
     return future
+
+
+def _end(pool: pebble.ProcessPool) -> None:
+    pool.stop()  # type: ignore[no-untyped-call]
+    pool.join()
