@@ -15,8 +15,8 @@ TASKS = ("walk", "wave", "kick")
 
 @pytest.fixture(scope="session")
 def idle_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
-    """The API without a worker: what is uploaded stays queued."""
-    with serve(tmp_path_factory.mktemp("idle") / "data") as live:
+    """The API without a worker: what is uploaded stays queued. Files up to 300,000 bytes."""
+    with serve(tmp_path_factory.mktemp("idle") / "data", max_upload_bytes=300_000) as live:
         yield live
 
 

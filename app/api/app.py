@@ -10,6 +10,7 @@ from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 from fastapi_offline import FastAPIOffline
 
+from app.api.bodies import UploadSlots
 from app.api.docs import STATIC, install_docs
 from app.api.envelope import Envelope
 from app.api.errors import install_handlers
@@ -62,6 +63,7 @@ def create_app(settings: Settings) -> FastAPI:
     )
     app.state.settings = settings
     app.state.library = None
+    app.state.upload_slots = UploadSlots(settings.max_concurrent_uploads)
     install_handlers(app)
     for module in _ROUTES:
         app.include_router(module.router)

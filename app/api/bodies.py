@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import errno
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from fastapi import Request
@@ -17,7 +18,7 @@ from pydantic import BaseModel, ValidationError
 from starlette.datastructures import FormData, UploadFile
 from starlette.exceptions import HTTPException
 
-from app.api.problems import MalformedBody, UnsupportedMediaType
+from app.api.problems import MalformedBody, TooBusy, UnsupportedMediaType
 from app.errors import BadField, DiskFull, Place
 
 MOST_FIELDS = 32
@@ -26,6 +27,24 @@ LONGEST_FIELD = 64 * 2**10
 """Bytes of one text field; a role mapping of a hundred joints needs about four thousand."""
 
 Model = TypeVar("Model", bound=BaseModel)
+
+
+class UploadSlots:
+    """How many forms may be received at once; used by one event loop only, so no lock."""
+
+    def __init__(self, most: int) -> None:
+        self._free = most
+
+    @contextmanager
+    def one(self) -> Iterator[None]:
+        """Hold a slot for the block. Raises TooBusy where none is free."""
+        if not self._free:
+            raise TooBusy
+        self._free -= 1
+        try:
+            yield
+        finally:
+            self._free += 1
 
 
 def media_type(request: Request) -> str:
@@ -68,11 +87,13 @@ async def read_form(
     """A multipart body: its text fields as `model`, and the files among `files` that came.
 
     The files stay open until the request has been answered.
-    Raises UnsupportedMediaType, MalformedBody, BadField, RequestValidationError, DiskFull.
+    Raises UnsupportedMediaType, MalformedBody, BadField, RequestValidationError, DiskFull,
+    TooBusy.
     """
     if media_type(request) != "multipart/form-data":
         raise UnsupportedMediaType("This call takes multipart/form-data.")
-    form = await _parse(request)
+    with request.app.state.upload_slots.one():
+        form = await _parse(request)
     # FastAPI closes this stack after the answer; the files are temporary ones.
     request.scope["fastapi_middleware_astack"].push_async_callback(form.close)
     texts, uploads = _sort(form, set(files))

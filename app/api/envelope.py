@@ -8,6 +8,7 @@ import time
 import uuid
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.errors import answer_unexpected
@@ -24,6 +25,8 @@ SECURITY_HEADERS = {
     "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'; base-uri 'none'",
 }
 """Sent with every answer; an answer that needs another policy sets its own."""
+LEFT = 499
+"""Logged, in nginx's way, where the client left before it had sent its body."""
 
 
 class Envelope:
@@ -57,6 +60,8 @@ class Envelope:
 
         try:
             await self.app(scope, receive, send_with_headers)
+        except ClientDisconnect:
+            status = LEFT
         except Exception as error:  # noqa: BLE001 - the last net: nothing may pass it
             response = answer_unexpected(error)
             if not status:

@@ -11,6 +11,8 @@ from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 
 from app.api.problems import (
+    NotReadyYet,
+    TooBusy,
     problem,
     problem_of,
     problem_of_http,
@@ -21,6 +23,8 @@ from app.api.problems import (
 from app.errors import BadField, DiskFull, KinedexError, Place, Unauthorized
 
 log = logging.getLogger(__name__)
+
+RETRY_AFTER_SECONDS = "1"
 
 
 def install_handlers(app: FastAPI) -> None:
@@ -43,10 +47,17 @@ async def _on_failure(request: Request, error: Exception) -> Response:
     failure = cast(KinedexError, error)
     if isinstance(failure, BadField):
         failure = _located(failure, "query" if request.method == "GET" else "body")
-    if status_of(type(failure)) >= 500:
+    if status_of(type(failure)) >= 500 and not isinstance(failure, (NotReadyYet, TooBusy)):
         log.error("failure: %s", failure.detail, exc_info=failure)
-    asks = {"WWW-Authenticate": "Bearer"} if isinstance(failure, Unauthorized) else None
-    return respond(problem_of(failure), asks)
+    return respond(problem_of(failure), _headers(failure))
+
+
+def _headers(failure: KinedexError) -> dict[str, str]:
+    if isinstance(failure, Unauthorized):
+        return {"WWW-Authenticate": "Bearer"}
+    if isinstance(failure, (NotReadyYet, TooBusy)):
+        return {"Retry-After": RETRY_AFTER_SECONDS}
+    return {}
 
 
 def _located(failure: BadField, part: str) -> BadField:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from fastapi import FastAPI
+from fastapi.responses import PlainTextResponse
 from prometheus_client import CollectorRegistry
 from prometheus_fastapi_instrumentator import Instrumentator
 
 from app.api.deps import reads
+from app.api.openapi import refusals
 
 
 def install_metrics(app: FastAPI) -> None:
@@ -16,4 +18,10 @@ def install_metrics(app: FastAPI) -> None:
         registry=registry, excluded_handlers=["/metrics", "/livez", "/readyz"]
     )
     instrumentator.instrument(app)
-    instrumentator.expose(app, tags=["service"], dependencies=[reads])
+    instrumentator.expose(
+        app,
+        tags=["service"],
+        dependencies=[reads],
+        response_class=PlainTextResponse,
+        responses={status: refusals()[status] for status in (401, 403)},
+    )

@@ -25,7 +25,7 @@ _DESCRIPTIONS = {
     415: "Content or media type that is not known here",
     422: "A field is wrong, or a file that cannot be used",
     500: "Something went wrong; the log tells what",
-    503: "The service is starting",
+    503: "The service is starting, or too busy for another upload",
     507: "There is no space left; nothing was kept",
 }
 _EVERYWHERE = (401, 403, 422, 500)

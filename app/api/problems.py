@@ -28,6 +28,12 @@ class NotReadyYet(KinedexError):
     code = "not_ready"
 
 
+class TooBusy(KinedexError):
+    """Too many uploads are being received at once; try again shortly."""
+
+    code = "too_busy"
+
+
 class MalformedBody(KinedexError):
     """The body cannot be read as what its Content-Type says."""
 
@@ -56,6 +62,7 @@ STATUSES: dict[type[KinedexError], int] = {
     errors.ConfigurationError: 500,
     KinedexError: 500,
     NotReadyYet: 503,
+    TooBusy: 503,
     errors.DiskFull: 507,
 }
 """HTTP status by failure; a class that is not listed has its nearest ancestor's."""

@@ -12,7 +12,7 @@ import httpx2
 import pytest
 
 from tests.api.conftest import assert_problem
-from tests.live import Live, serve
+from tests.live import Live
 
 SEARCH, WORDS, RECOGNIZE = "/v1/search/motion", "/v1/search/words", "/v1/recognize"
 
@@ -227,43 +227,36 @@ def test_no_model_yet(idle: httpx2.Client) -> None:
     assert_problem(answer, 409, "model_not_fitted")
 
 
-@pytest.fixture(scope="module")
-def small(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """A service that takes files of a thousand bytes."""
-    with serve(tmp_path_factory.mktemp("small") / "data", max_upload_bytes=1000) as live:
-        yield live
-
-
-def test_a_file_over_the_limit(small: Live) -> None:
-    with small.client() as client:
+def test_a_file_over_the_limit(idle_service: Live) -> None:
+    with idle_service.client() as client:
         for path in ("/v1/clips", SEARCH):
-            files = {"file": ("a.bvh", b"HIERARCHY\n" * 200)}
+            files = {"file": ("too large.bvh", b"HIERARCHY\n" * 40_000)}
             assert_problem(client.post(path, files=files), 413, "too_large")
-        assert client.get("/v1/clips").json()["items"] == []
-    assert _stored_files(small.data_dir) == []
+        assert client.get("/v1/clips", params={"q": "too large"}).json()["items"] == []
+    assert _temporary_files(idle_service.data_dir) == []
 
 
-def test_a_body_over_the_limit_is_refused_by_its_length(small: Live) -> None:
-    with small.client() as client:
+def test_a_body_over_the_limit_is_refused_by_its_length(idle_service: Live) -> None:
+    with idle_service.client() as client:
         files = {"file": ("a.bvh", b"x" * 3_000_000)}
         assert_problem(client.post("/v1/clips", files=files), 413, "too_large")
         answer = client.post(WORDS, content=b" " * 2_000_000)
         assert_problem(answer, 413, "too_large")
 
 
-def test_a_body_over_the_limit_is_refused_while_it_streams(small: Live) -> None:
-    with small.client() as client:
+def test_a_body_over_the_limit_is_refused_while_it_streams(idle_service: Live) -> None:
+    with idle_service.client() as client:
         for path in ("/v1/clips", WORDS):
             kind = "multipart/form-data; boundary=x" if path == "/v1/clips" else "application/json"
             head = b'--x\r\nContent-Disposition: form-data; name="file"; filename="a"\r\n\r\n'
             chunks = (chunk for chunk in [head, *[b"y" * 100_000] * 40])
             answer = client.post(path, content=chunks, headers={"Content-Type": kind})
             assert_problem(answer, 413, "too_large")
-    assert _stored_files(small.data_dir) == []
+    assert _temporary_files(idle_service.data_dir) == []
 
 
-def test_who_waits_for_a_go_ahead_need_not_send_the_body(small: Live) -> None:
-    address = urlsplit(small.url)
+def test_who_waits_for_a_go_ahead_need_not_send_the_body(idle_service: Live) -> None:
+    address = urlsplit(idle_service.url)
     with socket.create_connection((address.hostname or "", address.port or 0), timeout=10) as line:
         line.sendall(
             b"POST /v1/clips HTTP/1.1\r\nHost: x\r\nContent-Type: multipart/form-data\r\n"
@@ -272,5 +265,5 @@ def test_who_waits_for_a_go_ahead_need_not_send_the_body(small: Live) -> None:
         assert line.recv(4096).startswith(b"HTTP/1.1 413")
 
 
-def _stored_files(data_dir: Path) -> list[Path]:
-    return [path for path in (data_dir / "files").rglob("*") if path.is_file()]
+def _temporary_files(data_dir: Path) -> list[Path]:
+    return list((data_dir / "files" / "tmp").iterdir())

@@ -35,7 +35,7 @@ async def _form(request: Request) -> tuple[ClipForm, dict[str, UploadFile]]:
     dependencies=[writes],
     responses={
         200: {"model": ClipCreated, "description": "The same bytes were stored before."},
-        **refusals(400, 413, 415, 507),
+        **refusals(400, 413, 415, 503, 507),
     },
     openapi_extra=body(form=ClipForm, files=FILES, needed=["file"]),
 )

@@ -28,7 +28,7 @@ async def _form(request: Request) -> UploadFile:
     "",
     status_code=202,
     dependencies=[writes],
-    responses=refusals(400, 413, 415, 507),
+    responses=refusals(400, 413, 415, 503, 507),
     openapi_extra=body(form=ImportForm, files=FILES, needed=["archive"]),
 )
 def start_import(lib: Lib, archive: Annotated[UploadFile, Depends(_form)]) -> JobStarted:

@@ -49,7 +49,7 @@ async def _query(request: Request) -> RecogniseQuery:
 @router.post(
     "",
     dependencies=[reads],
-    responses=refusals(400, 404, 409, 413, 415, 507),
+    responses=refusals(400, 404, 409, 413, 415, 503, 507),
     openapi_extra=body(model=Recognize, examples=_EXAMPLES, form=RecognizeForm, files=QUERY_FILES),
 )
 def recognize(lib: Lib, query: Annotated[RecogniseQuery, Depends(_query)]) -> Recognition:

@@ -79,7 +79,7 @@ async def _uploaded_query(request: Request) -> MotionQuery:
 @router.post(
     "/motion",
     dependencies=[reads],
-    responses=refusals(400, 404, 409, 413, 415, 507),
+    responses=refusals(400, 404, 409, 413, 415, 503, 507),
     openapi_extra=body(
         model=MotionSearch,
         examples=_MOTION_EXAMPLES,

@@ -1,0 +1,79 @@
+"""The last net: what nobody foresaw is logged with its request, and told to nobody."""
+
+from __future__ import annotations
+
+import asyncio
+import errno
+import json
+import logging
+from typing import Any
+
+import pytest
+from starlette.requests import ClientDisconnect
+from starlette.types import Message, Receive, Scope, Send
+
+from app.api.bodies import UploadSlots
+from app.api.envelope import Envelope
+from app.api.problems import TooBusy
+from app.logs import JsonFormatter, request_id
+
+
+def _call(error: Exception) -> tuple[list[Message], list[str]]:
+    """What is sent, and logged as JSON, when the application raises `error`."""
+    sent: list[Message] = []
+    lines: list[str] = []
+
+    async def application(scope: Scope, receive: Receive, send: Send) -> None:
+        raise error
+
+    async def receive() -> Message:
+        return {"type": "http.request", "body": b"", "more_body": False}
+
+    async def send(message: Message) -> None:
+        sent.append(message)
+
+    handler = logging.Handler()
+    handler.emit = lambda record: lines.append(JsonFormatter().format(record))  # type: ignore[method-assign]
+    logger = logging.getLogger("app.api")
+    logger.addHandler(handler)
+    scope = {"type": "http", "method": "GET", "path": "/x", "headers": [(b"x-request-id", b"r1")]}
+    try:
+        asyncio.run(Envelope(application)(scope, receive, send))
+    finally:
+        logger.removeHandler(handler)
+    return sent, lines
+
+
+def _problem(sent: list[Message]) -> dict[str, Any]:
+    told: dict[str, Any] = json.loads(sent[1]["body"])
+    return told
+
+
+def test_an_unexpected_exception_is_a_500_without_its_text() -> None:
+    sent, lines = _call(RuntimeError("the secret of /etc"))
+    assert sent[0]["status"] == 500
+    assert _problem(sent)["code"] == "internal"
+    assert "secret" not in str(sent)
+    (line,) = [told for told in map(json.loads, lines) if "exception" in told]
+    assert "the secret of /etc" in line["exception"]
+    assert line["request_id"] == "r1"
+    assert request_id.get() is None
+
+
+def test_a_full_disk_is_a_507() -> None:
+    sent, _ = _call(OSError(errno.ENOSPC, "No space left"))
+    assert (sent[0]["status"], _problem(sent)["code"]) == (507, "disk_full")
+
+
+def test_who_leaves_is_no_error() -> None:
+    sent, lines = _call(ClientDisconnect())
+    assert sent == []
+    assert [json.loads(line)["level"] for line in lines] == ["info"] * len(lines)
+
+
+def test_uploads_at_once_are_counted() -> None:
+    slots = UploadSlots(1)
+    with slots.one(), pytest.raises(TooBusy), slots.one():
+        pass
+    with slots.one():
+        pass
