@@ -68,9 +68,6 @@ class Settings(BaseSettings):
     max_concurrent_uploads: int = Field(
         16, ge=1, description="Uploads received at once; more are answered 503 with Retry-After."
     )
-    rate_limit_per_minute: int = Field(
-        0, ge=0, description="Requests a minute for each key (or address); 0 is no limit."
-    )
     query_timeout_s: float = Field(
         30.0, gt=0, description="Seconds that analysing an uploaded query may take."
     )
