@@ -67,7 +67,7 @@ def _records(text: str) -> Iterator[tuple[int, dict[str, str]]]:
                 tidy = {k: (v or "").strip() for k, v in record.items() if isinstance(k, str)}
                 yield reader.line_num, tidy
     except csv.Error as problem:
-        raise _unreadable(reader.line_num, str(problem)) from problem
+        raise _unreadable(reader.reader.line_num, str(problem)) from problem
 
 
 def _row(line: int, record: dict[str, str]) -> ManifestRow:

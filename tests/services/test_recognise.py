@@ -1,0 +1,82 @@
+"""Who does what in which words, by models that a worker has fitted."""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+
+from app.errors import BadField, ModelNotFitted
+from app.services import models, recognise
+from app.services.demo import DemoClip
+from app.services.library import Library
+from app.services.recognise import METHODS, RecogniseQuery
+from app.store.job_record import JobKind, JobState
+from app.store.jobs import list_jobs
+from tests.services.conftest import FindClip, upload, work
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_stored_clip_is_recognised(
+    ready_library: Library, clip_of: FindClip, method: str
+) -> None:
+    asked = RecogniseQuery(clip_of("ada", "wave").id, method=method)
+    found = recognise.recognise(ready_library, asked)
+    assert found.task.candidates[0].label == "wave"
+    assert found.person.candidates[0].label == "ada"
+    scores = [score for _, score in found.words]
+    assert "wave" in dict(found.words)
+    assert scores == sorted(scores, reverse=True)
+
+
+def test_what_is_known_is_taken_as_given(ready_library: Library, clip_of: FindClip) -> None:
+    asked = RecogniseQuery(clip_of("ada", "wave").id, known_person="ada", known_task=" wave ")
+    found = recognise.recognise(ready_library, asked)
+    assert (found.person.label, found.task.label) == ("ada", "wave")
+
+
+def test_an_upload_is_recognised_as_its_stored_twin(
+    ready_library: Library, some_demo_clips: list[DemoClip], clip_of: FindClip
+) -> None:
+    demo = next(c for c in some_demo_clips if (c.person, c.task) == ("chika", "bow"))
+    theirs = recognise.recognise(ready_library, RecogniseQuery(content=io.BytesIO(demo.content)))
+    ours = recognise.recognise(ready_library, RecogniseQuery(clip_of("chika", "bow").id))
+    assert theirs.task.candidates[0].label == ours.task.candidates[0].label == "bow"
+    assert theirs.words[0] == pytest.approx(ours.words[0])
+
+
+def test_another_method_is_refused(ready_library: Library, clip_of: FindClip) -> None:
+    with pytest.raises(BadField, match="method"):
+        recognise.recognise(ready_library, RecogniseQuery(clip_of("ada", "bow").id, method="x"))
+
+
+def test_models_tell_what_they_were_fitted_on_and_how_good_they_are(
+    ready_library: Library,
+) -> None:
+    fitted = {record.kind: record for record in models.list_models(ready_library)}
+    assert set(fitted) == {"words", "recogniser", "multilinear"}
+    assert {record.library_size for record in fitted.values()} == {12}
+    words = {row["method"]: row for row in fitted["words"].meta["figures"]["figures"]}
+    assert words["default"]["top_3_recognition"] >= words["prior"]["top_3_recognition"]
+    assert "default" in fitted["recogniser"].meta["figures"]["held_out"]
+
+
+def test_what_cannot_be_fitted_is_skipped_with_its_reason(
+    lib: Library, some_demo_clips: list[DemoClip]
+) -> None:
+    for demo in some_demo_clips[:3]:
+        upload(lib, demo, person=None, task=None)
+    job = models.request_fit(lib)
+    assert models.request_fit(lib).id == job.id
+    work(lib.settings)
+    with lib.store.read() as tx:
+        (done,) = list_jobs(tx, kind=JobKind.FIT).items
+    assert done.state is JobState.SUCCEEDED
+    assert done.result is not None
+    outcomes = done.result["models"]
+    assert outcomes["words"]["outcome"] == "fitted"
+    assert outcomes["recogniser"]["outcome"] == outcomes["multilinear"]["outcome"] == "skipped"
+    assert outcomes["recogniser"]["reason"]
+    clip = upload(lib, some_demo_clips[0]).clip
+    with pytest.raises(ModelNotFitted):
+        recognise.recognise(lib, RecogniseQuery(clip.id))

@@ -1,0 +1,100 @@
+"""What can be seen of a ready clip."""
+
+from __future__ import annotations
+
+import io
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from app.errors import BadField, ClipNotFound, ClipNotReady
+from app.motion.joint_roles import SUN_ROLES
+from app.services import clips, views
+from app.services.clips import NewClip
+from app.services.library import Library
+from app.services.thumbnail import thumbnail
+from tests.services.conftest import FindClip
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def test_the_motion_is_told_whole_or_by_roles_at_any_rate(
+    ready_library: Library, clip_of: FindClip
+) -> None:
+    clip = clip_of("ada", "walk")
+    whole = views.motion(ready_library, clip.id)
+    assert whole.positions.shape == (clip.frames, clip.joints, 3)
+    assert whole.frame_rate == clip.frame_rate
+    assert whole.parents[0] == -1
+    assert all(parent < joint for joint, parent in enumerate(whole.parents))
+    roles = views.motion(ready_library, clip.id, fps=10.0, joints="roles")
+    assert roles.joint_names == tuple(SUN_ROLES)
+    assert roles.positions.shape[1:] == (13, 3)
+    assert clip.duration is not None
+    assert abs(len(roles.positions) - 10 * clip.duration) <= 1
+    hips = whole.joint_names.index(clip.roles["hips"])
+    assert np.allclose(roles.positions[0, 4], whole.positions[0, hips], atol=0.02)
+
+
+def test_keyposes_come_with_their_poses(ready_library: Library, clip_of: FindClip) -> None:
+    view = views.keyposes(ready_library, clip_of("ada", "kick").id)
+    assert view.poses.shape == (len(view.found.frames), 13, 3)
+    strict = views.keyposes(ready_library, clip_of("ada", "kick").id, "printed", t1=1e-6, t2=99.0)
+    assert len(strict.found.frames) == 0
+
+
+def test_the_descriptor_is_what_searches_compare(ready_library: Library, clip_of: FindClip) -> None:
+    found = views.descriptor(ready_library, clip_of("ada", "walk").id)
+    assert found.motion_vector.shape == (128,)
+    assert found.msv_rho.shape == (13,)
+    assert np.linalg.norm(found.msv_rho) == pytest.approx(1, abs=1e-5)
+    assert found.symbol_means.shape == found.symbol_variances.shape == (found.symbol_states, 26)
+    assert found.analysis_version >= 1
+
+
+def test_the_picture_shows_a_few_figures_and_nothing_active(
+    ready_library: Library, clip_of: FindClip
+) -> None:
+    picture = ElementTree.fromstring(views.thumbnail_svg(ready_library, clip_of("ada", "walk").id))
+    assert (picture.get("width"), picture.get("height")) == ("320", "180")
+    heads = list(picture.iter(f"{SVG}circle"))
+    assert 3 <= len(heads) <= 8
+    assert all(0 < float(h.get("cx", -1)) < 320 and 0 < float(h.get("cy", -1)) < 180 for h in heads)
+    assert {e.tag.removeprefix(SVG) for e in picture.iter()} == {
+        *("svg", "title", "rect", "path", "g", "circle")
+    }
+
+
+@pytest.mark.parametrize("frames", [1, 2, 50])
+def test_any_motion_has_a_picture(frames: int) -> None:
+    still = np.zeros((frames, 13, 3), dtype=np.float32)
+    ElementTree.fromstring(thumbnail(still, "<script>&\x00\ud800"))
+
+
+@pytest.mark.parametrize(
+    ("call", "location"),
+    [
+        (lambda lib, clip: views.motion(lib, clip, fps=0), "fps"),
+        (lambda lib, clip: views.motion(lib, clip, joints="some"), "joints"),
+        (lambda lib, clip: views.keyposes(lib, clip, method="best"), "method"),
+        (lambda lib, clip: views.keyposes(lib, clip, t1=float("nan")), "t1"),
+    ],
+)
+def test_a_wrong_field_is_named(
+    ready_library: Library, clip_of: FindClip, call: object, location: str
+) -> None:
+    with pytest.raises(BadField) as refused:
+        call(ready_library, clip_of("ada", "walk").id)  # type: ignore[operator]
+    assert refused.value.places[0].location == location
+
+
+@pytest.mark.parametrize(
+    "view", [views.motion, views.keyposes, views.descriptor, views.thumbnail_svg]
+)
+def test_only_ready_clips_can_be_seen(lib: Library, view: object) -> None:
+    queued = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), NewClip("a.bvh")).clip
+    with pytest.raises(ClipNotReady):
+        view(lib, queued.id)  # type: ignore[operator]
+    with pytest.raises(ClipNotFound):
+        view(lib, "clip_none")  # type: ignore[operator]

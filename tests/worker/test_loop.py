@@ -1,0 +1,256 @@
+"""Workers that are killed, stopped, raced and cancelled: every clip still ends once."""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+import zipfile
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import psutil
+import pytest
+
+from app.config import Settings
+from app.errors import LeaseLost
+from app.services import clips, imports, jobs, models
+from app.services.demo import DemoClip, demo_clips
+from app.services.library import Library
+from app.store.clip_record import ClipRecord, ClipState
+from app.store.job_record import JobKind, JobRecord, JobState
+from app.worker.loop import Worker, run_worker
+from tests.services.conftest import settings_for, upload, work
+
+SHORT_LEASES = {"job_lease_s": 1.0, "job_heartbeat_s": 0.2}
+
+
+@pytest.fixture
+def lib(tmp_path: Path) -> Iterator[Library]:
+    opened = Library.open(settings_for(tmp_path, **SHORT_LEASES, analysis_processes=2))
+    yield opened
+    opened.close()
+
+
+@pytest.fixture(scope="session")
+def kicks() -> list[DemoClip]:
+    return list(demo_clips(tasks=("kick",), takes=3))
+
+
+def _archive(demo: list[DemoClip]) -> io.BytesIO:
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w") as archive:
+        for clip in demo:
+            archive.writestr(clip.path, clip.content)
+        archive.writestr("bad.bvh", b"HIERARCHY\nROOT\n")
+        archive.writestr("notes.txt", b"not a motion")
+    made.seek(0)
+    return made
+
+
+@contextmanager
+def _worker_process(settings: Settings) -> Iterator[subprocess.Popen[bytes]]:
+    environ = os.environ | {
+        "KINEDEX_DATA_DIR": str(settings.data_dir),
+        "KINEDEX_JOB_LEASE_S": str(settings.job_lease_s),
+        "KINEDEX_JOB_HEARTBEAT_S": str(settings.job_heartbeat_s),
+        "KINEDEX_ANALYSIS_PROCESSES": str(settings.analysis_processes),
+        "KINEDEX_LOG_LEVEL": "error",
+    }
+    process = subprocess.Popen([sys.executable, "-m", "app.worker"], env=environ)
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+def _all_clips(lib: Library) -> list[ClipRecord]:
+    return list(clips.list_clips(lib, limit=1000).items)
+
+
+def _ended(lib: Library) -> int:
+    return sum(c.state in (ClipState.READY, ClipState.FAILED) for c in _all_clips(lib))
+
+
+def _wait_until(condition: object, seconds: float = 60.0) -> None:
+    deadline = time.monotonic() + seconds
+    while not condition():  # type: ignore[operator]
+        if time.monotonic() > deadline:
+            raise TimeoutError
+        time.sleep(0.02)
+
+
+def _kill_in_the_middle(lib: Library) -> None:
+    """Start a worker, let it end another clip or two, then kill it without warning."""
+    before = _ended(lib)
+    with _worker_process(lib.settings) as process:
+        _wait_until(lambda: _ended(lib) > before or not _is_open(lib))
+        children = psutil.Process(process.pid).children(recursive=True)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    _, alive = psutil.wait_procs(children, timeout=10)
+    assert not alive
+
+
+def _is_open(lib: Library) -> bool:
+    return any(job.is_open for job in jobs.list_jobs(lib, limit=1000).items)
+
+
+def _check_that_all_ended_once(lib: Library, demo: list[DemoClip], job: JobRecord) -> None:
+    found = _all_clips(lib)
+    assert len({clip.sha256 for clip in found}) == len(found) == len(demo) + 1
+    assert Counter(clip.state for clip in found) == {
+        ClipState.READY: len(demo),
+        ClipState.FAILED: 1,
+    }
+    (failed,) = (clip for clip in found if clip.state is ClipState.FAILED)
+    assert failed.error is not None
+    assert failed.error["code"] == "unreadable"
+    done = jobs.get_job(lib, job.id)
+    assert done.state is JobState.SUCCEEDED
+    assert done.result is not None
+    outcomes = Counter(line["outcome"] for line in done.result["files"])
+    assert outcomes == {"ready": len(demo), "failed": 2}
+    ingests = jobs.list_jobs(lib, kind=JobKind.INGEST, limit=1000).items
+    assert Counter(j.state for j in ingests) == {JobState.SUCCEEDED: len(demo), JobState.FAILED: 1}
+
+
+def _work_to_the_end(lib: Library) -> None:
+    run_worker(lib.settings, threading.Event(), until=lambda _: not _is_open(lib))
+
+
+def test_every_clip_of_an_import_ends_once_though_its_worker_is_killed(
+    lib: Library, kicks: list[DemoClip]
+) -> None:
+    job = imports.start_import(lib, _archive(kicks), "kicks.zip")
+    for _ in range(2):
+        _kill_in_the_middle(lib)
+    _work_to_the_end(lib)
+    _check_that_all_ended_once(lib, kicks, job)
+
+
+@pytest.mark.slow
+def test_every_clip_ends_once_though_its_worker_is_killed_ten_times(lib: Library) -> None:
+    demo = list(demo_clips(tasks=("kick", "bow", "punch"), takes=3))
+    job = imports.start_import(lib, _archive(demo), "many.zip")
+    for _ in range(10):
+        _kill_in_the_middle(lib)
+    _work_to_the_end(lib)
+    _check_that_all_ended_once(lib, demo, job)
+
+
+def test_a_stopped_worker_gives_back_what_it_had(lib: Library, kicks: list[DemoClip]) -> None:
+    for clip in kicks[:4]:
+        upload(lib, clip)
+    worker = Worker(lib)
+    assert worker._claim_all()
+    held = [r.claimed for r in worker._running]
+    worker.close()
+    assert held
+    states = {jobs.get_job(lib, claimed.job.id).state for claimed in held}
+    assert states == {JobState.QUEUED}
+    assert {clip.state for clip in _all_clips(lib)} == {ClipState.QUEUED}
+    work(lib.settings)
+    assert {clip.state for clip in _all_clips(lib)} == {ClipState.READY}
+
+
+def test_sigterm_ends_a_worker_process_cleanly(lib: Library, kicks: list[DemoClip]) -> None:
+    for clip in kicks:
+        upload(lib, clip)
+    with _worker_process(lib.settings) as process:
+        _wait_until(lambda: _ended(lib) > 0)
+        process.terminate()
+        assert process.wait(20) == 0
+    open_states = {j.state for j in jobs.list_jobs(lib, limit=100).items if j.is_open}
+    assert open_states <= {JobState.QUEUED}
+
+
+def test_a_clip_deleted_while_it_is_analysed_stays_deleted(
+    lib: Library, kicks: list[DemoClip]
+) -> None:
+    clip = upload(lib, kicks[0]).clip
+    worker = Worker(lib)
+    worker._claim_all()
+    clips.delete_clip(lib, clip.id)
+    _until_settled(worker)
+    worker.close()
+    assert _all_clips(lib) == []
+
+
+def test_a_frame_rate_changed_during_the_analysis_wins(lib: Library, kicks: list[DemoClip]) -> None:
+    clip = upload(lib, kicks[0]).clip
+    worker = Worker(lib)
+    worker._claim_all()
+    clips.update_clip(lib, clip.id, {"frame_rate": 21.0})
+    _until_settled(worker)
+    worker.close()
+    assert clips.get_clip(lib, clip.id).state is ClipState.QUEUED
+    work(lib.settings)
+    assert clips.get_clip(lib, clip.id).frame_rate == 21.0
+
+
+def test_a_cancelled_analysis_fails_its_clip_and_says_so(
+    lib: Library, kicks: list[DemoClip]
+) -> None:
+    created = upload(lib, kicks[0])
+    assert created.job is not None
+    jobs.cancel_job(lib, created.job.id)
+    work(lib.settings)
+    clip = clips.get_clip(lib, created.clip.id)
+    assert clip.state is ClipState.FAILED
+    assert clip.error is not None
+    assert clip.error["code"] == "canceled"
+    assert upload(lib, kicks[0]).is_new
+
+
+def test_a_worker_that_lost_its_lease_changes_nothing(lib: Library, kicks: list[DemoClip]) -> None:
+    upload(lib, kicks[0])
+    slow = Worker(lib)
+    slow._claim_all()
+    (running,) = slow._running
+    running.future.result()
+    time.sleep(lib.settings.job_lease_s + 0.1)
+    work(lib.settings)
+    with pytest.raises(LeaseLost):
+        running.settle()
+    slow._settle_finished()
+    slow.close()
+    assert [clip.state for clip in _all_clips(lib)] == [ClipState.READY]
+
+
+def test_a_library_that_has_grown_is_fitted_unasked_and_only_then(
+    lib: Library, kicks: list[DemoClip]
+) -> None:
+    for clip in kicks[:10]:
+        upload(lib, clip)
+    work(lib.settings)
+    with lib.store.read() as tx:
+        assert models.is_fit_due(tx, 0.1)
+        assert not models.is_fit_due(tx, 1.1)
+    models.request_fit(lib)
+    with lib.store.read() as tx:
+        assert not models.is_fit_due(tx, 0.1)
+    work(lib.settings)
+    with lib.store.read() as tx:
+        assert not models.is_fit_due(tx, 0.1)
+    some = _all_clips(lib)
+    clips.update_clip(lib, some[0].id, {"task": "another"})
+    with lib.store.read() as tx:
+        assert models.is_fit_due(tx, 0.1)
+        assert not models.is_fit_due(tx, 0.2)
+    clips.delete_clip(lib, some[1].id)
+    with lib.store.read() as tx:
+        assert not models.is_fit_due(tx, 0.2)  # nine clips are too few to fit unasked
+
+
+def _until_settled(worker: Worker) -> None:
+    while worker._running:
+        worker._settle_finished()
+        time.sleep(0.02)

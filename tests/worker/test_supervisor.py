@@ -1,0 +1,110 @@
+"""The supervisor keeps processes running, gives up on hopeless ones, and takes all down."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import psutil
+import pytest
+
+from app.config import Settings
+from app.worker import supervisor
+from app.worker.supervisor import Kept, environment, keep_running
+
+SLEEPER = "import os, sys, time; open(sys.argv[1], 'a').write(f'{os.getpid()}\\n'); time.sleep(60)"
+
+
+def _kept(log: Path) -> Kept:
+    return Kept("sleeper", ("-c", SLEEPER, str(log)))
+
+
+def _pids(log: Path) -> list[int]:
+    return [int(line) for line in log.read_text().splitlines()] if log.exists() else []
+
+
+def _wait_until(condition: Callable[[], bool], seconds: float = 20.0) -> None:
+    deadline = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < deadline, "waited in vain"
+        time.sleep(0.02)
+
+
+def test_a_process_that_is_killed_is_started_again_and_ended_with_the_rest(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(supervisor, "FIRST_DELAY_S", 0.05)
+    log, stop, codes = tmp_path / "pids", threading.Event(), []
+    kept = [_kept(log)]
+    thread = threading.Thread(
+        target=lambda: codes.append(keep_running(kept, dict(os.environ), stop))
+    )
+    thread.start()
+    _wait_until(lambda: len(_pids(log)) == 1)
+    os.kill(_pids(log)[0], signal.SIGKILL)
+    _wait_until(lambda: len(_pids(log)) == 2)
+    stop.set()
+    thread.join(20)
+    assert codes == [0]
+    assert not any(psutil.pid_exists(pid) for pid in _pids(log))
+
+
+def test_a_process_that_cannot_start_ends_the_whole(tmp_path: Path) -> None:
+    hopeless = Kept("hopeless", ("-c", "import sys, time; time.sleep(1); sys.exit(3)"))
+    log = tmp_path / "pids"
+    assert keep_running([_kept(log), hopeless], dict(os.environ), threading.Event()) == 3
+    assert not any(psutil.pid_exists(pid) for pid in _pids(log))
+
+
+def test_one_that_dies_young_waits_longer_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    one = Kept("dier", ("-c", "import os; os.kill(os.getpid(), 9)"))
+    delays = []
+    for _ in range(3):
+        one.next_start = 0.0
+        assert supervisor._look_after(one, dict(os.environ)) is None
+        assert one.process is not None
+        one.process.wait()
+        delays.append(one.delay)
+        assert supervisor._look_after(one, dict(os.environ)) is None
+    assert delays == [0.5, 1.0, 2.0]
+
+
+SUPERVISOR = """
+import os, sys, threading
+from pathlib import Path
+from app.worker.supervisor import Kept, keep_running
+keep_running([Kept("sleeper", ("-c", sys.argv[2], sys.argv[1]))], dict(os.environ), threading.Event())
+"""
+
+
+def test_a_killed_supervisor_leaves_nothing_behind(tmp_path: Path) -> None:
+    log = tmp_path / "pids"
+    command = [sys.executable, "-c", SUPERVISOR, str(log), SLEEPER]
+    with subprocess.Popen(command) as process:
+        _wait_until(lambda: len(_pids(log)) == 1)
+        process.kill()
+    _wait_until(lambda: not _is_running(_pids(log)[0]))
+
+
+def _is_running(pid: int) -> bool:
+    try:
+        return psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return False
+
+
+def test_the_settings_in_force_reach_the_processes(tmp_path: Path) -> None:
+    settings = Settings(
+        data_dir=tmp_path, port=8123, require_keys=True, database_url="sqlite:///x.sqlite3"
+    )
+    told = environment(settings)
+    assert told["KINEDEX_DATA_DIR"] == str(tmp_path)
+    assert told["KINEDEX_PORT"] == "8123"
+    assert told["KINEDEX_REQUIRE_KEYS"] == "true"
+    assert told["KINEDEX_DATABASE_URL"] == "sqlite:///x.sqlite3"
