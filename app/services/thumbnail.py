@@ -1,8 +1,9 @@
 """A clip as a small picture: a few stick figures over time, seen from a good side.
 
-The side is chosen so that the picture is widest: the horizontal direction in which the
-joints vary most around the hips becomes the picture's x axis (a walk is seen from its side,
-a waving person from the front). No scripts, no outside references: safe to embed.
+The side is chosen so that most is seen to move: the horizontal direction in which the joints
+move most around the hips becomes the picture's x axis (a walk is seen from its side, a waving
+person from the front). The poses are those that differ most from each other, in the order of
+time, so that a kick shows the kick. No scripts, no outside references: safe to embed.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ MARGIN = 12.0
 """Pixels left free on each side."""
 POSES = 5
 """Figures in a picture; fewer where the clip has fewer frames."""
+EXTENT_WEIGHT = 0.05
+"""Of how far the body extends, beside how far it moves: settles the side of a still one."""
 
 _R = JointRole
 _LIMBS: tuple[tuple[str, tuple[JointRole, ...]], ...] = (
@@ -58,20 +61,31 @@ def thumbnail(positions: FloatArray, title: str) -> str:
 
 
 def _spread(positions: FloatArray) -> FloatArray:
-    """(poses, 13, 3): frames at the middles of equal parts of the clip."""
-    frames = len(positions)
-    poses = min(POSES, frames)
-    middles = (np.arange(poses) + 0.5) * frames / poses
-    return np.asarray(positions[middles.astype(int)], dtype=np.float64)
+    """(poses, 13, 3): the first frame and those farthest from all chosen before, by time."""
+    relative = _around_hips(positions).reshape(len(positions), -1)
+    chosen = [0]
+    nearest = np.linalg.norm(relative - relative[0], axis=1)
+    while len(chosen) < min(POSES, len(positions)):
+        chosen.append(int(np.argmax(nearest)))
+        nearest = np.minimum(nearest, np.linalg.norm(relative - relative[chosen[-1]], axis=1))
+    return np.asarray(positions[sorted(chosen)], dtype=np.float64)
+
+
+def _around_hips(positions: FloatArray) -> FloatArray:
+    """(frames, 13, 3) metres from the hips."""
+    hips = positions[:, [_COLUMN[_R.HIPS]], :]
+    return np.asarray(positions - hips, dtype=np.float64)
 
 
 def _widest_direction(positions: FloatArray) -> FloatArray:
-    """(2,) horizontal unit vector (x, z) along which the body extends and moves most."""
-    hips = positions[:, [_COLUMN[_R.HIPS]], :]
-    around = (positions - hips)[:, :, [0, 2]].reshape(-1, 2).astype(np.float64)
-    _, vectors = np.linalg.eigh(around.T @ around)
+    """(2,) horizontal unit vector (x, z) along which the body moves most, and extends."""
+    around = _around_hips(positions)[:, :, [0, 2]]
+    moving = (around - around.mean(axis=0)).reshape(-1, 2)
+    still = around.reshape(-1, 2)
+    _, vectors = np.linalg.eigh(moving.T @ moving + EXTENT_WEIGHT * (still.T @ still))
     direction: FloatArray = vectors[:, -1]
-    travelled = (hips[-1, 0] - hips[0, 0])[[0, 2]]
+    hips = positions[:, _COLUMN[_R.HIPS]]
+    travelled = (hips[-1] - hips[0])[[0, 2]]
     # Whoever travels goes to the right; else the sign is fixed, so that pictures are stable.
     sign = float(direction @ travelled)
     if abs(sign) < 0.05:
@@ -81,8 +95,7 @@ def _widest_direction(positions: FloatArray) -> FloatArray:
 
 def _project(poses: FloatArray, direction: FloatArray) -> FloatArray:
     """(poses, 13, 2) metres: along `direction` from the hips, and height above the floor."""
-    hips = poses[:, [_COLUMN[_R.HIPS]], :]
-    across = (poses - hips)[:, :, [0, 2]] @ direction
+    across = _around_hips(poses)[:, :, [0, 2]] @ direction
     height = poses[:, :, 1] - poses[:, :, 1].min()
     return np.stack([across, height], axis=-1)
 
