@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import socket
+import ssl
 import subprocess
 import sys
 import time
@@ -18,6 +19,8 @@ import httpx2
 from app.services.demo import DemoClip
 
 START_SECONDS = 60.0
+NO_TLS = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+"""Reading the machine's certificates would take a tenth of a second for each client."""
 ENDED = {"succeeded", "failed", "canceled"}
 
 
@@ -31,7 +34,9 @@ class Live:
 
     def client(self, **options: Any) -> httpx2.Client:
         """A client of it; no proxy of the machine comes between."""
-        return httpx2.Client(base_url=self.url, timeout=60.0, trust_env=False, **options)
+        return httpx2.Client(
+            base_url=self.url, timeout=60.0, trust_env=False, verify=NO_TLS, **options
+        )
 
     def upload(self, clip: DemoClip, **fields: str) -> httpx2.Response:
         """Hand in a demo clip with its labels."""

@@ -1,0 +1,62 @@
+"""Imports over HTTP."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+
+import httpx2
+
+from app.services.demo import demo_clips
+from tests.api.conftest import assert_problem
+from tests.live import Live
+
+
+def _zip(files: dict[str, bytes]) -> bytes:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return packed.getvalue()
+
+
+def test_an_archive_with_a_manifest(demo_service: Live) -> None:
+    clip = next(demo_clips(["farid"], ["bow"], takes=1))
+    manifest = "path,person,task,words,license\nin/bow.bvh,farid,bow,bow polite,CC0-1.0\n"
+    content = _zip(
+        {
+            "manifest.csv": manifest.encode(),
+            "in/bow.bvh": clip.content,
+            "in/broken.bvh": b"HIERARCHY\nROOT Hips\n{\n",
+        }
+    )
+    with demo_service.client() as client:
+        answer = client.post("/v1/imports", files={"archive": ("a.zip", content)})
+        assert answer.status_code == 202
+        assert set(answer.json()) == {"job"}
+        job = demo_service.wait_for_job(answer.json()["job"]["id"])
+        assert job["state"] == "succeeded"
+        assert "in/bow.bvh" in str(job["result"])
+        assert "in/broken.bvh" in str(job["result"])
+        found = client.get("/v1/clips", params={"person": "farid"}).json()["items"]
+    assert [(clip["task"], clip["words"], clip["state"]) for clip in found] == [
+        ("bow", ["bow", "polite"], "ready")
+    ]
+
+
+def test_an_archive_that_is_none(idle: httpx2.Client) -> None:
+    answer = idle.post("/v1/imports", files={"archive": ("a.zip", b"")})
+    assert_problem(answer, 422, "empty_file")
+    answer = idle.post("/v1/imports", files={"archive": ("a.zip", b"no archive at all")})
+    assert answer.status_code in {415, 422}
+    assert_problem(answer, answer.status_code, answer.json()["code"])
+
+
+def test_an_archive_that_is_cut_off_fails_with_a_reason(demo_service: Live) -> None:
+    content = _zip({"a.bvh": b"HIERARCHY"})[:-30]
+    with demo_service.client() as client:
+        answer = client.post("/v1/imports", files={"archive": ("a.zip", content)})
+    assert answer.status_code == 202
+    job = demo_service.wait_for_job(answer.json()["job"]["id"])
+    assert job["state"] == "failed"
+    assert set(job["error"]) == {"type", "title", "status", "detail", "code", "errors"}
