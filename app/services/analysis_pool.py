@@ -1,9 +1,10 @@
 """Reading and analysing files where it can be killed (DESIGN 12).
 
 A file from outside is parsed in a child process with a limit on time and memory, so that
-hostile or monstrous content costs a failed clip and never the service. The children are
-kept, since importing the numerical libraries takes seconds. They die with their parent,
-even when it is killed.
+hostile or monstrous content costs a failed clip and never the service. Children are forked
+from a server process that has imported the numerical libraries, which takes seconds, and
+does nothing else: a child that had to be killed is replaced at once, and all share the
+libraries' memory. They die with their parent, even when it is killed.
 """
 
 from __future__ import annotations
@@ -12,9 +13,9 @@ import concurrent.futures
 import logging
 import multiprocessing
 import multiprocessing.connection
+import multiprocessing.context
 import os
 import resource
-import signal
 import threading
 from collections.abc import Mapping
 from concurrent.futures.process import BrokenProcessPool
@@ -41,7 +42,8 @@ _log = logging.getLogger(__name__)
 
 TASKS_PER_CHILD = 500
 """A child is replaced after so many files, in case a library leaks."""
-_ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+_LIBRARIES = ["app.analysis.analyse", "app.formats.read", "app.motion.canonical"]
+"""What the server process imports for its children."""
 
 
 class ChildDied(AnalysisCrashed):
@@ -170,16 +172,20 @@ def _check_size(recording: Recording, limits: Limits) -> None:
             raise TooLarge(f"The motion has more than {most} {noun}.", places=[place])
 
 
+def child_context() -> multiprocessing.context.ForkServerContext:
+    """How child processes are made; one server process for each process that asks."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(_LIBRARIES)
+    return context
+
+
 def _new_pool(limits: Limits, size: int) -> pebble.ProcessPool:
-    for name in _ONE_THREAD:
-        # Children inherit this; one core each, and no thread stacks in their memory limit.
-        os.environ.setdefault(name, "1")
     return pebble.ProcessPool(
         max_workers=size,
         max_tasks=TASKS_PER_CHILD,
         initializer=_begin_child,
         initargs=(limits.memory_mb,),
-        context=multiprocessing.get_context("spawn"),
+        context=child_context(),
     )
 
 
@@ -189,14 +195,8 @@ def _end(pool: pebble.ProcessPool) -> None:
 
 
 def _begin_child(memory_mb: int) -> None:
-    """Set up a child: die with the parent, load the libraries, then limit the memory."""
+    """Set up a child: die with the parent, and limit the memory."""
     die_with_parent()
-    # A terminal's Ctrl-C goes to the whole group; the parent decides what becomes of children.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    import app.analysis.analyse
-    import app.formats.read
-    import app.motion.canonical  # noqa: F401
-
     limit_memory(memory_mb)
 
 

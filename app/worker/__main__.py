@@ -1,7 +1,7 @@
 """`python -m app.worker`: one worker process, until SIGTERM or SIGINT.
 
-Started as a package so that multiprocessing does not import this module, and with it the
-whole worker, into every analysis process.
+Started as a package, since multiprocessing imports a main module that is not one into
+every analysis process, and with it the whole worker.
 """
 
 from __future__ import annotations

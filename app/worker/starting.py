@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import threading
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -12,7 +11,7 @@ import pebble
 
 from app.errors import KinedexError
 from app.services import imports, ingest
-from app.services.analysis_pool import AnalysisPool, die_with_parent
+from app.services.analysis_pool import AnalysisPool, child_context, die_with_parent
 from app.services.fit_process import fit_in_child
 from app.services.library import Library, ingest_limits
 from app.store import clips
@@ -73,7 +72,7 @@ def _fit_in_process(lib: Library) -> Future[dict[str, Any]]:
         max_workers=1,
         max_tasks=1,
         initializer=die_with_parent,
-        context=multiprocessing.get_context("spawn"),
+        context=child_context(),
     )
     future: Future[dict[str, Any]] = pool.schedule(fit_in_child, args=(lib.settings,))
     # Ended from a thread of its own: the callback runs in one that the end waits for.

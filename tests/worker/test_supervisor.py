@@ -79,7 +79,8 @@ SUPERVISOR = """
 import os, sys, threading
 from pathlib import Path
 from app.worker.supervisor import Kept, keep_running
-keep_running([Kept("sleeper", ("-c", sys.argv[2], sys.argv[1]))], dict(os.environ), threading.Event())
+sleeper = Kept("sleeper", ("-c", sys.argv[2], sys.argv[1]))
+keep_running([sleeper], dict(os.environ), threading.Event())
 """
 
 
