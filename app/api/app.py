@@ -63,6 +63,7 @@ def create_app(settings: Settings) -> FastAPI:
     )
     app.state.settings = settings
     app.state.library = None
+    app.state.stopping = False
     app.state.upload_slots = UploadSlots(settings.max_concurrent_uploads)
     install_handlers(app)
     for module in _ROUTES:

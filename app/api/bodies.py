@@ -124,6 +124,8 @@ def _sort(form: FormData, files: set[str]) -> tuple[dict[str, str], dict[str, Up
     for name, value in form.multi_items():
         if name in texts or name in uploads:
             wrong.append(Place(f"body.{name}", "This field was sent more than once."))
+        elif isinstance(value, UploadFile) and not (value.filename or value.size):
+            continue  # What a browser sends for a file that was not chosen.
         elif isinstance(value, UploadFile) and name in files:
             uploads[name] = value
         elif isinstance(value, UploadFile):

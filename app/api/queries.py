@@ -11,7 +11,7 @@ from app.errors import BadField, Place
 
 QUERY_FILES = {
     "file": "The query motion: BVH. It is never stored.",
-    "skeleton": "ASF that belongs to an AMC file.",
+    "skeleton": "ASF that belongs to an AMC file; this version cannot read it.",
 }
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from types import FrameType
+
 import uvicorn
+from fastapi import FastAPI
 
 from app.api.app import create_app
 from app.config import Settings, load_settings
@@ -12,11 +15,25 @@ GRACE_SECONDS = 5
 """How long requests that are being answered may go on after a stop; streams are cut then."""
 
 
+class _Server(uvicorn.Server):
+    """Tells the application to end its streams, which would otherwise hold up the stop."""
+
+    def __init__(self, config: uvicorn.Config, app: FastAPI) -> None:
+        super().__init__(config)
+        self._app = app
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        """On SIGINT or SIGTERM."""
+        self._app.state.stopping = True
+        super().handle_exit(sig, frame)
+
+
 def run(settings: Settings) -> None:
     """Serve until SIGINT or SIGTERM. Raises ConfigurationError and DatabaseOutOfDate."""
     configure_logging(settings.log_level.upper())
+    app = create_app(settings)
     config = uvicorn.Config(
-        create_app(settings),
+        app,
         host=settings.host,
         port=settings.port,
         log_config=None,
@@ -24,7 +41,7 @@ def run(settings: Settings) -> None:
         server_header=False,
         timeout_graceful_shutdown=GRACE_SECONDS,
     )
-    uvicorn.Server(config).run()
+    _Server(config, app).run()
 
 
 if __name__ == "__main__":

@@ -64,6 +64,8 @@ def test_an_upload_without_its_file(idle: httpx2.Client) -> None:
     assert_problem(idle.post("/v1/clips", files=parts), 422, "bad_field", "body.file")
     text = {"file": (None, "HIERARCHY")}
     assert_problem(idle.post("/v1/clips", files=text), 422, "bad_field", "body.file")
+    not_chosen = {"file": ("", b"")}
+    assert_problem(idle.post("/v1/clips", files=not_chosen), 422, "bad_field", "body.file")
     twice = [("file", ("a", b"HIERARCHY")), ("file", ("b", b"HIERARCHY"))]
     assert_problem(idle.post("/v1/clips", files=twice), 422, "bad_field", "body.file")
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+import time
+from pathlib import Path
 from typing import Any
 
 import httpx2
+import pytest
 
 from app.services.demo import demo_clips
 from tests.api.conftest import assert_problem
-from tests.live import Live
+from tests.live import Live, serve
 
 
 def _events(lines: list[str]) -> list[tuple[str, dict[str, Any]]]:
@@ -65,3 +68,16 @@ def test_the_cursor_of_another_list_is_refused(demo: httpx2.Client) -> None:
     cursor = demo.get("/v1/clips", params={"limit": 1, "sort": "name"}).json()["next"]
     answer = demo.get("/v1/clips", params={"cursor": cursor})
     assert_problem(answer, 422, "bad_field", "query.cursor")
+
+
+@pytest.mark.slow
+def test_open_streams_do_not_hold_up_a_stop(tmp_path: Path) -> None:
+    clip = next(demo_clips(["elin"], ["bow"], takes=1))
+    with serve(tmp_path / "data") as live, live.client() as client:
+        job = live.upload(clip).json()["job"]
+        stream = client.stream("GET", f"/v1/jobs/{job['id']}/events")
+        lines = stream.__enter__().iter_lines()
+        assert next(lines) == "event: progress"
+        began = time.monotonic()
+    assert time.monotonic() - began < 3
+    assert "exception" not in live.log.read_text()

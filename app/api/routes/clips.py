@@ -20,7 +20,7 @@ router = APIRouter(prefix="/v1/clips", tags=["clips"])
 
 FILES = {
     "file": "The motion: BVH.",
-    "skeleton": "ASF that belongs to an AMC file.",
+    "skeleton": "ASF that belongs to an AMC file; this version does not use it.",
     "audio": "Recording that the motion goes with; this version does not use it.",
 }
 

@@ -6,7 +6,7 @@ from collections.abc import AsyncIterator
 from typing import Annotated
 
 import anyio
-from fastapi import APIRouter, Depends, Query
+from fastapi import APIRouter, Depends, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
@@ -55,11 +55,12 @@ def _existing(lib: Lib, job_id: JobId) -> JobRecord:
     responses=refusals(404),
 )
 async def follow_job(
-    lib: Lib, job: Annotated[JobRecord, Depends(_existing)]
+    request: Request, lib: Lib, job: Annotated[JobRecord, Depends(_existing)]
 ) -> AsyncIterator[ServerSentEvent]:
     """Follow a job: an event `progress` for each change, and `done` when it has ended.
 
-    Every event's data is the Job. The stream ends after `done`.
+    Every event's data is the Job. The stream ends after `done`; one that ends without it was
+    cut off by a restart and can be opened again.
     """
     seen: JobRecord | None = None
     now: JobRecord | None = job
@@ -68,6 +69,8 @@ async def follow_job(
             yield ServerSentEvent(event="progress", data=Job.of(now))
         seen = now
         await anyio.sleep(POLL_SECONDS)
+        if request.app.state.stopping:
+            return
         now = await run_in_threadpool(_look, lib, job.id)
     yield ServerSentEvent(event="done", data=Job.of(now or job))
 

@@ -159,11 +159,11 @@ class ClipQuery(Incoming):
     cursor: Cursor | None = None
 
     def as_filter(self) -> ClipFilter:
-        """The conditions as the store takes them; words are kept in lower case."""
+        """The conditions as the store takes them; words in lower case, phrases by underscores."""
         return ClipFilter(
             person=tuple(self.person or ()),
             task=tuple(self.task or ()),
-            word=tuple(word.strip().lower() for word in self.word or ()),
+            word=tuple("_".join(word.lower().split()) for word in self.word or ()),
             license=tuple(self.license or ()),
             state=() if self.state is None else (self.state,),
             min_duration=self.min_duration,
