@@ -11,22 +11,15 @@ import re
 
 import numpy as np
 
-from app.errors import TooLarge
 from app.formats.bvh_frames import read_frames
 from app.formats.bvh_hierarchy import Channel, Hierarchy, read_hierarchy
+from app.formats.lines import with_plain_newlines
 from app.formats.places import unreadable
-from app.motion.kinematics import forward_kinematics
+from app.formats.solving import Solved, solve
 from app.motion.recording import Recording
 from app.motion.rotations import euler_to_quaternions, identity_quaternions
 from app.numerics.arrays import FloatArray
 
-MAX_JOINT_FRAMES = 20_000_000
-"""Joints times frames: about 800 MB of positions, rotations and translations."""
-BLOCK_JOINT_FRAMES = 16_384
-"""Frames are solved in blocks of about this many joints, so that temporaries stay
-small and in the processor's cache."""
-
-_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _MOTION = re.compile(rb"^[ \t]*MOTION[ \t]*(?::[ \t]*)?$", re.IGNORECASE | re.MULTILINE)
 
 
@@ -36,7 +29,7 @@ def read_bvh(content: bytes) -> Recording:
     Units and axes stay the file's. Raises Unreadable naming the line, and TooLarge.
     A frame time that is no time leaves `frame_rate` None, with a caution.
     """
-    text = _with_plain_newlines(content)
+    text = with_plain_newlines(content)
     motion = _MOTION.search(text)
     hierarchy = read_hierarchy(text[: motion.start()] if motion else text)
     if motion is None:
@@ -45,48 +38,27 @@ def read_bvh(content: bytes) -> Recording:
         raise unreadable(1, "expected channels on some joint, found none")
     first_line = text.count(b"\n", 0, motion.end()) + 2
     frames = read_frames(text[motion.end() + 1 :], first_line, len(hierarchy.channels))
-    rotations, translations, positions = _solve(hierarchy, frames.numbers)
+    solved = _solve(hierarchy, frames.numbers)
     return Recording(
         format="bvh",
         skeleton=hierarchy.skeleton,
-        positions=positions,
-        rotations=rotations,
-        translations=translations,
+        positions=solved.positions,
+        rotations=solved.rotations,
+        translations=solved.translations,
         frame_rate=frames.frame_rate,
         cautions=hierarchy.cautions + frames.cautions,
     )
 
 
-def _with_plain_newlines(content: bytes) -> bytes:
-    text = content.removeprefix(_BYTE_ORDER_MARK)
-    if b"\r" in text:
-        text = text.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    return text
+def _solve(hierarchy: Hierarchy, numbers: FloatArray) -> Solved:
+    def local_pose(block: slice) -> tuple[FloatArray, FloatArray]:
+        rows = numbers[block]
+        return _local_rotations(hierarchy, rows), _local_translations(hierarchy, rows)
 
-
-def _solve(
-    hierarchy: Hierarchy, numbers: FloatArray
-) -> tuple[FloatArray, FloatArray | None, FloatArray]:
-    """Local rotations (frames, joints, 4), translations (frames, joints, 3) or None where
-    only roots move, and world positions (frames, joints, 3), all float32."""
-    frames, joints = len(numbers), len(hierarchy.skeleton)
-    if frames * joints > MAX_JOINT_FRAMES:
-        raise TooLarge(f"expected at most {MAX_JOINT_FRAMES} joints times frames")
     moving = any(
         c.is_position and hierarchy.skeleton.parents[c.joint] >= 0 for c in hierarchy.channels
     )
-    rotations = np.empty((frames, joints, 4), dtype=np.float32)
-    translations = np.empty((frames, joints, 3), dtype=np.float32) if moving else None
-    positions = np.empty((frames, joints, 3), dtype=np.float32)
-    step = max(1, BLOCK_JOINT_FRAMES // joints)
-    for block in (slice(start, start + step) for start in range(0, frames, step)):
-        turned = _local_rotations(hierarchy, numbers[block])
-        moved = _local_translations(hierarchy, numbers[block])
-        rotations[block] = turned
-        positions[block] = forward_kinematics(hierarchy.skeleton, turned, moved)
-        if translations is not None:
-            translations[block] = moved
-    return rotations, translations, positions
+    return solve(hierarchy.skeleton, len(numbers), local_pose, moving=moving)
 
 
 def _local_translations(hierarchy: Hierarchy, numbers: FloatArray) -> FloatArray:

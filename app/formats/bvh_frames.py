@@ -14,6 +14,7 @@ from itertools import islice
 import numpy as np
 
 from app.errors import TooLarge
+from app.formats.lines import filled_lines
 from app.formats.numbers import check_magnitudes, excerpt, parse_any_numbers
 from app.formats.places import unreadable
 from app.motion.recording import Caution
@@ -49,7 +50,7 @@ def read_frames(text: bytes, first_line: int, channels: int) -> Frames:
     text: lines separated by newlines, the first of which is line `first_line` of the
     file; channels: numbers that make a frame. Raises Unreadable naming the line.
     """
-    lines = _filled_lines(text, first_line)
+    lines = filled_lines(text, first_line)
     declared = _declared_frames(*next(lines, (first_line, b"")))
     line, time = next(lines, (first_line, b""))
     rate, cautions = _frame_rate(line, time)
@@ -60,18 +61,6 @@ def read_frames(text: bytes, first_line: int, channels: int) -> Frames:
         detail = f"the file declares {declared} frames and holds {len(numbers)}"
         cautions += (Caution("frames_mismatch", detail),)
     return Frames(numbers, rate, cautions)
-
-
-def _filled_lines(text: bytes, first_line: int) -> Iterator[tuple[int, bytes]]:
-    """Number and content of every line that is not blank; the text is not copied whole."""
-    start, number = 0, first_line
-    while start < len(text):
-        end = text.find(b"\n", start)
-        end = len(text) if end < 0 else end
-        line = text[start:end]
-        if line and not line.isspace():
-            yield number, line
-        start, number = end + 1, number + 1
 
 
 def _declared_frames(line: int, text: bytes) -> int:
