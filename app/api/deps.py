@@ -15,6 +15,7 @@ from fastapi import Depends, Request
 from fastapi.security import APIKeyHeader, HTTPAuthorizationCredentials, HTTPBearer
 
 from app.api.problems import NotReadyYet
+from app.config import LOOPBACK_HOSTS
 from app.errors import Forbidden, Unauthorized
 from app.services.library import Library
 from app.store import keys
@@ -75,7 +76,13 @@ def is_open(lib: Library, tx: Tx) -> bool:
 
 
 def _refuse_other_sites(request: Request) -> None:
-    """Without keys, a page of another site in the user's browser must not change anything."""
+    """Without keys, a page of another site in the user's browser must see and change nothing.
+
+    Its origin differs; or its own name was made to point at this machine (DNS rebinding), and
+    then the name that it calls us by is not one of loopback's.
+    """
+    if request.url.hostname not in LOOPBACK_HOSTS:
+        raise Forbidden("Without API keys, only this machine's own addresses are answered.")
     origin = request.headers.get("origin")
     if origin is None or request.method in {"GET", "HEAD"}:
         return

@@ -1,21 +1,13 @@
 """Reading and analysing files where it can be killed (DESIGN 12).
 
 A file from outside is parsed in a child process with a limit on time and memory, so that
-hostile or monstrous content costs a failed clip and never the service. Children are forked
-from a server process that has imported the numerical libraries, which takes seconds, and
-does nothing else: a child that had to be killed is replaced at once, and all share the
-libraries' memory. They die with their parent, even when it is killed.
+hostile or monstrous content costs a failed clip and never the service.
 """
 
 from __future__ import annotations
 
 import concurrent.futures
 import logging
-import multiprocessing
-import multiprocessing.connection
-import multiprocessing.context
-import os
-import resource
 import threading
 from collections.abc import Mapping
 from concurrent.futures.process import BrokenProcessPool
@@ -33,6 +25,7 @@ from app.errors import (
     StorageError,
     TooLarge,
 )
+from app.services.child_processes import child_context, die_with_parent, limit_memory
 
 if TYPE_CHECKING:
     from app.analysis.analyse import Analysis
@@ -42,8 +35,6 @@ _log = logging.getLogger(__name__)
 
 TASKS_PER_CHILD = 500
 """A child is replaced after so many files, in case a library leaks."""
-_LIBRARIES = ["app.analysis.analyse", "app.formats.read", "app.motion.canonical"]
-"""What the server process imports for its children."""
 
 
 class ChildDied(AnalysisCrashed):
@@ -127,8 +118,9 @@ class AnalysisPool:
         except Exception as surprise:
             # A defect of ours; the clip must still end, with something to report.
             _log.exception("analysis failed unexpectedly")
-            reason = f"The analysis failed unexpectedly ({type(surprise).__name__}: {surprise})."
-            raise AnalysisCrashed(reason) from surprise
+            raise AnalysisCrashed(
+                f"The analysis failed unexpectedly ({type(surprise).__name__}); see the log."
+            ) from surprise
 
     def rest(self) -> None:
         """Give back the memory of idle children; the next order starts new ones."""
@@ -172,13 +164,6 @@ def _check_size(recording: Recording, limits: Limits) -> None:
             raise TooLarge(f"The motion has more than {most} {noun}.", places=[place])
 
 
-def child_context() -> multiprocessing.context.ForkServerContext:
-    """How child processes are made; one server process for each process that asks."""
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(_LIBRARIES)
-    return context
-
-
 def _new_pool(limits: Limits, size: int) -> pebble.ProcessPool:
     return pebble.ProcessPool(
         max_workers=size,
@@ -198,28 +183,6 @@ def _begin_child(memory_mb: int) -> None:
     """Set up a child: die with the parent, and limit the memory."""
     die_with_parent()
     limit_memory(memory_mb)
-
-
-def die_with_parent() -> None:
-    """Have this child process exit at once when its parent is gone, however it went.
-
-    A thread waits on the pipe that the parent holds open. (Linux's PR_SET_PDEATHSIG would
-    fire when the parent's *thread* that started the child ends, and requests' threads end.)
-    """
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        threading.Thread(target=_exit_after, args=(parent.sentinel,), daemon=True).start()
-
-
-def _exit_after(sentinel: int) -> None:
-    multiprocessing.connection.wait([sentinel])
-    os._exit(1)
-
-
-def limit_memory(memory_mb: int) -> None:
-    """Let this process take `memory_mb` MB of address space, libraries included."""
-    limit = memory_mb * 2**20
-    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 
 
 def _how(death: pebble.ProcessExpired) -> str:

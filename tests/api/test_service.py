@@ -189,6 +189,12 @@ def test_the_key_is_asked_for_before_the_body_is_read(
         assert_problem(answer, 401, "unauthorized")
 
 
+def test_a_name_made_to_point_at_this_machine_is_refused(idle: httpx2.Client) -> None:
+    refused = idle.get("/v1/clips", headers={"Host": "rebound.example"})
+    assert refused.status_code == 403
+    assert idle.get("/v1/clips", headers={"Host": "localhost:1234"}).status_code == 200
+
+
 def test_another_site_cannot_use_an_open_service(idle: httpx2.Client) -> None:
     evil = {"Origin": "http://evil.example"}
     answer = idle.post("/v1/models/fit", headers=evil)
