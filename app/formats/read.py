@@ -6,10 +6,15 @@ from collections.abc import Callable
 
 from app.errors import FormatNotSupported
 from app.formats.bvh import read_bvh
+from app.formats.npz import read_npy_positions, read_npz
 from app.formats.sniff import sniff
 from app.motion.recording import Recording
 
-READERS: dict[str, Callable[[bytes], Recording]] = {"bvh": read_bvh}
+READERS: dict[str, Callable[[bytes], Recording]] = {
+    "bvh": read_bvh,
+    "npy": read_npy_positions,
+    "npz": read_npz,
+}
 """By the name that `sniff` gives."""
 
 

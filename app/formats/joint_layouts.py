@@ -1,0 +1,191 @@
+"""Joint orders that files without names use, told apart by the body that they make.
+
+A bare array (frames, joints, 3) says nothing but how many joints there are, and several
+orders share a count. An order is believed where its bones are as long on the left as on
+the right and keep their length, and it alone of its count does so.
+
+Sources: the orders' own documentation (SMPL, SMPL-H and SMPL-X by MPI; LAFAN1 by Ubisoft;
+Human3.6M in 17 joints as in VideoPose3D; Kinect v2 SDK; OpenPose BODY_25).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray
+
+SIDES_DIFFER = 0.2
+"""Left and right bones may differ by so much of their mean, estimation noise included."""
+BONES_BREATHE = 0.2
+"""Median standard deviation of a bone's length over time, as part of that length."""
+FRAMES_JUDGED = 500
+"""Evenly spaced; more tell nothing new."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointLayout:
+    """Joint names and each joint's parent, -1 for the root; `title` is for people."""
+
+    title: str
+    names: tuple[str, ...]
+    parents: tuple[int, ...]
+
+    def paired_bones(self) -> list[tuple[int, int]]:
+        """Left joints and their right counterparts, root excluded."""
+        index = {name: joint for joint, name in enumerate(self.names)}
+        return [(index[name], index[other]) for name, other in self._mirrored() if other in index]
+
+    def _mirrored(self) -> Iterator[tuple[str, str]]:
+        for name in self.names:
+            if name.startswith(("Left", "L_")):
+                yield name, name.replace("Left", "Right").replace("L_", "R_")
+            elif name.endswith("Left"):
+                yield name, name.removesuffix("Left") + "Right"
+
+
+def _chains(*chains: str) -> tuple[tuple[str, ...], tuple[int, ...]]:
+    """Names in the order in which they first stand, and parents, from chains of names."""
+    parent_of: dict[str, str | None] = {}
+    for chain in chains:
+        names = chain.split()
+        parent_of.setdefault(names[0], None)
+        parent_of.update((name, parent) for parent, name in pairwise(names))
+    names_in_order = tuple(parent_of)
+    return names_in_order, _indexed(names_in_order, parent_of)
+
+
+def _indexed(names: tuple[str, ...], parent_of: dict[str, str | None]) -> tuple[int, ...]:
+    above = (parent_of[name] for name in names)
+    return tuple(-1 if parent is None else names.index(parent) for parent in above)
+
+
+def _ordered(order: str, *chains: str) -> tuple[tuple[str, ...], tuple[int, ...]]:
+    """As `_chains`, with the names in a stated order."""
+    names, parents = _chains(*chains)
+    parent_of = {name: None if p < 0 else names[p] for name, p in zip(names, parents, strict=True)}
+    wanted = tuple(order.split())
+    return wanted, _indexed(wanted, parent_of)
+
+
+SMPL_BODY = _ordered(
+    "Pelvis L_Hip R_Hip Spine1 L_Knee R_Knee Spine2 L_Ankle R_Ankle Spine3 L_Foot R_Foot Neck"
+    " L_Collar R_Collar Head L_Shoulder R_Shoulder L_Elbow R_Elbow L_Wrist R_Wrist",
+    "Pelvis L_Hip L_Knee L_Ankle L_Foot",
+    "Pelvis R_Hip R_Knee R_Ankle R_Foot",
+    "Pelvis Spine1 Spine2 Spine3 Neck Head",
+    "Spine3 L_Collar L_Shoulder L_Elbow L_Wrist",
+    "Spine3 R_Collar R_Shoulder R_Elbow R_Wrist",
+)
+_FINGERS = tuple(
+    f"{side}_{finger}{part}"
+    for side in "LR"
+    for finger in ("Index", "Middle", "Pinky", "Ring", "Thumb")
+    for part in (1, 2, 3)
+)
+
+
+def _with_fingers(
+    names: tuple[str, ...], parents: tuple[int, ...]
+) -> tuple[tuple[str, ...], tuple[int, ...]]:
+    wrists = {side: names.index(f"{side}_Wrist") for side in "LR"}
+    first = len(names)
+    above = (
+        wrists[name[0]] if name.endswith("1") else first + joint - 1
+        for joint, name in enumerate(_FINGERS)
+    )
+    return names + _FINGERS, parents + tuple(above)
+
+
+_HEAD, _L_WRIST, _R_WRIST = (SMPL_BODY[0].index(n) for n in ("Head", "L_Wrist", "R_Wrist"))
+
+LAYOUTS: tuple[JointLayout, ...] = (
+    JointLayout("SMPL body", *SMPL_BODY),
+    JointLayout("SMPL", SMPL_BODY[0] + ("L_Hand", "R_Hand"), SMPL_BODY[1] + (_L_WRIST, _R_WRIST)),
+    JointLayout("SMPL-H", *_with_fingers(*SMPL_BODY)),
+    JointLayout(
+        "SMPL-X",
+        *_with_fingers(SMPL_BODY[0] + ("Jaw", "L_Eye", "R_Eye"), SMPL_BODY[1] + (_HEAD,) * 3),
+    ),
+    JointLayout(
+        "LAFAN1",
+        *_chains(
+            "Hips LeftUpLeg LeftLeg LeftFoot LeftToe",
+            "Hips RightUpLeg RightLeg RightFoot RightToe",
+            "Hips Spine Spine1 Spine2 Neck Head",
+            "Spine2 LeftShoulder LeftArm LeftForeArm LeftHand",
+            "Spine2 RightShoulder RightArm RightForeArm RightHand",
+        ),
+    ),
+    JointLayout(
+        "Human3.6M",
+        *_chains(
+            "Hips RightUpLeg RightLeg RightFoot",
+            "Hips LeftUpLeg LeftLeg LeftFoot",
+            "Hips Spine Neck Nose Head",
+            "Neck LeftArm LeftForeArm LeftHand",
+            "Neck RightArm RightForeArm RightHand",
+        ),
+    ),
+    JointLayout(
+        "Kinect v2",
+        *_ordered(
+            "SpineBase SpineMid Neck Head ShoulderLeft ElbowLeft WristLeft HandLeft ShoulderRight"
+            " ElbowRight WristRight HandRight HipLeft KneeLeft AnkleLeft FootLeft HipRight"
+            " KneeRight AnkleRight FootRight SpineShoulder HandTipLeft ThumbLeft HandTipRight"
+            " ThumbRight",
+            "SpineBase SpineMid SpineShoulder Neck Head",
+            "SpineShoulder ShoulderLeft ElbowLeft WristLeft HandLeft HandTipLeft",
+            "SpineShoulder ShoulderRight ElbowRight WristRight HandRight HandTipRight",
+            "HandLeft ThumbLeft",
+            "HandRight ThumbRight",
+            "SpineBase HipLeft KneeLeft AnkleLeft FootLeft",
+            "SpineBase HipRight KneeRight AnkleRight FootRight",
+        ),
+    ),
+    JointLayout(
+        "OpenPose BODY_25",
+        *_ordered(
+            "Nose Neck RightArm RightForeArm RightHand LeftArm LeftForeArm LeftHand Hips"
+            " RightUpLeg RightLeg RightFoot LeftUpLeg LeftLeg LeftFoot RightEye LeftEye RightEar"
+            " LeftEar LeftBigToe LeftSmallToe LeftHeel RightBigToe RightSmallToe RightHeel",
+            "Hips Neck Nose",
+            "Neck RightArm RightForeArm RightHand",
+            "Neck LeftArm LeftForeArm LeftHand",
+            "Hips RightUpLeg RightLeg RightFoot RightBigToe RightSmallToe",
+            "Hips LeftUpLeg LeftLeg LeftFoot LeftBigToe LeftSmallToe",
+            "RightFoot RightHeel",
+            "LeftFoot LeftHeel",
+            "Nose RightEye RightEar",
+            "Nose LeftEye LeftEar",
+        ),
+    ),
+)
+"""Every order that we know; several may have the same number of joints."""
+
+
+def layout_of(positions: FloatArray) -> JointLayout | None:
+    """The one known order that makes a body of positions (frames, joints, 3), else None."""
+    step = max(1, len(positions) // FRAMES_JUDGED)
+    some = positions[::step].astype(np.float64)
+    fitting = [
+        layout
+        for layout in LAYOUTS
+        if len(layout.names) == positions.shape[1] and _makes_a_body(layout, some)
+    ]
+    return fitting[0] if len(fitting) == 1 else None
+
+
+def _makes_a_body(layout: JointLayout, positions: FloatArray) -> bool:
+    parents = np.array(layout.parents)
+    lengths = np.linalg.norm(positions - positions[:, parents], axis=-1)  # (frames, joints)
+    mean = lengths.mean(axis=0)
+    if not (mean[parents >= 0] > 0).all():
+        return False
+    left, right = np.array(layout.paired_bones()).T
+    difference = np.abs(mean[left] - mean[right]) / (0.5 * (mean[left] + mean[right]))
+    breathing = lengths.std(axis=0)[parents >= 0] / mean[parents >= 0]
+    return bool(np.median(breathing) < BONES_BREATHE and difference.max() < SIDES_DIFFER)

@@ -1,0 +1,66 @@
+"""Parents of joints as arrays tell them, checked and put in order.
+
+parents: (joints,) int, -1 for a root. A skeleton of ours has parents before children.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.errors import Place, Unreadable
+from app.numerics.arrays import IntArray
+
+SMPL_ROOT = 2**32 - 1
+"""What -1 becomes in the unsigned `kintree_table` of SMPL."""
+
+
+def parents_of(array: NDArray[Any], key: str, names: Sequence[str]) -> IntArray:
+    """(joints,) parents from an array (joints,), or (2, joints) as SMPL's `kintree_table`.
+
+    A joint that is its own parent is a root. Raises Unreadable naming the joint.
+    """
+    row = array[0] if array.ndim == 2 and len(array) == 2 else array
+    if row.shape != (len(names),) or array.dtype.kind not in "iu":
+        shape = "x".join(map(str, array.shape)) or "one"
+        raise _refused(key, f"expected {len(names)} integers, found {shape} {array.dtype}")
+    parents = np.full(len(names), -1, dtype=np.int64)
+    for joint, told in enumerate(row.tolist()):
+        is_root = told in (-1, SMPL_ROOT, joint)
+        if not is_root and not 0 <= told < len(names):
+            found = f"expected -1 or a joint below {len(names)} in {key}, found {told}"
+            raise _refused(f"joint {joint} ({names[joint]})", found)
+        parents[joint] = -1 if is_root else told
+    _check_no_circle(parents, names, key)
+    return parents
+
+
+def in_tree_order(parents: IntArray) -> IntArray:
+    """(joints,) indices that put every joint after its parent, else in the order given."""
+    if (parents < np.arange(len(parents))).all():
+        return np.arange(len(parents))
+    return np.argsort(_depths(parents), kind="stable")
+
+
+def _depths(parents: IntArray) -> IntArray:
+    """(joints,) steps to the root; joints on a circle come out at the number of joints."""
+    depths = np.zeros(len(parents), dtype=np.int64)
+    above = parents.copy()
+    while (climbing := above >= 0).any() and depths.max(initial=0) < len(parents):
+        depths[climbing] += 1
+        above[climbing] = parents[above[climbing]]
+    return depths
+
+
+def _check_no_circle(parents: IntArray, names: Sequence[str], key: str) -> None:
+    joint = int(np.argmax(_depths(parents)))
+    if _depths(parents)[joint] >= len(parents):
+        where = f"joint {joint} ({names[joint]})"
+        raise _refused(where, f"expected a tree, found that it is above itself in {key}")
+
+
+def _refused(location: str, message: str) -> Unreadable:
+    return Unreadable(f"{location}: {message}", places=[Place(location, message)])
