@@ -1,8 +1,4 @@
-"""`python -m app.worker`: one worker process, until SIGTERM or SIGINT.
-
-Started as a package, since multiprocessing imports a main module that is not one into
-every analysis process, and with it the whole worker.
-"""
+"""`python -m app.worker`: one worker process, until SIGTERM or SIGINT."""
 
 from __future__ import annotations
 

@@ -11,7 +11,8 @@ import pebble
 
 from app.errors import KinedexError
 from app.services import imports, ingest
-from app.services.analysis_pool import AnalysisPool, child_context, die_with_parent
+from app.services.analysis_pool import AnalysisPool
+from app.services.child_processes import child_context, die_with_parent
 from app.services.fit_process import fit_in_child
 from app.services.library import Library, ingest_limits
 from app.store import clips
