@@ -1,11 +1,12 @@
 """Writing BVH files: a skeleton and its local rotations to bytes.
 
-The root has six channels (position, then rotation), every other joint three.
+Roots have six channels (position, then rotation), and so has every joint that moves along
+its bone; the others have three.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from app.numerics.arrays import FloatArray
 
 DECIMALS = 6
 """Of positions (file units) and angles (degrees)."""
+BLOCK_FRAMES = 1024
+"""Frames that are turned into text at once."""
 
 
 def write_bvh(
@@ -30,14 +33,43 @@ def write_bvh(
     of X, Y, Z once. Where a skeleton has several roots, the first one moves and the others
     turn where they are.
     """
-    angles = np.degrees(quaternions_to_euler(rotations, rotation_order))
     order = _depth_first(skeleton)
-    lines = ["HIERARCHY", *_hierarchy(skeleton, order, rotation_order)]
-    lines += ["MOTION", f"Frames: {len(rotations)}", f"Frame Time: {1 / frame_rate:.9g}"]
-    numbers = np.concatenate([root_positions, angles[:, order].reshape(len(angles), -1)], axis=1)
-    pattern = " ".join([f"%.{DECIMALS}f"] * numbers.shape[1])
-    lines += [pattern % tuple(row) for row in numbers.tolist()]
-    return ("\n".join(lines) + "\n").encode()
+    translations = np.repeat(skeleton.offsets[None].astype(np.float64), len(rotations), axis=0)
+    translations[:, order[0]] = root_positions
+    moving = order[:1]
+    return b"".join(
+        bvh_blocks(skeleton, rotations, translations, frame_rate, rotation_order, moving)
+    )
+
+
+def bvh_blocks(
+    skeleton: Skeleton,
+    rotations: FloatArray,
+    translations: FloatArray,
+    frame_rate: float,
+    rotation_order: str,
+    moving: Sequence[int],
+) -> Iterator[bytes]:
+    """A BVH file piece by piece, of local quaternions (frames, joints, 4) and local
+    translations (frames, joints, 3), which `moving` joints take in place of their offset."""
+    order = _depth_first(skeleton)
+    head = ["HIERARCHY", *_hierarchy(skeleton, order, rotation_order, frozenset(moving))]
+    head += ["MOTION", f"Frames: {len(rotations)}", f"Frame Time: {1 / frame_rate:.9g}"]
+    yield ("\n".join(head) + "\n").encode()
+    columns = _columns(order, frozenset(moving))
+    pattern = " ".join([f"%.{DECIMALS}f"] * len(columns))
+    for start in range(0, len(rotations), BLOCK_FRAMES):
+        block = slice(start, start + BLOCK_FRAMES)
+        angles = np.degrees(quaternions_to_euler(rotations[block], rotation_order))
+        numbers = np.concatenate([translations[block], angles], axis=2)  # (n, joints, 6)
+        rows = numbers.reshape(len(numbers), -1)[:, columns].tolist()
+        yield ("\n".join(pattern % tuple(row) for row in rows) + "\n").encode()
+
+
+def _columns(order: list[int], moving: frozenset[int]) -> list[int]:
+    """Where the file's channels stand among each joint's position and angles, in a row."""
+    first = {joint: 0 if joint in moving else 3 for joint in order}
+    return [6 * joint + axis for joint in order for axis in range(first[joint], 6)]
 
 
 def _depth_first(skeleton: Skeleton) -> list[int]:
@@ -50,7 +82,9 @@ def _depth_first(skeleton: Skeleton) -> list[int]:
     return found
 
 
-def _hierarchy(skeleton: Skeleton, order: list[int], rotation_order: str) -> Iterator[str]:
+def _hierarchy(
+    skeleton: Skeleton, order: list[int], rotation_order: str, moving: frozenset[int]
+) -> Iterator[str]:
     rotation = " ".join(f"{axis}rotation" for axis in rotation_order)
     open_joints: list[int] = []
     for joint in order:
@@ -60,9 +94,8 @@ def _hierarchy(skeleton: Skeleton, order: list[int], rotation_order: str) -> Ite
         yield f"{indent}{keyword} {skeleton.names[joint]}"
         yield indent + "{"
         yield f"{indent}  OFFSET {_vector(skeleton.offsets[joint])}"
-        moves = joint == order[0]
-        position = "Xposition Yposition Zposition " if moves else ""
-        yield f"{indent}  CHANNELS {6 if moves else 3} {position}{rotation}"
+        position = "Xposition Yposition Zposition " if joint in moving else ""
+        yield f"{indent}  CHANNELS {6 if joint in moving else 3} {position}{rotation}"
         yield from _end_sites(skeleton, joint, indent + "  ")
         open_joints.append(joint)
     yield from _close(open_joints, -1)

@@ -43,6 +43,14 @@ def local_translations(skeleton: Skeleton, root_positions: FloatArray) -> FloatA
     return result
 
 
+def rest_positions(skeleton: Skeleton) -> FloatArray:
+    """(joints, 3): where the joints are with all rotations 0, roots at their offsets."""
+    rest = np.array(skeleton.offsets, dtype=np.float64)
+    for joints in joints_by_depth(skeleton.parents)[1:]:
+        rest[joints] += rest[skeleton.parents[joints]]
+    return rest
+
+
 def joints_by_depth(parents: IntArray) -> list[IntArray]:
     """Joint indices by depth, roots first; parents stand before their children."""
     depth = np.zeros(len(parents), dtype=np.int64)

@@ -1,0 +1,76 @@
+"""A body of sticks to be seen: what a GLB file shows of a skeleton.
+
+Every joint is a small octahedron and every bone a long one, whose tip goes with the joint
+at its end, so that sticks follow bones that stretch. Triangles, metres, in the rest pose.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.motion.kinematics import rest_positions
+from app.motion.skeleton import Skeleton
+from app.numerics.arrays import FloatArray, IntArray
+
+JOINT_RADIUS = 0.012
+"""Metres."""
+BONE_WIDTH = 0.08
+"""Half of a bone's thickest part, in parts of its length."""
+THICKEST = 0.15
+"""Where along the bone it is thickest."""
+SHORTEST_BONE = 1e-4
+"""Metres; below it there is nothing to draw."""
+_CORNERS = np.array(
+    [[0, -1, 0], [1, 0, 0], [0, 0, 1], [-1, 0, 0], [0, 0, -1], [0, 1, 0]], dtype=np.float64
+)
+_TRIANGLES = np.array(
+    [(0, a, b) for a, b in ((1, 2), (2, 3), (3, 4), (4, 1))]
+    + [(5, b, a) for a, b in ((1, 2), (2, 3), (3, 4), (4, 1))]
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """corners: (n, 3) metres at rest; joints: (n,) the joint each goes with; triangles: (m, 3)."""
+
+    corners: FloatArray
+    joints: IntArray
+    triangles: IntArray
+
+
+def stick_mesh(skeleton: Skeleton) -> Mesh:
+    """Sticks along the bones and end sites of a skeleton at rest, and a mark at each joint."""
+    rest = rest_positions(skeleton)
+    corners = [rest[joint] + JOINT_RADIUS * _CORNERS for joint in range(len(skeleton))]
+    owners = [np.full(6, joint) for joint in range(len(skeleton))]
+    bones = [
+        (int(parent), joint, rest[joint])
+        for joint, parent in enumerate(skeleton.parents)
+        if parent >= 0
+    ]
+    ends = zip(skeleton.end_parents.tolist(), skeleton.end_offsets, strict=True)
+    bones += [(joint, joint, rest[joint] + offset) for joint, offset in ends]
+    for start, end, tip in bones:
+        if np.linalg.norm(tip - rest[start]) > SHORTEST_BONE:
+            corners.append(_stick(rest[start], tip))
+            owners.append(np.array([start] * 5 + [end]))
+    first = 6 * np.arange(len(corners))[:, None, None]
+    return Mesh(
+        np.concatenate(corners), np.concatenate(owners), (first + _TRIANGLES).reshape(-1, 3)
+    )
+
+
+def _stick(start: FloatArray, tip: FloatArray) -> FloatArray:
+    """(6, 3) corners of an octahedron from start to tip, thickest near the start."""
+    along = tip - start
+    length = np.linalg.norm(along)
+    up = along / length
+    side = np.cross(up, np.eye(3)[np.argmin(np.abs(up))])
+    side /= np.linalg.norm(side)
+    frame = np.stack([side, up, np.cross(side, up)])
+    width = BONE_WIDTH * length
+    shape = _CORNERS * [width, 0.0, width]
+    shape[:, 1] = length * np.array([0.0, *[THICKEST] * 4, 1.0])
+    return np.asarray(start + shape @ frame)
