@@ -9,11 +9,11 @@ from __future__ import annotations
 import concurrent.futures
 import logging
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import pebble
 
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from app.motion.recording import Recording
 
 _log = logging.getLogger(__name__)
+_Found = TypeVar("_Found")
 
 TASKS_PER_CHILD = 500
 """A child is replaced after so many files, in case a library leaks."""
@@ -77,21 +78,30 @@ class AnalysisPool:
 
     def submit(self, order: Order) -> concurrent.futures.Future[Analysis]:
         """Begin an analysis; `outcome` reads what came of it. Cancelling kills the child."""
-        with self._lock:
-            if not self._pool.active:
-                # A pool whose idle children were all killed is broken for good.
-                self._pool = _new_pool(self.limits, self._size)
-            future: concurrent.futures.Future[Analysis] = self._pool.schedule(
-                analyse_order, args=(order, self.limits), timeout=self.limits.seconds
-            )
-        return future
+        return self._begin(analyse_order, order)
 
     def analyse(self, order: Order) -> Analysis:
         """Analyse and wait; raises as `outcome` does."""
         return self.outcome(self.submit(order))
 
-    def outcome(self, future: concurrent.futures.Future[Analysis]) -> Analysis:
-        """What a finished analysis came to.
+    def read(self, order: Order) -> Recording:
+        """Only read the file, and wait; raises as `outcome` does."""
+        return self.outcome(self._begin(read_order, order))
+
+    def _begin(
+        self, work: Callable[[Order, Limits], _Found], order: Order
+    ) -> concurrent.futures.Future[_Found]:
+        with self._lock:
+            if not self._pool.active:
+                # A pool whose idle children were all killed is broken for good.
+                self._pool = _new_pool(self.limits, self._size)
+            future: concurrent.futures.Future[_Found] = self._pool.schedule(
+                work, args=(order, self.limits), timeout=self.limits.seconds
+            )
+        return future
+
+    def outcome(self, future: concurrent.futures.Future[_Found]) -> _Found:
+        """What a finished analysis, or reading, came to.
 
         Raises BadContent (or TooLarge) for what the content deserves: AnalysisTimedOut,
         AnalysisCrashed, and the reader's own failures; ChildDied where the child was killed,
@@ -139,13 +149,10 @@ def analyse_order(order: Order, limits: Limits) -> Analysis:
     Raises BadContent for what cannot be used, TooLarge beyond the limits.
     """
     from app.analysis import analyse
-    from app.formats.read import read_recording
     from app.motion.canonical import canonicalise
     from app.motion.joint_roles import JointRole
 
-    content = order.content if order.content is not None else Path(order.path or "").read_bytes()
-    recording = read_recording(content)
-    _check_size(recording, limits)
+    recording = read_order(order, limits)
     roles = {JointRole(role): joint for role, joint in (order.roles or {}).items()}
     motion = canonicalise(
         recording,
@@ -154,6 +161,19 @@ def analyse_order(order: Order, limits: Limits) -> Analysis:
         roles=roles or None,
     )
     return analyse.describe_for_search(motion) if order.for_search else analyse.analyse(motion)
+
+
+def read_order(order: Order, limits: Limits) -> Recording:
+    """Read one file, here and now (runs in the child).
+
+    Raises BadContent for what cannot be read, TooLarge beyond the limits.
+    """
+    from app.formats.read import read_recording
+
+    content = order.content if order.content is not None else Path(order.path or "").read_bytes()
+    recording = read_recording(content)
+    _check_size(recording, limits)
+    return recording
 
 
 def _check_size(recording: Recording, limits: Limits) -> None:
