@@ -54,6 +54,11 @@ def multiply(left: FloatArray, right: FloatArray) -> FloatArray:
     return product
 
 
+def conjugate(quaternions: FloatArray) -> FloatArray:
+    """The inverses (..., 4) of unit quaternions (..., 4)."""
+    return np.asarray(quaternions * [1.0, -1.0, -1.0, -1.0])
+
+
 def rotate(quaternions: FloatArray, vectors: FloatArray) -> FloatArray:
     """Vectors (..., 3) turned by unit quaternions (..., 4): v + 2 u x (u x v + w v)."""
     w, u = quaternions[..., :1], quaternions[..., 1:]
