@@ -22,6 +22,7 @@ from app.api.openapi import describe
 from app.api.routes import (
     clip_views,
     clips,
+    export,
     health,
     imports,
     jobs,
@@ -44,7 +45,7 @@ are; where you read `CLIP_ID`, reload this page once there is a clip.
 Times are ISO 8601 in UTC, durations seconds. Lists are `{"items": [...], "next": cursor}`.
 Every failure is a problem (RFC 9457, `application/problem+json`).
 """
-_ROUTES = (clips, clip_views, imports, jobs, search, recognize, models, labels, health)
+_ROUTES = (clips, clip_views, export, imports, jobs, search, recognize, models, labels, health)
 
 
 def create_app(settings: Settings) -> FastAPI:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from app import __version__
-from app.cli import db, demo, evaluate, find, fit, keys, library, serve
+from app.cli import db, demo, evaluate, export, find, fit, keys, library, serve
 from app.cli.settings import remember
 from app.errors import KinedexError
 
@@ -29,6 +29,7 @@ program.command("import")(library.import_clips)
 program.command("search")(find.search)
 program.command("recognize")(find.recognize)
 program.command("fit")(fit.fit)
+program.command("export")(export.export)
 program.add_typer(evaluate.program, name="evaluate")
 program.add_typer(keys.program, name="keys")
 program.add_typer(db.program, name="db")

@@ -1,0 +1,23 @@
+"""How a clip is wanted as a file."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from app.api.schemas.base import Incoming
+from app.services.export import MAX_FPS, ExportFormat, ExportSkeleton
+
+
+class ExportQuery(Incoming):
+    """Format, frame rate and body of an exported clip."""
+
+    format: ExportFormat = Field(
+        description="BVH (centimetres), GLB (glTF 2.0), NPZ (NumPy) or CSV; metres but for BVH."
+    )
+    fps: float | None = Field(
+        None, gt=0, le=MAX_FPS, description="Resampled by time; default: the clip's own rate."
+    )
+    skeleton: ExportSkeleton = Field(
+        ExportSkeleton.OWN,
+        description="The clip's own joints, or one body of 18 joints that all clips play on.",
+    )

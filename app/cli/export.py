@@ -1,0 +1,70 @@
+"""Writing a clip to a file for other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.cli.output import AsJson, print_json
+from app.cli.settings import open_library
+from app.errors import BadField, Place
+from app.services import export as exporting
+from app.services.export import ExportFormat, ExportSkeleton
+
+
+def export(
+    context: typer.Context,
+    clip_id: Annotated[str, typer.Argument(help="The id of a stored clip.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="File to write; default: by the clip's name, here."),
+    ] = None,
+    format: Annotated[
+        ExportFormat | None, typer.Option(help="Default: by the ending of --output, else bvh.")
+    ] = None,
+    fps: Annotated[
+        float | None, typer.Option(help="Resampled by time; default: the clip's rate.")
+    ] = None,
+    skeleton: Annotated[
+        ExportSkeleton, typer.Option(help="The clip's own joints, or one body for all clips.")
+    ] = ExportSkeleton.OWN,
+    as_json: AsJson = False,
+) -> None:
+    """Export a clip as BVH, GLB, NPZ or CSV."""
+    wanted = format or _by_ending(output)
+    with open_library(context) as lib:
+        file = exporting.export(lib, clip_id, wanted, fps=fps, skeleton=skeleton)
+        path = output or Path(file.file_name)
+        size = _write(path, file)
+    if as_json:
+        print_json({"path": str(path), "format": wanted.value, "bytes": size})
+    else:
+        typer.echo(f"{path}: {size} bytes")
+
+
+def _by_ending(output: Path | None) -> ExportFormat:
+    if output is None:
+        return ExportFormat.BVH
+    try:
+        return ExportFormat(output.suffix.lower().removeprefix("."))
+    except ValueError:
+        known = ", ".join(ExportFormat)
+        message = f"must end in one of {known}, or --format must be given"
+        raise BadField(f"output: {message}", places=[Place("output", message)]) from None
+
+
+def _write(path: Path, file: exporting.Export) -> int:
+    """Write beside the target, then rename: what was there stays until all is written."""
+    part = path.with_name(f".{path.name}.part")
+    try:
+        with part.open("wb") as written:
+            size = sum(written.write(block) for block in file.blocks)
+        part.replace(path)
+    except OSError as problem:
+        message = f"cannot be written: {problem.strerror}"
+        raise BadField(f"{path} {message}", places=[Place("output", message)]) from None
+    finally:
+        part.unlink(missing_ok=True)
+    return size

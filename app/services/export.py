@@ -1,0 +1,170 @@
+"""A ready clip as a file for other programs: BVH, GLB, NPZ or CSV (DESIGN 8).
+
+BVH and GLB hold rotations. They are the file's own where it had some: its bytes are read
+again, in a child process, and turned and scaled as the clip was. Otherwise, and where the
+bytes no longer give the stored positions, they are solved from the positions. Joints whose
+bones change their length have translations; positions come back within 0.1 mm.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import TypeVar
+
+import numpy as np
+
+from app.errors import BadContent
+from app.formats.bvh_export import write_animation_bvh
+from app.formats.csv_writer import write_csv
+from app.formats.glb_writer import write_glb
+from app.formats.npz_writer import write_npz
+from app.motion.animation import Animation, animation_of_positions
+from app.motion.canonical_body import on_canonical_body
+from app.motion.file_rotations import animation_of_recording
+from app.motion.motion import Motion
+from app.motion.resampling import resample
+from app.numerics.arrays import FloatArray, IntArray
+from app.services import fields
+from app.services.ingest import order_for
+from app.services.library import Library
+from app.services.query import ready_clip
+from app.services.stored_motion import load_motion
+from app.store.clip_record import ClipRecord
+
+_Kind = TypeVar("_Kind", bound=StrEnum)
+
+MAX_FPS = 1000.0
+POSITION_FORMATS = frozenset({"c3d", "npy"})
+"""Formats that hold no rotations: their bytes need not be read again."""
+
+
+class ExportFormat(StrEnum):
+    """What a clip can be exported as."""
+
+    BVH = "bvh"
+    """Text, centimetres, Y up."""
+    GLB = "glb"
+    """Binary glTF 2.0 with a skinned body of sticks, metres, Y up."""
+    NPZ = "npz"
+    """NumPy arrays (see `app.formats.npz`), metres, Y up."""
+    CSV = "csv"
+    """A row a frame: time, then x, y, z of each joint; seconds, metres, Y up."""
+
+
+class ExportSkeleton(StrEnum):
+    """On which body."""
+
+    OWN = "own"
+    """The clip's own joints."""
+    CANONICAL = "canonical"
+    """One body for all clips: 18 joints called by role, 1.7 m tall."""
+
+
+@dataclass(frozen=True, slots=True)
+class Export:
+    """A file: its name, and its content piece by piece."""
+
+    file_name: str
+    blocks: Iterable[bytes]
+
+
+@dataclass(frozen=True, slots=True)
+class _Positions:
+    names: Sequence[str]
+    parents: IntArray
+    positions: FloatArray
+    frame_rate: float
+
+
+def export(
+    lib: Library,
+    clip_id: str,
+    format: ExportFormat | str,
+    *,
+    fps: float | None = None,
+    skeleton: ExportSkeleton | str = ExportSkeleton.OWN,
+) -> Export:
+    """A clip as a file of `format`, resampled by time to `fps` (default: its own rate).
+
+    Raises BadField, ClipNotFound, ClipNotReady.
+    """
+    wanted = _choice("format", ExportFormat, format)
+    body = _choice("skeleton", ExportSkeleton, skeleton)
+    clip = ready_clip(lib, clip_id)
+    rate = _rate(lib, clip, fps)
+    motion = load_motion(lib, clip)
+    if body is ExportSkeleton.CANONICAL:
+        blocks = _of_animation(wanted, on_canonical_body(_resampled(motion, rate)), clip)
+    elif wanted in (ExportFormat.BVH, ExportFormat.GLB):
+        blocks = _of_animation(wanted, _own_animation(lib, clip, motion, rate), clip)
+    else:
+        motion = _resampled(motion, rate)
+        blocks = _of_positions(
+            wanted, _Positions(motion.names, motion.parents, motion.positions, rate)
+        )
+    ending = "-canonical" if body is ExportSkeleton.CANONICAL else ""
+    return Export(f"{_safe_stem(clip)}{ending}.{wanted.value}", blocks)
+
+
+def _choice(field: str, kind: type[_Kind], value: str) -> _Kind:
+    try:
+        return kind(value)
+    except ValueError:
+        raise fields.bad_field(field, f"must be one of {', '.join(kind)}") from None
+
+
+def _rate(lib: Library, clip: ClipRecord, fps: float | None) -> float:
+    if fps is None:
+        return clip.frame_rate or 1.0
+    if not (math.isfinite(fps) and 0 < fps <= MAX_FPS):
+        raise fields.bad_field("fps", f"must be above 0 and at most {MAX_FPS:g}")
+    if fps * (clip.duration or 0.0) > max(lib.settings.max_frames, clip.frames or 0):
+        raise fields.bad_field("fps", f"would make more than {lib.settings.max_frames} frames")
+    return fps
+
+
+def _resampled(motion: Motion, rate: float) -> Motion:
+    if rate == motion.frame_rate:
+        return motion
+    positions = resample(motion.positions, motion.frame_rate, rate)
+    return replace(motion, positions=positions.astype(np.float32), frame_rate=rate)
+
+
+def _own_animation(lib: Library, clip: ClipRecord, motion: Motion, rate: float) -> Animation:
+    if clip.format not in POSITION_FORMATS:
+        try:
+            recording = lib.pool.read(order_for(lib, clip))
+        except BadContent:
+            recording = None  # readers have changed since; the positions are what counts
+        animation = animation_of_recording(recording, motion) if recording else None
+        if animation is not None:
+            return animation.resampled(rate)
+    motion = _resampled(motion, rate)
+    return animation_of_positions(motion.names, motion.parents, motion.positions, rate)
+
+
+def _of_animation(wanted: ExportFormat, animation: Animation, clip: ClipRecord) -> Iterable[bytes]:
+    if wanted is ExportFormat.BVH:
+        return write_animation_bvh(animation)
+    if wanted is ExportFormat.GLB:
+        return [write_glb(animation, clip.name, clip.license)]
+    skeleton = animation.skeleton
+    positions = animation.positions().astype(np.float32)
+    return _of_positions(
+        wanted, _Positions(skeleton.names, skeleton.parents, positions, animation.frame_rate)
+    )
+
+
+def _of_positions(wanted: ExportFormat, told: _Positions) -> Iterable[bytes]:
+    if wanted is ExportFormat.NPZ:
+        return [write_npz(told.names, told.parents, told.positions, told.frame_rate)]
+    return write_csv(told.names, told.positions, told.frame_rate)
+
+
+def _safe_stem(clip: ClipRecord) -> str:
+    """The clip's name as a file name that no system takes for anything else."""
+    kept = "".join(c if c.isalnum() or c in " ._-()+" else "_" for c in clip.name)
+    return kept.strip(" ._")[:100] or clip.id
