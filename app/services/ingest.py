@@ -32,29 +32,31 @@ def order_for(lib: Library, clip: ClipRecord) -> Order:
     )
 
 
-def finish(lib: Library, claimed: ClaimedJob, clip: ClipRecord, found: Analysis) -> bool:
-    """Make the clip ready; False where it was changed meanwhile and waits for another analysis.
+def finish(tx: Tx, claimed: ClaimedJob, clip: ClipRecord, found: Analysis) -> None:
+    """Make the clip ready, unless it was changed meanwhile and waits for another analysis.
 
-    `clip` is as it was when the analysis began. Raises LeaseLost, ClipNotFound, StorageError.
+    `clip` is as it was when the analysis began. Imports that wait for it are the caller's to
+    settle. Raises LeaseLost, ClipNotFound, StorageError.
     """
+    if _is_superseded(tx, clip):
+        _leave(tx, claimed, clip)
+        return
     arrays = {**found.arrays, **motion_arrays(found.motion)}
-    with lib.store.write() as tx:
-        if _is_superseded(tx, clip):
-            leases.succeed(tx, claimed.lease, {"clip_id": clip.id, "superseded": True})
-            return False
-        outcomes.finish_ingest(tx, claimed.lease, clip.id, facts(found.motion), arrays)
-        return True
+    outcomes.finish_ingest(
+        tx, claimed.lease, clip.id, facts(found.motion), arrays, settles_imports=False
+    )
 
 
-def fail(lib: Library, claimed: ClaimedJob, clip: ClipRecord, problem: KinedexError) -> None:
+def fail(
+    tx: Tx, claimed: ClaimedJob, clip: ClipRecord, problem: KinedexError, max_attempts: int
+) -> None:
     """Fail the clip for its own reason; only what may pass is tried again. Raises LeaseLost."""
-    with lib.store.write() as tx:
-        if _is_superseded(tx, clip):
-            leases.succeed(tx, claimed.lease, {"clip_id": clip.id, "superseded": True})
-        elif _may_pass(problem) and claimed.lease.attempt < lib.settings.job_max_attempts:
-            outcomes.retry_or_fail(tx, claimed, problem.as_problem(), delay_s=RETRY_DELAY_S)
-        else:
-            outcomes.fail_job(tx, claimed, problem.as_problem())
+    if _is_superseded(tx, clip):
+        _leave(tx, claimed, clip)
+    elif _may_pass(problem) and claimed.lease.attempt < max_attempts:
+        outcomes.retry_or_fail(tx, claimed, problem.as_problem(), delay_s=RETRY_DELAY_S)
+    else:
+        outcomes.fail_job(tx, claimed, problem.as_problem())
 
 
 def facts(motion: Motion) -> ClipFacts:
@@ -78,6 +80,11 @@ def _is_superseded(tx: Tx, clip: ClipRecord) -> bool:
     """Whether what the client says of the file has changed since the analysis began."""
     now = stored.get(tx, clip.id)
     return _said(now) != _said(clip)
+
+
+def _leave(tx: Tx, claimed: ClaimedJob, clip: ClipRecord) -> None:
+    """Leave the clip to the job that was queued when it was changed."""
+    leases.succeed(tx, claimed.lease, {"clip_id": clip.id, "superseded": True})
 
 
 def _said(clip: ClipRecord) -> tuple[object, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -55,8 +55,13 @@ class TrainingSet:
         return [clip.words for clip in self.clips]
 
 
+def ready_only(wanted: ClipFilter | None) -> ClipFilter:
+    """A filter that besides lets only ready clips pass."""
+    return replace(wanted or READY, state=READY.state)
+
+
 def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
-    """All ready clips that pass a filter, in one snapshot."""
+    """All clips that pass a filter, ready ones by default, in one snapshot."""
     with store.read() as tx:
         version = library.version(tx)
         ids = sorted(clip_listing.list_ids(tx, wanted))

@@ -6,7 +6,7 @@ its job: success, bad content, cancellation, or a worker that dies each time it 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from numpy.typing import NDArray
@@ -23,17 +23,32 @@ from app.store.job_record import ClaimedJob, JobKind, JobRecord, JobState, Lease
 
 
 def finish_ingest(
-    tx: Tx, lease: Lease, clip_id: str, facts: ClipFacts, found: Mapping[str, NDArray[Any]]
+    tx: Tx,
+    lease: Lease,
+    clip_id: str,
+    facts: ClipFacts,
+    found: Mapping[str, NDArray[Any]],
+    *,
+    settles_imports: bool = True,
 ) -> ClipRecord:
     """The clip is ready, with what was found; its arrays replace those of an earlier analysis.
 
     Raises LeaseLost, before anything is changed, when the job is no longer the caller's.
+    `settles_imports=False` leaves `settle_imports` to the caller, once for many clips.
     """
     leases.succeed(tx, lease, {"clip_id": clip_id})
     array_repository.put_many(tx, clip_id, found, version=facts.analysis_version)
     ready = clips.set_ready(tx, clip_id, facts)
-    _settle_imports(tx, clip_id)
+    if settles_imports:
+        settle_imports(tx, [clip_id])
     return ready
+
+
+def settle_imports(tx: Tx, clip_ids: Collection[str]) -> None:
+    """Ends the imports that waited for these clips only; tells the others' progress."""
+    waiting = (job_id for clip_id in clip_ids for job_id in imports.waiting_on(tx, clip_id))
+    for job_id in dict.fromkeys(waiting):
+        imports.settle_if_done(tx, job_id)
 
 
 def fail_job(tx: Tx, claimed: ClaimedJob, problem: dict[str, Any]) -> JobRecord:
@@ -132,17 +147,12 @@ def _cancel_what_hangs_on(tx: Tx, job: JobRecord, clip_id: str | None) -> None:
 def _fail_clip(tx: Tx, clip_id: str | None, problem: dict[str, Any]) -> None:
     if clip_id is not None and clip_id in clips.get_many(tx, [clip_id]):
         clips.set_failed(tx, clip_id, problem)
-        _settle_imports(tx, clip_id)
+        settle_imports(tx, [clip_id])
 
 
 def _wait_again(tx: Tx, clip_id: str | None) -> None:
     if clip_id is not None and clips.get(tx, clip_id).state is ClipState.PROCESSING:
         clips.requeue(tx, clip_id)
-
-
-def _settle_imports(tx: Tx, clip_id: str) -> None:
-    for job_id in imports.waiting_on(tx, clip_id):
-        imports.settle_if_done(tx, job_id)
 
 
 def _open_jobs_of(tx: Tx, clip_id: str) -> list[str]:

@@ -18,11 +18,13 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from app.config import Settings
-from app.errors import KinedexError, LeaseLost, NotFound, StorageError
+from app.errors import LeaseLost, NotFound, StorageError
 from app.logs import job_id
 from app.services import models
 from app.services.library import Library
-from app.store import leases, outcomes, queue
+from app.store import clips, leases, outcomes, queue
+from app.store.clip_record import ClipRecord
+from app.store.engine import Tx
 from app.store.ids import new_id
 from app.store.job_record import ClaimedJob, JobKind
 from app.worker.running import Running
@@ -30,8 +32,8 @@ from app.worker.starting import Bench
 
 _log = logging.getLogger(__name__)
 
-READ_AHEAD = 1
-"""Clips claimed beyond the processes, so that none waits while the last one is stored."""
+READ_AHEAD = 3
+"""Clips claimed for each process, so that none waits while others are stored together."""
 FIT_CHECK_S = 2.0
 """Between looks at whether a fit is due, while there is nothing else to do."""
 STOP_WITHIN_S = 10.0
@@ -70,15 +72,13 @@ class Worker:
         self._running: list[Running] = []
         self._last_beat = time.monotonic()
         self._last_fit_check = 0.0
-        self._expects_work = True
 
     def run(self, stop: threading.Event, until: Callable[[Library], bool] | None = None) -> None:
         """Work until told to stop, or until `until` holds with nothing left to claim."""
         while not stop.is_set():
             try:
-                self._settle_finished()
                 self._beat_if_due()
-                is_idle = not self._claim_all()
+                is_idle = not self._take_a_turn()
                 if is_idle and not self._running:
                     if until is not None and until(self.lib):
                         return
@@ -100,15 +100,36 @@ class Worker:
         self._running = []
         self._bench.close()
 
-    def _settle_finished(self) -> None:
-        for running in [r for r in self._running if r.future.done()]:
-            with _job_named(running.claimed.job.id):
-                self._settle(running)
-            self._running.remove(running)
+    def _take_a_turn(self) -> bool:
+        """Settle what is finished and claim what there is room for, in one transaction.
 
-    def _settle(self, running: Running) -> None:
+        One transaction, since each waits for the disk. Returns whether there was any work.
+        """
+        finished = [running for running in self._running if running.future.done()]
+        if not finished and not self._is_work_waiting():
+            return False
+        with self.lib.store.write() as tx:
+            self._settle_all(tx, finished)
+            claimed = self._claim_all(tx, without=finished)
+            ids = [each.clip_id for each in claimed if each.clip_id is not None]
+            clip_of = clips.get_many(tx, ids)
+        self._running = [running for running in self._running if running not in finished]
+        for each in claimed:
+            self._begin(each, clip_of.get(each.clip_id or ""))
+        return bool(finished or claimed)
+
+    def _settle_all(self, tx: Tx, finished: list[Running]) -> None:
+        for running in finished:
+            with _job_named(running.claimed.job.id):
+                self._settle(tx, running)
+        ids = [running.claimed.clip_id for running in finished]
+        outcomes.settle_imports(tx, [clip_id for clip_id in ids if clip_id is not None])
+
+    def _settle(self, tx: Tx, running: Running) -> None:
+        """Settle one; what is not ours any more must not undo the others."""
         try:
-            running.settle()
+            with tx.begin_nested():
+                running.settle(tx)
         except LeaseLost:
             _log.warning("job %s was given to another worker", running.claimed.job.id)
         except CancelledError:
@@ -145,48 +166,41 @@ class Worker:
         running.stop()
         self._running.remove(running)
 
-    def _claim_all(self) -> bool:
-        """Claim what there is room for; whether anything was claimed."""
-        has_claimed = False
-        while kinds := self._kinds_with_room():
-            claimed = self._take(kinds)
-            if claimed is None:
-                break
-            has_claimed = True
-            self._begin(claimed)
-        return has_claimed
+    def _is_work_waiting(self) -> bool:
+        """Whether there is anything to claim; an idle worker only reads."""
+        kinds = self._kinds_with_room([running.claimed for running in self._running])
+        if not kinds:
+            return False
+        with self.lib.store.read() as tx:
+            return queue.is_work_waiting(tx, kinds)
 
-    def _take(self, kinds: list[JobKind]) -> ClaimedJob | None:
-        """The next job. An idle worker only reads; one that just found work looks for more."""
-        if not self._expects_work:
-            with self.lib.store.read() as tx:
-                if not queue.is_work_waiting(tx, kinds):
-                    return None
-        with self.lib.store.write() as tx:
-            claimed = queue.take(tx, kinds, self.owner, self.lib.settings.job_lease_s)
-        self._expects_work = claimed is not None
+    def _claim_all(self, tx: Tx, without: list[Running]) -> list[ClaimedJob]:
+        """Claim what there is room for, when these are settled."""
+        held = [running.claimed for running in self._running if running not in without]
+        claimed: list[ClaimedJob] = []
+        while kinds := self._kinds_with_room([*held, *claimed]):
+            found = queue.take(tx, kinds, self.owner, self.lib.settings.job_lease_s)
+            if found is None:
+                break
+            claimed.append(found)
         return claimed
 
-    def _kinds_with_room(self) -> list[JobKind]:
-        held = [running.claimed.job.kind for running in self._running]
-        busy = held.count(JobKind.INGEST) + held.count(JobKind.FIT)
+    def _kinds_with_room(self, held: Iterable[ClaimedJob]) -> list[JobKind]:
+        kinds_held = [claimed.job.kind for claimed in held]
+        busy = kinds_held.count(JobKind.INGEST) + kinds_held.count(JobKind.FIT)
         kinds = []
-        if busy < self._bench.slots + READ_AHEAD:
+        if busy < READ_AHEAD * self._bench.slots:
             kinds.append(JobKind.INGEST)
-        if JobKind.IMPORT not in held:
+        if JobKind.IMPORT not in kinds_held:
             kinds.append(JobKind.IMPORT)
-        if busy < self._bench.slots and JobKind.FIT not in held:
+        if busy < self._bench.slots and JobKind.FIT not in kinds_held:
             kinds.append(JobKind.FIT)
         return kinds
 
-    def _begin(self, claimed: ClaimedJob) -> None:
+    def _begin(self, claimed: ClaimedJob, clip: ClipRecord | None) -> None:
         if claimed.job.kind is JobKind.FIT and not self._running:
             self._bench.rest()
-        try:
-            self._running.append(self._bench.begin(claimed))
-        except KinedexError as problem:
-            with suppress(LeaseLost), self.lib.store.write() as tx:
-                outcomes.fail_job(tx, claimed, problem.as_problem())
+        self._running.append(self._bench.begin(claimed, clip))
 
     def _request_fit_if_due(self) -> None:
         if time.monotonic() - self._last_fit_check < FIT_CHECK_S:

@@ -19,6 +19,7 @@ from app.services.analysis_pool import AnalysisPool
 from app.services.library import Library
 from app.store import leases, outcomes
 from app.store.clip_record import ClipRecord
+from app.store.engine import Tx
 from app.store.job_record import ClaimedJob
 
 _log = logging.getLogger(__name__)
@@ -37,7 +38,7 @@ class Running(Protocol):
         """Have the work end soon, without a result."""
         ...
 
-    def settle(self) -> None:
+    def settle(self, tx: Tx) -> None:
         """Record what the finished work came to. Raises LeaseLost, StorageError."""
         ...
 
@@ -60,15 +61,16 @@ class RunningIngest:
         """Kills the child."""
         self.future.cancel()
 
-    def settle(self) -> None:
+    def settle(self, tx: Tx) -> None:
         """Ready, or failed for its own reason; nothing where the clip was deleted meanwhile."""
         try:
             try:
                 found = self.pool.outcome(self.future)
             except KinedexError as problem:
-                ingest.fail(self.lib, self.claimed, self.clip, problem)
+                attempts = self.lib.settings.job_max_attempts
+                ingest.fail(tx, self.claimed, self.clip, problem, attempts)
             else:
-                ingest.finish(self.lib, self.claimed, self.clip, found)
+                ingest.finish(tx, self.claimed, self.clip, found)
         except ClipNotFound:
             _log.info("clip %s was deleted while it was analysed", self.clip.id)
 
@@ -81,7 +83,6 @@ class RunningIngest:
 class RunningThread:
     """An import, in a thread of this process; it settles itself when all goes well."""
 
-    lib: Library
     claimed: ClaimedJob
     future: Future[None]
     stopping: threading.Event
@@ -91,9 +92,9 @@ class RunningThread:
         """Asks the thread, which looks before each file."""
         self.stopping.set()
 
-    def settle(self) -> None:
+    def settle(self, tx: Tx) -> None:
         """Records why it could not be done."""
-        _settle_failure(self.lib, self.claimed, self.future)
+        _settle_failure(tx, self.claimed, self.future)
 
     def progress(self) -> tuple[float | None, str | None]:
         """As the thread last told."""
@@ -104,7 +105,6 @@ class RunningThread:
 class RunningFit:
     """A fit of all models, in a child process; its result is the job's."""
 
-    lib: Library
     claimed: ClaimedJob
     future: Future[dict[str, Any]]
 
@@ -112,18 +112,17 @@ class RunningFit:
         """Kills the child; models that it has saved are whole and stay."""
         self.future.cancel()
 
-    def settle(self) -> None:
+    def settle(self, tx: Tx) -> None:
         """Records the result, or why there is none."""
-        if not _settle_failure(self.lib, self.claimed, self.future):
-            with self.lib.store.write() as tx:
-                leases.succeed(tx, self.claimed.lease, self.future.result())
+        if not _settle_failure(tx, self.claimed, self.future):
+            leases.succeed(tx, self.claimed.lease, self.future.result())
 
     def progress(self) -> tuple[float | None, str | None]:
         """Not known."""
         return None, "fitting the models"
 
 
-def _settle_failure(lib: Library, claimed: ClaimedJob, future: Future[Any]) -> bool:
+def _settle_failure(tx: Tx, claimed: ClaimedJob, future: Future[Any]) -> bool:
     """Record a failure of the work, if it failed; whether it did."""
     failure = future.exception()
     if failure is None:
@@ -133,11 +132,10 @@ def _settle_failure(lib: Library, claimed: ClaimedJob, future: Future[Any]) -> b
     if not isinstance(failure, KinedexError):
         _log.error("job %s failed unexpectedly", claimed.job.id, exc_info=failure)
     problem = failure if isinstance(failure, KinedexError) else KinedexError(_told(failure))
-    with lib.store.write() as tx:
-        if isinstance(problem, StorageError):
-            outcomes.retry_or_fail(tx, claimed, problem.as_problem(), delay_s=RETRY_DELAY_S)
-        else:
-            outcomes.fail_job(tx, claimed, problem.as_problem())
+    if isinstance(problem, StorageError):
+        outcomes.retry_or_fail(tx, claimed, problem.as_problem(), delay_s=RETRY_DELAY_S)
+    else:
+        outcomes.fail_job(tx, claimed, problem.as_problem())
     return True
 
 

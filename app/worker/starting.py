@@ -15,7 +15,7 @@ from app.services.analysis_pool import AnalysisPool
 from app.services.child_processes import child_context, die_with_parent
 from app.services.fit_process import fit_in_child
 from app.services.library import Library, ingest_limits
-from app.store import clips
+from app.store.clip_record import ClipRecord
 from app.store.job_record import ClaimedJob, JobKind
 from app.worker.running import Running, RunningFit, RunningIngest, RunningThread
 
@@ -29,13 +29,13 @@ class Bench:
         self._analyses = AnalysisPool(ingest_limits(lib.settings), size=self.slots)
         self._threads = ThreadPoolExecutor(1, thread_name_prefix="import")
 
-    def begin(self, claimed: ClaimedJob) -> Running:
-        """Begin a job. Raises ClipNotFound where its clip is gone, NotFound for its file."""
-        if claimed.job.kind is JobKind.INGEST:
-            return self._begin_ingest(claimed)
+    def begin(self, claimed: ClaimedJob, clip: ClipRecord | None) -> Running:
+        """Begin a job, an ingest with its clip as it is now."""
+        if clip is not None:
+            return self._begin_ingest(claimed, clip)
         if claimed.job.kind is JobKind.IMPORT:
             return self._begin_import(claimed)
-        return RunningFit(self.lib, claimed, _fit_in_process(self.lib))
+        return RunningFit(claimed, _fit_in_process(self.lib))
 
     def rest(self) -> None:
         """Give back the memory of idle analysis processes."""
@@ -46,9 +46,7 @@ class Bench:
         self._analyses.close()
         self._threads.shutdown()
 
-    def _begin_ingest(self, claimed: ClaimedJob) -> Running:
-        with self.lib.store.read() as tx:
-            clip = clips.get(tx, claimed.clip_id or "")
+    def _begin_ingest(self, claimed: ClaimedJob, clip: ClipRecord) -> Running:
         try:
             future = self._analyses.submit(ingest.order_for(self.lib, clip))
         except KinedexError as problem:
@@ -64,7 +62,7 @@ class Bench:
             told[0] = (done / max(total, 1), f"{done} of {total} files: {path}")
 
         future = self._threads.submit(imports.unpack, self.lib, claimed, progress, stopping.is_set)
-        return RunningThread(self.lib, claimed, future, stopping, told)
+        return RunningThread(claimed, future, stopping, told)
 
 
 def _fit_in_process(lib: Library) -> Future[dict[str, Any]]:

@@ -40,7 +40,7 @@ def lib(tmp_path: Path) -> Iterator[Library]:
 
 @pytest.fixture(scope="session")
 def kicks() -> list[DemoClip]:
-    return list(demo_clips(tasks=("kick",), takes=3))
+    return list(demo_clips(tasks=("kick",), takes=2))
 
 
 def _archive(demo: list[DemoClip]) -> io.BytesIO:
@@ -150,7 +150,7 @@ def test_a_stopped_worker_gives_back_what_it_had(lib: Library, kicks: list[DemoC
     for clip in kicks[:4]:
         upload(lib, clip)
     worker = Worker(lib)
-    assert worker._claim_all()
+    assert worker._take_a_turn()
     held = [r.claimed for r in worker._running]
     worker.close()
     assert held
@@ -177,7 +177,7 @@ def test_a_clip_deleted_while_it_is_analysed_stays_deleted(
 ) -> None:
     clip = upload(lib, kicks[0]).clip
     worker = Worker(lib)
-    worker._claim_all()
+    worker._take_a_turn()
     clips.delete_clip(lib, clip.id)
     _until_settled(worker)
     worker.close()
@@ -187,7 +187,7 @@ def test_a_clip_deleted_while_it_is_analysed_stays_deleted(
 def test_a_frame_rate_changed_during_the_analysis_wins(lib: Library, kicks: list[DemoClip]) -> None:
     clip = upload(lib, kicks[0]).clip
     worker = Worker(lib)
-    worker._claim_all()
+    worker._take_a_turn()
     clips.update_clip(lib, clip.id, {"frame_rate": 21.0})
     _until_settled(worker)
     worker.close()
@@ -213,14 +213,15 @@ def test_a_cancelled_analysis_fails_its_clip_and_says_so(
 def test_a_worker_that_lost_its_lease_changes_nothing(lib: Library, kicks: list[DemoClip]) -> None:
     upload(lib, kicks[0])
     slow = Worker(lib)
-    slow._claim_all()
+    slow._take_a_turn()
     (running,) = slow._running
     running.future.result()
     time.sleep(lib.settings.job_lease_s + 0.1)
     work(lib.settings)
-    with pytest.raises(LeaseLost):
-        running.settle()
-    slow._settle_finished()
+    with pytest.raises(LeaseLost), lib.store.write() as tx:
+        running.settle(tx)
+    slow._take_a_turn()
+    assert slow._running == []
     slow.close()
     assert [clip.state for clip in _all_clips(lib)] == [ClipState.READY]
 
@@ -250,6 +251,8 @@ def test_a_library_that_has_grown_is_fitted_unasked_and_only_then(
 
 
 def _until_settled(worker: Worker) -> None:
-    while worker._running:
-        worker._settle_finished()
+    while not all(running.future.done() for running in worker._running):
         time.sleep(0.02)
+    with worker.lib.store.write() as tx:
+        worker._settle_all(tx, worker._running)
+    worker._running = []
