@@ -78,17 +78,13 @@ def facts(motion: Motion) -> ClipFacts:
 
 def _is_superseded(tx: Tx, clip: ClipRecord) -> bool:
     """Whether what the client says of the file has changed since the analysis began."""
-    now = stored.get(tx, clip.id)
-    return _said(now) != _said(clip)
+    said = clip.frame_rate_override, clip.metres_per_unit_override, clip.roles_override
+    return stored.overrides(tx, clip.id) != said
 
 
 def _leave(tx: Tx, claimed: ClaimedJob, clip: ClipRecord) -> None:
     """Leave the clip to the job that was queued when it was changed."""
     leases.succeed(tx, claimed.lease, {"clip_id": clip.id, "superseded": True})
-
-
-def _said(clip: ClipRecord) -> tuple[object, ...]:
-    return clip.frame_rate_override, clip.metres_per_unit_override, clip.roles_override
 
 
 def _may_pass(problem: KinedexError) -> bool:

@@ -85,22 +85,23 @@ def patch(tx: Tx, clip_id: str, changes: ClipChanges) -> ClipRecord:
 
 def requeue(tx: Tx, clip_id: str) -> ClipRecord:
     """Back to queued, for another analysis; not searchable until that is done."""
-    return _enter(tx, clip_id, ClipState.QUEUED, error=None)
+    _enter(tx, clip_id, ClipState.QUEUED, error=None)
+    return get(tx, clip_id)
 
 
-def set_processing(tx: Tx, clip_id: str) -> ClipRecord:
+def set_processing(tx: Tx, clip_id: str) -> None:
     """A worker has begun."""
-    return _enter(tx, clip_id, ClipState.PROCESSING)
+    _enter(tx, clip_id, ClipState.PROCESSING)
 
 
-def set_ready(tx: Tx, clip_id: str, facts: ClipFacts) -> ClipRecord:
+def set_ready(tx: Tx, clip_id: str, facts: ClipFacts) -> None:
     """Analysed: searchable from this transaction's commit on."""
-    return _enter(tx, clip_id, ClipState.READY, error=None, **asdict(facts))
+    _enter(tx, clip_id, ClipState.READY, error=None, **asdict(facts))
 
 
-def set_failed(tx: Tx, clip_id: str, problem: dict[str, Any]) -> ClipRecord:
+def set_failed(tx: Tx, clip_id: str, problem: dict[str, Any]) -> None:
     """Cannot be analysed, for the reason given as an RFC 9457 problem."""
-    return _enter(tx, clip_id, ClipState.FAILED, error=problem)
+    _enter(tx, clip_id, ClipState.FAILED, error=problem)
 
 
 def delete_clip(tx: Tx, clip_id: str) -> ClipRecord:
@@ -157,12 +158,24 @@ def _set_words(tx: Tx, clip_id: str, words: Sequence[str]) -> None:
         tx.execute(insert(clip_words), rows)
 
 
-def _enter(tx: Tx, clip_id: str, state: ClipState, **values: Any) -> ClipRecord:
+def overrides(tx: Tx, clip_id: str) -> tuple[Any, ...]:
+    """What the client said of the file: frame rate, metres per unit, roles. Raises ClipNotFound."""
+    said = (
+        clips.c.frame_rate_override,
+        clips.c.metres_per_unit_override,
+        clips.c.roles_override,
+    )
+    row = tx.execute(select(*said).where(clips.c.id == clip_id)).one_or_none()
+    if row is None:
+        raise ClipNotFound(f"There is no clip with the id {clip_id!r}")
+    return tuple(row)
+
+
+def _enter(tx: Tx, clip_id: str, state: ClipState, **values: Any) -> None:
     before = _state_of(tx, clip_id)
     if ClipState.READY in (before, state):
         values["changed_version"] = library.bump(tx)
     tx.execute(update(clips).where(clips.c.id == clip_id).values(state=state.value, **values))
-    return get(tx, clip_id)
 
 
 def _state_of(tx: Tx, clip_id: str) -> ClipState:

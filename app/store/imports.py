@@ -7,6 +7,7 @@ when the last of its clips is.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Collection
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -92,12 +93,17 @@ def wait_for_clips(tx: Tx, lease: Lease, detail: str | None = None) -> JobRecord
     return settle_if_done(tx, parked.id)
 
 
-def waiting_on(tx: Tx, clip_id: str) -> tuple[str, ...]:
-    """The open import jobs that have this clip among theirs."""
+def waiting_on(tx: Tx, clip_ids: Collection[str]) -> tuple[str, ...]:
+    """The open import jobs that have one of these clips among theirs."""
+    if not clip_ids:
+        return ()
     query = (
         select(jobs.c.id)
         .join(import_entries, import_entries.c.job_id == jobs.c.id)
-        .where(import_entries.c.clip_id == clip_id, jobs.c.state == JobState.PROCESSING.value)
+        .where(
+            import_entries.c.clip_id.in_(clip_ids),
+            jobs.c.state == JobState.PROCESSING.value,
+        )
         .distinct()
     )
     return tuple(tx.execute(query).scalars())

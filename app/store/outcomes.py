@@ -30,7 +30,7 @@ def finish_ingest(
     found: Mapping[str, NDArray[Any]],
     *,
     settles_imports: bool = True,
-) -> ClipRecord:
+) -> None:
     """The clip is ready, with what was found; its arrays replace those of an earlier analysis.
 
     Raises LeaseLost, before anything is changed, when the job is no longer the caller's.
@@ -38,16 +38,14 @@ def finish_ingest(
     """
     leases.succeed(tx, lease, {"clip_id": clip_id})
     array_repository.put_many(tx, clip_id, found, version=facts.analysis_version)
-    ready = clips.set_ready(tx, clip_id, facts)
+    clips.set_ready(tx, clip_id, facts)
     if settles_imports:
         settle_imports(tx, [clip_id])
-    return ready
 
 
 def settle_imports(tx: Tx, clip_ids: Collection[str]) -> None:
     """Ends the imports that waited for these clips only; tells the others' progress."""
-    waiting = (job_id for clip_id in clip_ids for job_id in imports.waiting_on(tx, clip_id))
-    for job_id in dict.fromkeys(waiting):
+    for job_id in imports.waiting_on(tx, clip_ids):
         imports.settle_if_done(tx, job_id)
 
 
@@ -110,7 +108,7 @@ def remove_clip(tx: Tx, clip_id: str) -> ClipRecord:
 
     Returns what it was; afterwards give its files to `Store.drop_unreferenced`.
     """
-    imports_of_it = imports.waiting_on(tx, clip_id)
+    imports_of_it = imports.waiting_on(tx, [clip_id])
     gone = clips.delete_clip(tx, clip_id)
     for job_id in _open_jobs_of(tx, clip_id):
         _cancel_now(tx, job_id)  # a worker that has it will find its lease lost

@@ -40,7 +40,8 @@ def add(store: Store) -> Add:
         with store.write() as tx:
             clip = clips.add_or_get(tx, new).clip
             arrays.put_many(tx, clip.id, {VECTOR: vector}, version=1)
-            return clips.set_ready(tx, clip.id, facts)
+            clips.set_ready(tx, clip.id, facts)
+            return clips.get(tx, clip.id)
 
     return ready
 

@@ -78,7 +78,8 @@ def add_clip(store: Store) -> AddClip:
             clip = clips.add_or_get(tx, new_clip(name, **fields)).clip
             if ready is False:
                 return clip
-            return clips.set_ready(tx, clip.id, facts(**(ready if ready is not True else {})))
+            clips.set_ready(tx, clip.id, facts(**(ready if ready is not True else {})))
+            return clips.get(tx, clip.id)
 
     return add
 
