@@ -180,8 +180,13 @@ def texts(array: NDArray[Any], key: str) -> list[str]:
 
 
 def _decoded(array: NDArray[Any]) -> Iterator[str]:
-    for item in array.tolist():
-        yield item if isinstance(item, str) else item.decode("utf-8")
+    # numpy raises SystemError on code points beyond Unicode, so its text is decoded here
+    big = array.dtype.str.startswith(">")
+    wide = "utf-32-be" if big else "utf-32-le"
+    encoding = wide if array.dtype.kind == "U" else "utf-8"
+    content, size = array.tobytes(), array.dtype.itemsize
+    for start in range(0, len(content), size):
+        yield content[start : start + size].decode(encoding).rstrip("\0")
 
 
 def _refused(key: str, message: str) -> Unreadable:
