@@ -84,6 +84,24 @@ class EmptyFile(BadContent):
     code = "empty_file"
 
 
+class SkeletonNeeded(BadContent):
+    """An AMC file moves the bones of an ASF file: send that as `skeleton`."""
+
+    code = "skeleton_needed"
+
+
+class MotionNeeded(BadContent):
+    """An ASF file holds no motion: send the AMC file as `file` and this one as `skeleton`."""
+
+    code = "motion_needed"
+
+
+class SkeletonNotNeeded(BadContent):
+    """A skeleton goes with an AMC file only."""
+
+    code = "skeleton_not_needed"
+
+
 class NotHuman(BadContent):
     """The skeleton lacks joints without which a body cannot be analysed."""
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.errors import TooLarge, Unreadable
+from app.formats.names import readable_name
 from app.formats.numbers import excerpt, parse_numbers
 from app.formats.places import unreadable
 from app.motion.recording import Caution
@@ -23,7 +24,6 @@ from app.numerics.arrays import FloatArray
 
 MAX_JOINTS = 2000
 """More joints than any body, hands and face together."""
-MAX_NAME_LENGTH = 200
 MAX_CHANNELS = 12
 """Channels of one joint: position and rotation need six, odd writers repeat some."""
 MAX_HIERARCHY_BYTES = 2_000_000
@@ -161,7 +161,7 @@ class _Reader:
         name = b" ".join(self.tokens.until_brace())
         if len(self.joints) >= MAX_JOINTS:
             raise TooLarge(f"line {line}: expected at most {MAX_JOINTS} joints")
-        self.joints.append(_Joint(_checked_name(name, line), parent, line))
+        self.joints.append(_Joint(readable_name(name, line), parent, line))
         self.open.append(len(self.joints))
 
     def _close(self) -> None:
@@ -216,13 +216,3 @@ class _Reader:
             return ()
         shown = ", ".join(twice[:5])
         return (Caution("duplicate_names", f"several joints have the same name: {shown}"),)
-
-
-def _checked_name(name: bytes, line: int) -> str:
-    try:
-        text = name.decode("utf-8")
-    except UnicodeDecodeError:
-        text = name.decode("latin-1")
-    if not text or len(text) > MAX_NAME_LENGTH or not text.isprintable():
-        raise unreadable(line, f"expected a joint's name, found {excerpt(name)}")
-    return text

@@ -26,20 +26,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.errors import Place, TooLarge, Unreadable
-from app.formats.bvh_hierarchy import MAX_JOINTS, MAX_NAME_LENGTH
+from app.formats.bvh_hierarchy import MAX_JOINTS
 from app.formats.joint_layouts import layout_of
 from app.formats.joint_trees import in_tree_order, parents_of
+from app.formats.names import MAX_NAME_LENGTH
 from app.formats.npy import Archive, numbers, read_npy, texts
 from app.formats.npz_keys import NamedArrays
 from app.formats.numbers import MAX_MAGNITUDE
 from app.formats.smpl import read_smpl
+from app.formats.solving import MAX_JOINT_FRAMES
 from app.motion.recording import Caution, Recording
 from app.motion.skeleton import Skeleton
 from app.motion.units import METRES_PER_UNIT
 from app.numerics.arrays import FloatArray, IntArray
 
-MAX_JOINT_FRAMES = 20_000_000
-"""Joints times frames, as for BVH."""
 FRAME_RATES = (0.1, 10_000.0)
 """Hz; anything else is no frame rate."""
 

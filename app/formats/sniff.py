@@ -22,7 +22,14 @@ _MAGICS = (
 _KEYWORDS = (
     (re.compile(rb"\s*HIERARCHY\b", re.IGNORECASE), "bvh"),
     (re.compile(rb"\s*:(version|name|units|bonedata|root)\b", re.IGNORECASE), "asf"),
-    (re.compile(rb"\s*:(FULLY-SPECIFIED|DEGREES|SAMPLES-PER-SECOND)\b", re.IGNORECASE), "amc"),
+    (
+        re.compile(
+            rb"\s*:(FULLY-SPECIFIED|DEGREES|RADIANS|SAMPLES-PER-SECOND|FRAME-RANGE|ASF-)",
+            re.IGNORECASE,
+        ),
+        "amc",
+    ),
+    (re.compile(rb"\s*root(\s+[-+.\deE]+){1,6}\s*$"), "amc"),
     (re.compile(rb"\s*; FBX \d", re.IGNORECASE), "fbx"),
 )
 _C3D_KEY = 0x50
@@ -62,9 +69,14 @@ def _text(head: bytes) -> str | None:
         for keyword, name in _KEYWORDS:
             if keyword.match(line):
                 return name
-        if line.strip() and not line.lstrip().startswith((b"#", b";")):
+        if not _may_precede(line.strip()):
             return None
     return None
+
+
+def _may_precede(line: bytes) -> bool:
+    """Whether a keyword may follow: comments, and the frame number of an AMC without header."""
+    return not line or line.startswith((b"#", b";", b"//")) or line == b"1"
 
 
 def _unknown(content: bytes) -> str:

@@ -61,12 +61,15 @@ def canonicalise(
         metres_per_unit=unit.metres_per_unit,
         cautions=recording.cautions + _axis_caution(recording, up_axis) + unit.cautions,
     )
-    return _with_cautions(motion, _roles_caution(missing) + _rate_cautions(motion))
+    doubts = _roles_caution(missing) + _assumption(recording, frame_rate) + _rate_cautions(motion)
+    return _with_cautions(motion, doubts)
 
 
 def _rate_in_force(recording: Recording, said: float | None) -> float:
     if said is not None:
         return _within("frame_rate", said, FRAME_RATES, "Hz")
+    if recording.frame_rate is None and recording.assumed_frame_rate is not None:
+        return recording.assumed_frame_rate
     if recording.frame_rate is None:
         reasons = [c.detail for c in recording.cautions if c.code == "frame_time_unusable"]
         message = reasons[0] if reasons else "expected a frame rate, found none"
@@ -127,6 +130,15 @@ def _roles_caution(missing: tuple[JointRole, ...]) -> tuple[Caution, ...]:
 
 def _rate_cautions(motion: Motion) -> tuple[Caution, ...]:
     return tuple(judge_frame_rate(motion.role_positions(), motion.frame_rate))
+
+
+def _assumption(recording: Recording, said: float | None) -> tuple[Caution, ...]:
+    """A caution where the rate in force is neither the client's nor the file's."""
+    if said is not None or recording.frame_rate is not None:
+        return ()
+    rate = recording.assumed_frame_rate
+    detail = f"the file does not say its frame rate; {rate:g} Hz is usual for this format"
+    return (Caution("frame_rate_assumed", detail, likely=rate),)
 
 
 def _with_cautions(motion: Motion, more: tuple[Caution, ...]) -> Motion:

@@ -30,7 +30,8 @@ class Recording:
     translations where they move over time (six-channel joints), else None, meaning the
     skeleton's offsets plus the root's motion; root_translations follow from positions.
     frame_rate: Hz as declared, None if the file does not say; up_axis: "x", "y" or "z";
-    metres_per_unit: None if the file does not say.
+    metres_per_unit: None if the file does not say; assumed_frame_rate: Hz that the format's
+    files usually have, where the file does not say and nearly all are alike.
     """
 
     format: str
@@ -42,3 +43,4 @@ class Recording:
     up_axis: str = "y"
     metres_per_unit: float | None = None
     cautions: tuple[Caution, ...] = ()
+    assumed_frame_rate: float | None = None
