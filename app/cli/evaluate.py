@@ -2,6 +2,61 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+from typing import Annotated, Any
+
 import typer
 
+from app.cli.find import filter_of
+from app.cli.output import AsJson, print_json, print_table, progress_bar
+from app.cli.settings import open_library
+from app.search.filters import parse_filter
+from app.services import evaluate
+
 program = typer.Typer(help="Figures on your own library.", no_args_is_help=True)
+
+FilterJson = Annotated[
+    str | None, typer.Option("--filter", help='JSON, as {"source": ["my studio"]}.')
+]
+
+
+@program.command("retrieval")
+def retrieval(
+    context: typer.Context, filter_json: FilterJson = None, as_json: AsJson = False
+) -> None:
+    """Each clip asks for the others; relevant is what carries the same task."""
+    wanted = parse_filter(filter_of(filter_json))
+    with open_library(context) as lib, progress_bar() as bar:
+        task = bar.add_task("asking", total=None)
+        figures = evaluate.retrieval(
+            lib, wanted, progress=lambda done, total: bar.update(task, completed=done, total=total)
+        )
+    _show([asdict(row) for row in figures], as_json)
+
+
+@program.command("words")
+def words(context: typer.Context, filter_json: FilterJson = None, as_json: AsJson = False) -> None:
+    """Words for clips and clips for words, held out, beside the words' frequency."""
+    wanted = parse_filter(filter_of(filter_json))
+    with open_library(context) as lib:
+        found = evaluate.words(lib, wanted)
+    _show([asdict(figures) for figures in found.figures], as_json)
+
+
+@program.command("recognition")
+def recognition(
+    context: typer.Context, filter_json: FilterJson = None, as_json: AsJson = False
+) -> None:
+    """Person and task, held out, beside the most frequent class."""
+    wanted = parse_filter(filter_of(filter_json))
+    with open_library(context) as lib:
+        found = evaluate.recognition(lib, wanted)
+    _show([{"method": method, **shares} for method, shares in found.items()], as_json)
+
+
+def _show(rows: list[dict[str, Any]], as_json: bool) -> None:
+    if as_json:
+        print_json(rows)
+        return
+    columns = list(dict.fromkeys(name for row in rows for name in row))
+    print_table(columns, [[row.get(name) for name in columns] for row in rows])

@@ -48,7 +48,7 @@ def search(
     """Find motions like one (a file or a stored clip), or motions for words."""
     if (query is None) == (not words):
         raise typer.BadParameter("give either a file or clip id, or --words")
-    wanted = _filter(filter_json)
+    wanted = filter_of(filter_json)
     with open_library(context) as lib:
         if words:
             asked = find.WordQuery(_split(words), mode, limit, wanted)
@@ -118,7 +118,8 @@ def _split(words: list[str]) -> list[str]:
     return [word for part in words for word in part.split()]
 
 
-def _filter(text: str | None) -> dict[str, Any]:
+def filter_of(text: str | None) -> dict[str, Any]:
+    """A filter as it was typed, in JSON. Raises BadField."""
     try:
         wanted = json.loads(text) if text else {}
     except ValueError as problem:
