@@ -77,7 +77,7 @@ class _Reader:
             slice(end - len(bone), end) for end, bone in zip(ends, channels, strict=True)
         ]
         self.bones = {name.lower().encode(): bone for bone, name in enumerate(names)}
-        self.expected = sum(1 for bone in channels if bone)
+        self.wanted = {bone for bone, channels_of in enumerate(channels) if channels_of}
         self.width = ends[-1]
         self.has_underscores = b"_" in text
         self.frame_rate: float | None = None
@@ -184,12 +184,11 @@ class _Reader:
     def _closed(self, frame: _Frame) -> _Frame:
         if not self.numbering and 0 not in frame.seen:
             raise unreadable(frame.line, f"expected the root in frame {frame.number}, found none")
-        if len(frame.seen) < self.expected:
-            self.held += self.expected - len(frame.seen)
+        if len(frame.seen) < len(self.wanted):
+            self.held += len(self.wanted) - len(frame.seen)
             if self.held > MAX_HELD:
                 raise TooLarge(f"expected the file to say all but {MAX_HELD} poses of bones")
-            wanted = (b for b, columns in enumerate(self.columns) if columns.stop > columns.start)
-            self.absent.update(bone for bone in wanted if bone not in frame.seen)
+            self.absent.update(self.wanted - frame.seen)
         return frame
 
     def _parsed(self, block: list[_Frame]) -> FloatArray:

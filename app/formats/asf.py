@@ -226,7 +226,8 @@ class _Reader:
         while waiting:
             order.append(waiting.pop())
             waiting += reversed(children.get(order[-1], ()))
-        loose = next((bone for name, bone in self.bones.items() if name not in set(order)), None)
+        reached = set(order)
+        loose = next((bone for name, bone in self.bones.items() if name not in reached), None)
         if loose is not None:
             message = f"expected bone {excerpt(loose.name)} in :hierarchy, below the root"
             raise unreadable(loose.line, message)
