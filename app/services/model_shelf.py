@@ -1,4 +1,7 @@
-"""The fitted models in force, loaded when they are asked for and when a newer one is there."""
+"""The fitted models in force, loaded when they are asked for and when a newer one is there.
+
+Their code is imported then too: a worker, which opens the same library, needs none of it.
+"""
 
 from __future__ import annotations
 
@@ -6,15 +9,17 @@ import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from app.errors import ModelNotFitted
-from app.models.library_words import LibraryWords
-from app.models.multilinear import Multilinear
-from app.models.recogniser import Recogniser
 from app.numerics.arrays import FloatArray
 from app.store import models as stored
 from app.store.store import Store
+
+if TYPE_CHECKING:
+    from app.models.library_words import LibraryWords
+    from app.models.multilinear import Multilinear
+    from app.models.recogniser import Recogniser
 
 Model = TypeVar("Model")
 
@@ -48,14 +53,20 @@ class ModelShelf:
 
     def words(self, store: Store) -> Fitted[LibraryWords]:
         """The word models in force; raises ModelNotFitted."""
+        from app.models.library_words import LibraryWords
+
         return self._get(store, ModelKind.WORDS, LibraryWords.from_arrays)
 
     def recogniser(self, store: Store) -> Fitted[Recogniser]:
         """The default recogniser in force; raises ModelNotFitted."""
+        from app.models.recogniser import Recogniser
+
         return self._get(store, ModelKind.RECOGNISER, Recogniser.from_arrays)
 
     def multilinear(self, store: Store) -> Fitted[Multilinear]:
         """The multilinear model in force; raises ModelNotFitted."""
+        from app.models.multilinear import Multilinear
+
         return self._get(store, ModelKind.MULTILINEAR, Multilinear.from_arrays)
 
     def _get(
