@@ -7,6 +7,8 @@ from collections.abc import Callable
 from app.errors import FormatNotSupported, MotionNeeded, Place, SkeletonNotNeeded
 from app.formats.amc import read_amc
 from app.formats.bvh import read_bvh
+from app.formats.c3d import read_c3d
+from app.formats.fbx import read_fbx
 from app.formats.npz import read_npy_positions, read_npz
 from app.formats.sniff import sniff
 from app.motion.recording import Recording
@@ -21,6 +23,8 @@ READERS: dict[str, Callable[[bytes], Recording]] = {
     "amc": read_amc,
     "asf": read_lone_asf,
     "bvh": read_bvh,
+    "fbx": read_fbx,
+    "c3d": read_c3d,
     "npy": read_npy_positions,
     "npz": read_npz,
 }
