@@ -1,0 +1,241 @@
+"""The container files, without an engine: what they name exists in the code, and fits together.
+
+What this cannot show is that the image builds and runs; no engine was at hand.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+import pytest
+import yaml
+
+from app.config import ENV_PREFIX, LOOPBACK_HOSTS, Settings, load_settings
+from tests.commands import refusal
+from tests.live import Live
+
+ROOT = Path(__file__).resolve().parents[1]
+DOCKERFILE = ROOT / "docker" / "Dockerfile"
+COMPOSE: dict[str, Any] = yaml.safe_load((ROOT / "docker" / "compose.yaml").read_text())
+SERVICES: dict[str, dict[str, Any]] = COMPOSE["services"]
+NOBODY_ROOT = {"root", "0", "0:0", "root:root", ""}
+
+
+@dataclass(frozen=True)
+class Step:
+    """One instruction: its word, and what follows."""
+
+    word: str
+    rest: str
+
+    def listed(self) -> list[str]:
+        """The words of an instruction in exec form."""
+        found: list[str] = json.loads(self.rest)
+        return found
+
+
+def _stages() -> list[list[Step]]:
+    text = re.sub(r"\\\n", " ", DOCKERFILE.read_text())
+    steps = [Step(*line.split(None, 1)) for line in text.splitlines() if line and line[0] != "#"]
+    stages: list[list[Step]] = []
+    for step in steps:
+        if step.word == "FROM":
+            stages.append([])
+        stages[-1].append(step)
+    return stages
+
+
+BUILD, FINAL = _stages()
+
+
+def _only(stage: list[Step], word: str) -> Step:
+    (found,) = [step for step in stage if step.word == word]
+    return found
+
+
+def _environment() -> dict[str, str]:
+    return dict(part.split("=", 1) for part in shlex.split(_only(FINAL, "ENV").rest))
+
+
+def _check_command() -> list[str]:
+    health = _only(FINAL, "HEALTHCHECK").rest
+    found: list[str] = json.loads(health.partition("CMD")[2])
+    return found
+
+
+def _check_url() -> Any:
+    (url,) = re.findall(r"https?://[^'\"]+", " ".join(_check_command()))
+    return urlsplit(url)
+
+
+def _is_ignored(path: str) -> bool:
+    """What .dockerignore says of a path: the last line that matches it or a folder above."""
+    ignored = False
+    for line in (ROOT / ".dockerignore").read_text().split():
+        pattern = re.escape(line.lstrip("!")).replace(r"\*\*/", "(?:.*/)?")
+        pattern = pattern.replace(r"\*\*", ".*").replace(r"\*", "[^/]*")
+        if re.fullmatch(f"{pattern}(?:/.*)?", path):
+            ignored = not line.startswith("!")
+    return ignored
+
+
+def test_two_stages_of_one_python() -> None:
+    first, second = BUILD[0].rest.split(), FINAL[0].rest.split()
+    assert first[0] == second[0]
+    needed = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["requires-python"]
+    assert needed == ">=3.11"
+    assert re.fullmatch(r"python:3\.1[1-9]-slim-\w+", second[0])
+    (copied,) = [step.rest for step in FINAL if step.word == "COPY"]
+    assert copied.startswith(f"--from={first[-1]} ")
+
+
+def test_what_is_copied_exists_and_reaches_the_build() -> None:
+    for step in BUILD:
+        if step.word == "COPY":
+            for source in step.rest.split()[:-1]:
+                path = ROOT / source
+                assert path.exists(), source
+                files = [path] if path.is_file() else list(path.rglob("*.py"))
+                ignored = [f for f in files if _is_ignored(f.relative_to(ROOT).as_posix())]
+                assert files
+                assert not ignored
+
+
+def test_what_the_wheel_needs_is_copied() -> None:
+    copied = {s for step in BUILD if step.word == "COPY" for s in step.rest.split()[:-1]}
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    assert {"pyproject.toml", project["project"]["readme"], "LICENSE"} <= copied
+    data = project["tool"]["setuptools"]["data-files"]
+    packaged = {file.split("/")[0] for files in data.values() for file in files}
+    packages = {
+        name.rstrip("*") for name in project["tool"]["setuptools"]["packages"]["find"]["include"]
+    }
+    assert packaged | packages <= copied
+
+
+@pytest.mark.parametrize(
+    "path", [".git/config", ".venv/bin/python", "data/kinedex.sqlite3", "tests/live.py", ".env"]
+)
+def test_nothing_else_reaches_the_build(path: str) -> None:
+    assert _is_ignored(path)
+    assert not _is_ignored("app/cli/main.py")
+    assert _is_ignored("app/cli/__pycache__/main.cpython-311.pyc")
+
+
+def test_what_is_built_is_what_runs() -> None:
+    home = _only(FINAL, "COPY").rest.split()[-1]
+    assert any(f"{home}/bin/pip install" in step.rest for step in BUILD if step.word == "RUN")
+    assert _environment()["PATH"].startswith(f"{home}/bin:")
+    scripts = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["scripts"]
+    (entry,) = _only(FINAL, "ENTRYPOINT").listed()
+    assert entry in scripts
+
+
+def test_it_does_not_run_as_root() -> None:
+    words = [step.word for step in FINAL]
+    user = _only(FINAL, "USER").rest
+    assert user not in NOBODY_ROOT
+    assert words.index("USER") < words.index("ENTRYPOINT")
+    made = " ".join(step.rest for step in FINAL if step.word == "RUN")
+    assert re.search(rf"useradd\b.*--uid (\d+).*\b{user}\b", made)
+    data = _environment()["KINEDEX_DATA_DIR"]
+    assert f"-o {user}" in made
+    assert data in json.loads(_only(FINAL, "VOLUME").rest)
+
+
+def test_the_commands_exist() -> None:
+    assert refusal(_only(FINAL, "CMD").listed()) is None
+    for name, service in SERVICES.items():
+        assert refusal(service["command"]) is None, name
+    assert SERVICES["api"]["command"] == ["serve", "--no-worker"]
+    assert SERVICES["worker"]["command"] == ["worker"]
+
+
+def test_every_setting_exists_and_its_value_is_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
+    given = [_environment(), *(service.get("environment", {}) for service in SERVICES.values())]
+    for environment in given:
+        ours = {name: value for name, value in environment.items() if name.startswith(ENV_PREFIX)}
+        fields = {name.removeprefix(ENV_PREFIX).lower() for name in ours}
+        assert fields <= Settings.model_fields.keys()
+        with monkeypatch.context() as patched:
+            for name, value in ours.items():
+                patched.setenv(name, value)
+            load_settings()
+
+
+def test_ports_agree() -> None:
+    environment = _environment()
+    port = environment["KINEDEX_PORT"]
+    assert environment["KINEDEX_HOST"] not in LOOPBACK_HOSTS
+    assert _only(FINAL, "EXPOSE").rest == port
+    assert str(_check_url().port) == port
+    api = SERVICES["api"]
+    assert api["environment"]["KINEDEX_PORT"] == port
+    (published,) = api["ports"]
+    assert published.split(":")[-1] == port
+    assert published.startswith("127.0.0.1:"), "published beyond this machine by default"
+    assert "ports" not in SERVICES["worker"]
+
+
+def test_the_health_check_asks_a_call_that_exists(idle_service: Live) -> None:
+    with idle_service.client() as client:
+        described = client.get("/openapi.json").json()["paths"]
+        assert "get" in described[_check_url().path]
+        assert client.get(_check_url().path).status_code == 200
+    assert _check_command()[0] == "python"
+    compile(_check_command()[2], "health check", "exec")
+
+
+def test_services_share_the_data_and_build_one_image() -> None:
+    image = {service["image"] for service in SERVICES.values()}
+    assert len(image) == 1
+    build = SERVICES["api"]["build"]
+    context = (ROOT / "docker" / build["context"]).resolve()
+    assert context == ROOT
+    assert (context / build["dockerfile"]).resolve() == DOCKERFILE
+    shared = []
+    for service in SERVICES.values():
+        mounts = dict(reversed(mount.split(":")[:2]) for mount in service["volumes"])
+        assert set(mounts.values()) <= COMPOSE["volumes"].keys()
+        shared.append(mounts[service["environment"]["KINEDEX_DATA_DIR"]])
+    assert len(set(shared)) == 1
+
+
+def test_the_worker_waits_for_the_api_and_has_no_check_of_it() -> None:
+    worker = SERVICES["worker"]
+    assert worker["depends_on"]["api"]["condition"] == "service_healthy"
+    assert worker["healthcheck"]["disable"] is True
+    assert "healthcheck" not in SERVICES["api"], "the image's own check applies"
+
+
+def test_services_have_no_more_rights_than_they_need() -> None:
+    for service in SERVICES.values():
+        assert service["read_only"] is True
+        assert service["cap_drop"] == ["ALL"]
+        assert "no-new-privileges:true" in service["security_opt"]
+        assert "privileged" not in service
+        assert service["restart"] == "unless-stopped"
+        # A read-only root needs a place for temporary files.
+        assert any(mount.endswith(":/tmp") for mount in service["volumes"])
+
+
+def test_the_files_and_the_readme_show_the_same_commands() -> None:
+    readme = (ROOT / "README.md").read_text()
+    told = re.findall(
+        r"^#\s+(docker compose .+)$", (ROOT / "docker" / "compose.yaml").read_text(), re.M
+    )
+    assert told
+    assert [line for line in told if line not in readme] == []
+    for line in told:
+        words = line.split()
+        if "run" in words:
+            after = words[words.index("--rm") + 1 :]
+            assert after[0] in SERVICES
+            assert refusal(after[1:]) is None
