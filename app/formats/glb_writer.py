@@ -147,8 +147,10 @@ def _animations(blob: _Blob, animation: Animation, rotations: FloatArray, name: 
     times_at: int | None = None
     samplers: list[_Json] = []
     channels: list[_Json] = []
-    moving = ("translation", "VEC3", animation.translations)
-    for path, kind, values in (("rotation", "VEC4", rotations), moving):
+    held = ~animation.moving_joints()
+    moves = animation.translations.copy()
+    moves[:, held] = animation.skeleton.offsets[held]
+    for path, kind, values in (("rotation", "VEC4", rotations), ("translation", "VEC3", moves)):
         for joint in np.flatnonzero(np.ptp(values, axis=0).max(axis=-1) > _SAME).tolist():
             if times_at is None:
                 times_at = blob.add(times[:, None], "SCALAR")

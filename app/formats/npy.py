@@ -33,11 +33,12 @@ MAX_RATIO = 200
 SMALL_BYTES = 16_000_000
 """Arrays up to this size may shrink as they like (all zeros, say)."""
 MAX_HEADER_BYTES = 4096
+MAX_AXES = 8
 
 _MAGIC = b"\x93NUMPY"
 _HEADER = re.compile(
     r"\{\s*'descr':\s*'(?P<descr>[^']{1,16})',\s*'fortran_order':\s*(?P<fortran>True|False),"
-    r"\s*'shape':\s*\((?P<shape>[\d,L\s]*)\),?\s*\}\s*"
+    r"\s*'shape':\s*\((?P<shape>(?:\d{1,18}L?,\s?)*(?:\d{1,18}L?)?)\),?\s*\}\s*"
 )
 _DTYPE = re.compile(r"[<>|=]?(?:[fiuUSb]\d{1,4}|O)")
 _ZIP_ENTRY = b"PK\x01\x02"
@@ -142,10 +143,10 @@ def _header(stream: IO[bytes], key: str) -> _Header:
     match = _HEADER.fullmatch(text.decode("latin-1"))
     if len(text) != length or match is None:
         raise _refused(key, "expected a header with descr, fortran_order and shape of plain arrays")
-    sizes = [size.strip(" \n\tL") for size in match["shape"].split(",")]
-    if any(len(size) > 18 for size in sizes) or len(sizes) > 8:
-        raise _refused(key, "expected sizes that fit an array")
-    shape = tuple(int(size) for size in sizes if size)
+    sizes = re.findall(r"\d+", match["shape"])
+    if len(sizes) > MAX_AXES:
+        raise _refused(key, f"expected at most {MAX_AXES} axes, found {len(sizes)}")
+    shape = tuple(int(size) for size in sizes)
     return _Header(_dtype(match["descr"], key), shape, match["fortran"] == "True")
 
 

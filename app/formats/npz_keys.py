@@ -15,7 +15,8 @@ KEYS: dict[str, tuple[str, ...]] = {
         "joints", "markers", "xyz", "pos",
     ),
     "joint_names": (
-        "jointnames", "names", "joints", "markers", "bonenames", "markernames", "labels", "keypointnames",
+        "jointnames", "names", "joints", "markers", "bonenames", "markernames", "labels",
+        "keypointnames",
     ),
     "parents": ("parents", "jointparents", "parent", "kintreetable", "bonesparents"),
     "frame_rate": (

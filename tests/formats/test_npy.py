@@ -46,6 +46,7 @@ LIES = {
     "shape beyond memory": lying_npy("'<f8'", "(1000000000, 1000000)"),
     "product beyond 64 bits": lying_npy("'<f4'", "(4294967296, 4294967296, 3)"),
     "one digit too many": lying_npy("'<f4'", "(99999999999999999999,)"),
+    "sizes without commas": lying_npy("'<f4'", "(3 18, 3)"),
     "many axes": lying_npy("'<f4'", "(1,1,1,1,1,1,1,1,1,1,6)"),
     "less data": lying_npy("'<f4'", "(3, 3)"),
     "more data": lying_npy("'<f4'", "(1, 3)"),

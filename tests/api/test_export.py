@@ -1,0 +1,109 @@
+"""Exports over HTTP: attachments with safe names, problems for what is wrong."""
+
+from __future__ import annotations
+
+from typing import Any
+from urllib.parse import unquote
+
+import httpx2
+import numpy as np
+import pytest
+
+from app.formats.read import read_recording
+from tests.api.conftest import assert_problem
+from tests.formats.glb import Glb
+from tests.live import Live
+
+TYPES = {
+    "bvh": "application/octet-stream",
+    "glb": "model/gltf-binary",
+    "npz": "application/zip",
+    "csv": "text/csv; charset=utf-8",
+}
+
+
+@pytest.mark.parametrize("format", TYPES)
+def test_each_format_is_an_attachment(
+    demo: httpx2.Client, walk: dict[str, Any], format: str
+) -> None:
+    answer = demo.get(f"/v1/clips/{walk['id']}/export", params={"format": format})
+    assert answer.status_code == 200
+    assert answer.headers["content-type"] == TYPES[format]
+    assert answer.headers["x-content-type-options"] == "nosniff"
+    disposition = answer.headers["content-disposition"]
+    assert disposition.startswith('attachment; filename="')
+    assert unquote(disposition.rpartition("''")[2]) == f"{walk['name']}.{format}"
+    if format in ("bvh", "npz"):
+        recording = read_recording(answer.content)
+        assert recording.positions.shape == (walk["frames"], walk["joints"], 3)
+    elif format == "glb":
+        assert len(Glb(answer.content).times()) == walk["frames"]
+    else:
+        assert answer.text.count("\n") == walk["frames"] + 1
+
+
+def test_what_comes_out_goes_in_again(
+    demo: httpx2.Client, demo_service: Live, walk: dict[str, Any]
+) -> None:
+    params = {"format": "npz", "skeleton": "canonical", "fps": 25}
+    file = demo.get(f"/v1/clips/{walk['id']}/export", params=params)
+    answer = demo.post("/v1/clips", files={"file": ("again.npz", file.content)}).json()
+    try:
+        assert demo_service.wait_for_job(answer["job"]["id"])["state"] == "succeeded"
+        clip = demo.get(f"/v1/clips/{answer['clip']['id']}").json()
+        assert (clip["state"], clip["format"]) == ("ready", "npz")
+        assert (clip["frame_rate"], clip["joints"]) == (25, 18)
+        assert clip["missing_roles"] == []
+        assert clip["duration"] == pytest.approx(walk["duration"], abs=0.1)
+    finally:
+        demo.delete(f"/v1/clips/{answer['clip']['id']}")
+
+
+def test_a_name_with_anything_in_it_does_no_harm(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    path = f"/v1/clips/{walk['id']}"
+    demo.patch(path, json={"name": 'é"; evil=1\\../日本'})
+    try:
+        answer = demo.get(f"{path}/export", params={"format": "csv", "fps": 1})
+    finally:
+        demo.patch(path, json={"name": walk["name"]})
+    plain, _, coded = answer.headers["content-disposition"].partition("; filename*=UTF-8''")
+    assert plain == 'attachment; filename="___ evil_1_..___.csv"'
+    assert unquote(coded) == "é__ evil_1_.._日本.csv"
+
+
+@pytest.mark.parametrize(
+    ("params", "location"),
+    [
+        ({}, "query.format"),
+        ({"format": "fbx"}, "query.format"),
+        ({"format": "bvh", "fps": "0"}, "query.fps"),
+        ({"format": "bvh", "fps": "1001"}, "query.fps"),
+        ({"format": "bvh", "skeleton": "mine"}, "query.skeleton"),
+        ({"format": "bvh", "colour": "red"}, "query.colour"),
+    ],
+)
+def test_wrong_fields_are_named(
+    demo: httpx2.Client, walk: dict[str, Any], params: dict[str, str], location: str
+) -> None:
+    answer = demo.get(f"/v1/clips/{walk['id']}/export", params=params)
+    assert_problem(answer, 422, "bad_field", location)
+
+
+def test_clips_that_are_not_there_or_not_ready(idle: httpx2.Client) -> None:
+    content = b"HIERARCHY\nROOT a\n{\nexported too early\n"
+    clip = idle.post("/v1/clips", files={"file": ("a.bvh", content)}).json()["clip"]
+    params = {"format": "bvh"}
+    early = idle.get(f"/v1/clips/{clip['id']}/export", params=params)
+    assert_problem(early, 409, "clip_not_ready")
+    assert_problem(idle.get("/v1/clips/none/export", params=params), 404, "clip_not_found")
+
+
+def test_canonical_clips_share_their_bones(demo: httpx2.Client) -> None:
+    items = demo.get("/v1/clips", params={"task": "kick"}).json()["items"][:2]
+    offsets = []
+    for clip in items:
+        params = {"format": "bvh", "skeleton": "canonical"}
+        answer = demo.get(f"/v1/clips/{clip['id']}/export", params=params)
+        assert "-canonical.bvh" in answer.headers["content-disposition"]
+        offsets.append(read_recording(answer.content).skeleton.offsets)
+    np.testing.assert_array_equal(offsets[0], offsets[1])

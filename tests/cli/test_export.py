@@ -1,0 +1,75 @@
+"""`kinedex export`: a file is written whole, or not at all."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from click.testing import Result
+from typer.testing import CliRunner
+
+from app.cli.main import program
+from app.errors import BadField
+from app.formats.read import read_recording
+from app.services.library import Library
+from app.store.clip_record import ClipRecord
+from tests.services.conftest import ready_clips, ready_library, some_demo_clips  # noqa: F401
+
+Run = Callable[..., Result]
+
+
+@pytest.fixture
+def run(
+    ready_library: Library,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> Run:
+    monkeypatch.chdir(tmp_path)
+    data_dir = str(ready_library.settings.data_dir)
+
+    def call(*arguments: str) -> Result:
+        return CliRunner().invoke(program, ["--data-dir", data_dir, "export", *arguments])
+
+    return call
+
+
+@pytest.fixture
+def walk(ready_clips: list[ClipRecord]) -> ClipRecord:  # noqa: F811
+    return next(clip for clip in ready_clips if clip.task == "walk")
+
+
+def test_a_clip_is_written_by_its_name_here(run: Run, walk: ClipRecord, tmp_path: Path) -> None:
+    result = run(walk.id)
+    assert result.exit_code == 0, result.output
+    (file,) = tmp_path.iterdir()
+    assert file.name == f"{walk.name}.bvh"
+    assert str(file.stat().st_size) in result.output
+    assert len(read_recording(file.read_bytes()).positions) == walk.frames
+
+
+def test_the_ending_tells_the_format(run: Run, walk: ClipRecord, tmp_path: Path) -> None:
+    result = run(walk.id, "-o", "out.NPZ", "--fps", "10", "--skeleton", "canonical", "--json")
+    told = json.loads(result.stdout)
+    content = (tmp_path / "out.NPZ").read_bytes()
+    assert told == {"path": "out.NPZ", "format": "npz", "bytes": len(content)}
+    recording = read_recording(content)
+    assert (recording.frame_rate, len(recording.skeleton)) == (10, 18)
+
+
+@pytest.mark.parametrize("output", ["out.fbx", "out", "nowhere/out.bvh"])
+def test_what_cannot_be_written_leaves_nothing(
+    run: Run, walk: ClipRecord, tmp_path: Path, output: str
+) -> None:
+    result = run(walk.id, "-o", output)
+    assert isinstance(result.exception, BadField)
+    assert result.exception.places[0].location == "output"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_was_there_stays_when_a_clip_is_not(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "kept.csv").write_text("mine")
+    result = run("clip_none", "-o", "kept.csv")
+    assert result.exit_code != 0
+    assert (tmp_path / "kept.csv").read_text() == "mine"
