@@ -9,3 +9,9 @@ def unreadable(line: int, message: str) -> Unreadable:
     """An Unreadable that names the line, counted from 1."""
     location = f"line {line}"
     return Unreadable(f"{location}: {message}", places=[Place(location, message)])
+
+
+def unreadable_at(offset: int, message: str) -> Unreadable:
+    """An Unreadable of a binary file that names the byte, counted from 0."""
+    location = f"byte {offset}"
+    return Unreadable(f"{location}: {message}", places=[Place(location, message)])

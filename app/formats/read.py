@@ -23,8 +23,8 @@ READERS: dict[str, Callable[[bytes], Recording]] = {
     "amc": read_amc,
     "asf": read_lone_asf,
     "bvh": read_bvh,
-    "fbx": read_fbx,
     "c3d": read_c3d,
+    "fbx": read_fbx,
     "npy": read_npy_positions,
     "npz": read_npz,
 }

@@ -1,0 +1,164 @@
+"""The points of a C3D file: header, frame count, and the numbers of each frame.
+
+Source: "The C3D file format user guide" (Motion Lab Systems 2008), chapters 3 and 6.
+Analogue channels stand between the frames and are passed over, whatever is said of them.
+What the file declares is compared with the bytes that are there before any is read.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.errors import TooLarge
+from app.formats.c3d_parameters import BLOCK, Numbers, Parameters, read_parameters
+from app.formats.numbers import MAX_MAGNITUDE
+from app.formats.places import unreadable_at
+from app.formats.solving import MAX_JOINT_FRAMES
+from app.motion.recording import Caution
+from app.numerics.arrays import FloatArray
+
+FULL_COUNT = 65535
+"""What the header's 16 bits say of the last frame when they cannot hold it."""
+NO_SCALE = 1e-12
+
+
+@dataclass(frozen=True, slots=True)
+class Points:
+    """labels: (points,) as in the file, empty where there is none; positions: (frames,
+    points, 3) float32 in the file's unit and axes, NaN where a point was not seen;
+    first_frame: the number of the first frame; frame_rate: Hz or None."""
+
+    labels: tuple[str, ...]
+    positions: FloatArray
+    first_frame: int
+    frame_rate: float | None
+    parameters: Parameters
+    cautions: tuple[Caution, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Header:
+    points: int
+    analogue: int
+    first: int
+    last: int
+    scale: float
+    data_block: int
+    rate: float
+
+
+def read_points(content: bytes) -> Points:
+    """Read a C3D file's points. Raises Unreadable naming the byte, and TooLarge."""
+    if len(content) < BLOCK:
+        raise unreadable_at(len(content), f"expected a header of {BLOCK} bytes, found the end")
+    numbers, parameters = read_parameters(content)
+    header = _header(content, numbers)
+    if not header.points:
+        raise unreadable_at(2, "expected points, found none")
+    width = 2 if header.scale > 0 else 4
+    frame_bytes = width * (4 * header.points + header.analogue)
+    start = (header.data_block - 1) * BLOCK
+    room = max(0, len(content) - start) // frame_bytes if start > 0 else 0
+    frames, cautions = _frame_count(header, parameters, room, start)
+    if frames * header.points > MAX_JOINT_FRAMES:
+        raise TooLarge(f"expected at most {MAX_JOINT_FRAMES} points times frames")
+    raw = np.frombuffer(content, "u1", frames * frame_bytes, start).reshape(frames, frame_bytes)
+    points = raw[:, : 4 * width * header.points].tobytes()
+    return Points(
+        labels=_labels(parameters, header.points),
+        positions=_positions(points, header, numbers, frames),
+        first_frame=header.first,
+        frame_rate=_rate(header, parameters),
+        parameters=parameters,
+        cautions=cautions,
+    )
+
+
+def _header(content: bytes, numbers: Numbers) -> _Header:
+    def word(index: int) -> int:
+        return int(numbers.integers(content[2 * index - 2 : 2 * index])[0]) % 2**16
+
+    def real(index: int) -> float:
+        return float(numbers.floats(content[2 * index - 2 : 2 * index + 2])[0])
+
+    scale = real(7)
+    if not NO_SCALE < abs(scale) < MAX_MAGNITUDE:
+        raise unreadable_at(12, f"expected a scale factor, found {scale:g}")
+    return _Header(word(2), word(3), word(4), word(5), scale, word(9), real(11))
+
+
+def _frame_count(
+    header: _Header, parameters: Parameters, room: int, start: int
+) -> tuple[int, tuple[Caution, ...]]:
+    """Frames to read; the header's 16 bits hold no long motion, parameters do."""
+    told = _told_counts(header, parameters)
+    held = [count for count in told if count <= room]
+    if not held:
+        least = min(told) if told else 1
+        message = f"expected {least} frames, found {room}: the file is cut short"
+        raise unreadable_at(start, message)
+    frames = max(held)
+    if frames == max(told):
+        return frames, ()
+    detail = f"the file declares {max(told)} frames and holds {frames}"
+    return frames, (Caution("frames_mismatch", detail),)
+
+
+def _told_counts(header: _Header, parameters: Parameters) -> list[int]:
+    """What header and parameters say of the number of frames, where they say anything."""
+    told = []
+    if header.last >= header.first and header.last != FULL_COUNT:
+        told.append(header.last - header.first + 1)
+    declared = parameters.get("POINT:FRAMES")
+    if declared is not None and declared.first is not None and np.isfinite(declared.first):
+        count = int(declared.first)
+        # Above 32,767 the integer's sign is wrong; FULL_COUNT says that it did not fit.
+        told.append(count % 2**16 if count < 0 else count)
+    limits = [parameters.get(f"TRIAL:ACTUAL_{end}_FIELD") for end in ("START", "END")]
+    if all(limit is not None and len(limit.values) >= 2 for limit in limits):
+        first, last = (_joined(limit.values) for limit in limits if limit is not None)
+        told.append(last - first + 1)
+    at_most = header.last == FULL_COUNT
+    counts = [count for count in told if count > 0 and count != FULL_COUNT]
+    return counts or ([FULL_COUNT - header.first + 1] if at_most else [])
+
+
+def _joined(halves: tuple[float, ...]) -> int:
+    """A 32-bit number written as two 16-bit ones, the low one first."""
+    return int(halves[0]) % 2**16 + 2**16 * (int(halves[1]) % 2**16)
+
+
+def _positions(raw: bytes, header: _Header, numbers: Numbers, frames: int) -> FloatArray:
+    """(frames, points, 3): x, y, z where the fourth number says that the point was seen."""
+    shape = (frames, header.points, 4)
+    if header.scale > 0:
+        values = numbers.integers(raw).reshape(shape)
+        positions = (values[..., :3] * header.scale).astype(np.float32)
+    else:
+        values = numbers.floats(raw).reshape(shape)
+        positions = values[..., :3].copy()
+    # NaN, zeros for all three, and a residual of -1 all mean that no camera saw it.
+    with np.errstate(invalid="ignore"):
+        seen = (np.abs(positions) <= MAX_MAGNITUDE).all(axis=-1) & (values[..., 3] >= 0)
+        seen &= (positions != 0).any(axis=-1)
+    positions[~seen] = np.nan
+    return positions
+
+
+def _labels(parameters: Parameters, points: int) -> tuple[str, ...]:
+    """(points,): more than 255 labels go on in LABELS2, LABELS3, ..."""
+    labels: list[str] = []
+    for number in range(1, points // 255 + 2):
+        more = parameters.get(f"POINT:LABELS{number if number > 1 else ''}")
+        labels += more.texts if more is not None else ()
+    return tuple(labels[:points]) + ("",) * (points - len(labels))
+
+
+def _rate(header: _Header, parameters: Parameters) -> float | None:
+    said = parameters.get("POINT:RATE")
+    for rate in (said.first if said is not None else None, header.rate):
+        if rate is not None and 1.0 <= rate <= 2000.0:
+            return float(np.float32(rate))
+    return None

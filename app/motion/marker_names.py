@@ -1,0 +1,98 @@
+"""Which place on the body a marker's label names, in the marker sets that are about.
+
+Vicon plug-in-gait (`LKNE`, `Bob:LASI`), CMU's own (`LFWT`), Helen Hayes as Cortex names it
+(`L.Knee.Medial`, `V.Sacral`), the ISB's anatomical landmarks (`LFLE`), OptiTrack's baseline
+(`WaistLFront`). Case, separators and the subject before a colon do not matter. Sources:
+Vicon's plug-in gait reference guide; Kadaba et al. 1990 (Helen Hayes); Leardini et al. 2007
+(ISB names).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+_SIDED: dict[str, tuple[str, ...]] = {
+    "ASI": ("?ASI", "?ASIS", "?IAS", "?FWT", "WAIST?FRONT", "?WAISTFRONT"),
+    "PSI": ("?PSI", "?PSIS", "?IPS", "?BWT", "WAIST?BACK", "?WAISTBACK"),
+    "HJC": ("?HJC",),
+    "KJC": ("?KJC",),
+    "KNE": ("?KNE", "?KNEE", "?KNEELAT", "?KNEELATERAL", "?LATKNEE", "?KNEEOUT", "?FLE", "?LEK"),
+    "KNM": (
+        "?KNM", "?MKNE", "?KNEM", "?KNI", "?KNEEMED", "?KNEEMEDIAL", "?MEDKNEE", "?KNEEIN",
+        "?FME", "?MEK",
+    ),
+    "AJC": ("?AJC",),
+    "ANK": ("?ANK", "?ANKLE", "?ANKLELAT", "?ANKLELATERAL", "?LATANKLE", "?ANKLEOUT", "?FAL"),
+    "ANM": (
+        "?ANM", "?MANK", "?ANKM", "?MED", "?ANKLEMED", "?ANKLEMEDIAL", "?MEDANKLE", "?ANKLEIN",
+        "?TAM",
+    ),
+    "TOE": ("?TOE", "?TOES", "?TOETIP", "?MT2", "?SMH"),
+    "MT1": ("?MT1", "?FMH", "?TOEIN"),
+    "MT5": ("?MT5", "?VMH", "?TOEOUT"),
+    "SJC": ("?SJC",),
+    "SHO": (
+        "?SHO", "?SHOULDER", "?ACR", "?ACROMION", "?SAE", "?SHOULDERTOP", "?SHOTOP", "?SHLD",
+    ),
+    "EJC": ("?EJC",),
+    "ELB": ("?ELB", "?ELBOW", "?ELBLAT", "?ELBOWLAT", "?ELBOWLATERAL", "?ELBOWOUT", "?HLE"),
+    "ELM": (
+        "?ELM", "?MELB", "?ELBM", "?ELBMED", "?ELBOWMED", "?ELBOWMEDIAL", "?ELBOWIN", "?HME",
+        "?IEL",
+    ),
+    "WJC": ("?WJC",),
+    "WRA": ("?WRA", "?RSP", "?WRISTIN", "?WRISTRAD"),
+    "WRB": ("?WRB", "?USP", "?WRISTOUT", "?WRISTULN"),
+    "WRI": ("?WRI", "?WRIST", "?WRT"),
+    "FIN": ("?FIN", "?FINGER", "?HANDOUT", "?HAND"),
+    "FHD": ("?FHD", "?FHEAD", "?HEADFRONT"),
+    "BHD": ("?BHD", "?BHEAD", "?HEADBACK"),
+}  # fmt: skip
+_MIDDLE: dict[str, tuple[str, ...]] = {
+    "SACR": ("SACR", "SACRUM", "VSACRAL", "SACRAL", "MBWT"),
+    "C7": ("C7", "CV7", "BACKTOP"),
+    "T10": ("T10", "TV10", "TV8"),
+    "CLAV": ("CLAV", "CLAVICLE", "SJN", "JN"),
+    "STRN": ("STRN", "STERN", "STERNUM", "SXS", "XIPHOID"),
+    "TOPHD": ("TOPHEAD", "HEADTOP", "ARIEL"),
+    "FRONTHD": ("FRONTHEAD", "HEADFRONT"),
+    "REARHD": ("REARHEAD", "HEADREAR", "HEADBACK", "BACKHEAD"),
+}
+_PLACES = {alias: place for place, aliases in _MIDDLE.items() for alias in aliases} | {
+    alias.replace("?", side): side + place
+    for place, aliases in _SIDED.items()
+    for alias in aliases
+    for side in "LR"
+}
+_UNLABELLED = re.compile(r"(|\*\d*|U_?\d+|UNLABELL?ED.*|M\d{3,}|UN-?NAMED.*)", re.IGNORECASE)
+_NO_MARKER = re.compile(r".*(Angles?|Forces?|Moments?|Powers?|GRF)$", re.IGNORECASE)
+"""What gait models write among the points, though it is no place."""
+
+
+def subject_and_label(label: str) -> tuple[str, str]:
+    """`Bob:LKNE` as ("Bob", "LKNE"); no subject is the empty one."""
+    subject, _, name = label.strip().rpartition(":")
+    return subject.strip(), name.strip()
+
+
+def is_marker(label: str) -> bool:
+    """Whether a label without its subject names a marker: not `*12`, not `LKneeAngles`."""
+    return not (_UNLABELLED.fullmatch(label) or _NO_MARKER.fullmatch(label))
+
+
+def place_of(label: str) -> str | None:
+    """The place on the body, such as "LKNE" or "C7", or None where no set has the label."""
+    key = re.sub(r"[\W_]", "", label).upper()
+    key = re.sub(r"^(LEFT|RIGHT)", lambda side: side.group()[0], key)
+    return _PLACES.get(key)
+
+
+def places_of(labels: Sequence[str]) -> dict[str, int]:
+    """The first marker of each place that labels (markers,) without subjects name."""
+    found: dict[str, int] = {}
+    for marker, label in enumerate(labels):
+        place = place_of(label)
+        if place is not None:
+            found.setdefault(place, marker)
+    return found
