@@ -88,7 +88,9 @@ class Settings(BaseSettings):
         5.0, gt=0, description="Seconds between a worker's heartbeats on a job."
     )
     job_max_attempts: int = Field(
-        3, ge=1, description="Times a file is tried when its analysis process dies, before it is failed."
+        3,
+        ge=1,
+        description="Times a file is tried when its analysis process dies, before it is failed.",
     )
     job_poll_s: float = Field(
         0.25, gt=0, description="Seconds an idle worker waits before it looks for work again."
