@@ -12,7 +12,7 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 
 AXES = "XYZ"
-GIMBAL_LIMIT = 1.0 - 1e-9
+GIMBAL_LIMIT = 1.0 - 1e-12
 """Sine of the middle angle above which the first and last axis are taken to coincide."""
 
 
@@ -118,12 +118,14 @@ def quaternions_to_euler(quaternions: FloatArray, order: str) -> FloatArray:
     i, j, k = (AXES.index(axis) for axis in order)
     sign = 1.0 if (j - i) % 3 == 1 else -1.0
     m = quaternions_to_matrices(quaternions)
-    sine = np.clip(sign * m[..., i, k], -1.0, 1.0)
+    sine = sign * m[..., i, k]
+    # arcsin of it would lose half the digits near 90 degrees
+    middle = np.arctan2(sine, np.hypot(m[..., i, i], m[..., i, j]))
     locked = np.abs(sine) > GIMBAL_LIMIT
     first = np.arctan2(-sign * m[..., j, k], m[..., k, k])
     last = np.arctan2(-sign * m[..., i, j], m[..., i, i])
     locked_first = np.arctan2(sign * m[..., k, j], m[..., j, j])
     return np.stack(
-        [np.where(locked, locked_first, first), np.arcsin(sine), np.where(locked, 0.0, last)],
+        [np.where(locked, locked_first, first), middle, np.where(locked, 0.0, last)],
         axis=-1,
     )

@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from app.formats.bvh import read_bvh
+from app.formats.bvh_export import write_animation_bvh
 from app.motion.canonical import canonicalise
 from app.motion.file_rotations import UP_AXES, animation_of_recording
 from app.motion.recording import Recording
-from app.motion.rotations import matrices_to_quaternions, multiply
+from app.motion.rotations import euler_to_quaternions, matrices_to_quaternions, multiply
 from app.motion.up_axis import to_y_up
-from tests.people import CONVENTIONS, person
+from tests.people import CONVENTIONS, body_skeleton, person
 
 
 def lying_on(axis: str, recording: Recording) -> Recording:
@@ -44,6 +46,26 @@ def test_positions_come_back_and_rotations_are_the_files(axis: str, scale: float
     assert upright.rotations is not None
     same = np.abs(np.sum(animation.rotations * upright.rotations, axis=-1))
     assert same.min() > 1 - 1e-6
+
+
+def test_near_gimbal_lock_a_file_of_single_precision_still_comes_back_in_place() -> None:
+    skeleton = body_skeleton(CONVENTIONS["MotionBuilder"])
+    angles = np.zeros((200, len(skeleton), 3))
+    angles[..., 1] = np.pi / 2 + np.linspace(-2e-3, 2e-3, 200)[:, None]
+    angles[:, ::2] = 0.1
+    rotations = euler_to_quaternions(angles, "ZXY").astype(np.float32)
+    held = np.repeat(skeleton.offsets[None], 200, axis=0)
+    recording = _with_positions(
+        replace(
+            person(CONVENTIONS["MotionBuilder"], frames=200),
+            skeleton=skeleton, rotations=rotations, translations=held,
+        )
+    )  # fmt: skip
+    motion = canonicalise(recording, metres_per_unit=1.0)
+    animation = animation_of_recording(recording, motion)
+    assert animation is not None
+    back = read_bvh(b"".join(write_animation_bvh(animation))).positions / 100
+    assert np.abs(back - motion.positions).max() < 1e-5
 
 
 def test_joints_that_move_keep_their_translations() -> None:
