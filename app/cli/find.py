@@ -11,12 +11,14 @@ from typing import Annotated, Any
 import typer
 
 from app.api.schemas.clips import Clip
-from app.api.schemas.recognition import Answer
+from app.api.schemas.recognition import Answer, Recognition, WordScore
+from app.api.schemas.search import Hit, MotionHits, WordHits
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 from app.errors import BadField, Place
 from app.search.methods import Method
 from app.services import find, recognise
+from app.services.hits import Hit as FoundHit
 from app.services.hits import Hits
 from app.store.files import Readable
 
@@ -69,7 +71,7 @@ def search(
                         unit=unit,
                     ),
                 )
-    _show(hits, as_json)
+    _show(hits, as_json, by_words=bool(words))
 
 
 def recognize(
@@ -96,15 +98,17 @@ def recognize(
                 unit=unit,
             ),
         )
-    answers = {"person": Answer.of(found.person), "task": Answer.of(found.task)}
+    answer = Recognition(
+        person=Answer.of(found.person),
+        task=Answer.of(found.task),
+        words=[WordScore(word=word, score=min(score, 1.0)) for word, score in found.words],
+    )
     if as_json:
-        words = [{"word": word, "score": score} for word, score in found.words]
-        shown = {name: answer.model_dump(mode="json") for name, answer in answers.items()}
-        print_json({**shown, "words": words})
+        print_json(answer.model_dump(mode="json"))
         return
-    rows = [(name, _told(answer), answer.score) for name, answer in answers.items()]
-    print_table(("", "answer", "score"), rows)
-    print_table(("word", "score"), list(found.words))
+    told = {"person": answer.person, "task": answer.task}
+    print_table(("", "answer", "score"), [(n, _told(a), a.score) for n, a in told.items()])
+    print_table(("word", "score"), [(one.word, one.score) for one in answer.words])
 
 
 def _told(answer: Answer) -> str:
@@ -140,29 +144,41 @@ def _content(query: str) -> Iterator[tuple[str | None, Readable | None]]:
         yield None, content
 
 
-def _show(hits: Hits, as_json: bool) -> None:
+def _as_answer(hits: Hits) -> MotionHits:
+    """What the API answers to a search by example."""
+    return MotionHits(
+        method=hits.method,
+        took_ms=hits.took_ms,
+        library_version=hits.library_version,
+        items=[_as_hit(hit) for hit in hits.items],
+        next=hits.next,
+    )
+
+
+def _as_word_answer(hits: Hits) -> WordHits:
+    """What the API answers to a search by words."""
+    return WordHits(
+        **dict(_as_answer(hits)),
+        unknown_words=list(hits.unknown_words),
+        expanded={word: list(known) for word, known in (hits.expanded or {}).items()},
+    )
+
+
+def _as_hit(hit: FoundHit) -> Hit:
+    return Hit(
+        rank=hit.rank,
+        score=hit.score,
+        distance=hit.distance,
+        start=hit.start,
+        end=hit.end,
+        clip=Clip.of(hit.clip),
+    )
+
+
+def _show(hits: Hits, as_json: bool, *, by_words: bool) -> None:
     if as_json:
-        items = [
-            {
-                "rank": hit.rank,
-                "score": hit.score,
-                "distance": hit.distance,
-                "start": hit.start,
-                "end": hit.end,
-                "clip": Clip.of(hit.clip).model_dump(mode="json"),
-            }
-            for hit in hits.items
-        ]
-        print_json(
-            {
-                "method": hits.method,
-                "took_ms": hits.took_ms,
-                "library_version": hits.library_version,
-                "items": items,
-                "next": hits.next,
-                "unknown_words": list(hits.unknown_words),
-            }
-        )
+        answer = _as_word_answer(hits) if by_words else _as_answer(hits)
+        print_json(answer.model_dump(mode="json"))
         return
     rows = [
         (hit.rank, hit.score, hit.clip.name, hit.clip.person, hit.clip.task, hit.clip.id)

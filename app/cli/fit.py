@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import typer
 
+from app.api.schemas.jobs import Job
 from app.cli.library import FAILURE, follow, working
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 from app.services import models
 from app.store.job_record import JobState
+
+COUNTED = "clips"
+"""The name of what is no share."""
 
 
 def fit(context: typer.Context, as_json: AsJson = False) -> None:
@@ -19,14 +25,24 @@ def fit(context: typer.Context, as_json: AsJson = False) -> None:
             job = follow(lib, asked.id, "fitting models")
         fitted = models.list_models(lib)
     if as_json:
-        print_json({"result": job.result, "error": job.error})
+        print_json(Job.of(job).model_dump(mode="json"))
     else:
         rows = [
             (model.kind, model.version, model.library_size, name, value)
             for model in fitted
-            for name, value in model.meta.get("figures", {}).items()
-            if isinstance(value, int | float)
+            for name, value in _shares(model.meta.get("figures", {})) or [("", None)]
         ]
         print_table(("model", "version", "clips", "held out", "figure"), rows)
     if job.state is not JobState.SUCCEEDED:
         raise typer.Exit(FAILURE)
+
+
+def _shares(figures: Any, within: str = "") -> list[tuple[str, float | None]]:
+    """The shares of nested figures, named by what they stand in; counts are left out."""
+    if isinstance(figures, list):
+        return [share for one in figures for share in _shares(one, within)]
+    if not isinstance(figures, dict):
+        is_share = isinstance(figures, float) and not within.endswith(COUNTED)
+        return [(within, figures)] if is_share else []
+    name = f"{within} {figures.get('method', '')}".strip()
+    return [s for key, value in figures.items() for s in _shares(value, f"{name} {key}".strip())]

@@ -59,9 +59,11 @@ def register(lib: Library, path: Path) -> JobRecord:
     """Take in every file below `path`, with a progress bar."""
     with progress_bar() as bar:
         task = bar.add_task("registering", total=None)
-        return imports.import_path(
+        job = imports.import_path(
             lib, path, lambda done, total, _: bar.update(task, completed=done, total=total)
         )
+        bar.update(task, completed=1, total=1)  # files that a manifest misses are not told
+        return job
 
 
 @contextmanager
@@ -125,4 +127,5 @@ def show_import(job: JobRecord) -> None:
 
 def _reason(problem: dict[str, Any]) -> str:
     places = [f"{place['location']}: {place['message']}" for place in problem["errors"]]
-    return " ".join([problem["detail"], *places])
+    # Readers' details often are their only place's words already.
+    return " ".join([problem["detail"], *(told for told in places if told != problem["detail"])])
