@@ -91,7 +91,9 @@ def requeue(tx: Tx, clip_id: str) -> ClipRecord:
 
 def set_processing(tx: Tx, clip_id: str) -> None:
     """A worker has begun."""
-    _enter(tx, clip_id, ClipState.PROCESSING)
+    begun = update(clips).where(clips.c.id == clip_id, clips.c.state == ClipState.QUEUED.value)
+    if not tx.execute(begun.values(state=ClipState.PROCESSING.value)).rowcount:
+        _enter(tx, clip_id, ClipState.PROCESSING)
 
 
 def set_ready(tx: Tx, clip_id: str, facts: ClipFacts) -> None:

@@ -149,15 +149,16 @@ def _line(entry: ImportEntry) -> dict[str, Any]:
 
 
 def _counts(tx: Tx, job_id: str) -> tuple[int, int]:
-    of_job = import_entries.c.job_id == job_id
-    total = select(func.count()).select_from(import_entries).where(of_job)
-    unfinished = (
-        select(func.count())
+    """How many files, and how many of them have a clip that is still to end."""
+    unfinished = func.count().filter(clips.c.state.in_(_UNFINISHED))
+    query = (
+        select(func.count(), unfinished)
         .select_from(import_entries)
-        .join(clips, clips.c.id == import_entries.c.clip_id)
-        .where(of_job, clips.c.state.in_(_UNFINISHED))
+        .outerjoin(clips, clips.c.id == import_entries.c.clip_id)
+        .where(import_entries.c.job_id == job_id)
     )
-    return int(tx.execute(total).scalar_one()), int(tx.execute(unfinished).scalar_one())
+    total, waiting = tx.execute(query).one()
+    return int(total), int(waiting)
 
 
 def _update(tx: Tx, job_id: str, **values: Any) -> JobRecord:

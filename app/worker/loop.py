@@ -126,10 +126,9 @@ class Worker:
         outcomes.settle_imports(tx, [clip_id for clip_id in ids if clip_id is not None])
 
     def _settle(self, tx: Tx, running: Running) -> None:
-        """Settle one; what is not ours any more must not undo the others."""
+        """Settle one; what is not ours any more says so before it changes anything."""
         try:
-            with tx.begin_nested():
-                running.settle(tx)
+            running.settle(tx)
         except LeaseLost:
             _log.warning("job %s was given to another worker", running.claimed.job.id)
         except CancelledError:
