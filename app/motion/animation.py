@@ -29,6 +29,8 @@ Errors add up along a chain; thirty joints stay within 0.06 mm."""
 FOLLOW_PARENT = 3e-7
 """Weight of turning with the parent against the bones' directions: so little that it decides
 only what they leave open, such as the twist about a single one."""
+REVERSED = 1e-7
+"""Sine of half the angle that a bone is short of being reversed."""
 BLOCK_FRAMES = 2048
 """Frames that are solved at once, so that matrices stay small."""
 
@@ -136,33 +138,48 @@ def solve_rotations(skeleton: Skeleton, bones: FloatArray) -> FloatArray:
 
 def _solve_block(skeleton: Skeleton, bones: FloatArray) -> FloatArray:
     frames, joints = bones.shape[:2]
-    world = np.zeros((frames, joints, 3, 3))
+    world = identity_quaternions((frames, joints))
     local = identity_quaternions((frames, joints))
     for joint in range(joints):
         parent = int(skeleton.parents[joint])
-        above = world[:, parent] if parent >= 0 else np.broadcast_to(np.eye(3), (frames, 3, 3))
+        above = world[:, parent] if parent >= 0 else identity_quaternions((frames,))
         children = skeleton.children(joint)
         if children:
             # seen from the parent's frame: (frames, children, 3)
-            seen = np.einsum("fji,fcj->fci", above, bones[:, children])
-            turn = _wahba(seen, skeleton.offsets[children])
-            local[:, joint] = matrices_to_quaternions(turn)
-            world[:, joint] = above @ turn
-        else:
-            world[:, joint] = above
+            seen = rotate(conjugate(above)[:, None], bones[:, children])
+            rest = skeleton.offsets[children]
+            turn = _swing(seen[:, 0], rest[0]) if len(children) == 1 else _wahba(seen, rest)
+            local[:, joint] = turn
+        world[:, joint] = multiply(above, local[:, joint])
     return local
 
 
+def _swing(seen: FloatArray, rest: FloatArray) -> FloatArray:
+    """(frames, 4): the shortest turns that bring rest (3,) along seen (frames, 3).
+
+    What `_wahba` comes to for a single bone; no turn where either has no length, and half
+    a turn about some axis across where the bone is reversed.
+    """
+    to, start = _unit(seen), _unit(rest)
+    across = np.cross(start, np.eye(3)[np.argmin(np.abs(start))])
+    half = np.concatenate([1 + to @ start[:, None], np.cross(start, to)], axis=-1)
+    length = np.linalg.norm(half, axis=-1, keepdims=True)
+    reversed_turn = np.concatenate([[0.0], _unit(across)])
+    return np.asarray(
+        np.where(length > REVERSED, half / np.maximum(length, REVERSED), reversed_turn)
+    )
+
+
 def _wahba(seen: FloatArray, rest: FloatArray) -> FloatArray:
-    """(frames, 3, 3): rotations R that bring rest (children, 3) nearest to seen
-    (frames, children, 3), near the identity where these leave it open."""
+    """(frames, 4): turns that bring rest (children, 3) nearest to seen (frames, children, 3),
+    near the identity where these leave it open."""
     weights = np.linalg.norm(rest, axis=-1) * np.linalg.norm(seen, axis=-1)
     directions = _unit(seen) * weights[..., None]
     pull = FOLLOW_PARENT * np.maximum(weights.sum(axis=-1), 1e-9)[:, None, None] * np.eye(3)
     profile = np.einsum("fci,cj->fij", directions, _unit(rest)) + pull
     u, _, vt = np.linalg.svd(profile)
     u[..., 2] *= np.linalg.det(u @ vt)[:, None]
-    return np.asarray(u @ vt)
+    return matrices_to_quaternions(u @ vt)
 
 
 def _unit(vectors: FloatArray) -> FloatArray:
