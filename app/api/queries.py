@@ -10,8 +10,8 @@ from starlette.datastructures import UploadFile
 from app.errors import BadField, Place
 
 QUERY_FILES = {
-    "file": "The query motion: BVH. It is never stored.",
-    "skeleton": "ASF that belongs to an AMC file; this version cannot read it.",
+    "file": "The query motion: BVH, AMC, C3D, FBX, NPZ or NPY. It is never stored.",
+    "skeleton": "The ASF file that an AMC file needs.",
 }
 
 

@@ -46,11 +46,14 @@ class ChildDied(AnalysisCrashed):
 class Order:
     """What to analyse: `content`, or the file at `path`; and what the client says of it.
 
-    roles: joint names by role name; for_search: leave out what only stored clips need.
+    skeleton, skeleton_path: the ASF file of an AMC file, in the same way; roles: joint names
+    by role name; for_search: leave out what only stored clips need.
     """
 
     content: bytes | None = None
     path: str | None = None
+    skeleton: bytes | None = None
+    skeleton_path: str | None = None
     frame_rate: float | None = None
     metres_per_unit: float | None = None
     roles: Mapping[str, str] | None = None
@@ -171,7 +174,10 @@ def read_order(order: Order, limits: Limits) -> Recording:
     from app.formats.read import read_recording
 
     content = order.content if order.content is not None else Path(order.path or "").read_bytes()
-    recording = read_recording(content)
+    skeleton = order.skeleton
+    if order.skeleton_path is not None:
+        skeleton = Path(order.skeleton_path).read_bytes()
+    recording = read_recording(content, skeleton)
     _check_size(recording, limits)
     return recording
 

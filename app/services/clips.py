@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
 
-from app.errors import EmptyFile
+from app.errors import BadContent, EmptyFile
 from app.formats.sniff import sniff
 from app.services import fields
 from app.services.library import Library
@@ -70,18 +71,29 @@ class StoredFile:
     size: int
 
 
-def create_clip(lib: Library, content: Readable, given: NewClip) -> Created:
+def create_clip(
+    lib: Library, content: Readable, given: NewClip, skeleton: Readable | None = None
+) -> Created:
     """Store a file durably and queue its analysis; on return both survive kill -9.
 
-    The same bytes again give the clip that exists, queued again if it had failed. Raises
-    BadField, EmptyFile, UnknownFormat, TooLarge, DiskFull; then nothing is kept.
+    skeleton: the ASF file of an AMC file. The same bytes again (of both) give the clip that
+    exists, queued again if it had failed. Raises BadField, EmptyFile, UnknownFormat,
+    TooLarge, DiskFull; then nothing is kept.
     """
     row = _described(given)
-    with lib.store.files.stage(content, max_bytes=lib.settings.max_upload_bytes) as staged:
-        check_content(staged)
+    limit = lib.settings.max_upload_bytes
+    with ExitStack() as files:
+        staged = files.enter_context(lib.store.files.stage(content, max_bytes=limit))
+        format = check_content(staged)
+        companion = None
+        if skeleton is not None:
+            companion = files.enter_context(lib.store.files.stage(skeleton, max_bytes=limit))
+            _check_pair(format, companion)
         with lib.store.write() as tx:
             staged.keep()
-            return add(tx, row(staged))
+            if companion is not None:
+                companion.keep()
+            return add(tx, row(staged, companion))
 
 
 def add(tx: Tx, row: NewRow, priority: int = UPLOAD_PRIORITY) -> Created:
@@ -93,12 +105,24 @@ def add(tx: Tx, row: NewRow, priority: int = UPLOAD_PRIORITY) -> Created:
     return Created(added.clip, job, is_new=True)
 
 
-def check_content(staged: StagedFile) -> None:
-    """Raise EmptyFile or UnknownFormat for what no reader would take."""
+def check_content(staged: StagedFile) -> str:
+    """The name of the content's format; raises EmptyFile or UnknownFormat where no reader
+    would take it."""
     if staged.size == 0:
         raise EmptyFile()
     with staged.open() as file:
-        sniff(file.read(SNIFF_BYTES))
+        return sniff(file.read(SNIFF_BYTES))
+
+
+def _check_pair(format: str, skeleton: StagedFile) -> None:
+    if format != "amc":
+        raise fields.bad_field("skeleton", f"goes with an AMC file, not with {format.upper()}")
+    try:
+        found = check_content(skeleton)
+    except BadContent as problem:
+        raise fields.bad_field("skeleton", f"must be an ASF file: {problem.detail}") from problem
+    if found != "asf":
+        raise fields.bad_field("skeleton", f"must be an ASF file, not {found.upper()}")
 
 
 def enqueue_ingest(tx: Tx, clip_id: str, priority: int) -> JobRecord:
@@ -164,8 +188,8 @@ def open_file(lib: Library, clip_id: str) -> StoredFile:
     return StoredFile(lib.store.files.path(clip.sha256), clip.file_name, clip.file_size)
 
 
-def _described(given: NewClip) -> Any:
-    """Check what a client says, before its bytes are read; completes the row with the file."""
+def _described(given: NewClip) -> Callable[[StagedFile, StagedFile | None], NewRow]:
+    """Check what a client says, before its bytes are read; completes the row with the files."""
     file_name = fields.file_name(given.filename)
     name = fields.text("name", given.name) or fields.stem(file_name)
     said: dict[str, Any] = {
@@ -178,7 +202,14 @@ def _described(given: NewClip) -> Any:
         "metres_per_unit_override": fields.metres_per_unit(given.unit),
         "roles_override": fields.roles(given.roles),
     }
-    return lambda staged: NewRow(staged.sha256, file_name, staged.size, name, **said)
+
+    def row(staged: StagedFile, skeleton: StagedFile | None) -> NewRow:
+        companion = None if skeleton is None else skeleton.sha256
+        return NewRow(
+            staged.sha256, file_name, staged.size, name, skeleton_sha256=companion, **said
+        )
+
+    return row
 
 
 def _tidied(changes: Mapping[str, Any]) -> ClipChanges:

@@ -70,9 +70,10 @@ def folder_files(folder: Path) -> list[SourceFile]:
     return [SourceFile(f.relative_to(folder).as_posix(), partial(_open_file, f)) for f in found]
 
 
-def single_file(path: Path) -> list[SourceFile]:
-    """One file by itself, under its own name."""
-    return [SourceFile(path.name, partial(_open_file, path))]
+def single_file(path: Path, companion: Path | None = None) -> list[SourceFile]:
+    """One file by itself, or with the file that it cannot be read without."""
+    files = [path] if companion is None else [path, companion]
+    return [SourceFile(file.name, partial(_open_file, file)) for file in files]
 
 
 def is_archive(path: Path) -> bool:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -29,6 +29,7 @@ from app.errors import (
 from app.formats.sniff import sniff
 from app.services import fields
 from app.services.clips import BULK_PRIORITY, SNIFF_BYTES, WORKER_DEATHS, add, check_content
+from app.services.companions import pair_skeletons
 from app.services.import_sources import (
     ArchiveLimits,
     SourceFile,
@@ -119,9 +120,18 @@ def _sources(lib: Library, path: Path) -> Iterator[list[SourceFile]]:
         with archive_files(path, _limits(lib)) as files:
             yield files
     elif path.is_file():
-        yield single_file(path)
+        yield single_file(path, _skeleton_beside(path))
     else:
         raise NotFound(f"There is no file or folder {path}.")
+
+
+def _skeleton_beside(path: Path) -> Path | None:
+    """The ASF file in the folder of a single AMC file that is its skeleton."""
+    if path.suffix.lower() != ".amc":
+        return None
+    names = [other.name for other in path.parent.iterdir() if other.suffix.lower() == ".asf"]
+    name = pair_skeletons([path.name, *sorted(names)]).get(path.name)
+    return None if name is None else path.parent / name
 
 
 def _own_job(lib: Library, path: Path) -> ClaimedJob:
@@ -171,8 +181,10 @@ def _register_all(
 ) -> None:
     listed = _each_once(files)
     manifest = _manifest_rows(listed)
-    clips = [file for file in listed if not _is_manifest(file)]
-    absent = sorted(manifest.keys() - {file.path for file in clips})
+    skeletons = _skeletons(listed)
+    taken = {skeleton.path for skeleton in skeletons.values()}
+    clips = [file for file in listed if not _is_manifest(file) and file.path not in taken]
+    absent = sorted(manifest.keys() - {file.path for file in listed})
     with doing.lib.store.read() as tx:
         recorded = stored.recorded_paths(tx, doing.lease.job_id)
     total = len(clips) + len(absent)
@@ -180,20 +192,23 @@ def _register_all(
         if should_stop():
             raise Canceled("The import was stopped.")
         if file.path not in recorded:
-            _register(doing, file, manifest.get(file.path, _NOTHING))
+            row = manifest.get(file.path, _NOTHING)
+            _register(doing, file, row, skeletons.get(file.path))
         progress(done, total, file.path)
     for path in absent:
         if path not in recorded:
             doing.record_problem(path, _absent(path, manifest[path]))
 
 
-def _register(doing: _Doing, file: SourceFile, row: ManifestRow) -> None:
+def _register(
+    doing: _Doing, file: SourceFile, row: ManifestRow, skeleton: SourceFile | None
+) -> None:
     """Store one file as a clip, or record why not; failures of the store are raised."""
     try:
         if problem := file.problem or row.problem:
             raise problem
         with file.open() as content:
-            _store_file(doing, file.path, content, row)
+            _store_file(doing, file.path, content, row, skeleton)
     except (StorageError, LeaseLost, Canceled):
         raise
     except KinedexError as problem:
@@ -202,19 +217,32 @@ def _register(doing: _Doing, file: SourceFile, row: ManifestRow) -> None:
         doing.record_problem(file.path, Unreadable(f"The file cannot be read: {problem}."))
 
 
-def _store_file(doing: _Doing, path: str, content: Readable, row: ManifestRow) -> None:
+def _store_file(
+    doing: _Doing, path: str, content: Readable, row: ManifestRow, skeleton: SourceFile | None
+) -> None:
     lib = doing.lib
-    with lib.store.files.stage(content, max_bytes=lib.settings.max_upload_bytes) as staged:
-        check_content(staged)
+    with ExitStack() as files:
+        limit = lib.settings.max_upload_bytes
+        staged = files.enter_context(lib.store.files.stage(content, max_bytes=limit))
+        companion = None
+        if check_content(staged) == "amc" and skeleton is not None:
+            if skeleton.problem is not None:
+                raise skeleton.problem
+            opened = files.enter_context(skeleton.open())
+            companion = files.enter_context(lib.store.files.stage(opened, max_bytes=limit))
         with lib.store.write() as tx:
             staged.keep()
-            created = add(tx, _new_row(path, row, staged), BULK_PRIORITY)
+            if companion is not None:
+                companion.keep()
+            created = add(tx, _new_row(path, row, staged, companion), BULK_PRIORITY)
             is_done = not created.is_new and created.clip.state is ClipState.READY
             outcome = ImportOutcome.EXISTS if is_done else ImportOutcome.QUEUED
             doing.record(tx, path, outcome, clip_id=created.clip.id)
 
 
-def _new_row(path: str, row: ManifestRow, staged: StagedFile) -> NewRow:
+def _new_row(
+    path: str, row: ManifestRow, staged: StagedFile, skeleton: StagedFile | None
+) -> NewRow:
     file_name = fields.file_name(path)
     return NewRow(
         sha256=staged.sha256,
@@ -226,6 +254,7 @@ def _new_row(path: str, row: ManifestRow, staged: StagedFile) -> NewRow:
         words=row.words or (),
         license=row.license,
         source=row.source,
+        skeleton_sha256=None if skeleton is None else skeleton.sha256,
         frame_rate_override=row.frame_rate,
         metres_per_unit_override=row.metres_per_unit,
     )
@@ -245,6 +274,12 @@ def _manifest_rows(files: Iterable[SourceFile]) -> dict[str, ManifestRow]:
             with file.open() as content:
                 rows |= read_manifest(content.read(), folder)
     return rows
+
+
+def _skeletons(files: Iterable[SourceFile]) -> dict[str, SourceFile]:
+    """The file of the skeleton that each AMC file moves, by the AMC's path."""
+    by_path = {file.path: file for file in files}
+    return {motion: by_path[path] for motion, path in pair_skeletons(by_path).items()}
 
 
 def _is_manifest(file: SourceFile) -> bool:

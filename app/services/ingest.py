@@ -24,8 +24,10 @@ RETRY_DELAY_S = 5.0
 
 def order_for(lib: Library, clip: ClipRecord) -> Order:
     """What to analyse for a clip. Raises NotFound where its file is gone."""
+    skeleton = clip.skeleton_sha256
     return Order(
         path=str(lib.store.files.path(clip.sha256)),
+        skeleton_path=None if skeleton is None else str(lib.store.files.path(skeleton)),
         frame_rate=clip.frame_rate_override,
         metres_per_unit=clip.metres_per_unit_override,
         roles=clip.roles_override,

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.analysis.analyse import describe_for_search
-from app.errors import BadField, ClipNotReady, EmptyFile, FormatNotSupported, Place, TooLarge
+from app.errors import BadField, ClipNotReady, EmptyFile, Place, TooLarge
 from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
 from app.services import fields
@@ -87,8 +87,6 @@ def _of_clip(lib: Library, question: Question, clip_id: str, names: tuple[str, .
 
 
 def _of_upload(lib: Library, question: Question) -> Arrays:
-    if question.skeleton is not None:
-        raise FormatNotSupported("ASF skeletons cannot be read yet.")
     found = lib.pool.analyse(_order(lib, question))
     if question.start is None and question.end is None:
         return found.arrays
@@ -98,6 +96,7 @@ def _of_upload(lib: Library, question: Question) -> Arrays:
 def _order(lib: Library, question: Question) -> Order:
     return Order(
         content=_read(question.content, lib.settings.max_upload_bytes),
+        skeleton=_skeleton(question, lib.settings.max_upload_bytes),
         frame_rate=fields.frame_rate(question.frame_rate),
         metres_per_unit=fields.metres_per_unit(question.unit),
         roles=fields.roles(question.roles),
@@ -112,6 +111,10 @@ def _read(content: Readable | None, limit: int) -> bytes:
     if len(found) > limit:
         raise TooLarge(f"The file is larger than {limit} bytes.")
     return found
+
+
+def _skeleton(question: Question, limit: int) -> bytes | None:
+    return None if question.skeleton is None else _read(question.skeleton, limit)
 
 
 def cut(motion: Motion, start: float | None, end: float | None) -> Motion:

@@ -11,6 +11,7 @@ from starlette.datastructures import UploadFile
 from app.api.bodies import read_form, require_json, required
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import ClipId, body, refusals
+from app.api.queries import file_of
 from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch, ClipQuery
 from app.api.schemas.jobs import Job
 from app.services import clips
@@ -19,8 +20,8 @@ from app.services.clips import NewClip
 router = APIRouter(prefix="/v1/clips", tags=["clips"])
 
 FILES = {
-    "file": "The motion: BVH.",
-    "skeleton": "ASF that belongs to an AMC file; this version does not use it.",
+    "file": "The motion: BVH, AMC, C3D, FBX, NPZ or NPY.",
+    "skeleton": "The ASF file that an AMC file needs.",
     "audio": "Recording that the motion goes with; this version does not use it.",
 }
 
@@ -47,7 +48,9 @@ def create_clip(
     """Store a clip; a worker makes it `ready`, or `failed` with its reason."""
     form, uploads = sent
     upload = required(uploads, "file")
-    created = clips.create_clip(lib, upload.file, _new_clip(form, upload.filename))
+    created = clips.create_clip(
+        lib, upload.file, _new_clip(form, upload.filename), file_of(uploads, "skeleton")
+    )
     if created.job is None:
         response.status_code = 200
     job = None if created.job is None else Job.of(created.job)
