@@ -1,0 +1,125 @@
+"""One library for all tests of the command line, made by the commands themselves."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.cli.main import main
+from app.services.demo import DemoClip, demo_clips
+
+ACTORS, TASKS = ("ada", "bruno"), ("walk", "kick", "wave")
+COLUMNS = ("path", "person", "task", "words")
+BAD = "broken/half.bvh"
+ABSENT = "absent.bvh"
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a command ended, and what it printed."""
+
+    code: int
+    out: str
+    err: str
+
+    def json(self) -> Any:
+        assert self.code == 0, self.err
+        return json.loads(self.out)
+
+
+Kinedex = Callable[..., Ended]
+
+
+def start(*words: str, **settings: object) -> subprocess.Popen[str]:
+    """The installed program, as a user starts it."""
+    program = Path(sys.executable).with_name("kinedex")
+    return subprocess.Popen(
+        [str(program), *words],
+        env=environment(**settings),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def environment(**settings: object) -> dict[str, str]:
+    """Ours without any KINEDEX_*, but for these settings."""
+    clean = {name: value for name, value in os.environ.items() if not name.startswith("KINEDEX_")}
+    return clean | {f"KINEDEX_{name.upper()}": str(value) for name, value in settings.items()}
+
+
+def end(process: subprocess.Popen[str], seconds: float = 120.0) -> Ended:
+    """Wait for a program that was started."""
+    try:
+        out, err = process.communicate(timeout=seconds)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+        raise
+    return Ended(process.returncode, out, err)
+
+
+@pytest.fixture(scope="session")
+def clips() -> list[DemoClip]:
+    return list(demo_clips(ACTORS, TASKS, takes=2))
+
+
+@pytest.fixture(scope="session")
+def folder(tmp_path_factory: pytest.TempPathFactory, clips: list[DemoClip]) -> Path:
+    """A folder with a manifest: twelve clips, one that is broken, one that is not there."""
+    root = tmp_path_factory.mktemp("mocap")
+    rows = [(c.path, c.person, c.task, " ".join(c.words)) for c in clips]
+    for clip in clips:
+        (root / clip.path).parent.mkdir(exist_ok=True)
+        (root / clip.path).write_bytes(clip.content)
+    (root / BAD).parent.mkdir()
+    (root / BAD).write_bytes(clips[0].content[: len(clips[0].content) // 2])
+    rows += [(BAD, "ada", "walk", ""), (ABSENT, "ada", "walk", "")]
+    with (root / "manifest.csv").open("w", newline="") as file:
+        csv.writer(file).writerows([COLUMNS, *rows])
+    return root
+
+
+@pytest.fixture(scope="session")
+def data_dir(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("cli") / "data"
+
+
+@pytest.fixture(scope="session")
+def imported(data_dir: Path, folder: Path) -> Ended:
+    """How the first import of the folder ended; the models are fitted by it."""
+    return end(start("import", str(folder), data_dir=data_dir))
+
+
+@pytest.fixture
+def kinedex(
+    imported: Ended,
+    data_dir: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> Kinedex:
+    """The command line in this process, on the library that was imported: starts at once."""
+
+    def run(*words: str, **settings: object) -> Ended:
+        with monkeypatch.context() as patched:
+            for name in [name for name in os.environ if name.startswith("KINEDEX_")]:
+                patched.delenv(name)
+            for name, value in ({"data_dir": data_dir} | settings).items():
+                patched.setenv(f"KINEDEX_{name.upper()}", str(value))
+            patched.setattr(sys, "argv", ["kinedex", *words])
+            with pytest.raises(SystemExit) as ended:
+                main()
+        printed = capsys.readouterr()
+        return Ended(int(ended.value.code or 0), printed.out, printed.err)
+
+    assert imported.code == 0, imported.err
+    return run

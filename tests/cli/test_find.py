@@ -1,0 +1,85 @@
+"""Searching, recognising, fitting: what people see, and JSON as the API answers it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from app.api.schemas.recognition import Recognition
+from app.api.schemas.search import MotionHits, WordHits
+from tests.cli.conftest import Kinedex
+
+
+def _file(folder: Path, task: str) -> str:
+    return str(folder / "ada" / f"{task}_01.bvh")
+
+
+def test_a_file_finds_itself_and_its_like(kinedex: Kinedex, folder: Path) -> None:
+    found = kinedex("search", _file(folder, "kick"), "--limit", "3", "--json").json()
+    assert MotionHits.model_validate(found).model_dump(mode="json") == found
+    assert found["items"][0]["distance"] == 0.0
+    assert [hit["clip"]["task"] for hit in found["items"]] == ["kick"] * 3
+
+
+def test_a_stored_clip_by_a_method_and_a_filter(kinedex: Kinedex, folder: Path) -> None:
+    found = kinedex("search", _file(folder, "kick"), "--limit", "1", "--json").json()
+    clip = found["items"][0]["clip"]["id"]
+    wanted = '{"person": "bruno"}'
+    told = kinedex("search", clip, "--method", "dtw", "--filter", wanted, "--json").json()
+    assert told["method"] == "dtw"
+    assert {hit["clip"]["person"] for hit in told["items"]} == {"bruno"}
+
+
+def test_hits_as_a_table(kinedex: Kinedex, folder: Path) -> None:
+    ended = kinedex("search", _file(folder, "walk"), "--limit", "2")
+    assert ended.code == 0
+    lines = ended.out.splitlines()
+    assert lines[0].split() == ["rank", "score", "name", "person", "task", "id"]
+    assert lines[1].split()[:5] == ["1", "1.000", "walk_01", "ada", "walk"]
+    assert len(lines) == 3
+
+
+def test_words_find_clips_and_unknown_ones_are_told(kinedex: Kinedex) -> None:
+    found = kinedex("search", "--words", "kick nosuchword", "--limit", "2", "--json").json()
+    assert WordHits.model_validate(found).model_dump(mode="json") == found
+    assert found["unknown_words"] == ["nosuchword"]
+    assert found["items"][0]["clip"]["task"] == "kick"
+    ended = kinedex("search", "--words", "kick", "--words", "nosuchword")
+    assert "No clip carries: nosuchword" in ended.err
+
+
+def test_recognition_says_who_and_what(kinedex: Kinedex, folder: Path) -> None:
+    found = kinedex("recognize", _file(folder, "kick"), "--json").json()
+    assert Recognition.model_validate(found).model_dump(mode="json") == found
+    assert (found["person"]["label"], found["task"]["label"]) == ("ada", "kick")
+    ended = kinedex("recognize", _file(folder, "kick"))
+    told = [line.split()[:2] for line in ended.out.splitlines()]
+    assert ["person", "ada"] in told
+    assert ["task", "kick"] in told
+
+
+def test_a_fit_shows_the_held_out_figures_of_each_model(kinedex: Kinedex) -> None:
+    ended = kinedex("fit")
+    assert ended.code == 0
+    assert {line.split()[0] for line in ended.out.splitlines()[1:]} == {
+        "words",
+        "recogniser",
+        "multilinear",
+    }
+    told = [line.split()[3:] for line in ended.out.splitlines()]
+    for method in ("prior", "default"):
+        (share,) = [row[-1] for row in told if row[:-1] == ["held_out", method, "task"]]
+        assert 0.0 <= float(share) <= 1.0
+
+
+def test_a_bad_question_is_told_in_words(kinedex: Kinedex, folder: Path) -> None:
+    assert "no clip with the id" in _refused(kinedex, "search", "clip_of_nobody")
+    assert "filter: " in _refused(kinedex, "search", _file(folder, "walk"), "--filter", "{")
+    assert "filter.tusk: " in _refused(kinedex, "search", "x", "--filter", '{"tusk": "walk"}')
+    assert "start: " in _refused(kinedex, "search", _file(folder, "walk"), "--start", "99")
+
+
+def _refused(kinedex: Kinedex, *words: str) -> str:
+    ended = kinedex(*words)
+    assert (ended.code, ended.out) == (1, "")
+    assert "Traceback" not in ended.err
+    return ended.err

@@ -1,0 +1,64 @@
+"""Putting clips in: what is told of a bad file among good ones, and of what is there already."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+from app.api.schemas.jobs import Job
+from app.services.demo import DemoClip, demo_clips
+from tests.cli.conftest import ABSENT, BAD, Ended, Kinedex
+
+
+def test_good_files_enter_and_each_failure_is_told(
+    imported: Ended, clips: list[DemoClip], folder: Path
+) -> None:
+    assert imported.code == 0
+    told = " ".join(imported.out.split())
+    count = len(clips)
+    assert f"{count} of {count + 2} files are in the library ({count} new)." in told
+    assert f"{BAD} " in told
+    assert f"{ABSENT} The manifest names a file that is not there." in told
+    assert "Traceback" not in imported.err
+
+
+def test_the_reason_names_the_line_once(imported: Ended, clips: list[DemoClip]) -> None:
+    told = " ".join(imported.out.split())
+    reason = told.partition(BAD)[2]
+    assert reason.count("line ") == 1
+
+
+def test_the_same_folder_again_adds_nothing(
+    kinedex: Kinedex, folder: Path, clips: list[DemoClip]
+) -> None:
+    job = kinedex("import", str(folder), "--json").json()
+    assert Job.model_validate(job).model_dump(mode="json") == job
+    result = job["result"]
+    assert (result["ready"], result["exists"], result["failed"]) == (0, len(clips), 2)
+    assert {f["path"] for f in result["files"] if f["outcome"] == "failed"} == {BAD, ABSENT}
+
+
+def test_a_zip_and_a_single_file_are_imported_too(kinedex: Kinedex, tmp_path: Path) -> None:
+    (new,) = demo_clips(["chika"], ["bow"], takes=1)
+    file, archive = tmp_path / "bow.bvh", tmp_path / "bow.zip"
+    file.write_bytes(new.content)
+    with zipfile.ZipFile(archive, "w") as zipped:
+        zipped.write(file, "bow.bvh")
+    waiting = kinedex("import", str(archive), "--no-wait", "--json").json()
+    assert waiting["state"] == "processing"
+    job = kinedex("import", str(file), "--json").json()
+    assert [f["outcome"] for f in job["result"]["files"]] == ["ready"]
+
+
+def test_no_such_path_is_told(kinedex: Kinedex) -> None:
+    ended = kinedex("import", "no/such/folder")
+    assert ended.code == 1
+    assert "There is no file or folder no/such/folder." in ended.err
+
+
+def test_the_database_is_made_and_brought_up_to_date(kinedex: Kinedex, tmp_path: Path) -> None:
+    for _ in range(2):
+        ended = kinedex("--data-dir", str(tmp_path / "new"), "db", "upgrade")
+        assert (ended.code, ended.err) == (0, "")
+        assert ended.out.startswith("The database is at revision ")
+    assert (tmp_path / "new" / "kinedex.sqlite3").is_file()

@@ -1,0 +1,49 @@
+"""Starting: refusals that a user must understand, and settings that are wrong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.cli.conftest import Kinedex, end, start
+
+
+def test_serving_beyond_this_machine_needs_a_key(tmp_path: Path) -> None:
+    data_dir = tmp_path / "data"
+    refused = end(start("serve", "--host", "0.0.0.0", "--port", "0", data_dir=data_dir))
+    assert refused.code == 1
+    assert "kinedex keys create" in refused.err
+    assert "Traceback" not in refused.err
+
+
+def test_a_wrong_setting_is_named_and_not_shown(kinedex: Kinedex, tmp_path: Path) -> None:
+    told = kinedex("serve", port="hunter2", data_dir=tmp_path / "data")
+    assert told.code == 1
+    assert "KINEDEX_PORT" in told.err
+    assert "hunter2" not in told.err
+    assert not (tmp_path / "data").exists()
+
+
+def test_each_wrong_setting_is_named(kinedex: Kinedex) -> None:
+    ended = kinedex("keys", "list", max_frames=0, job_poll_s="soon")
+    assert ended.code == 1
+    assert "KINEDEX_MAX_FRAMES" in ended.err
+    assert "KINEDEX_JOB_POLL_S" in ended.err
+
+
+def test_a_flag_wins_over_the_environment(kinedex: Kinedex, tmp_path: Path) -> None:
+    ended = kinedex("--data-dir", str(tmp_path / "flag"), "keys", "list", "--json")
+    assert ended.json() == []
+    assert (tmp_path / "flag" / "kinedex.sqlite3").is_file()
+
+
+def test_the_version_and_the_commands_are_told(kinedex: Kinedex) -> None:
+    assert kinedex("--version").out.startswith("kinedex ")
+    listed = kinedex("--help").out
+    for command in ("serve", "import", "search", "recognize", "fit", "evaluate", "keys", "db"):
+        assert command in listed
+
+
+def test_an_unknown_command_is_a_usage_error(kinedex: Kinedex) -> None:
+    ended = kinedex("dance")
+    assert ended.code == 2
+    assert "dance" in ended.err
