@@ -13,6 +13,7 @@ from collections.abc import Iterable, Mapping
 from app.errors import BadField, Place
 from app.models.word_vocabulary import normalise_words
 from app.motion.joint_roles import JointRole
+from app.motion.units import METRES_PER_UNIT
 
 MAX_TEXT = 300
 """Characters in a name or label."""
@@ -20,9 +21,6 @@ MAX_WORDS = 100
 """Words on one clip."""
 MAX_FRAME_RATE = 2000.0
 """Hz; above any motion capture."""
-
-UNITS = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
-"""Metres per unit by name."""
 
 
 def bad_field(field: str, message: str) -> BadField:
@@ -65,12 +63,12 @@ def frame_rate(value: float | str | None) -> float | None:
 
 def metres_per_unit(value: float | str | None) -> float | None:
     """Metres in one unit of the file, from a number or a name (m, cm, mm, in, ...)."""
-    if isinstance(value, str) and value.strip().lower() in UNITS:
-        return UNITS[value.strip().lower()]
+    if isinstance(value, str) and value.strip().lower() in METRES_PER_UNIT:
+        return METRES_PER_UNIT[value.strip().lower()]
     try:
         number = _number("unit", value)
     except BadField as problem:
-        known = ", ".join(UNITS)
+        known = ", ".join(METRES_PER_UNIT)
         raise bad_field("unit", f"must be one of {known}, or metres per unit") from problem
     if number is not None and not 1e-6 <= number <= 1e3:
         raise bad_field("unit", "must be between 0.000001 and 1000 metres")

@@ -14,8 +14,8 @@ from app.store.models import ModelRecord
 
 FIT_PRIORITY = 30
 """After every ingest."""
-LEAST_CLIPS = 10
-"""Ready clips below which nothing is fitted unasked."""
+LEAST_CLIPS = 2
+"""Ready clips below which nothing is fitted unasked: a model of one clip tells nothing."""
 FIT_KEY = "fit"
 _READY = ClipFilter(state=(ClipState.READY,))
 

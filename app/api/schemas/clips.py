@@ -118,7 +118,9 @@ class ClipForm(Incoming):
     source: Label | None = None
     frame_rate: FrameRate | None = Field(None, description="Overrides what the file declares.")
     unit: str | None = Field(
-        None, max_length=30, description="m, dm, cm, mm, in, ft, or metres per unit."
+        None,
+        max_length=30,
+        description="m, dm, cm, mm, in, ft, cmu (of CMU's files), or metres per unit.",
     )
     roles: Json[dict[str, str]] | None = Field(
         None, description='JSON: joint name by role, as {"hips": "Pelvis"}.'

@@ -60,7 +60,9 @@ class UploadFields(Incoming):
     """What a client may say of an uploaded query."""
 
     unit: str | None = Field(
-        None, max_length=30, description="m, dm, cm, mm, in, ft, or metres per unit."
+        None,
+        max_length=30,
+        description="m, dm, cm, mm, in, ft, cmu (of CMU's files), or metres per unit.",
     )
     frame_rate: FrameRate | None = Field(None, description="Overrides what the file declares.")
     roles: Json[dict[str, str]] | None = Field(
