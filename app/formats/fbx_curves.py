@@ -28,12 +28,16 @@ WEIGHT_UNIT = 1e-4
 _CONSTANT, _LINEAR, _CUBIC = 0x2, 0x4, 0x8
 _NEXT = 0x100
 """With _CONSTANT: the value is that of the next key."""
-_AUTO, _TCB = 0x100, 0x200
-_CLAMP, _PROGRESSIVE = 0x1000, 0x4000
+_TCB, _USER = 0x200, 0x400
+_CLAMP, _TIMED, _PROGRESSIVE = 0x1000, 0x2000, 0x4000
+"""Of automatic tangents: flat beside an equal value; along the neighbours' chord rather
+than the mean of both sides' slopes; never beyond the neighbours' values."""
 _WEIGHTED_RIGHT, _WEIGHTED_NEXT_LEFT = 0x1000000, 0x2000000
 _FLAT = 1e-4
 """Neighbouring values that differ by less make a clamped tangent flat."""
-_SOLVING_STEPS = 40
+_SOLVING_STEPS = 60
+_SOLVED = 1e-12
+"""Parts of a gap."""
 _CONSTANT_BEYOND = (b"C", ord("C"))
 
 
@@ -191,30 +195,48 @@ def _slopes(keys: Keys, gaps: IntArray) -> tuple[FloatArray, FloatArray]:
     """(n,) slopes a second at both ends of gaps."""
     stored = np.nan_to_num(keys.data[gaps, :2].astype(np.float64), posinf=0, neginf=0)
     stored = np.clip(stored, -MAX_MAGNITUDE, MAX_MAGNITUDE)
-    automatic = _is_cubic(keys.flags) & (keys.flags & _AUTO != 0)
-    start = np.where(automatic[gaps], _auto_slopes(keys, gaps), stored[:, 0])
-    end = np.where(automatic[gaps + 1], _auto_slopes(keys, gaps + 1), stored[:, 1])
+    automatic = _is_cubic(keys.flags) & (keys.flags & _USER == 0)
+    # What is stored of an automatic tangent is its bias, in percent.
+    bias = stored / 100
+    start = np.where(automatic[gaps], _auto_slopes(keys, gaps, bias[:, 0]), stored[:, 0])
+    end = np.where(automatic[gaps + 1], _auto_slopes(keys, gaps + 1, -bias[:, 1]), stored[:, 1])
     return start, end
 
 
-def _auto_slopes(keys: Keys, at: IntArray) -> FloatArray:
-    """(n,) slopes of automatic tangents: along the chord of both neighbours, flat at the
-    ends of the curve; clamped where the flags say so."""
-    inner = (at > 0) & (at < len(keys) - 1)
-    before, after = np.maximum(at - 1, 0), np.minimum(at + 1, len(keys) - 1)
-    seconds, values = keys.times / KTIME, keys.values.astype(np.float64)
-    to_left, to_right = seconds[at] - seconds[before], seconds[after] - seconds[at]
-    down, up = values[at] - values[before], values[after] - values[at]
-    inner &= (to_left > 0) & (to_right > 0)
-    slope = np.divide(down + up, to_left + to_right, out=np.zeros(len(at)), where=inner)
-    progressive = inner & (keys.flags[at] & _PROGRESSIVE != 0)
-    sign = np.where(slope < 0, -1.0, 1.0)
-    for rise, run in ((down, to_left), (up, to_right)):
-        limit = np.divide(sign * rise, run * USUAL_WEIGHT, out=np.zeros(len(at)), where=inner)
-        limited = sign * np.minimum(np.abs(slope), np.maximum(limit, 0))
-        slope = np.where(progressive, limited, slope)
+def _auto_slopes(keys: Keys, at: IntArray, bias: FloatArray) -> FloatArray:
+    """(n,) slopes of automatic tangents at keys `at`; bias (n,) leans them to the
+    slope on the right, or the left where it is negative; beyond 1 they go on beyond it."""
+    down, before = _rise_and_run(keys, np.maximum(at - 1, 0), at)
+    up, after = _rise_and_run(keys, at, np.minimum(at + 1, len(keys) - 1))
+    left, right = _ratio(down, before), _ratio(up, after)
+    flags = keys.flags[at]
+    leaning = np.where(bias > 0, right, left)
+    mean = (left + right) / 2
+    slope = mean + np.abs(bias) * (leaning - mean)
+    slope = np.where(flags & _TIMED != 0, _ratio(down + up, before + after), slope)
     flat = np.minimum(np.abs(down), np.abs(up)) < _FLAT
-    return np.where(flat & (keys.flags[at] & _CLAMP != 0), 0.0, slope)
+    slope = np.where(flat & (flags & _CLAMP != 0), 0.0, slope)
+    limited = _limited(slope, left / USUAL_WEIGHT, right / USUAL_WEIGHT)
+    slope = np.where(flags & _PROGRESSIVE != 0, limited, slope)
+    outer = (before <= 0) | (after <= 0)
+    return np.where(outer, np.where(flags & _PROGRESSIVE != 0, 0.0, left + right), slope)
+
+
+def _rise_and_run(keys: Keys, start: IntArray, end: IntArray) -> tuple[FloatArray, FloatArray]:
+    """(n,) difference of the values, and seconds, between two keys."""
+    rise = keys.values[end].astype(np.float64) - keys.values[start]
+    return rise, (keys.times[end] - keys.times[start]) / KTIME
+
+
+def _ratio(rise: FloatArray, run: FloatArray) -> FloatArray:
+    return np.divide(rise, run, out=np.zeros(len(run)), where=run > 0)
+
+
+def _limited(slope: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
+    """(n,) slopes no steeper than both limits, flat where these point the other way."""
+    sign = np.where(slope < 0, -1.0, 1.0)
+    limit = np.minimum(sign * left, sign * right)
+    return np.asarray(sign * np.minimum(np.abs(slope), np.maximum(limit, 0)))
 
 
 def _solve_bezier(x1: FloatArray, x2: FloatArray, x: FloatArray) -> FloatArray:
@@ -226,13 +248,14 @@ def _solve_bezier(x1: FloatArray, x2: FloatArray, x: FloatArray) -> FloatArray:
     low, high, t = np.zeros(len(x)), np.ones(len(x)), x.copy()
     for _ in range(_SOLVING_STEPS):
         miss = _bezier(0.0, x1, x2, 1.0, t) - x
+        away = np.abs(miss) > _SOLVED
+        if not away.any():
+            break
         low, high = np.where(miss < 0, t, low), np.where(miss < 0, high, t)
         steep = 3 * ((1 - t) ** 2 * x1 + 2 * (1 - t) * t * (x2 - x1) + t**2 * (1 - x2))
         step = t - np.divide(miss, steep, out=np.zeros(len(x)), where=steep > 1e-9)
         halved = (step <= low) | (step >= high)
-        t = np.where(halved, (low + high) / 2, step)
-        if np.all(np.abs(miss) < 1e-12):
-            break
+        t = np.where(away, np.where(halved, (low + high) / 2, step), t)
     return t
 
 

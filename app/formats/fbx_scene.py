@@ -204,9 +204,9 @@ def _connections(file: FbxFile) -> Iterator[Connection]:
     for count, record in enumerate(block.children("C") if block else ()):
         if count >= MAX_CONNECTIONS:
             raise TooLarge(f"expected at most {MAX_CONNECTIONS} connections")
-        kind, *ends = record.properties(4)
-        if kind in (b"OO", b"OP") and len(ends) >= 2:
-            source, target, to_property, *_ = [*ends, b""]
+        found = record.properties(4)
+        if len(found) >= 3 and found[0] in (b"OO", b"OP"):
+            _, source, target, to_property, *_ = [*found, b""]
             if not isinstance(source, int) or not isinstance(target, int):
                 raise unreadable_byte(record.offset, "expected the ids of two objects")
             yield Connection(source, target, _text(to_property))

@@ -33,6 +33,9 @@ DENSE = 0.5
 """So many of all gaps have to be equal for keys to be samples."""
 GAP_TOLERANCE = 0.01
 """Gaps that differ by less (relative) are equal; times are rounded by some writers."""
+FREE_FRAMES, FRAMES_PER_KEY = 10_000, 1_000
+"""A clip has no more frames than these and so many for each key of its richest curve; a
+stray key far away makes no hours of standing still."""
 ON_GRID = 0.02
 """Of a period: a key that near to a frame lies on it."""
 
@@ -80,8 +83,9 @@ def find_timing(
     if _on_grid(times, period):
         first = np.ceil(first / period - ON_GRID) * period
     count = int((span[1] - first) / period + ON_GRID) + 1
-    if count > MAX_FRAMES:
-        raise TooLarge(f"expected at most {MAX_FRAMES} frames")
+    most = FREE_FRAMES + FRAMES_PER_KEY * max((len(one) for one in times), default=0)
+    if count > min(MAX_FRAMES, most):
+        raise TooLarge(f"expected at most {min(MAX_FRAMES, most)} frames, found {count}")
     ticks = np.clip(first + period * np.arange(max(count, 1)), *span)
     return Timing(ticks, rate, cautions)
 

@@ -13,7 +13,8 @@ import numpy as np
 KTIME = 46_186_158_000
 MAGIC = b"Kaydara FBX Binary  \x00\x1a\x00"
 CONSTANT, NEXT, LINEAR, CUBIC = 0x2, 0x102, 0x4, 0x8
-AUTO, TCB, USER, CLAMP, PROGRESSIVE = 0x108, 0x208, 0x408, 0x1000, 0x4000
+AUTO, TCB, USER = 0x108, 0x208, 0x408
+CLAMP, TIMED, PROGRESSIVE = 0x1000, 0x2000, 0x4000
 WEIGHTED_RIGHT, WEIGHTED_LEFT = 0x1000000, 0x2000000
 Vector = tuple[float, float, float]
 
@@ -61,6 +62,10 @@ class Array:
     code: str
     numbers: Sequence[float]
     deflate: bool = False
+    stored: bytes | None = None
+    """Deflated bytes that stand instead of the numbers."""
+    count: int = 0
+    """What is said of them."""
 
 
 @dataclass(frozen=True)
@@ -217,6 +222,9 @@ def _property(value: Any) -> bytes:
 
 
 def _array(array: Array) -> bytes:
+    if array.stored is not None:
+        head = struct.pack("<III", array.count, 1, len(array.stored))
+        return array.code.encode() + head + array.stored
     types = {"f": "<f4", "d": "<f8", "i": "<i4", "l": "<i8"}
     raw = np.array(array.numbers, dtype=types[array.code]).tobytes()
     stored = zlib.compress(raw) if array.deflate else raw
