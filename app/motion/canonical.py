@@ -16,7 +16,7 @@ from app.motion.motion import Motion
 from app.motion.recording import Caution, Recording
 from app.motion.roles import find_roles, given_roles
 from app.motion.skeleton import Skeleton
-from app.motion.units import Unit, judge_unit
+from app.motion.units import Unit, confirm_unit, judge_unit
 from app.motion.up_axis import judge_up_axis, to_y_up
 from app.numerics.arrays import FloatArray
 
@@ -103,7 +103,7 @@ def _unit_in_force(
     if said is not None:
         return Unit(_within("unit", said, SCALES, "metres per unit"))
     if recording.metres_per_unit is not None:
-        return Unit(recording.metres_per_unit)
+        return confirm_unit(recording.metres_per_unit, recording.positions, roles)
     return judge_unit(recording.positions, roles)
 
 

@@ -35,6 +35,8 @@ USUAL_STATURES = (1.35, 2.15)
 """Metres; outside we say that the unit is a guess."""
 FARTHEST_FACTOR = 1.6
 """If no unit brings stature within this factor of the typical one, it is scaled to it."""
+BELIEVED_FACTOR = 2.5
+"""A file's own unit is believed while stature is within this factor of the typical one."""
 
 _R = JointRole
 _SEGMENTS: tuple[tuple[JointRole, JointRole, float], ...] = (
@@ -90,3 +92,24 @@ def judge_unit(positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
     name = next(name for name, scale in METRES_PER_UNIT.items() if scale == best)
     detail = f"in {name} the person would be {height * best:.2f} m tall"
     return Unit(best, (Caution("unit_guessed", detail, likely=best),))
+
+
+def confirm_unit(declared: float, positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
+    """The file's own metres per unit, unless the person would be no human: then as judged.
+
+    Exporters often write a scale that their numbers do not follow.
+    """
+    height = stature(positions, roles) * declared
+    if height < SMALLEST_STATURE or abs(np.log(height / TYPICAL_STATURE)) <= np.log(
+        BELIEVED_FACTOR
+    ):
+        return Unit(declared)
+    judged = judge_unit(positions, roles)
+    detail = (
+        f"by the file's own unit the person would be {height:.3g} m tall; "
+        f"taken as {judged.metres_per_unit:g} m instead of {declared:g} m"
+    )
+    return Unit(
+        judged.metres_per_unit,
+        (Caution("unit_suspect", detail, likely=judged.metres_per_unit), *judged.cautions),
+    )

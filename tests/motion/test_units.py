@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.motion.units import METRES_PER_UNIT, judge_unit, stature
+from app.motion.units import METRES_PER_UNIT, confirm_unit, judge_unit, stature
 from tests.people import ROLES, person
 
 EXPECTED = {role: index for index, role in enumerate(ROLES)}
@@ -34,3 +34,19 @@ def test_an_unknown_unit_is_scaled_to_a_person_and_said(scale: float) -> None:
 
 def test_no_size_is_no_crash() -> None:
     assert judge_unit(0 * person().positions, EXPECTED).metres_per_unit == 1.0
+
+
+@pytest.mark.parametrize("size", [0.45, 1.0, 1.3])
+def test_a_plausible_unit_of_the_file_is_believed(size: float) -> None:
+    recording = person(scale=size * 100)
+    unit = confirm_unit(0.01, recording.positions, EXPECTED)
+    assert unit.metres_per_unit == 0.01
+    assert not unit.cautions
+
+
+@pytest.mark.parametrize("declared", [1.0, 0.0001])
+def test_a_scale_that_the_numbers_do_not_follow_is_doubted(declared: float) -> None:
+    recording = person(scale=100)
+    unit = confirm_unit(declared, recording.positions, EXPECTED)
+    assert unit.metres_per_unit == 0.01
+    assert [caution.code for caution in unit.cautions] == ["unit_suspect"]
