@@ -7,14 +7,17 @@ choosing.
 
 from __future__ import annotations
 
+import lzma
 import os
 import stat
 import zipfile
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path, PurePosixPath
+from types import TracebackType
 from typing import IO, BinaryIO
 
 from app.errors import BadContent, KinedexError, Place, TooLarge, Unreadable
@@ -23,6 +26,16 @@ _ENCRYPTED = 0x1
 _COMPRESSIONS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)
 _RATIO_COUNTS_FROM = 10 * 2**20
 """Unpacked bytes below which an archive's ratio is of no concern."""
+_READ_FAILURES = (
+    OSError,  # bzip2's complaint about bad content is one, too
+    EOFError,
+    RuntimeError,  # NotImplementedError is one
+    ValueError,
+    zipfile.BadZipFile,
+    zlib.error,
+    lzma.LZMAError,
+)
+"""What opening or reading a file or an archive's entry may raise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +47,38 @@ class ArchiveLimits:
     file_bytes: int
 
 
+class SourceContent:
+    """An open file of an import. What is wrong with it is Unreadable, and its own fault:
+    an OSError in the midst of storing it would be taken for a failure of the store."""
+
+    def __init__(self, opener: Callable[[], IO[bytes]]) -> None:
+        """Raises Unreadable."""
+        with _read_failures():
+            self._file = opener()
+
+    def read(self, size: int = -1, /) -> bytes:
+        """At most `size` bytes, or all; none at the end. Raises Unreadable."""
+        with _read_failures():
+            return self._file.read(size)
+
+    def __enter__(self) -> SourceContent:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._file.close()
+
+
 @dataclass(frozen=True, slots=True)
 class SourceFile:
     """One file of an import: its path (relative, with /), and how to open it, or why not."""
 
     path: str
-    open: Callable[[], IO[bytes]]
+    open: Callable[[], SourceContent]
     problem: KinedexError | None = None
 
 
@@ -67,13 +106,13 @@ def folder_files(folder: Path) -> list[SourceFile]:
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         base = Path(root)
         found += [base / name for name in sorted(names) if not name.startswith(".")]
-    return [SourceFile(f.relative_to(folder).as_posix(), partial(_open_file, f)) for f in found]
+    return [_disk_file(f.relative_to(folder).as_posix(), f) for f in found]
 
 
 def single_file(path: Path, companion: Path | None = None) -> list[SourceFile]:
     """One file by itself, or with the file that it cannot be read without."""
     files = [path] if companion is None else [path, companion]
-    return [SourceFile(file.name, partial(_open_file, file)) for file in files]
+    return [_disk_file(file.name, file) for file in files]
 
 
 def is_archive(path: Path) -> bool:
@@ -81,8 +120,22 @@ def is_archive(path: Path) -> bool:
     return path.is_file() and path.suffix.lower() != ".npz" and zipfile.is_zipfile(path)
 
 
+def _disk_file(name: str, path: Path) -> SourceFile:
+    return SourceFile(name, partial(SourceContent, partial(_open_file, path)))
+
+
 def _open_file(path: Path) -> IO[bytes]:
+    if not stat.S_ISREG(path.stat().st_mode):
+        raise Unreadable("This is no regular file.")  # to open a pipe is to wait for a writer
     return path.open("rb")
+
+
+@contextmanager
+def _read_failures() -> Iterator[None]:
+    try:
+        yield
+    except _READ_FAILURES as problem:
+        raise Unreadable(f"The file cannot be read: {problem}.") from problem
 
 
 def _left_out(entry: zipfile.ZipInfo) -> bool:
@@ -110,14 +163,8 @@ def _archive_file(
     archive: zipfile.ZipFile, entry: zipfile.ZipInfo, limits: ArchiveLimits
 ) -> SourceFile:
     problem = _entry_problem(entry, limits)
-    return SourceFile(entry.filename, partial(_open_entry, archive, entry), problem)
-
-
-def _open_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> IO[bytes]:
-    try:
-        return archive.open(entry)
-    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, OSError) as problem:
-        raise Unreadable(f"The archive's entry cannot be read: {problem}.") from problem
+    opener = partial(archive.open, entry)
+    return SourceFile(entry.filename, partial(SourceContent, opener), problem)
 
 
 def _entry_problem(entry: zipfile.ZipInfo, limits: ArchiveLimits) -> KinedexError | None:

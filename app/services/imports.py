@@ -7,8 +7,6 @@ give the same clips.
 
 from __future__ import annotations
 
-import zipfile
-import zlib
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
@@ -213,8 +211,6 @@ def _register(
         raise
     except KinedexError as problem:
         doing.record_problem(file.path, problem)
-    except (OSError, EOFError, RuntimeError, zipfile.BadZipFile, zlib.error) as problem:
-        doing.record_problem(file.path, Unreadable(f"The file cannot be read: {problem}."))
 
 
 def _store_file(
@@ -269,11 +265,20 @@ def _manifest_rows(files: Iterable[SourceFile]) -> dict[str, ManifestRow]:
     """What every manifest among the files says, by path; a bad one fails the whole import."""
     rows: dict[str, ManifestRow] = {}
     for file in files:
-        if _is_manifest(file) and file.problem is None:
-            folder = file.path.rpartition("/")[0]
-            with file.open() as content:
-                rows |= read_manifest(content.read(), folder)
+        if _is_manifest(file):
+            rows |= read_manifest(_content(file), file.path.rpartition("/")[0])
     return rows
+
+
+def _content(manifest: SourceFile) -> bytes:
+    # One that is encrypted or damaged must not be passed over: its labels would be lost.
+    if manifest.problem is not None:
+        raise manifest.problem
+    try:
+        with manifest.open() as content:
+            return content.read()
+    except Unreadable as problem:
+        raise Unreadable(f"{manifest.path}: {problem.detail}") from problem
 
 
 def _skeletons(files: Iterable[SourceFile]) -> dict[str, SourceFile]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import stat
 import zipfile
 from pathlib import Path
@@ -119,3 +120,29 @@ def test_folders_are_walked_and_single_files_taken(tmp_path: Path) -> None:
     assert not is_archive(tmp_path / "a.bvh")
     (tmp_path / "z.zip").write_bytes(_zip({"a": b""}).getvalue())
     assert is_archive(tmp_path / "z.zip")
+
+
+@pytest.mark.parametrize("name", ["deflated", "bzip2", "lzma", "stored"])
+def test_a_damaged_entry_is_unreadable_by_itself(name: str) -> None:
+    compressions = {
+        "deflated": zipfile.ZIP_DEFLATED,
+        "bzip2": zipfile.ZIP_BZIP2,
+        "lzma": zipfile.ZIP_LZMA,
+        "stored": zipfile.ZIP_STORED,
+    }
+    noise = bytes(range(256)) * 20
+    content = bytearray(_zip({"bad.bvh": noise, "good.bvh": b"1"}, compressions[name]).getvalue())
+    for place in range(60, 100):
+        content[place] ^= 0x5A
+    with archive_files(io.BytesIO(bytes(content)), LIMITS) as (bad, good):
+        with pytest.raises(Unreadable), bad.open() as file:
+            file.read()
+        assert good.open().read() == b"1"
+
+
+def test_what_is_no_regular_file_is_told_and_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.bvh")
+    (tmp_path / "dangling.bvh").symlink_to(tmp_path / "nowhere")
+    for file in folder_files(tmp_path):
+        with pytest.raises(Unreadable):
+            file.open()

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from app.errors import Canceled, EmptyFile, LeaseLost, NotFound, TooLarge, UnknownFormat
+from app.errors import Canceled, EmptyFile, LeaseLost, NotFound, TooLarge, UnknownFormat, Unreadable
 from app.services import clips, imports, jobs
 from app.services.demo import DemoClip
 from app.services.library import Library
@@ -37,9 +37,9 @@ def entries(some_demo_clips: list[DemoClip]) -> dict[str, bytes]:
     }
 
 
-def _zip(entries: dict[str, bytes]) -> io.BytesIO:
+def _zip(entries: dict[str, bytes], compression: int = zipfile.ZIP_DEFLATED) -> io.BytesIO:
     made = io.BytesIO()
-    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
+    with zipfile.ZipFile(made, "w", compression) as archive:
         for name, content in entries.items():
             archive.writestr(name, content)
     made.seek(0)
@@ -185,3 +185,28 @@ def test_a_file_or_an_archive_can_be_imported_from_disk(
     imports.import_path(lib, tmp_path / "one.bvh")
     imports.import_path(lib, tmp_path / "other.zip")
     assert {clip.name for clip in clips.list_clips(lib).items} == {"one", "b"}
+
+
+@pytest.mark.parametrize("compression", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_a_damaged_file_in_an_archive_does_not_hold_up_the_others(
+    lib: Library, some_demo_clips: list[DemoClip], compression: int
+) -> None:
+    one, other = (clip.content for clip in some_demo_clips[:2])
+    content = bytearray(_zip({"bad.bvh": one, "good.bvh": other}, compression).getvalue())
+    for place in range(300, 2000):
+        content[place] ^= 0x5A
+    job = imports.start_import(lib, io.BytesIO(bytes(content)), "a.zip")
+    imports.unpack(lib, _claim(lib), lambda *_: None, lambda: False)
+    assert [clip.name for clip in clips.list_clips(lib).items] == ["good"]
+    work(lib.settings)
+    done = jobs.get_job(lib, job.id)
+    assert _outcomes(done.result) == {"bad.bvh": "failed", "good.bvh": "ready"}
+
+
+def test_a_damaged_manifest_fails_the_import_rather_than_lose_its_labels(lib: Library) -> None:
+    content = bytearray(_zip({"manifest.csv": b"path,person\n" + b"a.bvh,ada\n" * 99}).getvalue())
+    for place in range(45, 60):
+        content[place] ^= 0x5A
+    imports.start_import(lib, io.BytesIO(bytes(content)), "a.zip")
+    with pytest.raises(Unreadable, match=r"manifest\.csv"):
+        imports.unpack(lib, _claim(lib), lambda *_: None, lambda: False)
