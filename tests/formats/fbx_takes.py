@@ -1,0 +1,105 @@
+"""A small chain of bones that sways, as FBX files hold it: what the FBX tests share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from app.motion.kinematics import forward_kinematics, local_translations
+from app.motion.recording import Recording
+from app.numerics.arrays import FloatArray
+from tests.formats.fbx_files import (
+    Bone,
+    Curve,
+    Curves,
+    Take,
+    fbx,
+)
+from tests.formats.fbx_twin import world_positions
+
+Animated = Mapping[tuple[int, str], FloatArray]
+CHAIN = [
+    Bone("Hips", -1, {"Lcl Translation": (1.0, 90.0, 2.0)}),
+    Bone("Spine", 0, {"Lcl Translation": (0.0, 20.0, 3.0)}),
+    Bone("Head", 1, {"Lcl Translation": (1.0, 15.0, 0.0)}),
+]
+FRAMES = 6
+SWAY: dict[tuple[int, str], FloatArray] = {
+    (0, "Lcl Translation"): np.linspace([1, 90, 2], [30, 80, -5], FRAMES),
+    (0, "Lcl Rotation"): np.linspace([0, 0, 0], [10, 70, -40], FRAMES),
+    (1, "Lcl Rotation"): np.linspace([5, -20, 0], [60, 30, 100], FRAMES),
+}
+
+
+def curves(animated: Animated, rate: float = 30.0) -> Curves:
+    """Linear keys at each frame."""
+    return {
+        key: {
+            axis: Curve([i / rate for i in range(len(values))], values[:, column].tolist())
+            for column, axis in enumerate("XYZ")
+        }
+        for key, values in animated.items()
+    }
+
+
+def clip(
+    bones: Sequence[Bone] = CHAIN, animated: Animated = SWAY, rate: float = 30.0, **traits: Any
+) -> bytes:
+    traits.setdefault("settings", {"TimeMode": 6, "UnitScaleFactor": 1.0})
+    return fbx(bones, [Take("walk", [curves(animated, rate)])], **traits)
+
+
+def expected(bones: Sequence[Bone], animated: Animated = SWAY) -> FloatArray:
+    """(frames, bones, 3) by the slow twin."""
+    frames = max(len(values) for values in animated.values())
+    return np.array(
+        [
+            world_positions(bones, {key: values[i] for key, values in animated.items()})
+            for i in range(frames)
+        ]
+    )
+
+
+def consistent(recording: Recording) -> bool:
+    """Whether rotations, translations and offsets tell the same as the positions."""
+    assert recording.rotations is not None
+    moved = recording.translations
+    if moved is None:
+        moved = local_translations(recording.skeleton, recording.positions[:, 0])
+    solved = forward_kinematics(recording.skeleton, recording.rotations, moved)
+    return bool(np.allclose(solved, recording.positions, atol=2e-3))
+
+
+def changed(bone: int, properties: Mapping[str, Any]) -> list[Bone]:
+    bones = list(CHAIN)
+    bones[bone] = replace(bones[bone], properties={**bones[bone].properties, **properties})
+    return bones
+
+
+def turning(curve: Curve) -> Take:
+    """A stack in which one curve turns the hips."""
+    return Take("t", [{(0, "Lcl Rotation"): {"X": curve}}])
+
+
+WALK = Take("walk", [curves(SWAY)])
+
+
+def axis_system(coord: str, up: str, front: str) -> dict[str, int]:
+    """GlobalSettings of axes such as "-z"."""
+    found = {}
+    for name, axis in (("CoordAxis", coord), ("UpAxis", up), ("FrontAxis", front)):
+        found[name] = "xyz".index(axis[-1])
+        found[f"{name}Sign"] = -1 if axis.startswith("-") else 1
+    return found
+
+
+RIGHT_HANDED = [
+    axis_system("x", "y", "z"),
+    axis_system("x", "z", "-y"),
+    axis_system("z", "x", "y"),
+    axis_system("x", "-y", "-z"),
+]
+LEFT_HANDED = [axis_system("x", "y", "-z"), axis_system("x", "z", "y")]
