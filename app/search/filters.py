@@ -7,10 +7,12 @@ of) and `min_duration max_duration` (seconds). All that are named must hold.
 from __future__ import annotations
 
 import math
+import unicodedata
 from collections.abc import Mapping
 from typing import Any
 
 from app.errors import BadField, Place
+from app.models.word_vocabulary import normalise_word
 from app.store.clip_filter import ClipFilter
 
 LABEL_KEYS = ("person", "task", "word", "license", "source")
@@ -34,6 +36,12 @@ def parse_filter(given: Mapping[str, Any] | None) -> ClipFilter:
     return ClipFilter(**values)
 
 
+def as_kept(key: str, value: str) -> str:
+    """A label as clips keep it: composed (NFC), no space around; a word in lower case, joined."""
+    tidy = unicodedata.normalize("NFC", value).strip()
+    return normalise_word(tidy) if key == "word" else tidy
+
+
 def _read(key: str, value: Any) -> tuple[str, ...] | float | None:
     if key in LABEL_KEYS:
         return _labels(key, value)
@@ -51,8 +59,7 @@ def _labels(key: str, value: Any) -> tuple[str, ...]:
         raise ValueError("must be a string, or an array of strings")
     if not values:
         raise ValueError("an empty array would find nothing; leave the key out")
-    # Words are kept lower-cased; the other labels are names and stay as they are.
-    return tuple(v.strip().lower() if key == "word" else v for v in values)
+    return tuple(as_kept(key, v) for v in values)
 
 
 def _seconds(value: Any) -> float | None:

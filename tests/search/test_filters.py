@@ -20,6 +20,11 @@ def test_a_string_means_that_value_and_an_array_any_of_its_values() -> None:
     assert (read.person, read.task, read.word) == (("ada",), ("walk", "run"), ("walk",))
 
 
+def test_labels_are_looked_for_as_clips_keep_them() -> None:
+    read = parse_filter({"word": ["left leg", " High-Kick "], "person": " Jose\u0301"})
+    assert (read.word, read.person) == (("left_leg", "high_kick"), ("Jos\u00e9",))
+
+
 def test_durations_are_numbers_of_seconds() -> None:
     read = parse_filter({"min_duration": 1, "max_duration": 2.5})
     assert (read.min_duration, read.max_duration) == (1.0, 2.5)

@@ -10,6 +10,7 @@ from pydantic import ConfigDict, Field, Json
 from app.api.schemas.base import AnyOf, Cursor, FormWords, Incoming, Limit, Outgoing, Seconds
 from app.api.schemas.jobs import Job
 from app.api.schemas.problem import Problem
+from app.search.filters import as_kept
 from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord, ClipState
 
@@ -161,14 +162,18 @@ class ClipQuery(Incoming):
     cursor: Cursor | None = None
 
     def as_filter(self) -> ClipFilter:
-        """The conditions as the store takes them; words in lower case, phrases by underscores."""
+        """The conditions as the store takes them."""
         return ClipFilter(
-            person=tuple(self.person or ()),
-            task=tuple(self.task or ()),
-            word=tuple("_".join(word.lower().split()) for word in self.word or ()),
-            license=tuple(self.license or ()),
+            person=_as_kept("person", self.person),
+            task=_as_kept("task", self.task),
+            word=_as_kept("word", self.word),
+            license=_as_kept("license", self.license),
             state=() if self.state is None else (self.state,),
             min_duration=self.min_duration,
             max_duration=self.max_duration,
             q=self.q,
         )
+
+
+def _as_kept(key: str, values: list[str] | None) -> tuple[str, ...]:
+    return tuple(as_kept(key, value) for value in values or ())
