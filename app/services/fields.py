@@ -108,7 +108,7 @@ def file_name(value: str) -> str:
     """The last part of a client's file name, safe to show and to offer for download."""
     last = value.replace("\\", "/").rstrip("/").rpartition("/")[2]
     tidy = "".join(c for c in unicodedata.normalize("NFC", last) if c.isprintable()).strip()
-    return tidy[-MAX_TEXT:] or "clip"
+    return tidy[-MAX_TEXT:] if tidy.strip(".") else "clip"
 
 
 def stem(name: str) -> str:

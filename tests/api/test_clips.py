@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import httpx2
@@ -79,6 +80,7 @@ def test_lists_page_through_everything_once(demo: httpx2.Client) -> None:
         ({"person": "ada"}, "person", {"ada"}),
         ({"task": ["walk", "kick"]}, "task", {"walk", "kick"}),
         ({"state": "ready", "person": "bruno"}, "person", {"bruno"}),
+        ({"word": " KICK ", "person": " bruno "}, "task", {"kick"}),
     ],
 )
 def test_lists_are_filtered(
@@ -104,6 +106,32 @@ def test_the_file_comes_back_as_an_attachment(demo: httpx2.Client, walk: dict[st
     assert answer.headers["content-disposition"].startswith("attachment;")
     assert answer.headers["content-type"] == "application/octet-stream"
     assert answer.headers["x-content-type-options"] == "nosniff"
+
+
+def test_a_part_of_the_file_can_be_had(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    path = f"/v1/clips/{walk['id']}/file"
+    answer = demo.get(path, headers={"Range": "bytes=4-12"})
+    assert (answer.status_code, answer.content) == (206, demo.get(path).content[4:13])
+
+
+def test_a_file_that_is_deleted_while_it_is_asked_for(idle: httpx2.Client) -> None:
+    content = _tiny(99) + b"\n" * 2**18
+    answers: set[int] = set()
+
+    def ask(path: str) -> None:
+        for _ in range(30):
+            answer = idle.get(path)
+            answers.add(answer.status_code)
+            assert answer.status_code == 404 or answer.content == content
+
+    for _ in range(5):
+        clip = _post(idle, content).json()["clip"]
+        with ThreadPoolExecutor(2) as pool:
+            asking = [pool.submit(ask, f"/v1/clips/{clip['id']}/file") for _ in range(2)]
+            assert idle.delete(f"/v1/clips/{clip['id']}").status_code == 204
+            for one in asking:
+                one.result()
+    assert answers <= {200, 404}
 
 
 NAMES = ["../../etc/passwd", 'a"b\r\nX-Evil: 1.bvh', "日本.bvh", "..", "\\x", "n\0l.bvh"]

@@ -96,6 +96,12 @@ def test_a_file_name_keeps_nothing_of_a_path(lib: Library) -> None:
     assert (clip.file_name, clip.name) == ("passwd.bvh", "passwd")
 
 
+@pytest.mark.parametrize("name", ["", ".", "..", "../..", "\n"])
+def test_a_file_without_a_name_is_called_clip(lib: Library, name: str) -> None:
+    clip = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), NewClip(name)).clip
+    assert (clip.file_name, clip.name) == ("clip", "clip")
+
+
 def test_another_frame_rate_has_the_clip_analysed_again_under_its_id(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:

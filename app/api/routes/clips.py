@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 from fastapi.responses import FileResponse
+from starlette.background import BackgroundTask
 from starlette.datastructures import UploadFile
 
 from app.api.bodies import read_form, require_json, required
@@ -14,6 +16,7 @@ from app.api.openapi import ClipId, body, refusals
 from app.api.queries import file_of
 from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch, ClipQuery
 from app.api.schemas.jobs import Job
+from app.errors import ClipNotFound
 from app.services import clips
 from app.services.clips import NewClip
 
@@ -113,9 +116,16 @@ def delete_clip(lib: Lib, clip_id: ClipId) -> None:
 def get_file(lib: Lib, clip_id: ClipId) -> FileResponse:
     """The original file, as an attachment: it is foreign content and never shown as a page."""
     file = clips.open_file(lib, clip_id)
+    try:
+        held = file.path.open("rb")
+    except FileNotFoundError as error:
+        raise ClipNotFound(f"The clip {clip_id} was deleted.") from error
+    # By its descriptor, so that it is sent whole though the clip be deleted meanwhile.
     return FileResponse(
-        file.path,
+        f"/dev/fd/{held.fileno()}",
+        stat_result=os.fstat(held.fileno()),
         media_type="application/octet-stream",
         filename=file.name,
         content_disposition_type="attachment",
+        background=BackgroundTask(held.close),
     )
