@@ -37,7 +37,8 @@ def test_an_archive_with_a_manifest(demo_service: Live) -> None:
         job = demo_service.wait_for_job(answer.json()["job"]["id"])
         assert job["state"] == "succeeded"
         assert "in/bow.bvh" in str(job["result"])
-        assert "in/broken.bvh" in str(job["result"])
+        broken = {line["path"]: line["error"] for line in job["result"]["files"]}["in/broken.bvh"]
+        assert set(broken) == {"type", "title", "status", "detail", "code", "errors"}
         found = client.get("/v1/clips", params={"person": "farid"}).json()["items"]
     assert [(clip["task"], clip["words"], clip["state"]) for clip in found] == [
         ("bow", ["bow", "polite"], "ready")

@@ -7,6 +7,7 @@ from typing import Any
 
 from pydantic import Field
 
+from app.api.problems import stored_problem
 from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing
 from app.api.schemas.problem import Problem
 from app.store.job_record import JobKind, JobRecord, JobState
@@ -38,9 +39,21 @@ class Job(Outgoing):
             created_at=record.created_at,
             started_at=record.started_at,
             finished_at=record.finished_at,
-            result=record.result,
+            result=_result(record.result),
             error=Problem.of(record.error),
         )
+
+
+def _result(kept: dict[str, Any] | None) -> dict[str, Any] | None:
+    """The result with each file's failure as a whole problem."""
+    if kept is None or "files" not in kept:
+        return kept
+    files = [{**line, "error": _problem(line["error"])} for line in kept["files"]]
+    return {**kept, "files": files}
+
+
+def _problem(kept: dict[str, Any] | None) -> dict[str, Any] | None:
+    return None if kept is None else stored_problem(kept)
 
 
 class JobList(Outgoing):
