@@ -9,11 +9,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import islice
+from itertools import chain, islice
 
 import numpy as np
 
 from app.errors import TooLarge
+from app.formats.decimals import plain_table
 from app.formats.lines import filled_lines
 from app.formats.numbers import check_magnitudes, excerpt, parse_any_numbers
 from app.formats.places import unreadable
@@ -105,12 +106,25 @@ def _rows(lines: Iterator[tuple[int, bytes]], channels: int) -> FloatArray:
 
 def _block(lines: Iterator[tuple[int, bytes]], channels: int) -> FloatArray:
     """Up to BLOCK_LINES frames; each begins on a line of its own and may go on over more."""
+    taken = list(islice(lines, BLOCK_LINES))
+    plain = plain_table([text for _, text in taken], channels)
+    if plain is None:
+        return _careful_block(taken, lines, channels)
+    check_magnitudes(plain, [line for line, _ in taken])
+    return plain
+
+
+def _careful_block(
+    taken: list[tuple[int, bytes]], lines: Iterator[tuple[int, bytes]], channels: int
+) -> FloatArray:
+    """The frames of `taken`, line by line; the last may go on in `lines`."""
+    rest = chain(taken, lines)
     rows: list[FloatArray] = []
     numbers: list[int] = []
-    for line, text in islice(lines, BLOCK_LINES):
+    for line, text in islice(rest, BLOCK_LINES):
         row = parse_any_numbers(text, line, expected=channels)
         if len(row) < channels:
-            row = _continued(row, lines, line, channels)
+            row = _continued(row, rest, line, channels)
         if len(row) != channels:
             raise unreadable(line, f"expected {channels} numbers, found {len(row)}")
         rows.append(row)
