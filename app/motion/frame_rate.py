@@ -26,6 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -229,6 +230,11 @@ def _low_pass(samples: FloatArray, rate: float, cutoff: float) -> FloatArray:
     """Samples (frames, ...) without what is faster than `cutoff` Hz, no delay."""
     if cutoff >= 0.45 * rate:
         return samples
-    sections = butter(2, cutoff, fs=rate, output="sos")
     padding = min(len(samples) - 1, round(rate))
-    return np.asarray(sosfiltfilt(sections, samples, axis=0, padlen=padding))
+    return np.asarray(sosfiltfilt(_sections(rate, cutoff), samples, axis=0, padlen=padding))
+
+
+@lru_cache(maxsize=64)
+def _sections(rate: float, cutoff: float) -> FloatArray:
+    """The filter, whose design takes longer than its use on a short clip."""
+    return np.asarray(butter(2, cutoff, fs=rate, output="sos"))
