@@ -16,7 +16,7 @@ from app.cli.settings import open_library, settings_of
 from app.config import Settings
 from app.logs import configure_logging
 from app.services.demo.library import write_demo
-from app.services.exposure import refuse_exposure_without_keys
+from app.services.exposure import refuse_exposure_without_keys, refuse_taken_address
 from app.worker.supervisor import supervise
 
 READY_POLL_S = 0.25
@@ -31,8 +31,8 @@ def demo(context: typer.Context, host: Host = None, port: Port = None) -> None:
     """
     settings = settings_of(context, host=host, port=port)
     configure_logging(QUIET)
-    settings.data_dir.mkdir(parents=True, exist_ok=True)
     refuse_exposure_without_keys(settings)
+    refuse_taken_address(settings)
     _fill(context)
     announcer = threading.Thread(target=_announce, args=(settings,), daemon=True)
     announcer.start()

@@ -66,5 +66,10 @@ def main() -> None:
     except KinedexError as failure:
         typer.echo(f"kinedex: {failure.detail}", err=True)
         for place in failure.places:
-            typer.echo(f"  {place.location}: {place.message}", err=True)
+            if f"{place.location}: {place.message}" not in failure.detail:
+                typer.echo(f"  {place.location}: {place.message}", err=True)
+        sys.exit(FAILURE)
+    except OSError as failure:
+        # The machine's doing: a folder that may not be read, a disk that fails.
+        typer.echo(f"kinedex: {failure}", err=True)
         sys.exit(FAILURE)

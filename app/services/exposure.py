@@ -1,6 +1,8 @@
-"""What other machines may reach (DESIGN 12): nothing, until there is an API key."""
+"""Where the service listens: not for other machines until there is an API key (DESIGN 12)."""
 
 from __future__ import annotations
+
+import socket
 
 from app.config import Settings
 from app.errors import ConfigurationError, Place
@@ -28,3 +30,20 @@ def refuse_exposure_without_keys(settings: Settings) -> None:
             "`kinedex keys create --role admin`, or listen on 127.0.0.1.",
             places=[Place("KINEDEX_HOST", "other machines could read and change the library")],
         )
+
+
+def refuse_taken_address(settings: Settings) -> None:
+    """Raises ConfigurationError where the service could not listen, before anything is begun."""
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(
+            settings.host, settings.port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+        )[0]
+        with socket.socket(family, kind, protocol) as trial:
+            # As the server does: a port is free though old connections linger on it.
+            trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            trial.bind(address)
+    except OSError as error:
+        raise ConfigurationError(
+            f"Kinedex cannot listen on {settings.host} port {settings.port}: {error.strerror}.",
+            places=[Place("KINEDEX_PORT", "choose another, or stop the program that has it")],
+        ) from error

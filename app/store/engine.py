@@ -28,6 +28,18 @@ POOL_OVERFLOW = 56  # above the 40 threads that FastAPI runs, so that a reader n
 WRITES_OPTION = "kinedex_writes"
 MIGRATION_LOCK = 0x6B696E65  # "kine": any number that no one else locks
 
+_UNUSABLE = frozenset(
+    {
+        sqlite3.SQLITE_READONLY,
+        sqlite3.SQLITE_CANTOPEN,
+        sqlite3.SQLITE_NOTADB,
+        sqlite3.SQLITE_CORRUPT,
+        sqlite3.SQLITE_IOERR,
+        sqlite3.SQLITE_PERM,
+    }
+)
+"""SQLite's results that tell of the file or its disk rather than of what was asked."""
+
 Tx = Connection
 """A running transaction, as `Database.read()` and `Database.write()` give it."""
 
@@ -102,7 +114,12 @@ def _open_engine(url: str, *, foreign_keys: bool) -> Engine:
     }
     if parsed.get_backend_name() == "sqlite":
         return _open_sqlite(parsed, common, foreign_keys=foreign_keys)
-    return create_engine(parsed, pool_pre_ping=True, **common)
+    try:
+        return create_engine(parsed, pool_pre_ping=True, **common)
+    except (ArgumentError, ImportError) as error:
+        raise ConfigurationError(
+            f"KINEDEX_DATABASE_URL: there is no driver for {parsed.drivername} databases"
+        ) from error
 
 
 def _to_json(value: object) -> str:
@@ -114,7 +131,7 @@ def _open_sqlite(url: URL, common: dict[str, Any], *, foreign_keys: bool) -> Eng
         raise ConfigurationError(
             "SQLite in memory is not shared by processes: give KINEDEX_DATABASE_URL a file"
         )
-    Path(url.database).parent.mkdir(parents=True, exist_ok=True)
+    _make_folder(Path(url.database).parent)
     engine = create_engine(url, connect_args={"timeout": BUSY_TIMEOUT_S}, **common)
 
     @event.listens_for(engine, "connect")
@@ -130,6 +147,15 @@ def _open_sqlite(url: URL, common: dict[str, Any], *, foreign_keys: bool) -> Eng
         connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
 
     return engine
+
+
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ConfigurationError(
+            f"The folder {folder} of the database cannot be made: {error.strerror}"
+        ) from error
 
 
 def _ensure_wal(connection: sqlite3.Connection) -> None:
@@ -162,4 +188,6 @@ def _as_storage_error(error: DBAPIError) -> StorageError | None:
         return DiskFull()
     if code is not None and code & 0xFF in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
         return StorageError("The database stayed locked by another writer")
+    if code is not None and code & 0xFF in _UNUSABLE:
+        return StorageError(f"The database cannot be used: {error.orig}")
     return None

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import socket
 from pathlib import Path
+
+import pytest
 
 from tests.cli.conftest import Kinedex, end, start
 
@@ -21,6 +24,42 @@ def test_a_wrong_setting_is_named_and_not_shown(kinedex: Kinedex, tmp_path: Path
     assert "KINEDEX_PORT" in told.err
     assert "hunter2" not in told.err
     assert not (tmp_path / "data").exists()
+
+
+@pytest.mark.parametrize("command", ["serve", "demo"])
+def test_a_port_that_is_taken_is_told_at_once(
+    kinedex: Kinedex, tmp_path: Path, command: str
+) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        told = kinedex(command, port=port, data_dir=tmp_path / "data")
+    assert told.code == 1
+    assert f"port {port}" in told.err
+    assert told.out == ""
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ({"data_dir": "/dev/null/data"}, "/dev/null/data"),
+        ({"database_url": "nonsense"}, "KINEDEX_DATABASE_URL"),
+        ({"database_url": "nosuch://base"}, "nosuch"),
+    ],
+)
+def test_what_cannot_be_opened_is_told_in_words(
+    kinedex: Kinedex, settings: dict[str, str], said: str
+) -> None:
+    told = kinedex("keys", "list", **settings)
+    assert told.code == 1
+    assert said in told.err
+    assert "Traceback" not in told.err
+
+
+def test_a_file_that_is_no_database_is_told(kinedex: Kinedex, tmp_path: Path) -> None:
+    (tmp_path / "kinedex.sqlite3").write_bytes(b"no database at all, " * 100)
+    told = kinedex("keys", "list", data_dir=tmp_path)
+    assert told.code == 1
+    assert "not a database" in told.err
 
 
 def test_each_wrong_setting_is_named(kinedex: Kinedex) -> None:
