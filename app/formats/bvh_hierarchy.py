@@ -11,6 +11,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 
@@ -27,6 +28,8 @@ MAX_JOINTS = 2000
 MAX_CHANNELS = 12
 """Channels of one joint: position and rotation need six, odd writers repeat some."""
 MAX_HIERARCHY_BYTES = 2_000_000
+REMEMBERED, REMEMBERED_BYTES = 16, 100_000
+"""Hierarchies that are kept in case the next file has the same, and how long they may be."""
 
 _TOKEN = re.compile(rb"[{}]|[^\s{}]+|\n")
 _NUMBERLIKE = re.compile(rb"[-+.,\d]|nan|inf", re.IGNORECASE)
@@ -60,7 +63,18 @@ def read_hierarchy(text: bytes) -> Hierarchy:
     """
     if len(text) > MAX_HIERARCHY_BYTES:
         raise TooLarge(f"expected at most {MAX_HIERARCHY_BYTES} bytes before MOTION")
-    return _Reader(text).read()
+    return _read_or_remembered(text) if len(text) <= REMEMBERED_BYTES else _Reader(text).read()
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _read_or_remembered(text: bytes) -> Hierarchy:
+    # The files of one recording session hold the same bytes here, clip after clip.
+    hierarchy = _Reader(text).read()
+    skeleton = hierarchy.skeleton
+    shared = skeleton.parents, skeleton.offsets, skeleton.end_parents, skeleton.end_offsets
+    for array in shared:
+        array.setflags(write=False)
+    return hierarchy
 
 
 @dataclass(slots=True)

@@ -27,6 +27,13 @@ def line_of(content: bytes) -> str:
     return place.location
 
 
+def test_what_files_share_cannot_be_changed_through_one_of_them() -> None:
+    first, second = read_bvh(bvh()), read_bvh(bvh())
+    assert first.skeleton.offsets.tolist() == second.skeleton.offsets.tolist()
+    with pytest.raises(ValueError, match="read-only"):
+        first.skeleton.offsets[0] = 1.0
+
+
 def test_a_plain_file() -> None:
     recording = read_bvh(bvh())
     assert recording.skeleton.names == ("Hips", "Spine")
