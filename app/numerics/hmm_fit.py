@@ -15,8 +15,9 @@ from app.numerics.hmm import GaussianHMM, backward, forward, log_emissions
 TRANSITION_PRIOR = 1.01
 """Dirichlet parameter of the allowed transitions: keeps rows of short clips from emptying."""
 
-ITERATIONS = 5
-"""Most iterations; what is gained after these does not change divergences noticeably."""
+ITERATIONS = 3
+"""Most iterations; on the real clips divergences after these rank as after 5 (Spearman
+.9999), and words are found as well."""
 
 LEAST_GAIN = 1e-3
 """Stop when an iteration gains less log likelihood per frame than this."""
