@@ -44,12 +44,20 @@ def migrations_dir() -> Path:
 def upgrade(database_url: str) -> SchemaState:
     """Brings the database to this code's schema, in one transaction; an empty one is filled.
 
-    Harmless when it is there already, and when two processes do it at once.
+    Harmless when it is there already, and when two processes do it at once. Raises
+    DatabaseOutOfDate where the database is of a newer Kinedex, or of no Kinedex at all.
     """
     # Rebuilding a table under enforced foreign keys would delete what refers to it.
     database = Database(database_url, foreign_keys=False)
     try:
         with database.migrate() as tx:
+            found = _state(tx)
+            _refuse_newer(found)
+            if found.current is None and not found.is_empty:
+                raise DatabaseOutOfDate(
+                    "The database has tables but no schema version: it is none of Kinedex's, or "
+                    "it is damaged"
+                )
             command.upgrade(_config(tx), "head")
             return _state(tx)
     finally:
@@ -71,15 +79,19 @@ def check(database_url: str) -> None:
     found = state(database_url)
     if found.is_current:
         return
+    _refuse_newer(found)
+    raise DatabaseOutOfDate(
+        f"The database has schema {found.current or 'none'}, this Kinedex needs {found.needed}: "
+        "stop all its processes, make a copy, and run `kinedex db upgrade`"
+    )
+
+
+def _refuse_newer(found: SchemaState) -> None:
     if found.current is not None and found.current not in _known_revisions():
         raise DatabaseOutOfDate(
             f"The database is of a newer Kinedex (schema {found.current}, this one knows "
             f"{found.needed}): install that version"
         )
-    raise DatabaseOutOfDate(
-        f"The database has schema {found.current or 'none'}, this Kinedex needs {found.needed}: "
-        "stop all its processes, make a copy, and run `kinedex db upgrade`"
-    )
 
 
 def prepare(database_url: str) -> None:

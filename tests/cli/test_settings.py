@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import socket
+import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -60,6 +62,26 @@ def test_a_file_that_is_no_database_is_told(kinedex: Kinedex, tmp_path: Path) ->
     told = kinedex("keys", "list", data_dir=tmp_path)
     assert told.code == 1
     assert "not a database" in told.err
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ("UPDATE alembic_version SET version_num = '9999'", "newer Kinedex"),
+        ("DELETE FROM alembic_version", "no schema version"),
+    ],
+)
+def test_a_database_that_cannot_be_upgraded_says_why(
+    kinedex: Kinedex, tmp_path: Path, change: str, said: str
+) -> None:
+    assert kinedex("db", "upgrade", data_dir=tmp_path).code == 0
+    with closing(sqlite3.connect(tmp_path / "kinedex.sqlite3")) as database:
+        database.execute(change)
+        database.commit()
+    told = kinedex("db", "upgrade", data_dir=tmp_path)
+    assert (told.code, told.out) == (1, "")
+    assert said in told.err
+    assert kinedex("keys", "list", data_dir=tmp_path).code == 1
 
 
 def test_each_wrong_setting_is_named(kinedex: Kinedex) -> None:
