@@ -24,6 +24,13 @@ from app.store.files import Readable
 
 Query = Annotated[str, typer.Argument(help="A motion file, or the id of a stored clip.")]
 FrameRate = Annotated[float | None, typer.Option(help="Of a file: overrides what it declares.")]
+Skeleton = Annotated[
+    Path | None,
+    typer.Option(exists=True, dir_okay=False, help="The ASF file that an AMC file needs."),
+]
+Stack = Annotated[
+    str | None, typer.Option(help="Of an FBX file: the animation stack; default the longest.")
+]
 Unit = Annotated[str | None, typer.Option(help="Of a file: m, cm, mm, in, or metres per unit.")]
 
 
@@ -43,8 +50,10 @@ def search(
     filter_json: Annotated[
         str | None, typer.Option("--filter", help='JSON, as {"task": ["walk", "run"]}.')
     ] = None,
+    skeleton: Skeleton = None,
     frame_rate: FrameRate = None,
     unit: Unit = None,
+    stack: Stack = None,
     as_json: AsJson = False,
 ) -> None:
     """Find motions like one (a file or a stored clip), or motions for words."""
@@ -56,7 +65,7 @@ def search(
             asked = find.WordQuery(_split(words), mode, limit, wanted)
             hits = find.find_words(lib, asked)
         else:
-            with _content(query or "") as (clip_id, content):
+            with _content(query or "") as (clip_id, content), _companion(skeleton) as asf:
                 hits = find.find_motion(
                     lib,
                     find.MotionQuery(
@@ -67,8 +76,10 @@ def search(
                         method=method,
                         limit=limit,
                         filter=wanted,
+                        skeleton=asf,
                         frame_rate=frame_rate,
                         unit=unit,
+                        stack=stack,
                     ),
                 )
     _show(hits, as_json, by_words=bool(words))
@@ -80,12 +91,18 @@ def recognize(
     known_person: Annotated[str | None, typer.Option(help="The person, if known.")] = None,
     known_task: Annotated[str | None, typer.Option(help="The task, if known.")] = None,
     method: Annotated[str, typer.Option(help="default or multilinear.")] = "default",
+    skeleton: Skeleton = None,
     frame_rate: FrameRate = None,
     unit: Unit = None,
+    stack: Stack = None,
     as_json: AsJson = False,
 ) -> None:
     """Tell who it is, what they do, and in which words."""
-    with open_library(context) as lib, _content(query) as (clip_id, content):
+    with (
+        open_library(context) as lib,
+        _content(query) as (clip_id, content),
+        _companion(skeleton) as asf,
+    ):
         found = recognise.recognise(
             lib,
             recognise.RecogniseQuery(
@@ -94,8 +111,10 @@ def recognize(
                 known_person=known_person,
                 known_task=known_task,
                 method=method,
+                skeleton=asf,
                 frame_rate=frame_rate,
                 unit=unit,
+                stack=stack,
             ),
         )
     answer = Recognition(
@@ -142,6 +161,15 @@ def _content(query: str) -> Iterator[tuple[str | None, Readable | None]]:
         return
     with path.open("rb") as content:
         yield None, content
+
+
+@contextmanager
+def _companion(skeleton: Path | None) -> Iterator[Readable | None]:
+    if skeleton is None:
+        yield None
+        return
+    with skeleton.open("rb") as content:
+        yield content
 
 
 def _as_answer(hits: Hits) -> MotionHits:

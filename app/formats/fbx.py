@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 
 from app.errors import TooLarge
-from app.formats.fbx_animation import Stack, choose_stack, find_stacks
+from app.formats.fbx_animation import Stack, choose_stack, find_stacks, listed
 from app.formats.fbx_nodes import FbxFile
 from app.formats.fbx_scene import FbxScene, Numbers, unreadable_at
 from app.formats.fbx_skeleton import Body, find_body
@@ -71,9 +71,10 @@ def _stack_caution(stacks: list[Stack], lengths: list[float], chosen: int) -> tu
     names = [one.stack.name for one, length in zip(stacks, lengths, strict=True) if length >= 0]
     if len(names) < 2:
         return ()
-    shown = ", ".join(names[:20])
+    read = stacks[chosen].stack.name
     detail = (
-        f"the file holds {len(names)} animations ({shown}); {stacks[chosen].stack.name} was read"
+        f"the file holds {len(names)} animations ({listed(names)}); {read} was read,"
+        " send `stack` for another"
     )
     return (Caution("stack_chosen", detail),)
 

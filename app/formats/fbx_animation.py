@@ -6,6 +6,7 @@ up to three curves. Layers above the first add to it or replace it; we read one 
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
@@ -17,6 +18,7 @@ from app.formats.fbx_scene import FbxObject, FbxScene, refused_at
 from app.formats.fbx_transforms import ANIMATED, FIXED
 from app.numerics.arrays import FloatArray, IntArray
 
+NAMES_SHOWN = 100
 _AXES = "XYZ"
 
 
@@ -120,8 +122,19 @@ def choose_stack(stacks: list[Stack], lengths: list[float], name: str | None) ->
     if name is None:
         return int(np.argmax(lengths))
     names = [one.stack.name for one in stacks]
-    if name not in names:
-        shown = ", ".join(names[:20]) or "none"
-        message = f"expected one of the file's stacks ({shown}), found {name!r}"
+    tidy = [_as_sent(one) for one in names]
+    if _as_sent(name) not in tidy:
+        message = f"expected one of the file's stacks ({listed(names)}), found {name!r}"
         raise BadField(f"stack: {message}", places=[Place("stack", message)])
-    return names.index(name)
+    return tidy.index(_as_sent(name))
+
+
+def listed(names: list[str]) -> str:
+    """Stacks' names for people to pick from."""
+    more = f" and {len(names) - NAMES_SHOWN} more" if len(names) > NAMES_SHOWN else ""
+    return ", ".join(names[:NAMES_SHOWN]) + more
+
+
+def _as_sent(name: str) -> str:
+    """A name as it arrives by a form: composed (NFC), without surrounding space."""
+    return unicodedata.normalize("NFC", name).strip()

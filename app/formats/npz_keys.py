@@ -30,6 +30,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "trans": ("trans", "transl", "smpltrans", "translation"),
 }  # fmt: skip
 """Our name of each array, and the names that files give it, lower case and without separators."""
+_KNOWN = frozenset(name for names in KEYS.values() for name in names)
 AMBIGUOUS = ("joints", "markers")
 """May be what the joints are called or where they are."""
 
@@ -67,6 +68,11 @@ class NamedArrays:
         """As `read`; refuses what is not numbers."""
         array = self.read(name)
         return None if array is None else numbers(array, self.key(name))
+
+
+def is_known(key: str) -> bool:
+    """Whether an array of this name means something to us."""
+    return _plain(key) in _KNOWN
 
 
 def _plain(key: str) -> str:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from app.errors import FormatNotSupported, MotionNeeded, Place, SkeletonNotNeeded
+from app.errors import BadField, FormatNotSupported, MotionNeeded, Place, SkeletonNotNeeded
 from app.formats.amc import read_amc
 from app.formats.bvh import read_bvh
 from app.formats.c3d import read_c3d
 from app.formats.fbx import read_fbx
 from app.formats.npz import read_npy_positions, read_npz
-from app.formats.sniff import sniff
+from app.formats.sniff import archive_names, sniff
 from app.motion.recording import Recording
 
 
@@ -31,23 +31,44 @@ READERS: dict[str, Callable[[bytes], Recording]] = {
 """By the name that `sniff` gives."""
 
 
-def read_recording(content: bytes, skeleton: bytes | None = None) -> Recording:
+def read_recording(
+    content: bytes, skeleton: bytes | None = None, stack: str | None = None
+) -> Recording:
     """Read a motion file of a format found by its first bytes.
 
-    skeleton: the ASF file that an AMC file needs. Raises EmptyFile, UnknownFormat,
-    FormatNotSupported (known, but no reader yet), SkeletonNeeded, MotionNeeded,
-    SkeletonNotNeeded, and what the reader raises: Unreadable with places, TooLarge.
+    skeleton: the ASF file that an AMC file needs; stack: the animation stack of an FBX file,
+    by default its longest. Raises EmptyFile, UnknownFormat, FormatNotSupported (a ZIP that
+    is no clip), SkeletonNeeded, MotionNeeded, SkeletonNotNeeded, BadField for a stack that is
+    not there, and what the reader raises: Unreadable with places, TooLarge.
     """
     name = sniff(content)
     if skeleton is not None and name not in ("amc", "asf"):
         places = [Place("skeleton", f"expected none with a {name.upper()} file")]
         raise SkeletonNotNeeded(places=places)
+    if stack is not None:
+        check_stack_belongs(name)
     if name == "amc":
         return read_amc(content, skeleton)
+    if name == "fbx":
+        return read_fbx(content, stack)
     reader = READERS.get(name)
     if reader is None:
-        known = ", ".join(sorted(READERS))
-        raise FormatNotSupported(
-            f"This is a {name.upper()} file; this version reads {known.upper()} only"
-        )
+        raise _no_clip(content)
     return reader(content)
+
+
+def _no_clip(archive: bytes) -> FormatNotSupported:
+    """What a ZIP without the arrays of a clip is told."""
+    found = ", ".join(name[:60] for name in archive_names(archive)[:10])
+    message = f"expected an array of positions, or of SMPL poses; found {found}"
+    return FormatNotSupported(
+        "This is a ZIP archive and no NPZ file of motion. Import it if it holds motion files.",
+        places=[Place("positions", message)],
+    )
+
+
+def check_stack_belongs(format: str) -> None:
+    """Raise BadField where a file of this format has no animation stacks to pick from."""
+    if format != "fbx":
+        message = f"goes with an FBX file, not with {format.upper()}"
+        raise BadField(f"stack: {message}", places=[Place("stack", message)])

@@ -46,14 +46,16 @@ class ChildDied(AnalysisCrashed):
 class Order:
     """What to analyse: `content`, or the file at `path`; and what the client says of it.
 
-    skeleton, skeleton_path: the ASF file of an AMC file, in the same way; roles: joint names
-    by role name; for_search: leave out what only stored clips need.
+    skeleton, skeleton_path: the ASF file of an AMC file, in the same way; stack: the animation
+    stack of an FBX file; roles: joint names by role name; for_search: leave out what only
+    stored clips need.
     """
 
     content: bytes | None = None
     path: str | None = None
     skeleton: bytes | None = None
     skeleton_path: str | None = None
+    stack: str | None = None
     frame_rate: float | None = None
     metres_per_unit: float | None = None
     roles: Mapping[str, str] | None = None
@@ -177,7 +179,7 @@ def read_order(order: Order, limits: Limits) -> Recording:
     skeleton = order.skeleton
     if order.skeleton_path is not None:
         skeleton = Path(order.skeleton_path).read_bytes()
-    recording = read_recording(content, skeleton)
+    recording = read_recording(content, skeleton, order.stack)
     _check_size(recording, limits)
     return recording
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, BinaryIO, cast
 
 from app.errors import BadContent, EmptyFile
-from app.formats.sniff import sniff
+from app.formats.read import check_stack_belongs
+from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
 from app.services import fields
 from app.services.library import Library
 from app.store import clip_listing, jobs, outcomes
@@ -22,23 +24,22 @@ from app.store.files import Readable, StagedFile
 from app.store.job_record import JobKind, JobRecord, NewJob
 from app.store.paging import Page
 
-SNIFF_BYTES = 64 * 2**10
-"""The first bytes of a file, by which its format is told."""
 UPLOAD_PRIORITY = 10
 BULK_PRIORITY = 20
 """Clips of an import, and clips to be analysed again: lower goes first."""
 WORKER_DEATHS = 30
 """A clip whose worker dies is tried again so often. It is seldom the clip's doing: content is
 parsed in a child process, whose death is counted by `job_max_attempts`."""
-PATCHABLE = ("name", "person", "task", "words", "license", "source", "frame_rate")
+PATCHABLE = ("name", "person", "task", "words", "license", "source", "frame_rate", "stack")
 
 
 @dataclass(frozen=True, slots=True)
 class NewClip:
     """What a client says of a file that it hands in; `frame_rate` in Hz.
 
-    unit: metres per unit, or m, cm, mm, in, ...; roles: joint names by role; words: tidied
-    here. Strings may be empty, which is nothing said.
+    unit: metres per unit, or m, cm, mm, in, ...; roles: joint names by role; stack: the
+    animation stack of an FBX file, by default its longest; words: tidied here. Strings may be
+    empty, which is nothing said.
     """
 
     filename: str
@@ -51,6 +52,7 @@ class NewClip:
     frame_rate: float | str | None = None
     unit: float | str | None = None
     roles: Mapping[str, str] | None = None
+    stack: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +87,7 @@ def create_clip(
     with ExitStack() as files:
         staged = files.enter_context(lib.store.files.stage(content, max_bytes=limit))
         format = check_content(staged)
+        _check_stack(given.stack, format)
         companion = None
         if skeleton is not None:
             companion = files.enter_context(lib.store.files.stage(skeleton, max_bytes=limit))
@@ -111,7 +114,21 @@ def check_content(staged: StagedFile) -> str:
     if staged.size == 0:
         raise EmptyFile()
     with staged.open() as file:
-        return sniff(file.read(SNIFF_BYTES))
+        return _format_of(file)
+
+
+def _format_of(file: BinaryIO) -> str:
+    """By the file's beginning and, where it is long, its end; raises EmptyFile, UnknownFormat."""
+    content = file.read(HEAD_BYTES + TAIL_BYTES)
+    if file.seek(0, os.SEEK_END) > len(content):
+        file.seek(-TAIL_BYTES, os.SEEK_END)
+        content = content[:HEAD_BYTES] + file.read()
+    return sniff(content)
+
+
+def _check_stack(stack: str | None, format: str) -> None:
+    if fields.text("stack", stack) is not None:
+        check_stack_belongs(format)
 
 
 def _check_pair(format: str, skeleton: StagedFile) -> None:
@@ -160,15 +177,18 @@ def get_clip(lib: Library, clip_id: str) -> ClipRecord:
 
 
 def update_clip(lib: Library, clip_id: str, changes: Mapping[str, Any]) -> ClipRecord:
-    """Change labels, or the frame rate, which has the clip analysed again under the same id.
+    """Change labels; or frame rate or stack: the clip is analysed again under the same id.
 
     A key that is absent stays; None takes a value away. Raises BadField, ClipNotFound.
     """
     tidy = _tidied(changes)
+    if tidy.get("stack_override") is not None:
+        with lib.store.files.open(get_clip(lib, clip_id).sha256) as file:
+            check_stack_belongs(_format_of(file))
     with lib.store.write() as tx:
         before = stored.get(tx, clip_id)
         after = stored.patch(tx, clip_id, tidy)
-        if after.frame_rate_override == before.frame_rate_override:
+        if after.overrides == before.overrides:
             return after
         enqueue_ingest(tx, clip_id, BULK_PRIORITY)
         return stored.requeue(tx, clip_id)
@@ -201,6 +221,7 @@ def _described(given: NewClip) -> Callable[[StagedFile, StagedFile | None], NewR
         "frame_rate_override": fields.frame_rate(given.frame_rate),
         "metres_per_unit_override": fields.metres_per_unit(given.unit),
         "roles_override": fields.roles(given.roles),
+        "stack_override": fields.text("stack", given.stack),
     }
 
     def row(staged: StagedFile, skeleton: StagedFile | None) -> NewRow:
@@ -221,6 +242,8 @@ def _tidied(changes: Mapping[str, Any]) -> ClipChanges:
             tidy["words"] = fields.words(value) or ()
         elif key == "frame_rate":
             tidy["frame_rate_override"] = fields.frame_rate(value)
+        elif key == "stack":
+            tidy["stack_override"] = fields.text(key, value)
         else:
             tidy[key] = fields.text(key, value)
     if "name" in tidy and tidy["name"] is None:

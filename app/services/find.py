@@ -39,7 +39,7 @@ class MotionQuery:
     """A search by example: exactly one of `clip_id` and `content`.
 
     start, end: seconds, the part of the query that is meant; skeleton, frame_rate (Hz), unit,
-    roles: of an uploaded query; limit: 1 to 1,000.
+    roles, stack: of an uploaded query; limit: 1 to 1,000.
     """
 
     clip_id: str | None = None
@@ -56,6 +56,7 @@ class MotionQuery:
     frame_rate: float | str | None = None
     unit: float | str | None = None
     roles: Mapping[str, str] | None = None
+    stack: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +134,7 @@ def _question(query: MotionQuery) -> Question:
         frame_rate=query.frame_rate,
         unit=query.unit,
         roles=query.roles,
+        stack=query.stack,
     )
 
 

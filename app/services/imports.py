@@ -16,6 +16,7 @@ from typing import Any
 from app.errors import (
     BadContent,
     Canceled,
+    EmptyFile,
     KinedexError,
     LeaseLost,
     NotFound,
@@ -24,9 +25,9 @@ from app.errors import (
     UnknownFormat,
     Unreadable,
 )
-from app.formats.sniff import sniff
+from app.formats.sniff import HEAD_BYTES, is_zip
 from app.services import fields
-from app.services.clips import BULK_PRIORITY, SNIFF_BYTES, WORKER_DEATHS, add, check_content
+from app.services.clips import BULK_PRIORITY, WORKER_DEATHS, add, check_content
 from app.services.companions import pair_skeletons
 from app.services.import_sources import (
     ArchiveLimits,
@@ -64,7 +65,10 @@ def start_import(lib: Library, archive: Readable, filename: str) -> JobRecord:
     """
     with lib.store.files.stage(archive, max_bytes=lib.settings.max_archive_bytes) as staged:
         with staged.open() as file:
-            if sniff(file.read(SNIFF_BYTES)) != "zip":
+            head = file.read(HEAD_BYTES)
+            if not head:
+                raise EmptyFile()
+            if not is_zip(head):
                 raise UnknownFormat("An import takes a ZIP archive.")
         with lib.store.write() as tx:
             staged.keep()

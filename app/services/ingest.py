@@ -28,6 +28,7 @@ def order_for(lib: Library, clip: ClipRecord) -> Order:
     return Order(
         path=str(lib.store.files.path(clip.sha256)),
         skeleton_path=None if skeleton is None else str(lib.store.files.path(skeleton)),
+        stack=clip.stack_override,
         frame_rate=clip.frame_rate_override,
         metres_per_unit=clip.metres_per_unit_override,
         roles=clip.roles_override,
@@ -80,8 +81,7 @@ def facts(motion: Motion) -> ClipFacts:
 
 def _is_superseded(tx: Tx, clip: ClipRecord) -> bool:
     """Whether what the client says of the file has changed since the analysis began."""
-    said = clip.frame_rate_override, clip.metres_per_unit_override, clip.roles_override
-    return stored.overrides(tx, clip.id) != said
+    return stored.overrides(tx, clip.id) != clip.overrides
 
 
 def _leave(tx: Tx, claimed: ClaimedJob, clip: ClipRecord) -> None:

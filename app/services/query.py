@@ -28,8 +28,8 @@ Arrays = Mapping[str, FloatArray]
 class Question:
     """Exactly one of `clip_id` and `content`, and what is said of it.
 
-    start, end: seconds, the part that is meant; skeleton, frame_rate, unit, roles: of an
-    upload only.
+    start, end: seconds, the part that is meant; skeleton, frame_rate, unit, roles, stack:
+    of an upload only.
     """
 
     clip_id: str | None = None
@@ -40,6 +40,7 @@ class Question:
     frame_rate: float | str | None = None
     unit: float | str | None = None
     roles: Mapping[str, str] | None = None
+    stack: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +76,7 @@ def ready_clip(lib: Library, clip_id: str) -> ClipRecord:
 
 
 def _of_clip(lib: Library, question: Question, clip_id: str, names: tuple[str, ...]) -> Answered:
-    for name in ("skeleton", "frame_rate", "unit", "roles"):
+    for name in ("skeleton", "frame_rate", "unit", "roles", "stack"):
         if getattr(question, name) not in (None, ""):
             raise fields.bad_field(name, "goes with an uploaded file, not with a stored clip")
     clip = ready_clip(lib, clip_id)
@@ -97,6 +98,7 @@ def _order(lib: Library, question: Question) -> Order:
     return Order(
         content=_read(question.content, lib.settings.max_upload_bytes),
         skeleton=_skeleton(question, lib.settings.max_upload_bytes),
+        stack=fields.text("stack", question.stack),
         frame_rate=fields.frame_rate(question.frame_rate),
         metres_per_unit=fields.metres_per_unit(question.unit),
         roles=fields.roles(question.roles),

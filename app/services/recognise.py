@@ -30,8 +30,8 @@ WordScores = tuple[tuple[str, float], ...]
 class RecogniseQuery:
     """Exactly one of `clip_id` and `content`; method "default" or "multilinear".
 
-    known_person, known_task: what is known already; skeleton, frame_rate (Hz), unit, roles:
-    of an upload only.
+    known_person, known_task: what is known already; skeleton, frame_rate (Hz), unit, roles,
+    stack: of an upload only.
     """
 
     clip_id: str | None = None
@@ -43,6 +43,7 @@ class RecogniseQuery:
     frame_rate: float | str | None = None
     unit: float | str | None = None
     roles: Mapping[str, str] | None = None
+    stack: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +70,7 @@ def recognise(lib: Library, query: RecogniseQuery) -> Recognised:
         frame_rate=query.frame_rate,
         unit=query.unit,
         roles=query.roles,
+        stack=query.stack,
     )
     asked = describe(lib, question, (SAMPLE, STATISTICS))
     found = _who_does_what(lib, asked.arrays[SAMPLE], query)

@@ -71,8 +71,19 @@ class ClipRecord:
     frame_rate_override: float | None
     metres_per_unit_override: float | None
     roles_override: dict[str, str] | None
+    stack_override: str | None
     analysis_version: int | None
     changed_version: int
+
+    @property
+    def overrides(self) -> tuple[Any, ...]:
+        """What the client said of the file: frame rate, metres per unit, roles, stack."""
+        return (
+            self.frame_rate_override,
+            self.metres_per_unit_override,
+            self.roles_override,
+            self.stack_override,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +104,7 @@ class NewClip:
     frame_rate_override: float | None = None
     metres_per_unit_override: float | None = None
     roles_override: dict[str, str] | None = None
+    stack_override: str | None = None
 
     @property
     def content_key(self) -> str:
@@ -131,6 +143,7 @@ class ClipChanges(TypedDict, total=False):
     frame_rate_override: float | None
     metres_per_unit_override: float | None
     roles_override: dict[str, str] | None
+    stack_override: str | None
 
 
 class AddOutcome(StrEnum):

@@ -161,11 +161,12 @@ def _set_words(tx: Tx, clip_id: str, words: Sequence[str]) -> None:
 
 
 def overrides(tx: Tx, clip_id: str) -> tuple[Any, ...]:
-    """What the client said of the file: frame rate, metres per unit, roles. Raises ClipNotFound."""
+    """As `ClipRecord.overrides`, of a clip as it is now. Raises ClipNotFound."""
     said = (
         clips.c.frame_rate_override,
         clips.c.metres_per_unit_override,
         clips.c.roles_override,
+        clips.c.stack_override,
     )
     row = tx.execute(select(*said).where(clips.c.id == clip_id)).one_or_none()
     if row is None:
@@ -239,6 +240,7 @@ def to_record(row: RowMapping, words: tuple[str, ...]) -> ClipRecord:
         frame_rate_override=row["frame_rate_override"],
         metres_per_unit_override=row["metres_per_unit_override"],
         roles_override=row["roles_override"],
+        stack_override=row["stack_override"],
         analysis_version=row["analysis_version"],
         changed_version=row["changed_version"],
     )

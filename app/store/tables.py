@@ -95,6 +95,7 @@ clips = Table(
     Column("frame_rate_override", Float),
     Column("metres_per_unit_override", Float),
     _json("roles_override"),
+    Column("stack_override", String),
     Column("frames", Integer),
     Column("frame_rate", Float),
     Column("declared_frame_rate", Float),

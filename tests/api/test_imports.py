@@ -9,7 +9,9 @@ import httpx2
 
 from app.services.demo import demo_clips
 from tests.api.conftest import assert_problem
+from tests.formats.arrays import npy
 from tests.live import Live
+from tests.people import CONVENTIONS, person
 
 
 def _zip(files: dict[str, bytes]) -> bytes:
@@ -43,6 +45,24 @@ def test_an_archive_with_a_manifest(demo_service: Live) -> None:
     assert [(clip["task"], clip["words"], clip["state"]) for clip in found] == [
         ("bow", ["bow", "polite"], "ready")
     ]
+
+
+def test_a_zip_of_npy_clips_is_imported_and_is_no_clip(demo_service: Live) -> None:
+    array = npy(person(CONVENTIONS["Kinect"], frames=20).positions)
+    content = _zip({"walk_01.npy": array, "walk_02.npy": array[:200]})
+    with demo_service.client() as client:
+        answer = client.post("/v1/imports", files={"archive": ("a.zip", content)})
+        assert answer.status_code == 202
+        result = demo_service.wait_for_job(answer.json()["job"]["id"])["result"]
+        assert {line["path"] for line in result["files"]} == {"walk_01.npy", "walk_02.npy"}
+        told = client.post("/v1/clips", files={"file": ("a.zip", content)}).json()
+        demo_service.wait_for_job(told["job"]["id"])
+        found = [*(line["clip_id"] for line in result["files"]), told["clip"]["id"]]
+        clip = client.get(f"/v1/clips/{told['clip']['id']}").json()
+        for clip_id in filter(None, found):
+            client.delete(f"/v1/clips/{clip_id}")
+    assert (clip["state"], clip["error"]["code"]) == ("failed", "format_not_supported")
+    assert "Import it" in clip["error"]["detail"]
 
 
 def test_an_archive_that_is_none(idle: httpx2.Client) -> None:

@@ -7,6 +7,8 @@ from pathlib import Path
 from app.api.schemas.recognition import Recognition
 from app.api.schemas.search import MotionHits, WordHits
 from tests.cli.conftest import Kinedex
+from tests.formats.acclaim import acclaim_person
+from tests.formats.fbx_takes import person_takes
 
 
 def _file(folder: Path, task: str) -> str:
@@ -55,6 +57,25 @@ def test_recognition_says_who_and_what(kinedex: Kinedex, folder: Path) -> None:
     told = [line.split()[:2] for line in ended.out.splitlines()]
     assert ["person", "ada"] in told
     assert ["task", "kick"] in told
+
+
+def test_a_query_in_two_files_and_one_of_several_animations(
+    kinedex: Kinedex, tmp_path: Path
+) -> None:
+    asf, amc, _ = acclaim_person(frames=60, seed=5)
+    takes = person_takes({"bow": 1.0, "sway": 2.0})
+    for name, content in (("07.asf", asf), ("07_01.amc", amc), ("takes.fbx", takes)):
+        (tmp_path / name).write_bytes(content)
+    pair = (str(tmp_path / "07_01.amc"), "--skeleton", str(tmp_path / "07.asf"))
+    stack = (str(tmp_path / "takes.fbx"), "--stack")
+    for command in ("search", "recognize"):
+        assert kinedex(command, *pair).code == 0
+        assert kinedex(command, *stack, "bow").code == 0
+        assert "`skeleton`" in _refused(kinedex, command, pair[0])
+        assert "(bow, sway), found 'run'" in _refused(kinedex, command, *stack, "run")
+    one, other = (kinedex("search", *stack, n, "--json").json()["items"] for n in ("bow", "sway"))
+    assert [hit["distance"] for hit in one] != [hit["distance"] for hit in other]
+    assert kinedex("search", pair[0], "--skeleton", str(tmp_path / "no.asf")).code == 2
 
 
 def test_a_fit_shows_the_held_out_figures_of_each_model(kinedex: Kinedex) -> None:

@@ -19,6 +19,7 @@ from tests.formats.fbx_files import (
     fbx,
 )
 from tests.formats.fbx_twin import world_positions
+from tests.people import BODY, CONVENTIONS, ROLES
 
 Animated = Mapping[tuple[int, str], FloatArray]
 CHAIN = [
@@ -77,6 +78,25 @@ def changed(bone: int, properties: Mapping[str, Any]) -> list[Bone]:
     bones = list(CHAIN)
     bones[bone] = replace(bones[bone], properties={**bones[bone].properties, **properties})
     return bones
+
+
+def person_bones(names: Mapping[Any, str]) -> list[Bone]:
+    return [
+        Bone(names[role], -1 if above is None else ROLES.index(above),
+             {"Lcl Translation": tuple(100.0 * np.array(offset))})
+        for role, above, offset in BODY
+    ]  # fmt: skip
+
+
+def person_takes(seconds: Mapping[str, float]) -> bytes:
+    """A person with an animation of each name, which lasts so long at 30 Hz."""
+    takes = []
+    for name, length in seconds.items():
+        phase = np.linspace(0, 6 * length, round(30 * length) + 1)
+        turn = np.outer(np.sin(phase), [10 * length, 20, 5])
+        takes.append(Take(name, [curves({(1, "Lcl Rotation"): turn})]))
+    bones = person_bones(CONVENTIONS["Mixamo"])
+    return fbx(bones, takes, settings={"TimeMode": 6, "UnitScaleFactor": 1.0})
 
 
 def turning(curve: Curve) -> Take:

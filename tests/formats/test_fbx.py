@@ -29,6 +29,7 @@ from tests.formats.fbx_takes import (
     curves,
     expected,
 )
+from tests.formats.samples import bvh
 
 
 def test_a_plain_file() -> None:
@@ -226,3 +227,22 @@ def test_the_longest_stack_is_read_and_another_when_it_is_asked_for() -> None:
         read_fbx(content, "walk")
     with pytest.raises(Unreadable, match="AnimationStack"):
         read_fbx(content, "empty")
+
+
+def test_a_stack_is_found_by_its_name_as_a_form_sends_it() -> None:
+    name = "Ka\u0308mpfer|Schlag "
+    content = fbx(CHAIN, [Take("a", [curves(SWAY)]), Take(name, [curves(SWAY)])])
+    (caution,) = read_fbx(content, "K\u00e4mpfer|Schlag").cautions
+    assert f"{name} was read" in caution.detail
+
+
+def test_so_many_stacks_that_not_all_are_listed() -> None:
+    content = fbx(CHAIN, [Take(f"take{i}", [curves(SWAY)]) for i in range(103)])
+    (caution,) = read_fbx(content).cautions
+    assert "take99 and 3 more" in caution.detail
+
+
+def test_a_stack_for_another_format_is_refused() -> None:
+    assert len(read_recording(clip(), stack="walk").positions) == FRAMES
+    with pytest.raises(BadField, match="not with BVH"):
+        read_recording(bvh(), stack="walk")

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -38,9 +36,10 @@ from tests.formats.fbx_takes import (
     consistent,
     curves,
     expected,
+    person_bones,
     turning,
 )
-from tests.people import BODY, CONVENTIONS, ROLES
+from tests.people import CONVENTIONS
 from tests.real_clips import real_clips
 
 
@@ -159,14 +158,6 @@ def test_a_stray_key_far_away_does_not_eat_memory() -> None:
     far = {(1, "Lcl Rotation"): {"Z": Curve([0, 1e8], [10, 50])}}
     with pytest.raises(TooLarge):
         read_fbx(fbx(CHAIN, [Take("t", [far])], settings={"TimeMode": 6}))
-
-
-def person_bones(names: Mapping[Any, str]) -> list[Bone]:
-    return [
-        Bone(names[role], -1 if above is None else ROLES.index(above),
-             {"Lcl Translation": tuple(100.0 * np.array(offset))})
-        for role, above, offset in BODY
-    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("convention", ["MotionBuilder", "Mixamo", "Unreal", "3ds Max"])

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from app.errors import KinedexError, NotHuman, TooLarge, Unreadable
+from app.errors import FormatNotSupported, KinedexError, NotHuman, TooLarge, Unreadable
 from app.formats.npz import read_npz
 from app.formats.npz_writer import write_npz
 from app.formats.read import read_recording
@@ -163,9 +163,15 @@ def test_numbers_that_are_none_are_refused_with_frame_and_joint(bad: float) -> N
 
 
 def test_an_archive_of_something_else_says_what_it_found() -> None:
-    location, message = place_of(npz(weights=np.zeros(3), bias=np.zeros(3)))
-    assert location == "positions"
-    assert "weights, bias" in message
+    with pytest.raises(FormatNotSupported) as caught:
+        read_recording(npz(weights=np.zeros(3), bias=np.zeros(3)))
+    (place,) = caught.value.places
+    assert place.location == "positions"
+    assert "weights.npy, bias.npy" in place.message
+    assert place_of(npz(fps=30.0, bias=np.zeros(3))) == (
+        "positions",
+        "expected an array of positions, or of SMPL poses; found fps, bias",
+    )
 
 
 def test_monsters_are_too_large() -> None:

@@ -13,15 +13,16 @@ from hypothesis import strategies as st
 
 from app.errors import EmptyFile, FormatNotSupported, KinedexError, UnknownFormat
 from app.formats.read import READERS, read_recording
-from app.formats.sniff import sniff
+from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
 from tests.formats.samples import bvh
 from tests.real_clips import manifest, real_clips
 
 
-def zipped(name: str) -> bytes:
+def zipped(*names: str) -> bytes:
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
-        archive.writestr(name, "x")
+        for name in names:
+            archive.writestr(name, "x")
     return buffer.getvalue()
 
 
@@ -41,13 +42,29 @@ SAMPLES = [
     ("c3d", b"\x02\x50" + bytes(510)),
     ("npy", npy()),
     ("npz", zipped("poses.npy")),
+    ("npz", zipped("gender.npy", "mocap_framerate.npy", "poses.npy")),
+    ("npz", zipped("Joint Positions.npy")),
+    ("npz", zipped("poses.npy")[:40]),
     ("zip", zipped("clip.bvh")),
+    ("zip", zipped("walk_01.npy", "walk_02.npy")),
+    ("zip", zipped("positions.npy", "clip.bvh")),
+    ("zip", zipped("set/positions.npy")),
+    ("zip", zipped()),
+    ("zip", zipped("walk_01.npy")[:40]),
 ]
 
 
 @pytest.mark.parametrize(("name", "content"), SAMPLES)
 def test_known_formats(name: str, content: bytes) -> None:
     assert sniff(content) == name
+
+
+def test_the_first_and_the_last_bytes_are_enough() -> None:
+    buffer = io.BytesIO()
+    np.savez(buffer, gender=np.zeros(30_000), poses=np.zeros(30_000))
+    content = buffer.getvalue()
+    assert len(content) > 3 * TAIL_BYTES
+    assert sniff(content[:HEAD_BYTES] + content[-TAIL_BYTES:]) == sniff(content) == "npz"
 
 
 @pytest.mark.parametrize("content", [b"", b" \r\n\t"])

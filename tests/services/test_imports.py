@@ -53,6 +53,15 @@ def _write(folder: Path, entries: dict[str, bytes]) -> Path:
     return folder
 
 
+@pytest.mark.parametrize("first", ["walk.npy", "positions.npy"])
+def test_any_zip_may_be_imported_whatever_its_first_file(lib: Library, first: str) -> None:
+    with pytest.raises(UnknownFormat):
+        imports.start_import(lib, io.BytesIO(b"\x93NUMPY" + bytes(99)), "set.zip")
+    job = imports.start_import(lib, _zip({first: b"x", "b.bvh": b"y"}), "set.zip")
+    work(lib.settings)
+    assert set(_outcomes(jobs.get_job(lib, job.id).result)) == {first, "b.bvh"}
+
+
 def _outcomes(result: dict[str, Any] | None) -> dict[str, str]:
     assert result is not None
     return {line["path"]: line["outcome"] for line in result["files"]}

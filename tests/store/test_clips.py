@@ -28,6 +28,7 @@ def test_a_new_clip_comes_back_as_it_was_given(store: Store) -> None:
         frame_rate_override=60.0,
         metres_per_unit_override=0.01,
         roles_override={"hips": "Root"},
+        stack_override="Take 001",
     )
     with store.write() as tx:
         added = clips.add_or_get(tx, new)
@@ -38,7 +39,7 @@ def test_a_new_clip_comes_back_as_it_was_given(store: Store) -> None:
     assert (clip.name, clip.person, clip.task, clip.license) == ("Größe", "anna", "walk", "CC0-1.0")
     assert clip.words == ("walk", "left_leg")
     assert clip.state is ClipState.QUEUED
-    assert clip.roles_override == {"hips": "Root"}
+    assert clip.overrides == (60.0, 0.01, {"hips": "Root"}, "Take 001")
     assert clip.created_at.tzinfo is UTC
     assert (clip.frames, clip.roles, clip.warnings, clip.error) == (None, {}, (), None)
 

@@ -11,10 +11,11 @@ from alembic.migration import MigrationContext
 from sqlalchemy import create_mock_engine, text
 
 from app.errors import DatabaseOutOfDate
-from app.store import schema
+from app.store import clips, schema
 from app.store.engine import Database
 from app.store.store import Store
 from app.store.tables import metadata
+from tests.store.conftest import AddClip
 
 
 def test_migrations_and_tables_agree(store: Store) -> None:
@@ -49,6 +50,16 @@ def test_an_older_database_is_not_upgraded_unasked(database_url: str) -> None:
     _set_revision(database_url, None)
     with pytest.raises(DatabaseOutOfDate, match="kinedex db upgrade"):
         schema.prepare(database_url)
+
+
+def test_an_upgrade_keeps_what_is_there(store: Store, add_clip: AddClip, database_url: str) -> None:
+    clip = add_clip("walk", ready=True, words=("walk", "slow"))
+    with store.write() as tx:
+        tx.execute(text("ALTER TABLE clips DROP COLUMN stack_override"))
+        tx.execute(text("UPDATE alembic_version SET version_num = '0001'"))
+    assert schema.upgrade(database_url).is_current
+    with store.read() as tx:
+        assert clips.get(tx, clip.id) == clip
 
 
 def test_a_newer_database_is_refused(database_url: str) -> None:

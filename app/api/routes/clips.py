@@ -72,6 +72,7 @@ def _new_clip(form: ClipForm, filename: str | None) -> NewClip:
         frame_rate=form.frame_rate,
         unit=form.unit,
         roles=form.roles,
+        stack=form.stack,
     )
 
 

@@ -43,6 +43,7 @@ async def _query(request: Request) -> RecogniseQuery:
         frame_rate=form.frame_rate,
         unit=form.unit,
         roles=form.roles,
+        stack=form.stack,
     )
 
 

@@ -73,6 +73,7 @@ async def _uploaded_query(request: Request) -> MotionQuery:
         frame_rate=form.frame_rate,
         unit=form.unit,
         roles=form.roles,
+        stack=form.stack,
     )
 
 

@@ -27,6 +27,14 @@ Sort = Literal[
     "task",
     "-task",
 ]
+Stack = Annotated[
+    str,
+    Field(
+        max_length=300,
+        description="Of an FBX file with several animations, the name of the stack to read;"
+        " default: the longest. The clip's warning `stack_chosen` lists them.",
+    ),
+]
 FrameRate = Annotated[float, Field(gt=0, le=2000, description="Frames a second.")]
 
 
@@ -126,6 +134,7 @@ class ClipForm(Incoming):
     roles: Json[dict[str, str]] | None = Field(
         None, description='JSON: joint name by role, as {"hips": "Pelvis"}.'
     )
+    stack: Stack | None = None
 
 
 class ClipPatch(Incoming):
@@ -139,6 +148,11 @@ class ClipPatch(Incoming):
     source: Label | None = None
     frame_rate: FrameRate | None = Field(
         None, description="The clip is analysed again; null returns to the declared one."
+    )
+    stack: Label | None = Field(
+        None,
+        description="Of an FBX file, the animation stack: the clip is analysed again; null"
+        " returns to the longest.",
     )
 
     model_config = ConfigDict(

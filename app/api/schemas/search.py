@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, Json
 
 from app.api.schemas.base import AnyOf, Cursor, Incoming, Limit, Outgoing, Seconds
-from app.api.schemas.clips import Clip, FrameRate
+from app.api.schemas.clips import Clip, FrameRate, Stack
 from app.search.methods import Method
 
 
@@ -68,6 +68,7 @@ class UploadFields(Incoming):
     roles: Json[dict[str, str]] | None = Field(
         None, description='JSON: joint name by role, as {"hips": "Pelvis"}.'
     )
+    stack: Stack | None = None
 
 
 class MotionSearchForm(_MotionOptions, UploadFields):

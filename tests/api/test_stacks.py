@@ -1,0 +1,46 @@
+"""The `stack` of an FBX file over HTTP."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import httpx2
+
+from tests.api.conftest import assert_problem
+from tests.api.test_clips import CLIP_FIELDS
+from tests.formats.fbx_takes import person_takes
+from tests.formats.samples import bvh
+from tests.live import Live
+
+TAKES = person_takes({"bow": 1.0, "sway": 2.0})
+
+
+def _sent(stack: str) -> dict[str, Any]:
+    return {"files": {"file": ("takes.fbx", TAKES)}, "data": {"stack": stack}}
+
+
+def test_a_stack_is_picked_at_upload_afterwards_and_for_a_query(demo_service: Live) -> None:
+    with demo_service.client() as client:
+        told = client.post("/v1/clips", **_sent("run")).json()
+        demo_service.wait_for_job(told["job"]["id"])
+        path = f"/v1/clips/{told['clip']['id']}"
+        failed = client.get(path).json()
+        assert (failed["state"], failed["error"]["code"]) == ("failed", "bad_field")
+        assert "bow, sway" in failed["error"]["errors"][0]["message"]
+        again = client.post("/v1/clips", **_sent("bow")).json()
+        demo_service.wait_for_job(again["job"]["id"])
+        clip = client.get(path).json()
+        assert (clip["state"], clip["frames"], set(clip)) == ("ready", 31, CLIP_FIELDS)
+        hits = client.post("/v1/search/motion", **_sent("bow")).json()["items"]
+        assert hits[0]["clip"]["id"] == clip["id"]
+        assert client.post("/v1/recognize", **_sent("sway")).status_code == 200
+        for url in ("/v1/search/motion", "/v1/recognize"):
+            assert_problem(client.post(url, **_sent("run")), 422, "bad_field", "body.stack")
+        assert client.patch(path, json={"stack": None}).json()["state"] == "queued"
+        assert client.delete(path).status_code == 204
+
+
+def test_a_stack_where_none_belongs(idle: httpx2.Client) -> None:
+    files = {"file": ("a.bvh", bvh())}
+    answer = idle.post("/v1/clips", files=files, data={"stack": "bow"})
+    assert_problem(answer, 422, "bad_field", "body.stack")
