@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from numpy.typing import NDArray
-from sqlalchemy import delete, insert, select
+from sqlalchemy import bindparam, delete, insert, select
 
 from app.errors import NotFound
 from app.store.blobs import from_blob, to_blob
@@ -15,6 +15,8 @@ from app.store.engine import Tx
 from app.store.tables import clip_arrays
 
 _CONTENT = (clip_arrays.c.dtype, clip_arrays.c.shape, clip_arrays.c.data)
+_ADD = insert(clip_arrays)
+_DELETE_ALL = delete(clip_arrays).where(clip_arrays.c.clip_id == bindparam("the_id"))
 
 
 def put_many(tx: Tx, clip_id: str, arrays: Mapping[str, NDArray[Any]], *, version: int) -> None:
@@ -25,7 +27,7 @@ def put_many(tx: Tx, clip_id: str, arrays: Mapping[str, NDArray[Any]], *, versio
         for name, array in arrays.items()
     ]
     if rows:
-        tx.execute(insert(clip_arrays), rows)
+        tx.execute(_ADD, rows)
 
 
 def get_one(tx: Tx, clip_id: str, name: str) -> NDArray[Any]:
@@ -71,4 +73,4 @@ def versions(tx: Tx, clip_id: str) -> dict[str, int]:
 
 def delete_all(tx: Tx, clip_id: str) -> None:
     """Removes a clip's arrays."""
-    tx.execute(delete(clip_arrays).where(clip_arrays.c.clip_id == clip_id))
+    tx.execute(_DELETE_ALL, {"the_id": clip_id})

@@ -47,6 +47,7 @@ class ImportEntry:
 
 
 _UNFINISHED = (ClipState.QUEUED.value, ClipState.PROCESSING.value)
+_ADD_ENTRY = insert(import_entries)
 
 
 def add_entry(
@@ -59,15 +60,14 @@ def add_entry(
     problem: dict[str, Any] | None = None,
 ) -> None:
     """Records a file, in the transaction that stores its clip; each path once."""
-    tx.execute(
-        insert(import_entries).values(
-            job_id=job_id,
-            path=path,
-            outcome=outcome.value,
-            clip_id=clip_id,
-            problem=problem,
-        )
-    )
+    values = {
+        "job_id": job_id,
+        "path": path,
+        "outcome": outcome.value,
+        "clip_id": clip_id,
+        "problem": problem,
+    }
+    tx.execute(_ADD_ENTRY, values)
 
 
 def recorded_paths(tx: Tx, job_id: str) -> frozenset[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from datetime import datetime
 
-from sqlalchemy import RowMapping, insert, select
+from sqlalchemy import RowMapping, bindparam, insert, select
 
 from app.errors import JobNotFound
 from app.store import library
@@ -17,24 +17,29 @@ from app.store.tables import jobs
 
 NEWEST_FIRST = "-created_at"
 
+# Made once: making a statement costs more than running it.
+_ONE = select(jobs).where(jobs.c.id == bindparam("the_id"))
+_TWIN = select(jobs).where(jobs.c.dedupe_key == bindparam("the_key"))
+_ADD = insert(jobs).returning(jobs)
+
 
 def enqueue(tx: Tx, new: NewJob) -> JobRecord:
     """Queues a job, or returns the queued one with the same dedupe_key."""
     if new.dedupe_key is not None:
         library.lock(tx)
-        twin = select(jobs).where(jobs.c.dedupe_key == new.dedupe_key)
-        if (row := tx.execute(twin).mappings().one_or_none()) is not None:
-            return to_record(row)
-    added = insert(jobs).values(
-        **asdict(new) | {"kind": new.kind.value},
-        id=new_id("job"),
-        state=JobState.QUEUED.value,
-        progress=0.0,
-        attempts=0,
-        cancel_requested=False,
-        created_at=utc_now(),
-    )
-    return to_record(tx.execute(added.returning(jobs)).mappings().one())
+        twin = tx.execute(_TWIN, {"the_key": new.dedupe_key}).mappings().one_or_none()
+        if twin is not None:
+            return to_record(twin)
+    values = asdict(new) | {
+        "kind": new.kind.value,
+        "id": new_id("job"),
+        "state": JobState.QUEUED.value,
+        "progress": 0.0,
+        "attempts": 0,
+        "cancel_requested": False,
+        "created_at": utc_now(),
+    }
+    return to_record(tx.execute(_ADD, values).mappings().one())
 
 
 def get(tx: Tx, job_id: str) -> JobRecord:
@@ -44,7 +49,7 @@ def get(tx: Tx, job_id: str) -> JobRecord:
 
 def get_row(tx: Tx, job_id: str) -> RowMapping:
     """The job's whole row, for this layer; raises JobNotFound."""
-    row = tx.execute(select(jobs).where(jobs.c.id == job_id)).mappings().one_or_none()
+    row = tx.execute(_ONE, {"the_id": job_id}).mappings().one_or_none()
     if row is None:
         raise JobNotFound(f"There is no job with the id {job_id!r}")
     return row

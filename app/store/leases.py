@@ -12,7 +12,7 @@ from collections.abc import Collection
 from datetime import datetime, timedelta
 from typing import Any
 
-from sqlalchemy import ColumnElement, RowMapping, Select, and_, or_, select, update
+from sqlalchemy import ColumnElement, RowMapping, Select, and_, bindparam, or_, select, update
 
 from app.errors import LeaseLost
 from app.store import jobs as job_repository
@@ -23,6 +23,7 @@ from app.store.tables import jobs
 
 _ORDER = (jobs.c.priority, jobs.c.created_at, jobs.c.id)
 _FREE: dict[str, Any] = {"owner": None, "lease_until": None}
+_NOW = bindparam("now", type_=jobs.c.not_before.type)
 
 
 def claim(
@@ -35,45 +36,40 @@ def claim(
 ) -> ClaimedJob | None:
     """Takes the most urgent job that is queued or abandoned; None when there is none."""
     now = now or utc_now()
-    # skip_locked: on PostgreSQL workers pass each other; SQLite's writers take turns anyway.
-    queries = [_first(kinds, term) for term in (_queued(now), _abandoned(now))]
+    asked = _asked(kinds, now)
     found = [
         row
-        for query in queries
-        if (row := tx.execute(query.with_for_update(skip_locked=True)).mappings().one_or_none())
+        for query in (_FIRST_QUEUED, _FIRST_ABANDONED)
+        if (row := tx.execute(query, asked).mappings().one_or_none())
     ]
     if not found:
         return None
     row = min(found, key=lambda each: (each["priority"], each["created_at"], each["id"]))
-    taken = (
-        update(jobs)
-        .where(jobs.c.id == row["id"])
-        .values(
-            state=JobState.PROCESSING.value,
-            owner=owner,
-            lease_until=now + timedelta(seconds=lease_s),
-            attempts=row["attempts"] + 1,
-            started_at=row["started_at"] or now,
-            not_before=None,
-            dedupe_key=None,  # from now on another of its kind may be queued
-        )
-    )
-    return _as_claimed(tx.execute(taken.returning(jobs)).mappings().one())
+    values = {
+        "the_id": row["id"],
+        "state": JobState.PROCESSING.value,
+        "owner": owner,
+        "lease_until": now + timedelta(seconds=lease_s),
+        "attempts": row["attempts"] + 1,
+        "started_at": row["started_at"] or now,
+        "not_before": None,
+        "dedupe_key": None,  # from now on another of its kind may be queued
+    }
+    return _as_claimed(tx.execute(_TAKE, values).mappings().one())
 
 
 def is_any_claimable(tx: Tx, kinds: Collection[JobKind], *, now: datetime | None = None) -> bool:
     """Whether `claim` would find something: cheap, so that an idle worker need not write."""
     now = now or utc_now()
-    queries = [_first(kinds, term) for term in (_queued(now), _expired(now))]
-    return any(tx.execute(query).first() is not None for query in queries)
+    asked = _asked(kinds, now)
+    queries = (_FIRST_QUEUED, _FIRST_EXPIRED)
+    return any(tx.execute(query, asked).first() is not None for query in queries)
 
 
 def exhausted(tx: Tx, *, now: datetime | None = None) -> tuple[ClaimedJob, ...]:
     """Abandoned jobs that may not be tried again, because of their attempts or a cancellation."""
     now = now or utc_now()
-    spent = or_(jobs.c.attempts >= jobs.c.max_attempts, jobs.c.cancel_requested)
-    rows = tx.execute(select(jobs).where(_expired(now), spent).with_for_update(skip_locked=True))
-    return tuple(_as_claimed(row) for row in rows.mappings())
+    return tuple(_as_claimed(row) for row in tx.execute(_SPENT, {"now": now}).mappings())
 
 
 def heartbeat(
@@ -127,23 +123,8 @@ def park(tx: Tx, lease: Lease, detail: str | None = None) -> JobRecord:
     return job_repository.to_record(_change(tx, lease, {"detail": detail} | _FREE))
 
 
-def _first(kinds: Collection[JobKind], term: ColumnElement[bool]) -> Select[Any]:
-    of_kinds = jobs.c.kind.in_([kind.value for kind in kinds])
-    return select(jobs).where(of_kinds, term).order_by(*_ORDER).limit(1)
-
-
-def _queued(now: datetime) -> ColumnElement[bool]:
-    due = or_(jobs.c.not_before.is_(None), jobs.c.not_before <= now)
-    return and_(jobs.c.state == JobState.QUEUED.value, due)
-
-
-def _expired(now: datetime) -> ColumnElement[bool]:
-    return and_(jobs.c.state == JobState.PROCESSING.value, jobs.c.lease_until < now)
-
-
-def _abandoned(now: datetime) -> ColumnElement[bool]:
-    may_try_again = and_(jobs.c.attempts < jobs.c.max_attempts, jobs.c.cancel_requested.is_(False))
-    return and_(_expired(now), may_try_again)
+def _asked(kinds: Collection[JobKind], now: datetime) -> dict[str, Any]:
+    return {"kinds": [kind.value for kind in kinds], "now": now}
 
 
 def _end(tx: Tx, lease: Lease, state: JobState, **values: Any) -> JobRecord:
@@ -152,14 +133,8 @@ def _end(tx: Tx, lease: Lease, state: JobState, **values: Any) -> JobRecord:
 
 
 def _change(tx: Tx, lease: Lease, values: dict[str, Any]) -> RowMapping:
-    held = (
-        jobs.c.id == lease.job_id,
-        jobs.c.state == JobState.PROCESSING.value,
-        jobs.c.owner == lease.owner,
-        jobs.c.attempts == lease.attempt,
-    )
-    changed = update(jobs).where(*held).values(values).returning(jobs)
-    row = tx.execute(changed).mappings().one_or_none()
+    held = {"the_id": lease.job_id, "holder": lease.owner, "attempt": lease.attempt}
+    row = tx.execute(_CHANGE, held | values).mappings().one_or_none()
     if row is None:
         raise LeaseLost(f"The job {lease.job_id} is over, or was given to another worker")
     return row
@@ -173,3 +148,36 @@ def _as_claimed(row: RowMapping) -> ClaimedJob:
         file_sha256=row["file_sha256"],
         payload=row["payload"],
     )
+
+
+def _first(term: ColumnElement[bool]) -> Select[Any]:
+    """The most urgent job of the kinds asked for, of which `term` holds."""
+    of_kinds = jobs.c.kind.in_(bindparam("kinds", expanding=True))
+    return select(jobs).where(of_kinds, term).order_by(*_ORDER).limit(1)
+
+
+# The statements of every claim and every step, made once: making them costs more than running.
+_DUE = and_(
+    jobs.c.state == JobState.QUEUED.value,
+    or_(jobs.c.not_before.is_(None), jobs.c.not_before <= _NOW),
+)
+_EXPIRED = and_(jobs.c.state == JobState.PROCESSING.value, jobs.c.lease_until < _NOW)
+_MAY_TRY_AGAIN = and_(jobs.c.attempts < jobs.c.max_attempts, jobs.c.cancel_requested.is_(False))
+_IS_SPENT = or_(jobs.c.attempts >= jobs.c.max_attempts, jobs.c.cancel_requested)
+
+_FIRST_EXPIRED = _first(_EXPIRED)
+# skip_locked: on PostgreSQL workers pass each other; SQLite's writers take turns anyway.
+_FIRST_QUEUED = _first(_DUE).with_for_update(skip_locked=True)
+_FIRST_ABANDONED = _first(and_(_EXPIRED, _MAY_TRY_AGAIN)).with_for_update(skip_locked=True)
+_SPENT = select(jobs).where(_EXPIRED, _IS_SPENT).with_for_update(skip_locked=True)
+_TAKE = update(jobs).where(jobs.c.id == bindparam("the_id")).returning(jobs)
+_CHANGE = (
+    update(jobs)
+    .where(
+        jobs.c.id == bindparam("the_id"),
+        jobs.c.state == JobState.PROCESSING.value,
+        jobs.c.owner == bindparam("holder"),
+        jobs.c.attempts == bindparam("attempt"),
+    )
+    .returning(jobs)
+)

@@ -17,6 +17,16 @@ from app.store.tables import clips, library, tombstones
 
 ONLY_ROW = 1
 
+# Made once: every step of every ingest asks these.
+_VERSION = select(library.c.version).where(library.c.id == ONLY_ROW)
+_VERSION_TO_CHANGE = _VERSION.with_for_update()
+_RAISE = (
+    update(library)
+    .where(library.c.id == ONLY_ROW)
+    .values(version=library.c.version + 1)
+    .returning(library.c.version)
+)
+
 
 @dataclass(frozen=True, slots=True)
 class LibraryChanges:
@@ -33,19 +43,17 @@ class LibraryChanges:
 
 def version(tx: Tx) -> int:
     """The library's version; one cheap query."""
-    found = tx.execute(select(library.c.version).where(library.c.id == ONLY_ROW))
-    return int(found.scalar_one())
+    return int(tx.execute(_VERSION).scalar_one())
 
 
 def lock(tx: Tx) -> None:
     """Lets no other transaction that locks or bumps go on until this one ends."""
-    tx.execute(select(library.c.version).where(library.c.id == ONLY_ROW).with_for_update())
+    tx.execute(_VERSION_TO_CHANGE)
 
 
 def bump(tx: Tx) -> int:
     """Raises the version and returns the new one."""
-    raised = update(library).where(library.c.id == ONLY_ROW).values(version=library.c.version + 1)
-    return int(tx.execute(raised.returning(library.c.version)).scalar_one())
+    return int(tx.execute(_RAISE).scalar_one())
 
 
 def bury(tx: Tx, clip_id: str) -> None:
