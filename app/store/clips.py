@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from sqlalchemy import RowMapping, delete, insert, select, update
+from sqlalchemy import RowMapping, bindparam, delete, insert, select, update
 
 from app.errors import ClipNotFound
 from app.store import library
@@ -26,6 +26,18 @@ from app.store.tables import clip_words, clips
 
 IDS_PER_QUERY = 500
 """Databases limit the parameters of one statement."""
+
+# Made once: making a statement costs more than running it.
+_SOME = select(clips).where(clips.c.id.in_(bindparam("ids", expanding=True)))
+_STATE = select(clips.c.state).where(clips.c.id == bindparam("the_id"))
+_WITH_CONTENT = select(clips.c.id).where(clips.c.content_key == bindparam("content"))
+_CHANGE = update(clips).where(clips.c.id == bindparam("the_id"))
+_ADD, _ADD_WORDS = insert(clips), insert(clip_words)
+_WORDS = (
+    select(clip_words.c.clip_id, clip_words.c.word)
+    .where(clip_words.c.clip_id.in_(bindparam("ids", expanding=True)))
+    .order_by(clip_words.c.clip_id, clip_words.c.position)
+)
 
 
 def add_or_get(tx: Tx, new: NewClip) -> Added:
@@ -59,9 +71,7 @@ def get_many(tx: Tx, clip_ids: Collection[str]) -> dict[str, ClipRecord]:
 
 def find_by_content(tx: Tx, content_key: str) -> ClipRecord | None:
     """The clip with this content (`NewClip.content_key`), if there is one."""
-    clip_id = tx.execute(
-        select(clips.c.id).where(clips.c.content_key == content_key)
-    ).scalar_one_or_none()
+    clip_id = tx.execute(_WITH_CONTENT, {"content": content_key}).scalar_one_or_none()
     return None if clip_id is None else get(tx, clip_id)
 
 
@@ -128,18 +138,16 @@ def in_batches(ids: Iterable[str], size: int = IDS_PER_QUERY) -> Iterator[list[s
 def _insert(tx: Tx, new: NewClip) -> ClipRecord:
     clip_id = new_id("clip")
     values = {key: value for key, value in asdict(new).items() if key != "words"}
-    tx.execute(
-        insert(clips).values(
-            **values,
-            id=clip_id,
-            content_key=new.content_key,
-            name_folded=new.name.casefold(),
-            state=ClipState.QUEUED.value,
-            changed_version=0,
-            created_at=utc_now(),
-        )
-    )
-    _set_words(tx, clip_id, new.words)
+    values |= {
+        "id": clip_id,
+        "content_key": new.content_key,
+        "name_folded": new.name.casefold(),
+        "state": ClipState.QUEUED.value,
+        "changed_version": 0,
+        "created_at": utc_now(),
+    }
+    tx.execute(_ADD, values)
+    _add_words(tx, clip_id, new.words)
     return get(tx, clip_id)
 
 
@@ -152,12 +160,16 @@ def _requeue_with(tx: Tx, failed: ClipRecord, new: NewClip) -> ClipRecord:
 
 def _set_words(tx: Tx, clip_id: str, words: Sequence[str]) -> None:
     tx.execute(delete(clip_words).where(clip_words.c.clip_id == clip_id))
+    _add_words(tx, clip_id, words)
+
+
+def _add_words(tx: Tx, clip_id: str, words: Sequence[str]) -> None:
     rows = [
         {"clip_id": clip_id, "word": word, "position": position}
         for position, word in enumerate(dict.fromkeys(words))
     ]
     if rows:
-        tx.execute(insert(clip_words), rows)
+        tx.execute(_ADD_WORDS, rows)
 
 
 def overrides(tx: Tx, clip_id: str) -> tuple[Any, ...]:
@@ -178,19 +190,19 @@ def _enter(tx: Tx, clip_id: str, state: ClipState, **values: Any) -> None:
     before = _state_of(tx, clip_id)
     if ClipState.READY in (before, state):
         values["changed_version"] = library.bump(tx)
-    tx.execute(update(clips).where(clips.c.id == clip_id).values(state=state.value, **values))
+    tx.execute(_CHANGE, {"the_id": clip_id, "state": state.value, **values})
 
 
 def _state_of(tx: Tx, clip_id: str) -> ClipState:
     """The state alone, for every step of every ingest; raises ClipNotFound."""
-    state = tx.execute(select(clips.c.state).where(clips.c.id == clip_id)).scalar_one_or_none()
+    state = tx.execute(_STATE, {"the_id": clip_id}).scalar_one_or_none()
     if state is None:
         raise ClipNotFound(f"There is no clip with the id {clip_id!r}")
     return ClipState(state)
 
 
 def _load(tx: Tx, clip_ids: Collection[str]) -> list[ClipRecord]:
-    rows = tx.execute(select(clips).where(clips.c.id.in_(clip_ids))).mappings().all()
+    rows = tx.execute(_SOME, {"ids": list(clip_ids)}).mappings().all()
     words = words_of(tx, clip_ids)
     return [to_record(row, words.get(row["id"], ())) for row in rows]
 
@@ -199,12 +211,7 @@ def words_of(tx: Tx, clip_ids: Collection[str]) -> dict[str, tuple[str, ...]]:
     """Words by clip id, in the order in which they were given."""
     found: dict[str, list[str]] = {}
     for batch in in_batches(clip_ids):
-        rows = tx.execute(
-            select(clip_words.c.clip_id, clip_words.c.word)
-            .where(clip_words.c.clip_id.in_(batch))
-            .order_by(clip_words.c.clip_id, clip_words.c.position)
-        )
-        for clip_id, word in rows:
+        for clip_id, word in tx.execute(_WORDS, {"ids": batch}):
             found.setdefault(clip_id, []).append(word)
     return {clip_id: tuple(words) for clip_id, words in found.items()}
 
