@@ -52,6 +52,7 @@ STATUSES: dict[type[KinedexError], int] = {
     errors.Forbidden: 403,
     errors.NotFound: 404,
     errors.Conflict: 409,
+    errors.Canceled: 409,
     errors.TooLarge: 413,
     errors.UnknownFormat: 415,
     errors.FormatNotSupported: 415,

@@ -124,6 +124,7 @@ def settle_if_done(tx: Tx, job_id: str) -> JobRecord:
         job_id,
         state=JobState.SUCCEEDED.value,
         progress=1.0,
+        detail=None,
         finished_at=utc_now(),
         result=summary(entries(tx, job_id)),
     )

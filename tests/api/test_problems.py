@@ -36,6 +36,7 @@ def test_every_failure_has_a_status_and_all_members(kind: type[KinedexError]) ->
         (errors.ClipNotFound, 404),
         (errors.ClipNotReady, 409),
         (errors.ModelNotFitted, 409),
+        (errors.Canceled, 409),
         (errors.Unauthorized, 401),
         (errors.Forbidden, 403),
         (errors.DiskFull, 507),

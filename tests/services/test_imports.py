@@ -81,6 +81,7 @@ def test_an_archive_becomes_clips_and_every_file_is_accounted_for(
     work(lib.settings)
     done = jobs.get_job(lib, job.id)
     assert done.state is JobState.SUCCEEDED
+    assert done.detail is None
     first, second = some_demo_clips[:2]
     assert _outcomes(done.result) == {
         f"set/{first.path}": "ready",
