@@ -22,9 +22,13 @@ def euler_to_quaternions(angles_rad: FloatArray, order: str) -> FloatArray:
     `order` names the axes from the outermost in, e.g. "ZXY"; any number of axes (none
     gives the identity) and repeated ones are allowed.
     """
-    result = identity_quaternions(angles_rad.shape[:-1])
-    for index, axis in enumerate(order):
-        result = multiply(result, _about_axis(angles_rad[..., index], AXES.index(axis)))
+    if not order:
+        return identity_quaternions(angles_rad.shape[:-1])
+    result, *others = (
+        _about_axis(angles_rad[..., index], AXES.index(axis)) for index, axis in enumerate(order)
+    )
+    for turn in others:
+        result = multiply(result, turn)
     return result
 
 
