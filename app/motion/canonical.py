@@ -9,12 +9,13 @@ from dataclasses import replace
 import numpy as np
 
 from app.errors import BadField, NotHuman, Place, Unreadable
+from app.motion.bodies import roles_of_one_body
 from app.motion.frame_rate import judge_frame_rate
 from app.motion.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
 from app.motion.kinematics import joints_by_depth
 from app.motion.motion import Motion
 from app.motion.recording import Caution, Recording
-from app.motion.roles import find_roles, given_roles
+from app.motion.roles import given_roles
 from app.motion.skeleton import Skeleton
 from app.motion.units import Unit, confirm_unit, judge_unit
 from app.motion.up_axis import judge_up_axis, to_y_up
@@ -42,7 +43,7 @@ def canonicalise(
     names, parents = recording.skeleton.names, recording.skeleton.parents
     rate = _rate_in_force(recording, frame_rate)
     given = given_roles(names, {str(role): name for role, name in (roles or {}).items()})
-    found = find_roles(names, parents, recording.positions, given)
+    found, others = roles_of_one_body(names, parents, recording.positions, given)
     missing = _missing(found)
     up_axis = judge_up_axis(
         recording.positions, _rest(recording.skeleton), found, recording.up_axis
@@ -59,7 +60,7 @@ def canonicalise(
         frame_rate=rate,
         declared_frame_rate=recording.frame_rate,
         metres_per_unit=unit.metres_per_unit,
-        cautions=recording.cautions + _axis_caution(recording, up_axis) + unit.cautions,
+        cautions=recording.cautions + others + _axis_caution(recording, up_axis) + unit.cautions,
     )
     doubts = _roles_caution(missing) + _assumption(recording, frame_rate) + _rate_cautions(motion)
     return _with_cautions(motion, doubts)

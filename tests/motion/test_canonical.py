@@ -128,3 +128,38 @@ def test_the_shortest_clips(frames: int) -> None:
     motion = canonicalise(person(CONVENTIONS["SMPL"], frames=frames))
     assert motion.frames == frames
     assert np.isfinite(motion.positions).all()
+
+
+def test_of_two_people_in_a_file_one_is_taken_and_it_is_said() -> None:
+    one, other = person(), person(seed=1)
+    skeleton = one.skeleton
+    count = len(skeleton)
+    both = replace(
+        one,
+        skeleton=Skeleton(
+            names=(*skeleton.names, *(f"Second_{name}" for name in skeleton.names)),
+            parents=np.concatenate(
+                [skeleton.parents, np.where(skeleton.parents < 0, -1, skeleton.parents + count)]
+            ),
+            offsets=np.concatenate([skeleton.offsets, skeleton.offsets]),
+        ),
+        positions=np.concatenate([one.positions, other.positions + np.float32(1)], axis=1),
+    )
+    motion = canonicalise(both)
+    assert "several_people" in [caution.code for caution in motion.cautions]
+    same_tree = {joint < count for joint in motion.roles.values()}
+    assert len(same_tree) == 1
+
+
+def test_a_prop_beside_the_body_is_no_second_person() -> None:
+    body = person()
+    names = (*body.skeleton.names, *(f"rope{i}" for i in range(12)))
+    parents = [*body.skeleton.parents.tolist(), -1, *range(len(body.skeleton), len(names) - 1)]
+    rope = np.zeros((len(body.positions), 12, 3), dtype=np.float32)
+    rope[..., 0] = np.arange(12) * 0.2
+    prop = replace(
+        body,
+        skeleton=Skeleton(names, np.array(parents), np.zeros((len(names), 3))),
+        positions=np.concatenate([body.positions, rope], axis=1),
+    )
+    assert "several_people" not in [caution.code for caution in canonicalise(prop).cautions]
