@@ -11,7 +11,7 @@ from app.cli.library import FAILURE, follow, working
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 from app.services import models
-from app.store.job_record import JobState
+from app.store.job_record import JobRecord, JobState
 
 COUNTED = "clips"
 """The name of what is no share."""
@@ -33,8 +33,17 @@ def fit(context: typer.Context, as_json: AsJson = False) -> None:
             for name, value in _shares(model.meta.get("figures", {})) or [("", None)]
         ]
         print_table(("model", "version", "clips", "held out", "figure"), rows)
+        _tell_what_was_not_fitted(job)
     if job.state is not JobState.SUCCEEDED:
         raise typer.Exit(FAILURE)
+
+
+def _tell_what_was_not_fitted(job: JobRecord) -> None:
+    for kind, outcome in (job.result or {}).get("models", {}).items():
+        if "reason" in outcome:
+            typer.echo(f"{kind}: {outcome['outcome']}: {outcome['reason']}", err=True)
+    if job.error:
+        typer.echo(f"kinedex: {job.error['detail']}", err=True)
 
 
 def _shares(figures: Any, within: str = "") -> list[tuple[str, float | None]]:

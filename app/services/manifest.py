@@ -56,7 +56,14 @@ def read_manifest(content: bytes, folder: str = "") -> dict[str, ManifestRow]:
 
 
 def _records(text: str) -> Iterator[tuple[int, dict[str, str]]]:
-    reader = csv.DictReader(io.StringIO(text, newline=""), skipinitialspace=True, strict=True)
+    head = text.partition("\n")[0]
+    reader = csv.DictReader(
+        io.StringIO(text, newline=""),
+        # Spreadsheets of many countries write semicolons; a tie is a table of one column.
+        delimiter=max(",;\t", key=head.count),
+        skipinitialspace=True,
+        strict=True,
+    )
     try:
         names = [(name or "").strip().lower() for name in reader.fieldnames or ()]
         if "path" not in names:

@@ -140,4 +140,5 @@ def _settle_failure(tx: Tx, claimed: ClaimedJob, future: Future[Any]) -> bool:
 
 
 def _told(failure: BaseException) -> str:
-    return f"The work failed unexpectedly ({type(failure).__name__}: {failure})."
+    """Its kind only: a text may quote what a file or a key says; the log has it."""
+    return f"The work failed unexpectedly ({type(failure).__name__}); see the log."

@@ -27,6 +27,13 @@ def test_a_row_tells_all_that_its_columns_hold() -> None:
     assert (empty.person, empty.words, empty.frame_rate) == (None, None, None)
 
 
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_what_spreadsheets_of_other_countries_write_is_read(separator: str) -> None:
+    table = "path,person,words\na.bvh,ada,walk slow\n".replace(",", separator)
+    (row,) = read_manifest(table.encode()).values()
+    assert (row.person, row.words) == ("ada", ("walk", "slow"))
+
+
 @pytest.mark.parametrize(
     ("line", "part"),
     [("a.bvh,fast", "frame_rate"), ("a.bvh,-3", "frame_rate"), ("a.bvh,nan", "frame_rate")],
