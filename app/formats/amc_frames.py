@@ -14,11 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.errors import TooLarge, Unreadable
+from app.errors import Unreadable
 from app.formats.acclaim_lines import worded_lines
 from app.formats.bvh_frames import FASTEST_RATE, MAX_FRAMES, SLOWEST_RATE
 from app.formats.numbers import MAX_MAGNITUDE, excerpt
-from app.formats.places import unreadable
+from app.formats.places import too_large, unreadable
 from app.motion.recording import Caution
 from app.numerics.arrays import FloatArray, IntArray
 
@@ -97,7 +97,7 @@ class _Reader:
                 blocks.append(self._parsed(block))
                 block = []
             if len(self.numbering) >= MAX_FRAMES:
-                raise TooLarge(f"expected at most {MAX_FRAMES} frames")
+                raise too_large(f"line {frame.line}", f"expected at most {MAX_FRAMES} frames")
             self.numbering.append(frame.number)
             self.frame_lines.append(frame.line)
         if block:
@@ -187,7 +187,9 @@ class _Reader:
         if len(frame.seen) < len(self.wanted):
             self.held += len(self.wanted) - len(frame.seen)
             if self.held > MAX_HELD:
-                raise TooLarge(f"expected the file to say all but {MAX_HELD} poses of bones")
+                raise too_large(
+                    f"line {frame.line}", f"expected at most {MAX_HELD} poses of bones unsaid"
+                )
             self.absent.update(self.wanted - frame.seen)
         return frame
 

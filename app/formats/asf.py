@@ -13,13 +13,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.errors import TooLarge
 from app.formats.acclaim_lines import worded_lines
 from app.formats.bvh_hierarchy import MAX_JOINTS
 from app.formats.lines import with_plain_newlines
 from app.formats.names import readable_name
 from app.formats.numbers import excerpt, parse_numbers
-from app.formats.places import unreadable
+from app.formats.places import too_large, unreadable
 from app.motion.recording import Caution
 from app.motion.rotations import euler_to_quaternions, identity_quaternions
 from app.motion.skeleton import Skeleton
@@ -56,7 +55,7 @@ class AcclaimSkeleton:
 def read_asf(content: bytes) -> AcclaimSkeleton:
     """Read an ASF file. Raises Unreadable naming the line, and TooLarge."""
     if len(content) > MAX_ASF_BYTES:
-        raise TooLarge(f"expected at most {MAX_ASF_BYTES} bytes of skeleton")
+        raise too_large("skeleton", f"expected at most {MAX_ASF_BYTES} bytes")
     return _Reader(with_plain_newlines(content)).read()
 
 
@@ -157,7 +156,7 @@ class _Reader:
         if key in self.bones or key == _ROOT:
             raise unreadable(bone.line, f"expected each bone once, found {excerpt(bone.name)}")
         if len(self.bones) >= MAX_JOINTS:
-            raise TooLarge(f"line {bone.line}: expected at most {MAX_JOINTS} bones")
+            raise too_large(f"line {bone.line}", f"expected at most {MAX_JOINTS} bones")
         self.bones[key] = bone
 
     def _children(self, words: list[bytes]) -> None:

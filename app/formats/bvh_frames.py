@@ -13,11 +13,10 @@ from itertools import chain, islice
 
 import numpy as np
 
-from app.errors import TooLarge
 from app.formats.decimals import plain_table
 from app.formats.lines import filled_lines
 from app.formats.numbers import check_magnitudes, excerpt, parse_any_numbers
-from app.formats.places import unreadable
+from app.formats.places import too_large, unreadable
 from app.motion.recording import Caution
 from app.numerics.arrays import FloatArray
 
@@ -100,7 +99,7 @@ def _rows(lines: Iterator[tuple[int, bytes]], channels: int) -> FloatArray:
     while len(block := _block(lines, channels)):
         blocks.append(block)
         if len(blocks) * BLOCK_LINES > MAX_FRAMES:
-            raise TooLarge(f"expected at most {MAX_FRAMES} frames")
+            raise too_large("frames", f"expected at most {MAX_FRAMES}")
     return np.concatenate(blocks) if blocks else np.zeros((0, channels))
 
 

@@ -15,10 +15,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from app.errors import TooLarge, Unreadable
+from app.errors import Unreadable
 from app.formats.names import readable_name
 from app.formats.numbers import excerpt, parse_numbers
-from app.formats.places import unreadable
+from app.formats.places import too_large, unreadable
 from app.motion.recording import Caution
 from app.motion.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
@@ -62,7 +62,7 @@ def read_hierarchy(text: bytes) -> Hierarchy:
     Raises Unreadable naming the line, or TooLarge.
     """
     if len(text) > MAX_HIERARCHY_BYTES:
-        raise TooLarge(f"expected at most {MAX_HIERARCHY_BYTES} bytes before MOTION")
+        raise too_large("HIERARCHY", f"expected at most {MAX_HIERARCHY_BYTES} bytes before MOTION")
     return _read_or_remembered(text) if len(text) <= REMEMBERED_BYTES else _Reader(text).read()
 
 
@@ -174,7 +174,7 @@ class _Reader:
         line = self.tokens.line
         name = b" ".join(self.tokens.until_brace())
         if len(self.joints) >= MAX_JOINTS:
-            raise TooLarge(f"line {line}: expected at most {MAX_JOINTS} joints")
+            raise too_large(f"line {line}", f"expected at most {MAX_JOINTS} joints")
         self.joints.append(_Joint(readable_name(name, line), parent, line))
         self.open.append(len(self.joints))
 

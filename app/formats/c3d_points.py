@@ -11,10 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.errors import TooLarge
 from app.formats.c3d_parameters import BLOCK, Numbers, Parameters, read_parameters
 from app.formats.numbers import MAX_MAGNITUDE
-from app.formats.places import unreadable_at
+from app.formats.places import too_large, unreadable_at
 from app.formats.solving import MAX_JOINT_FRAMES
 from app.motion.recording import Caution
 from app.numerics.arrays import FloatArray
@@ -63,7 +62,7 @@ def read_points(content: bytes) -> Points:
     room = max(0, len(content) - start) // frame_bytes if start > 0 else 0
     frames, cautions = _frame_count(header, parameters, room, start)
     if frames * header.points > MAX_JOINT_FRAMES:
-        raise TooLarge(f"expected at most {MAX_JOINT_FRAMES} points times frames")
+        raise too_large("frames", f"expected at most {MAX_JOINT_FRAMES} points times frames")
     raw = np.frombuffer(content, "u1", frames * frame_bytes, start).reshape(frames, frame_bytes)
     points = raw[:, : 4 * width * header.points].tobytes()
     return Points(

@@ -14,7 +14,6 @@ from functools import partial
 
 import numpy as np
 
-from app.errors import TooLarge
 from app.formats.fbx_animation import Stack, choose_stack, find_stacks, listed
 from app.formats.fbx_nodes import FbxFile
 from app.formats.fbx_scene import FbxScene, Numbers, unreadable_at
@@ -22,6 +21,7 @@ from app.formats.fbx_skeleton import Body, find_body
 from app.formats.fbx_timing import Timing, find_timing, key_span
 from app.formats.fbx_transforms import ANIMATED, FbxNode, Local, World, read_node, world_transforms
 from app.formats.numbers import MAX_MAGNITUDE
+from app.formats.places import too_large
 from app.formats.solving import MAX_JOINT_FRAMES, Solved, solve
 from app.motion.recording import Caution, Recording
 from app.motion.rotations import matrices_to_quaternions, multiply, rotate
@@ -126,7 +126,7 @@ def _recording(
 ) -> Recording:
     frames = len(timing.ticks)
     if frames * len(body.nodes) > MAX_JOINT_FRAMES:
-        raise TooLarge(f"expected at most {MAX_JOINT_FRAMES} joints times frames")
+        raise too_large("frames", f"expected at most {MAX_JOINT_FRAMES} joints times frames")
     # Numbers of a broken file overflow on their way; the result is looked at.
     with np.errstate(all="ignore"):
         motion = _read_motion(scene, body, stack, timing)

@@ -17,8 +17,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.errors import FormatNotSupported, Place, TooLarge, Unreadable
+from app.errors import FormatNotSupported, Place, Unreadable
 from app.formats.numbers import excerpt
+from app.formats.places import too_large
 from app.numerics.arrays import FloatArray, IntArray
 
 MAGIC = b"Kaydara FBX Binary  \x00\x1a\x00"
@@ -123,7 +124,7 @@ class FbxFile:
             raise unreadable_byte(place.offset, f"expected {size} bytes in {len(stored)}")
         self._inflatable -= size
         if size > MAX_ARRAY_BYTES or self._inflatable < 0:
-            raise TooLarge(f"byte {place.offset}: expected smaller arrays")
+            raise too_large(f"byte {place.offset}", "expected smaller arrays")
         try:
             data = zlib.decompressobj().decompress(stored, size + 1)
         except zlib.error as error:

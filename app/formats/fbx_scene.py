@@ -13,10 +13,11 @@ from functools import cached_property
 
 import numpy as np
 
-from app.errors import FormatNotSupported, Place, TooLarge, Unreadable
+from app.errors import FormatNotSupported, Place, Unreadable
 from app.formats.fbx_nodes import FbxFile, FbxRecord, unreadable_byte
 from app.formats.names import MAX_NAME_LENGTH
 from app.formats.numbers import MAX_MAGNITUDE
+from app.formats.places import too_large
 from app.numerics.arrays import FloatArray
 
 MAX_OBJECTS = 500_000
@@ -181,7 +182,7 @@ def _objects(file: FbxFile) -> Iterator[FbxObject]:
         if record.name in _KINDS:
             count += 1
             if count > MAX_OBJECTS:
-                raise TooLarge(f"expected at most {MAX_OBJECTS} objects")
+                raise too_large("node Objects", f"expected at most {MAX_OBJECTS}")
             yield _object(record)
 
 
@@ -203,7 +204,7 @@ def _connections(file: FbxFile) -> Iterator[Connection]:
     block = file.top("Connections")
     for count, record in enumerate(block.children("C") if block else ()):
         if count >= MAX_CONNECTIONS:
-            raise TooLarge(f"expected at most {MAX_CONNECTIONS} connections")
+            raise too_large("node Connections", f"expected at most {MAX_CONNECTIONS}")
         found = record.properties(4)
         if len(found) >= 3 and found[0] in (b"OO", b"OP"):
             _, source, target, to_property, *_ = [*found, b""]

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.errors import TooLarge
 from app.formats.bvh_hierarchy import MAX_JOINTS
 from app.formats.fbx_scene import FbxObject, FbxScene, unreadable_at
+from app.formats.places import too_large
 from app.motion.recording import Caution
 from app.numerics.arrays import BoolArray, IntArray
 
@@ -119,7 +119,7 @@ def _body(
             kept[parents[index]] = True
     indices = [index for index, keep in enumerate(kept) if keep]
     if len(indices) > MAX_JOINTS:
-        raise TooLarge(f"expected at most {MAX_JOINTS} joints")
+        raise too_large("joints", f"expected at most {MAX_JOINTS}")
     new = {old: index for index, old in enumerate(indices)}
     return Body(
         nodes=tuple(nodes[index] for index in indices),

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.errors import TooLarge
 from app.formats.bvh_frames import FASTEST_RATE, MAX_FRAMES, NEAR_WHOLE, SLOWEST_RATE
 from app.formats.fbx_curves import KTIME
 from app.formats.fbx_scene import Numbers
+from app.formats.places import too_large
 from app.motion.recording import Caution
 from app.numerics.arrays import FloatArray, IntArray
 
@@ -85,7 +85,7 @@ def find_timing(
     count = int((span[1] - first) / period + ON_GRID) + 1
     most = FREE_FRAMES + FRAMES_PER_KEY * max((len(one) for one in times), default=0)
     if count > min(MAX_FRAMES, most):
-        raise TooLarge(f"expected at most {min(MAX_FRAMES, most)} frames, found {count}")
+        raise too_large("frames", f"expected at most {min(MAX_FRAMES, most)}, found {count}")
     ticks = np.clip(first + period * np.arange(max(count, 1)), *span)
     return Timing(ticks, rate, cautions)
 

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.errors import Place, TooLarge, Unreadable
+from app.formats.places import too_large
 
 MAX_ARRAY_BYTES = 480_000_000
 """Of one array: 20 million joints times frames in float64."""
@@ -76,7 +77,7 @@ class Archive:
     def __init__(self, content: bytes) -> None:
         """Read the directory only. Raises Unreadable, TooLarge."""
         if content.count(_ZIP_ENTRY) > MAX_MEMBERS:
-            raise TooLarge(f"The archive holds more than {MAX_MEMBERS} arrays.")
+            raise too_large("archive", f"expected at most {MAX_MEMBERS} arrays")
         try:
             self._file = zipfile.ZipFile(io.BytesIO(content))
         except (*_ZIP_FAILURES, NotImplementedError) as problem:

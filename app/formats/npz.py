@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import Place, TooLarge, Unreadable
+from app.errors import Place, Unreadable
 from app.formats.bvh_hierarchy import MAX_JOINTS
 from app.formats.joint_layouts import layout_of
 from app.formats.joint_trees import in_tree_order, parents_of
@@ -33,6 +33,7 @@ from app.formats.names import MAX_NAME_LENGTH
 from app.formats.npy import Archive, numbers, read_npy, texts
 from app.formats.npz_keys import NamedArrays
 from app.formats.numbers import MAX_MAGNITUDE
+from app.formats.places import too_large
 from app.formats.smpl import read_smpl
 from app.formats.solving import MAX_JOINT_FRAMES
 from app.motion.recording import Caution, Recording
@@ -102,7 +103,7 @@ def _read_parameters(arrays: NamedArrays) -> Recording:
     if poses.ndim == 3 and poses.shape[2] == 3:
         poses = poses.reshape(len(poses), -1)
     if poses.ndim == 2 and len(poses) * 24 > MAX_JOINT_FRAMES:
-        raise TooLarge(f"expected at most {MAX_JOINT_FRAMES} joints times frames")
+        raise too_large("poses", f"expected at most {MAX_JOINT_FRAMES} joints times frames")
     trans = arrays.numbers("trans")
     return read_smpl(
         _checked_numbers(poses, arrays.key("poses")),
@@ -120,7 +121,7 @@ def _checked_positions(array: NDArray[Any] | None, key: str) -> FloatArray:
     frames, joints, _ = array.shape
     if joints > MAX_JOINTS or frames * joints > MAX_JOINT_FRAMES:
         limits = f"{MAX_JOINTS} joints and {MAX_JOINT_FRAMES} joints times frames"
-        raise TooLarge(f"expected at most {limits}, found {frames} frames x {joints} joints")
+        raise too_large(key, f"expected at most {limits}, found {frames} frames x {joints} joints")
     return np.ascontiguousarray(_checked_numbers(numbers(array, key), key), dtype=np.float32)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.errors import Place, Unreadable
+from app.errors import Place, TooLarge, Unreadable
 
 
 def unreadable(line: int, message: str) -> Unreadable:
@@ -15,3 +15,8 @@ def unreadable_at(offset: int, message: str) -> Unreadable:
     """An Unreadable of a binary file that names the byte, counted from 0."""
     location = f"byte {offset}"
     return Unreadable(f"{location}: {message}", places=[Place(location, message)])
+
+
+def too_large(location: str, message: str) -> TooLarge:
+    """A TooLarge that names where: a line, byte, or what is counted."""
+    return TooLarge(f"{location}: {message}", places=[Place(location, message)])

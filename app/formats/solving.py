@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.errors import TooLarge
+from app.formats.places import too_large
 from app.motion.kinematics import forward_kinematics
 from app.motion.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
@@ -39,7 +39,7 @@ def solve(skeleton: Skeleton, frames: int, local_pose: LocalPose, *, moving: boo
     """
     joints = len(skeleton)
     if frames * joints > MAX_JOINT_FRAMES:
-        raise TooLarge(f"expected at most {MAX_JOINT_FRAMES} joints times frames")
+        raise too_large("frames", f"expected at most {MAX_JOINT_FRAMES} joints times frames")
     rotations = np.empty((frames, joints, 4), dtype=np.float32)
     translations = np.empty((frames, joints, 3), dtype=np.float32) if moving else None
     positions = np.empty((frames, joints, 3), dtype=np.float32)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.errors import NotHuman, TooShort
+from app.errors import NotHuman, Place, TooShort
 from app.motion.joint_roles import SUN_ROLES, JointRole
 from app.motion.motion import Motion
 from app.motion.resampling import resample
@@ -94,7 +94,11 @@ def body_track(motion: Motion) -> BodyTrack:
     positions = _at_analysis_rate(motion.role_positions(), motion.frame_rate)
     if len(positions) < MIN_FRAMES:
         seconds = MIN_FRAMES / ANALYSIS_RATE
-        raise TooShort(f"The motion has {motion.frames} frames; {seconds:.2f} s are needed.")
+        message = f"expected at least {seconds:.2f} s, found {motion.duration:.3f} s"
+        raise TooShort(
+            f"The motion has {motion.frames} frames; {seconds:.2f} s are needed.",
+            places=[Place("frames", message)],
+        )
     length = body_length(motion)
     heading = _heading(_left_axis(motion), len(positions))
     origin = positions[:, SUN_ROLES.index(JointRole.HIPS)]
@@ -118,7 +122,8 @@ def body_length(motion: Motion) -> float:
     head = _distance(motion, r.NECK, r.HEAD) if has_head else torso * NECK_TO_HEAD_PER_TORSO
     length = torso + head + (float(np.mean(shins)) if shins else torso * SHIN_PER_TORSO)
     if not length > _SMALLEST_BODY:
-        raise NotHuman("Hips, neck, head, knees and feet are all in one place.")
+        message = "hips, neck, head, knees and feet are all in one place"
+        raise NotHuman(f"The body has no size: {message}.", places=[Place("joints", message)])
     return length
 
 

@@ -283,3 +283,14 @@ def test_real_dialects() -> None:
     cmu = read_bvh((folder / "cmu-bvh" / "02_01.bvh").read_bytes())
     assert (len(cmu.positions), len(cmu.skeleton), cmu.frame_rate) == (344, 31, 120)
     assert cmu.translations is None
+
+
+def test_too_many_joints_are_refused_with_their_line() -> None:
+    joints = b"".join(
+        b"JOINT j%d\n{\nOFFSET 0 1 0\nCHANNELS 0\nEnd Site\n{\nOFFSET 0 0 0\n}\n}\n" % i
+        for i in range(3000)
+    )
+    root = b"HIERARCHY\nROOT hips\n{\nOFFSET 0 0 0\nCHANNELS 0\n"
+    with pytest.raises(TooLarge) as refusal:
+        read_bvh(root + joints + b"}\nMOTION\nFrames: 1\nFrame Time: 0.1\n\n")
+    assert refusal.value.places[0].location.startswith("line ")
