@@ -25,8 +25,8 @@ from app.config import ENV_PREFIX, Settings
 
 _log = logging.getLogger(__name__)
 
-API = ("-m", "app.api.server")
-WORKER = ("-m", "app.worker")
+API = ("-P", "-m", "app.api.server")
+WORKER = ("-P", "-m", "app.worker")
 """What Python runs for each; modules, so that this layer need not import the API."""
 
 POLL_S = 0.2

@@ -109,3 +109,21 @@ def test_the_settings_in_force_reach_the_processes(tmp_path: Path) -> None:
     assert told["KINEDEX_PORT"] == "8123"
     assert told["KINEDEX_REQUIRE_KEYS"] == "true"
     assert told["KINEDEX_DATABASE_URL"] == "sqlite:///x.sqlite3"
+
+
+@pytest.mark.parametrize("arguments", [supervisor.API, supervisor.WORKER], ids=["api", "worker"])
+def test_a_folder_named_app_where_it_is_started_does_not_matter(
+    arguments: tuple[str, ...], tmp_path: Path
+) -> None:
+    (tmp_path / "app").mkdir()
+    (tmp_path / "app" / "__init__.py").touch()
+    ended = subprocess.run(
+        [sys.executable, *arguments],
+        cwd=tmp_path,
+        env={**os.environ, "KINEDEX_PORT": "none"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ended.returncode != 0
+    assert "KINEDEX_PORT" in ended.stderr
