@@ -10,15 +10,13 @@ from typing import Annotated, Any
 
 import typer
 
-from app.api.schemas.clips import Clip
-from app.api.schemas.recognition import Answer, Recognition, WordScore
-from app.api.schemas.search import Hit, MotionHits, WordHits
+from app.api.schemas.recognition import Answer, Recognition
+from app.api.schemas.search import MotionHits, WordHits
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 from app.errors import BadField, Place
 from app.search.methods import Method
 from app.services import find, recognise
-from app.services.hits import Hit as FoundHit
 from app.services.hits import Hits
 from app.store.files import Readable
 
@@ -117,11 +115,7 @@ def recognize(
                 stack=stack,
             ),
         )
-    answer = Recognition(
-        person=Answer.of(found.person),
-        task=Answer.of(found.task),
-        words=[WordScore(word=word, score=min(score, 1.0)) for word, score in found.words],
-    )
+    answer = Recognition.of(found)
     if as_json:
         print_json(answer.model_dump(mode="json"))
         return
@@ -172,40 +166,9 @@ def _companion(skeleton: Path | None) -> Iterator[Readable | None]:
         yield content
 
 
-def _as_answer(hits: Hits) -> MotionHits:
-    """What the API answers to a search by example."""
-    return MotionHits(
-        method=hits.method,
-        took_ms=hits.took_ms,
-        library_version=hits.library_version,
-        items=[_as_hit(hit) for hit in hits.items],
-        next=hits.next,
-    )
-
-
-def _as_word_answer(hits: Hits) -> WordHits:
-    """What the API answers to a search by words."""
-    return WordHits(
-        **dict(_as_answer(hits)),
-        unknown_words=list(hits.unknown_words),
-        expanded={word: list(known) for word, known in (hits.expanded or {}).items()},
-    )
-
-
-def _as_hit(hit: FoundHit) -> Hit:
-    return Hit(
-        rank=hit.rank,
-        score=hit.score,
-        distance=hit.distance,
-        start=hit.start,
-        end=hit.end,
-        clip=Clip.of(hit.clip),
-    )
-
-
 def _show(hits: Hits, as_json: bool, *, by_words: bool) -> None:
     if as_json:
-        answer = _as_word_answer(hits) if by_words else _as_answer(hits)
+        answer = WordHits.of(hits) if by_words else MotionHits.of(hits)
         print_json(answer.model_dump(mode="json"))
         return
     rows = [

@@ -10,7 +10,7 @@ from app.api.bodies import is_multipart, read_form, read_json
 from app.api.deps import Lib, reads
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, exactly_one, file_of
-from app.api.schemas.recognition import Answer, Recognition, Recognize, RecognizeForm, WordScore
+from app.api.schemas.recognition import Recognition, Recognize, RecognizeForm
 from app.services import recognise
 from app.services.recognise import RecogniseQuery
 
@@ -56,8 +56,4 @@ async def _query(request: Request) -> RecogniseQuery:
 def recognize(lib: Lib, query: Annotated[RecogniseQuery, Depends(_query)]) -> Recognition:
     """Say who it is, what they do and in which words; `label` is null when it is unknown."""
     found = recognise.recognise(lib, query)
-    return Recognition(
-        person=Answer.of(found.person),
-        task=Answer.of(found.task),
-        words=[WordScore(word=word, score=min(score, 1.0)) for word, score in found.words],
-    )
+    return Recognition.of(found)

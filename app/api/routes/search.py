@@ -10,9 +10,7 @@ from app.api.bodies import is_multipart, read_form, read_json, require_json
 from app.api.deps import Lib, reads
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, exactly_one, file_of
-from app.api.schemas.clips import Clip
 from app.api.schemas.search import (
-    Hit,
     MotionHits,
     MotionSearch,
     MotionSearchForm,
@@ -21,7 +19,6 @@ from app.api.schemas.search import (
 )
 from app.services import find
 from app.services.find import MotionQuery, WordQuery
-from app.services.hits import Hits
 
 router = APIRouter(prefix="/v1/search", tags=["search"])
 
@@ -90,14 +87,7 @@ async def _uploaded_query(request: Request) -> MotionQuery:
 )
 def search_motion(lib: Lib, query: Annotated[MotionQuery, Depends(_motion_query)]) -> MotionHits:
     """Find motions like a stored clip, a part of one, or an uploaded file."""
-    hits = find.find_motion(lib, query)
-    return MotionHits(
-        method=hits.method,
-        took_ms=hits.took_ms,
-        library_version=hits.library_version,
-        items=_items(hits),
-        next=hits.next,
-    )
+    return MotionHits.of(find.find_motion(lib, query))
 
 
 @router.post(
@@ -117,26 +107,4 @@ def search_words(lib: Lib, query: WordSearch) -> WordHits:
             cursor=query.cursor,
         ),
     )
-    return WordHits(
-        method=hits.method,
-        took_ms=hits.took_ms,
-        library_version=hits.library_version,
-        items=_items(hits),
-        next=hits.next,
-        unknown_words=list(hits.unknown_words),
-        expanded={word: list(known) for word, known in (hits.expanded or {}).items()},
-    )
-
-
-def _items(hits: Hits) -> list[Hit]:
-    return [
-        Hit(
-            rank=hit.rank,
-            score=hit.score,
-            distance=hit.distance,
-            start=hit.start,
-            end=hit.end,
-            clip=Clip.of(hit.clip),
-        )
-        for hit in hits.items
-    ]
+    return WordHits.of(hits)

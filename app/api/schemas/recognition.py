@@ -10,6 +10,7 @@ from app.api.schemas.base import Incoming, Outgoing
 from app.api.schemas.clips import Label
 from app.api.schemas.search import ClipId, UploadFields
 from app.models.recognition import Answer as FoundAnswer
+from app.services.recognise import Recognised
 
 
 class _Known(Incoming):
@@ -73,3 +74,12 @@ class Recognition(Outgoing):
     person: Answer
     task: Answer
     words: list[WordScore]
+
+    @classmethod
+    def of(cls, found: Recognised) -> Recognition:
+        """A recognition as it goes over the wire; a regression may score a word above 1."""
+        return cls(
+            person=Answer.of(found.person),
+            task=Answer.of(found.task),
+            words=[WordScore(word=word, score=min(score, 1.0)) for word, score in found.words],
+        )

@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field, Json
 from app.api.schemas.base import AnyOf, Cursor, Incoming, Limit, Outgoing, Seconds
 from app.api.schemas.clips import Clip, FrameRate, Stack
 from app.search.methods import Method
+from app.services import hits as services
 
 
 class Filter(Incoming):
@@ -106,6 +107,18 @@ class Hit(Outgoing):
     end: float
     clip: Clip
 
+    @classmethod
+    def of(cls, hit: services.Hit) -> Hit:
+        """A hit as it goes over the wire."""
+        return cls(
+            rank=hit.rank,
+            score=hit.score,
+            distance=hit.distance,
+            start=hit.start,
+            end=hit.end,
+            clip=Clip.of(hit.clip),
+        )
+
 
 class MotionHits(Outgoing):
     """A page of a ranking, the nearest first."""
@@ -116,9 +129,29 @@ class MotionHits(Outgoing):
     items: list[Hit]
     next: str | None
 
+    @classmethod
+    def of(cls, hits: services.Hits) -> MotionHits:
+        """A page as it goes over the wire."""
+        return cls(
+            method=hits.method,
+            took_ms=hits.took_ms,
+            library_version=hits.library_version,
+            items=[Hit.of(hit) for hit in hits.items],
+            next=hits.next,
+        )
+
 
 class WordHits(MotionHits):
     """A page of a ranking by words."""
 
     unknown_words: list[str] = Field(description="Words that no clip carries.")
     expanded: dict[str, list[str]] = Field(description="What was used in their place.")
+
+    @classmethod
+    def of(cls, hits: services.Hits) -> WordHits:
+        """A page as it goes over the wire, with what became of the words."""
+        return cls(
+            **dict(MotionHits.of(hits)),
+            unknown_words=list(hits.unknown_words),
+            expanded={word: list(known) for word, known in (hits.expanded or {}).items()},
+        )
