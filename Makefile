@@ -3,6 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+BENCH_STAMP := $(VENV)/.bench-installed
 
 .PHONY: help install demo serve test test-all bench lint
 
@@ -37,5 +38,10 @@ test: lint
 test-all: lint
 	$(BIN)/pytest -m "not bench"
 
-bench: install
+$(BENCH_STAMP): $(STAMP)
+	$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check \
+	  --constraint docker/constraints.txt --editable ".[dev,bench]"
+	@touch $(BENCH_STAMP)
+
+bench: $(BENCH_STAMP)
 	$(BIN)/pytest -m bench -s tests/bench

@@ -37,12 +37,12 @@ class GaussianHMM:
     def log_stay(self) -> FloatArray:
         """(K,) log probability of staying in each state."""
         stay = np.diagonal(self.transitions).astype(np.float64)
-        return np.log(np.maximum(stay, LEAST_PROBABILITY))
+        return np.asarray(np.log(np.maximum(stay, LEAST_PROBABILITY)))
 
     def log_move(self) -> FloatArray:
         """(K - 1,) log probability of moving from each state to the next."""
         move = np.diagonal(self.transitions, offset=1).astype(np.float64)
-        return np.log(np.maximum(move, LEAST_PROBABILITY))
+        return np.asarray(np.log(np.maximum(move, LEAST_PROBABILITY)))
 
     def dwell(self) -> FloatArray:
         """(K,) expected frames in each state, 1 / (1 - stay), at least one.

@@ -119,4 +119,4 @@ class VectorIndex:
         distances[near] = np.linalg.norm(difference, axis=1)
         # What was not measured again must not overtake what was.
         distances[far] = np.maximum(distances[far], distances[near].max())
-        return distances
+        return np.asarray(distances)
