@@ -1,4 +1,4 @@
-"""Putting clips into the library, and analysing them anew."""
+"""Putting clips into the library, and the work that follows."""
 
 from __future__ import annotations
 

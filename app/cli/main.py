@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from app import __version__
-from app.cli import db, demo, evaluate, export, find, fit, keys, library, serve
+from app.cli import db, demo, evaluate, export, find, fit, keys, library, reanalyze, serve
 from app.cli.settings import remember
 from app.errors import KinedexError
 
@@ -26,6 +26,7 @@ program.command("serve")(serve.serve)
 program.command("worker")(serve.worker)
 program.command("demo")(demo.demo)
 program.command("import")(library.import_clips)
+program.command("reanalyze")(reanalyze.reanalyze)
 program.command("search")(find.search)
 program.command("recognize")(find.recognize)
 program.command("fit")(fit.fit)

@@ -10,7 +10,7 @@ from sqlalchemy import ColumnElement, Select, func, select
 from app.errors import BadField, Place
 from app.store import clips as clip_repository
 from app.store.clip_filter import ClipFilter, condition
-from app.store.clip_record import ClipRecord
+from app.store.clip_record import ClipRecord, ClipState
 from app.store.engine import Tx
 from app.store.paging import Page, Position, Value, after, read_cursor, write_cursor
 from app.store.tables import clips
@@ -62,6 +62,13 @@ def count_clips(tx: Tx, wanted: ClipFilter) -> int:
 def list_ids(tx: Tx, wanted: ClipFilter) -> tuple[str, ...]:
     """The ids of all clips that pass the filter."""
     return tuple(tx.execute(select(clips.c.id).where(condition(wanted))).scalars())
+
+
+def list_ids_of_other_analysis(tx: Tx, version: int) -> tuple[str, ...]:
+    """The ids of the ready clips whose arrays are not those of analysis `version`."""
+    is_other = func.coalesce(clips.c.analysis_version, -1) != version
+    query = select(clips.c.id).where(condition(ClipFilter(state=(ClipState.READY,))), is_other)
+    return tuple(tx.execute(query.order_by(clips.c.id)).scalars())
 
 
 def _sort_of(sort: str) -> tuple[_Sort, bool]:

@@ -1,0 +1,65 @@
+"""Analysing stored clips anew."""
+
+from __future__ import annotations
+
+import time
+from typing import Annotated
+
+import typer
+
+from app.cli.library import POLL_S, fit_if_due, working
+from app.cli.output import AsJson, print_json, progress_bar
+from app.cli.settings import open_library
+from app.services import reanalysis
+from app.services.library import Library
+from app.store import clip_listing
+from app.store.clip_filter import ClipFilter
+from app.store.clip_record import ClipState
+
+WAITING = ClipFilter(state=(ClipState.QUEUED, ClipState.PROCESSING))
+
+
+def reanalyze(
+    context: typer.Context,
+    every: Annotated[
+        bool, typer.Option("--all", help="All ready clips, not only those of an earlier version.")
+    ] = False,
+    failed: Annotated[bool, typer.Option("--failed", help="Failed clips too.")] = False,
+    wait: Annotated[
+        bool, typer.Option(help="Analyse now; --no-wait leaves that to the worker.")
+    ] = True,
+    as_json: AsJson = False,
+) -> None:
+    """Analyse clips again from their stored files.
+
+    A worker that starts does this by itself for clips of an earlier version.
+    """
+    with open_library(context) as lib:
+        queued = reanalysis.requeue_outdated(lib)
+        states = [ClipState.READY] * every + [ClipState.FAILED] * failed
+        queued += reanalysis.requeue_in_state(lib, *states) if states else 0
+        if wait and _waiting(lib):
+            with working(lib):
+                _follow(lib)
+                fit_if_due(lib)
+        left = _waiting(lib)
+    if as_json:
+        print_json({"queued": queued, "waiting": left})
+    else:
+        typer.echo(f"{queued} clips queued, {left} waiting.")
+
+
+def _follow(lib: Library) -> None:
+    """Show how many clips still wait until none does."""
+    with progress_bar() as bar:
+        total = _waiting(lib)
+        task = bar.add_task("analysing", total=total)
+        while left := _waiting(lib):
+            bar.update(task, completed=total - left)
+            time.sleep(POLL_S)
+        bar.update(task, completed=total)
+
+
+def _waiting(lib: Library) -> int:
+    with lib.store.read() as tx:
+        return clip_listing.count_clips(tx, WAITING)
