@@ -28,7 +28,7 @@ def retrieval(
     wanted = parse_filter(filter_of(filter_json))
     with open_library(context) as lib, progress_bar() as bar:
         task = bar.add_task("asking", total=None)
-        figures = evaluate.retrieval(
+        figures = evaluate.judge_retrieval(
             lib, wanted, progress=lambda done, total: bar.update(task, completed=done, total=total)
         )
     _show([asdict(row) for row in figures], as_json)
@@ -39,7 +39,7 @@ def words(context: typer.Context, filter_json: FilterJson = None, as_json: AsJso
     """Words for clips and clips for words, held out, beside the words' frequency."""
     wanted = parse_filter(filter_of(filter_json))
     with open_library(context) as lib:
-        found = evaluate.words(lib, wanted)
+        found = evaluate.judge_words(lib, wanted)
     _show([asdict(figures) for figures in found.figures], as_json)
 
 
@@ -50,7 +50,7 @@ def recognition(
     """Person and task, held out, beside the most frequent class."""
     wanted = parse_filter(filter_of(filter_json))
     with open_library(context) as lib:
-        found = evaluate.recognition(lib, wanted)
+        found = evaluate.judge_recognition(lib, wanted)
     _show([{"method": method, **shares} for method, shares in found.items()], as_json)
 
 

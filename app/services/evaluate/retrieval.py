@@ -1,8 +1,4 @@
-"""How good the methods are on a library's own labels: the figures of the papers.
-
-Retrieval goes through the very ranking that searches use. Words and recognition are held
-out: no clip is judged by a model that has seen it, or another file of its recording.
-"""
+"""Query by example: each labelled clip asks for the others of its task."""
 
 from __future__ import annotations
 
@@ -14,14 +10,12 @@ import numpy as np
 
 from app.errors import NotEnoughLabels
 from app.models.ranking_figures import average_precision, precision_at_k
-from app.models.recognition_figures import held_out_recognition_figures
-from app.models.word_figures import WordEvaluation, held_out_word_figures
 from app.search.by_example import rank_by_example
 from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays
 from app.search.index import VECTOR
 from app.search.methods import Method
 from app.services.library import Library
-from app.services.training import read_training_set, ready_only
+from app.services.training import ready_only
 from app.store import arrays, clip_listing, clips
 from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord
@@ -48,7 +42,7 @@ class RetrievalFigures:
     queries: int
 
 
-def retrieval(
+def judge_retrieval(
     lib: Library,
     wanted: ClipFilter | None = None,
     methods: Sequence[Method] = tuple(Method),
@@ -74,22 +68,6 @@ def retrieval(
             )
         )
     return tuple(found)
-
-
-def words(lib: Library, wanted: ClipFilter | None = None) -> WordEvaluation:
-    """Held-out figures of the word models beside the prior. Raises NotEnoughLabels."""
-    training = read_training_set(lib.store, ready_only(wanted))
-    return held_out_word_figures(
-        training.symbols, training.statistics, training.label_sets, training.groups
-    )
-
-
-def recognition(lib: Library, wanted: ClipFilter | None = None) -> dict[str, dict[str, float]]:
-    """Held-out shares recognised by method: person, task, both; beside the prior."""
-    training = read_training_set(lib.store, ready_only(wanted))
-    return held_out_recognition_figures(
-        training.samples, training.persons, training.tasks, training.groups
-    )
 
 
 def _ready_clips(lib: Library, wanted: ClipFilter | None) -> list[ClipRecord]:

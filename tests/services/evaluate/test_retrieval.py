@@ -1,4 +1,4 @@
-"""Figures on a library's own labels."""
+"""Query by example, judged on a library's own labels."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def test_retrieval_counts_what_searches_answer(
     ready_library: Library, ready_clips: list[ClipRecord]
 ) -> None:
     told: list[tuple[int, int]] = []
-    rows = evaluate.retrieval(ready_library, progress=lambda *step: told.append(step))
+    rows = evaluate.judge_retrieval(ready_library, progress=lambda *step: told.append(step))
     assert [row.method for row in rows] == [method.value for method in Method]
     assert told[-1] == (12 * len(Method), 12 * len(Method))
     for row in rows:
@@ -32,19 +32,10 @@ def test_retrieval_counts_what_searches_answer(
 
 def test_a_filter_narrows_what_is_judged(ready_library: Library) -> None:
     two = ClipFilter(task=("walk", "kick"))
-    (row,) = evaluate.retrieval(ready_library, two, [Method.VECTOR])
+    (row,) = evaluate.judge_retrieval(ready_library, two, [Method.VECTOR])
     assert (row.queries, row.nearest, row.mean_average_precision) == (6, 1.0, 1.0)
-
-
-def test_words_and_recognition_stand_beside_the_prior(ready_library: Library) -> None:
-    words = {row.method: row for row in evaluate.words(ready_library).figures}
-    assert words["default"].top_3_recognition >= words["prior"].top_3_recognition
-    shares = evaluate.recognition(ready_library)
-    assert shares["default"]["task"] >= shares["prior"]["task"]
 
 
 def test_a_library_without_labels_cannot_be_judged(lib: Library) -> None:
     with pytest.raises(NotEnoughLabels):
-        evaluate.retrieval(lib)
-    with pytest.raises(NotEnoughLabels):
-        evaluate.words(lib)
+        evaluate.judge_retrieval(lib)

@@ -1,0 +1,11 @@
+"""How good the methods are on a library's own labels: the figures of the papers.
+
+Retrieval goes through the very ranking that searches use. Words and recognition are held
+out: no clip is judged by a model that has seen it, or another file of its recording.
+"""
+
+from app.services.evaluate.recognition import judge_recognition
+from app.services.evaluate.retrieval import RetrievalFigures, judge_retrieval
+from app.services.evaluate.words import judge_words
+
+__all__ = ["RetrievalFigures", "judge_recognition", "judge_retrieval", "judge_words"]
