@@ -3,17 +3,20 @@
 Arrays (float32 unless told otherwise; n frames at 30 Hz, m at 10 Hz):
 role_positions (n, 13, 3) metres, world; features_10hz (m, 82); motion_vector (128,);
 msv_lambda (1,), msv_rho (13,), msv_epsilon (n,); motion_sample (1250,); symbol_statistics
-(131,); and of the motion symbol with K states symbol_means (K, 26), symbol_variances (K, 26),
-symbol_transitions (K, K).
+(131,); keypose_frames (k,) int32, among the n; and of the motion symbol with K states
+symbol_means (K, 26), symbol_variances (K, 26), symbol_transitions (K, K).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.analysis.frame_features import features_at_10hz, frame_features
+from app.analysis.keyposes import find_keyposes
 from app.analysis.motion_sample import motion_sample
 from app.analysis.motion_symbol import describe_symbol
 from app.analysis.motion_vector import motion_vector
@@ -32,21 +35,22 @@ class Analysis:
     """A motion and its arrays by name (see the module)."""
 
     motion: Motion
-    arrays: dict[str, FloatArray]
+    arrays: dict[str, NDArray[Any]]
 
 
 def analyse(motion: Motion) -> Analysis:
     """All arrays of `motion`. Deterministic; raises TooShort or NotHuman."""
     track = body_track(motion)
-    return Analysis(motion, _for_search(track) | describe_symbol(track))
+    keyposes = {"keypose_frames": find_keyposes(track).frames.astype(np.int32)}
+    return Analysis(motion, {**_for_search(track), **keyposes, **describe_symbol(track)})
 
 
 def describe_for_search(motion: Motion) -> Analysis:
-    """The arrays that finding and recognising need: all but the motion symbol, which is slow.
+    """The arrays that finding and recognising need: no keyposes, no motion symbol (it is slow).
 
     Some 10 ms for 5 s of motion; each array is the same as from `analyse`.
     """
-    return Analysis(motion, _for_search(body_track(motion)))
+    return Analysis(motion, {**_for_search(body_track(motion))})
 
 
 def _for_search(track: BodyTrack) -> dict[str, FloatArray]:

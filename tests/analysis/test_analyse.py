@@ -13,8 +13,9 @@ BODIES = {"walk": walking(turn=0.3), "wave": waving(), "still": standing(90), "t
 
 
 @pytest.mark.parametrize("body", BODIES.values(), ids=BODIES.keys())
-def test_arrays_are_finite_float32_of_the_promised_shapes(body: FloatArray) -> None:
-    arrays = analyse(motion_of(body)).arrays
+def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray) -> None:
+    arrays = dict(analyse(motion_of(body)).arrays)
+    keyposes = arrays.pop("keypose_frames")
     n, states = len(body), len(arrays["symbol_means"])
     shapes = {
         "role_positions": (n, 13, 3), "features_10hz": ((n - 1) // 3 + 1, 82),
@@ -25,6 +26,8 @@ def test_arrays_are_finite_float32_of_the_promised_shapes(body: FloatArray) -> N
     assert {name: array.shape for name, array in arrays.items()} == shapes
     assert all(array.dtype == np.float32 for array in arrays.values())
     assert all(np.isfinite(array).all() for array in arrays.values())
+    assert (keyposes.dtype, keyposes.ndim) == (np.int32, 1)
+    assert (np.diff(keyposes, prepend=-1, append=n) > 0).all()
 
 
 def test_the_same_motion_gives_the_same_bytes() -> None:
@@ -35,5 +38,7 @@ def test_the_same_motion_gives_the_same_bytes() -> None:
 def test_a_query_is_described_as_a_stored_clip_is() -> None:
     stored = analyse(motion_of(BODIES["walk"])).arrays
     query = describe_for_search(motion_of(BODIES["walk"])).arrays
-    assert set(stored) - set(query) == {"symbol_means", "symbol_variances", "symbol_transitions"}
+    assert set(stored) - set(query) == {
+        "keypose_frames", "symbol_means", "symbol_variances", "symbol_transitions",
+    }  # fmt: skip
     assert all(stored[name].tobytes() == query[name].tobytes() for name in query)
