@@ -16,7 +16,11 @@ SYMBOL_STATES = 30
 VARIANCE_FLOOR = 0.1
 """Share of each channel's joint variance (one, after scaling) below which no state goes."""
 
+SYMBOL_ARRAYS = ("symbol_transitions", "symbol_means", "symbol_variances")
+"""The stored arrays that make a symbol."""
+
 __all__ = [
+    "SYMBOL_ARRAYS",
     "SYMBOL_STATES",
     "VARIANCE_FLOOR",
     "describe_symbol",

@@ -30,6 +30,7 @@ from app.api.routes import (
     models,
     recognize,
     search,
+    symbols,
 )
 from app.api.schemas.recognition import Recognize
 from app.api.schemas.search import MotionSearch
@@ -45,7 +46,19 @@ are; where you read `CLIP_ID`, reload this page once there is a clip.
 Times are ISO 8601 in UTC, durations seconds. Lists are `{"items": [...], "next": cursor}`.
 Every failure is a problem (RFC 9457, `application/problem+json`).
 """
-_ROUTES = (clips, clip_views, export, imports, jobs, search, recognize, models, labels, health)
+_ROUTES = (
+    clips,
+    clip_views,
+    export,
+    imports,
+    jobs,
+    search,
+    recognize,
+    models,
+    labels,
+    symbols,
+    health,
+)
 
 
 def create_app(settings: Settings) -> FastAPI:

@@ -73,3 +73,9 @@ _TOWARDS_TRUNK: dict[JointRole, JointRole] = {
     _R.LEFT_UPPER_LEG: _R.HIPS,
     _R.RIGHT_UPPER_LEG: _R.HIPS,
 }
+
+SUN_PARENTS: tuple[int, ...] = tuple(
+    -1 if (nearer := role.towards_trunk()) is role else SUN_ROLES.index(nearer)
+    for role in SUN_ROLES
+)
+"""Each of SUN_ROLES' neighbour towards the trunk, as an index; the hips are the root."""

@@ -108,6 +108,14 @@ def log_likelihoods(models: Sequence[GaussianHMM], sequence: FloatArray) -> Floa
     return np.array([log_likelihood(model, sequence) for model in models])
 
 
+def occupancy(model: GaussianHMM, sequence: FloatArray) -> FloatArray:
+    """(T, K) probability of being in each state at each frame of `sequence` (T, D)."""
+    emissions = log_emissions(sequence, model.means, model.variances)
+    log_stay, log_move = model.log_stay(), model.log_move()
+    joint = forward(emissions, log_stay, log_move) + backward(emissions, log_stay, log_move)
+    return np.asarray(np.exp(joint - np.logaddexp.reduce(joint, axis=1, keepdims=True)))
+
+
 def forward(emissions: FloatArray, log_stay: FloatArray, log_move: FloatArray) -> FloatArray:
     """(T, K) log probability of the frames so far and of being in each state now.
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.analysis.motion_symbol import symbol_from_arrays
+from app.analysis.motion_symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.folds import recording_of
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm import GaussianHMM
@@ -16,8 +16,7 @@ from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord, ClipState
 from app.store.store import Store
 
-SYMBOLS = ("symbol_transitions", "symbol_means", "symbol_variances")
-NAMES = (*SYMBOLS, "symbol_statistics", "motion_sample")
+NAMES = (*SYMBOL_ARRAYS, "symbol_statistics", "motion_sample")
 READY = ClipFilter(state=(ClipState.READY,))
 
 
@@ -73,7 +72,7 @@ def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
         clips=tuple(records[clip_id] for clip_id in whole),
         groups=tuple(_recording(records[clip_id]) for clip_id in whole),
         symbols=tuple(
-            symbol_from_arrays({name: found[name][clip_id] for name in SYMBOLS})
+            symbol_from_arrays({name: found[name][clip_id] for name in SYMBOL_ARRAYS})
             for clip_id in whole
         ),
         statistics=_stacked([found["symbol_statistics"][clip_id] for clip_id in whole]),

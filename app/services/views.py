@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from app.analysis.keyposes import T1, T2, Keyposes, find_keyposes
 from app.motion.body_frame import body_track
-from app.motion.joint_roles import SUN_ROLES
+from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.motion.resampling import resample
 from app.numerics.arrays import FloatArray
 from app.services import fields
@@ -77,7 +77,7 @@ def motion(lib: Library, clip_id: str, fps: float | None = None, joints: str = "
     stored = load_motion(lib, ready_clip(lib, clip_id))
     names, parents, positions = stored.names, tuple(stored.parents.tolist()), stored.positions
     if joints == "roles":
-        names, parents = tuple(role.value for role in SUN_ROLES), _role_parents()
+        names, parents = tuple(role.value for role in SUN_ROLES), SUN_PARENTS
         positions = stored.role_positions()
     if fps is not None and fps != stored.frame_rate:
         positions = resample(positions, stored.frame_rate, fps)
@@ -139,10 +139,3 @@ def thumbnail_svg(lib: Library, clip_id: str) -> str:
     with lib.store.read() as tx:
         positions = arrays.get_one(tx, clip_id, "role_positions")
     return thumbnail(positions, clip.name)
-
-
-def _role_parents() -> tuple[int, ...]:
-    """Each role's neighbour towards the trunk; the hips are the root."""
-    order = {role: index for index, role in enumerate(SUN_ROLES)}
-    nearer = (order[role.towards_trunk()] for role in SUN_ROLES)
-    return tuple(-1 if parent == own else parent for own, parent in enumerate(nearer))

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from app.analysis.motion_symbol import symbol_from_arrays
+from app.analysis.motion_symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.library_words import LibraryWords
 from app.numerics.arrays import FloatArray
 from app.search.rank import Ranking, ranking
@@ -17,7 +17,6 @@ from app.store import arrays
 from app.store.clip_filter import ClipFilter
 
 STATISTICS = "symbol_statistics"
-SYMBOL_ARRAYS = ("symbol_transitions", "symbol_means", "symbol_variances")
 
 
 @dataclass(frozen=True, slots=True)

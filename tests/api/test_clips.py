@@ -223,3 +223,18 @@ def _tiny(salt: int) -> bytes:
         "Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n"
         f"MOTION\nFrames: 1\nFrame Time: 0.01\n{salt} 0 0 0 0 0\n"
     ).encode()
+
+
+def test_a_symbol_is_played(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    told = demo.get(f"/v1/clips/{walk['id']}/symbol/motion").json()
+    assert told["states"] >= 1
+    assert len(told["channels"]) == 26
+    frames = len(told["positions"])
+    assert frames / told["frame_rate"] == pytest.approx(walk["duration"], rel=0.1)
+    for channel in told["channels"]:
+        assert len(channel["mean"]) == len(channel["spread"]) == frames
+    raw = demo.get(
+        f"/v1/clips/{walk['id']}/symbol/motion", headers={"Accept": "application/octet-stream"}
+    )
+    assert raw.headers["X-Shape"] == f"{frames},13,3"
+    assert demo.get("/v1/clips/nobody/symbol/motion").status_code == 404

@@ -28,13 +28,14 @@ _SHAPE = {
     "schema": {"type": "string"},
     "required": False,
 }
+OCTET_ANSWER = {"content": {OCTETS: _OCTETS}, "headers": {"X-Shape": _SHAPE}}
 
 
 @router.get(
     "/motion",
     response_model=Motion,
     responses={
-        200: {"content": {OCTETS: _OCTETS}, "headers": {"X-Shape": _SHAPE}},
+        200: OCTET_ANSWER,
         **refusals(404, 409),
     },
 )

@@ -1,0 +1,43 @@
+"""What a motion symbol generates."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from app.analysis.symbol_features import CHANNELS
+from app.api.schemas.base import Outgoing
+from app.api.schemas.views import Motion, plain
+from app.services.symbol_motion import SymbolMotionView
+
+
+class Channel(Outgoing):
+    """One of the 26 channels over time."""
+
+    name: str = Field(examples=["left_knee_flexion"])
+    mean: list[float] = Field(
+        description="A value a frame: cosine, body lengths, body lengths / s or radians / s."
+    )
+    spread: list[float] = Field(description="Standard deviation at each frame, the same unit.")
+
+
+class SymbolMotion(Motion):
+    """The motion that a clip's symbol stands for (Takano, fig. 6)."""
+
+    states: int = Field(description="States of the hidden Markov model.")
+    channels: list[Channel]
+
+    @classmethod
+    def of(cls, view: SymbolMotionView) -> SymbolMotion:
+        """A generated motion as it goes over the wire."""
+        found = view.generated
+        return cls(
+            frame_rate=found.rate,
+            joint_names=list(view.motion.joint_names),
+            parents=list(view.motion.parents),
+            positions=plain(found.positions),
+            states=view.states,
+            channels=[
+                Channel(name=name, mean=plain(mean), spread=plain(spread))
+                for name, mean, spread in zip(CHANNELS, found.means.T, found.spreads.T, strict=True)
+            ],
+        )
