@@ -1,5 +1,6 @@
 """The demo library: motions of our own making that look like people."""
 
-from app.services.demo.library import DemoClip, demo_clips, write_demo
+from app.services.demo.clip import DemoClip
+from app.services.demo.library import demo_clips, write_demo
 
 __all__ = ["DemoClip", "demo_clips", "write_demo"]

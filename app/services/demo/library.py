@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from app.errors import NotFound
 from app.formats.bvh_writer import write_bvh
 from app.services.demo.actors import ACTORS, Actor
+from app.services.demo.clip import DemoClip
 from app.services.demo.performance import Performance
 from app.services.demo.posing import local_rotations
 from app.services.demo.rig import build_rig, skeleton_of
@@ -25,24 +25,6 @@ SOURCE = "Kinedex demo"
 UNITS_PER_METRE = 100.0
 MANIFEST = "manifest.csv"
 COLUMNS: tuple[str, ...] = ("path", "source", "license", "person", "task", "words", "fps")
-
-
-@dataclass(frozen=True, slots=True)
-class DemoClip:
-    """One file of the demo library and what is known of it.
-
-    path: relative, with forward slashes; content: BVH; words: two to four; frame_rate: Hz;
-    keyposes: s, where poses are struck and held (dances only); beats: s (dances only).
-    """
-
-    path: str
-    content: bytes
-    person: str
-    task: str
-    words: tuple[str, ...]
-    frame_rate: float
-    keyposes: tuple[float, ...] = ()
-    beats: tuple[float, ...] = ()
 
 
 def demo_clips(
