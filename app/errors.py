@@ -232,3 +232,9 @@ class ConfigurationError(KinedexError):
     """The settings do not allow this."""
 
     code = "configuration"
+
+
+class ExtraNeeded(KinedexError):
+    """This needs an optional part of Kinedex that is not installed."""
+
+    code = "extra_needed"

@@ -1,0 +1,21 @@
+"""Pictures of figures and curves, as SVG, PNG or PDF: the same input gives the same bytes.
+
+They need matplotlib, the extra `plots`; nothing else in Kinedex does.
+"""
+
+from app.services.pictures.confusion import confusion_picture
+from app.services.pictures.curves import Curve, Panel, curves_picture
+from app.services.pictures.drawing import Format, format_of, need_plots
+from app.services.pictures.scatter import Cloud, scatter_picture
+
+__all__ = [
+    "Cloud",
+    "Curve",
+    "Format",
+    "Panel",
+    "confusion_picture",
+    "curves_picture",
+    "format_of",
+    "need_plots",
+    "scatter_picture",
+]

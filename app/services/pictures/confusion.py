@@ -1,0 +1,73 @@
+"""A confusion matrix as a picture (Sun 2011, figure 8)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray
+from app.services.pictures.drawing import Format, drawn, shown
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+CELL = 0.42
+"""Inches; cells shrink when there are more than MOST_LARGE classes."""
+MOST_LARGE = 30
+MOST_WITH_NUMBERS = 60
+DARK = 0.55
+"""Cells of a larger share carry white numbers."""
+
+
+def confusion_picture(
+    shares: FloatArray,
+    classes: Sequence[str],
+    form: Format,
+    *,
+    title: str = "",
+    rows: str = "true class",
+    columns: str = "taken for",
+) -> bytes:
+    """`shares` (classes, classes), 0..1, one row a true class; numbers are per cent.
+
+    Raises ValueError when the shapes do not fit.
+    """
+    count = len(classes)
+    if shares.shape != (count, count) or not count:
+        raise ValueError("a confusion matrix has one row and one column a class")
+    side = CELL * max(min(count, MOST_LARGE), 4) + 0.2 * max(count - MOST_LARGE, 0)
+    names = [shown(name) for name in classes]
+
+    def draw(figure: Figure) -> None:
+        axes = figure.add_subplot()
+        axes.set(title=title, xlabel=columns, ylabel=rows)
+        # an SVG of squares stays sharp, and white edges part them
+        mesh = axes.pcolormesh(
+            shares, cmap="Blues", vmin=0.0, vmax=1.0, edgecolors="white", linewidth=1.0
+        )
+        middles = np.arange(count) + 0.5
+        axes.set_xticks(middles, names, rotation=60, ha="right", rotation_mode="anchor")
+        axes.set_yticks(middles, names)
+        axes.set_aspect("equal")
+        axes.invert_yaxis()
+        axes.grid(visible=False)
+        axes.tick_params(length=0)
+        axes.spines[:].set_visible(False)
+        if count <= MOST_WITH_NUMBERS:
+            _number(axes, shares, size=8.0 if count <= MOST_LARGE else 5.0)
+        bar = figure.colorbar(mesh, ax=axes, shrink=0.6, aspect=25, pad=0.02, label="share")
+        bar.outline.set_visible(False)
+
+    return drawn(draw, (side + 2.6, side + 1.6), form)
+
+
+def _number(axes: Axes, shares: FloatArray, size: float) -> None:
+    """Per cent in every cell that rounds to one at least."""
+    for (row, column), share in np.ndenumerate(shares):
+        if share >= 0.005:
+            ink = "white" if share > DARK else "#222222"
+            middle = (column + 0.5, row + 0.5)
+            axes.text(*middle, f"{100 * share:.0f}", ha="center", va="center", size=size, color=ink)

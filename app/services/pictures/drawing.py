@@ -1,0 +1,134 @@
+"""What all pictures share: matplotlib without its global state, colours, names, bytes.
+
+Colours are those of Okabe and Ito, told apart by people of every colour vision; beyond
+seven groups, and for print without colour, markers and dashes differ too.
+"""
+
+from __future__ import annotations
+
+import io
+import warnings
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+from app.errors import BadField, ExtraNeeded, Place
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Format = Literal["svg", "png", "pdf"]
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#4D4D4D")
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", "*", ">")
+DASHES: tuple[str | tuple[int, tuple[int, ...]], ...] = (
+    "-",
+    (0, (6, 2)),
+    (0, (2, 1)),
+    (0, (6, 2, 1, 2)),
+)
+LONGEST_NAME = 24
+"""Characters of a name in a picture; a longer one loses its middle."""
+LEGEND_ROW = 0.19
+"""Inches that a row of a legend takes."""
+PNG_DOTS_PER_INCH = 150
+MOST_INCHES = 40.0
+"""Of a side: 6,000 dots."""
+
+_STYLE: Any = {
+    "axes.axisbelow": True,
+    "axes.grid": True,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlesize": 10,
+    "figure.titlesize": 11,
+    "font.family": "DejaVu Sans",  # comes with matplotlib: the same letters everywhere
+    "font.size": 9,
+    "grid.color": "#E3E3E3",
+    "legend.fontsize": 8,
+    "legend.frameon": False,
+    "lines.linewidth": 1.3,
+    "svg.hashsalt": "kinedex",
+    "text.parse_math": False,  # names are others', and may hold dollar signs
+}
+_NO_DATES: dict[str, dict[str, Any]] = {
+    "svg": {"Date": None},
+    "png": {},
+    "pdf": {"CreationDate": None},
+}
+
+
+def format_of(path: Path) -> Format:
+    """The format that the suffix of `path` names. Raises BadField for another suffix."""
+    formats: tuple[Format, ...] = get_args(Format)
+    for known in formats:
+        if path.suffix.lower() == f".{known}":
+            return known
+    names = ", ".join(f".{known}" for known in formats)
+    detail = f"A picture's name must end in one of {names}, not {path.name!r}."
+    raise BadField(detail, places=[Place("picture", detail)])
+
+
+def need_plots() -> None:
+    """Raises ExtraNeeded without matplotlib: to be asked before long work, not after it."""
+    try:
+        import matplotlib.figure  # noqa: F401 - takes half a second; few need it
+    except ImportError as missing:
+        raise ExtraNeeded(
+            "Pictures need matplotlib, which is not installed: pip install 'kinedex[plots]'"
+        ) from missing
+
+
+def drawn(draw: Callable[[Figure], None], inches: tuple[float, float], form: Format) -> bytes:
+    """The bytes of a figure of `inches` (width, height) that `draw` fills."""
+    need_plots()
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
+    width, height = (min(side, MOST_INCHES) for side in inches)
+    with mpl.rc_context(_STYLE), warnings.catch_warnings():
+        # A letter that the font lacks is drawn as a box; that is no reason to fail.
+        warnings.filterwarnings("ignore", message="Glyph .* missing", category=UserWarning)
+        figure = Figure(figsize=(width, height), layout="constrained")
+        draw(figure)
+        content = io.BytesIO()
+        figure.savefig(
+            content,
+            format=form,
+            dpi=PNG_DOTS_PER_INCH,
+            metadata=_NO_DATES[form],
+            bbox_inches="tight",
+        )
+    return content.getvalue()
+
+
+def colour(group: int) -> str:
+    """The colour of the group with this number."""
+    return COLOURS[group % len(COLOURS)]
+
+
+def marker(group: int) -> str:
+    """The marker of the group with this number; with the colour unlike any of 69 others."""
+    return MARKERS[group % len(MARKERS)]
+
+
+def dashes(group: int) -> Any:
+    """The line style of the group with this number; with the colour unlike any of 27 others."""
+    return DASHES[group % len(DASHES)]
+
+
+def shown(name: str) -> str:
+    """`name` fit for a picture: on one line, printable, its middle left out when it is long."""
+    clean = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name)
+    if len(clean) <= LONGEST_NAME:
+        return clean
+    head = LONGEST_NAME * 2 // 3
+    return f"{clean[:head]}…{clean[head + 1 - LONGEST_NAME :]}"
+
+
+def add_legend(figure: Figure, handles: Sequence[Any], names: Sequence[str]) -> None:
+    """One legend for the whole figure, at its right; none for a single unnamed group."""
+    if len(names) > 1 or any(names):
+        rows = max(1, int(figure.get_figheight() / LEGEND_ROW) - 1)
+        columns = -(-len(names) // rows)
+        figure.legend(handles, [shown(n) for n in names], loc="outside right upper", ncols=columns)

@@ -1,0 +1,48 @@
+"""Confusion matrices as pictures."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from app.services.pictures import Format, confusion_picture
+
+SIGNATURES: dict[Format, bytes] = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
+
+
+@pytest.mark.parametrize("form", SIGNATURES)
+def test_the_same_matrix_gives_the_same_bytes(form: Format) -> None:
+    shares = np.array([[0.9, 0.1], [0.3, 0.7]])
+    first = confusion_picture(shares, ["walk", "run"], form, title="k = 20")
+    assert first.startswith(SIGNATURES[form])
+    assert first == confusion_picture(shares, ["walk", "run"], form, title="k = 20")
+    assert first != confusion_picture(shares.T, ["walk", "run"], form, title="k = 20")
+
+
+def test_names_of_others_are_drawn_as_they_are() -> None:
+    names = ["$\\frac{", "_hidden", "バイバイ", "<b>&amp;", "n" * 300, ""]
+    picture = confusion_picture(np.eye(6), names, "svg")
+    assert b"<b>" not in picture
+
+
+def test_cells_are_dark_where_the_share_is_large() -> None:
+    pixels = imread(io.BytesIO(confusion_picture(np.eye(3), ["a", "b", "c"], "png")))
+    dark = (pixels[..., 2] > 0.3) & (pixels[..., 0] < 0.1)
+    assert 0.02 < dark.mean() < 0.3  # a third of the cells, and the bar's end
+
+
+@pytest.mark.slow
+def test_many_classes_still_fit_a_page() -> None:
+    picture = confusion_picture(np.eye(100), [f"class {i}" for i in range(100)], "png")
+    height, width = imread(io.BytesIO(picture)).shape[:2]
+    assert 2000 < height < 6500
+    assert 2000 < width < 6500
+
+
+def test_shapes_that_do_not_fit_are_refused() -> None:
+    for shares, names in ((np.eye(2), ["a"]), (np.zeros((0, 0)), []), (np.ones((2, 3)), "ab")):
+        with pytest.raises(ValueError, match="one row and one column"):
+            confusion_picture(shares, list(names), "svg")
