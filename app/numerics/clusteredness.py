@@ -1,0 +1,89 @@
+"""How well points fall into clusters: the silhouette (Rousseeuw 1987) of Ward's clusters.
+
+Any set of points has a best silhouette above 0, a small one the more so. Beside it stands
+what points without clusters have, drawn from a normal distribution of the same covariance
+(the idea of the gap statistic, Tibshirani and others 2001).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.cluster.hierarchy import fcluster, linkage
+from scipy.spatial.distance import pdist, squareform
+
+from app.numerics.arrays import FloatArray, IntArray
+
+MOST_CLUSTERS = 12
+DRAWS = 20
+"""Sets without clusters that are drawn."""
+SEED = 20090
+
+
+@dataclass(frozen=True, slots=True)
+class Clusteredness:
+    """silhouette: -1..1, the best over 2..MOST_CLUSTERS clusters; clusters: how many those are;
+    unclustered: mean best silhouette of as many points without clusters."""
+
+    silhouette: float
+    clusters: int
+    unclustered: float
+
+    @property
+    def gap(self) -> float:
+        """How much more clustered than by chance."""
+        return self.silhouette - self.unclustered
+
+
+def clusteredness(points: FloatArray) -> Clusteredness | None:
+    """Of points (n, d); None for fewer than three, or where all are one.
+
+    Deterministic: the draws are seeded.
+    """
+    rows = np.asarray(points, dtype=np.float64)
+    if len(rows) < 3 or not np.ptp(rows, axis=0).any():
+        return None
+    best, count = _best(rows)
+    draw = np.random.RandomState(SEED)
+    _, spreads, axes = np.linalg.svd(rows - rows.mean(axis=0), full_matrices=False)
+    chance = [
+        _best(draw.standard_normal((len(rows), len(axes))) * spreads @ axes)[0]
+        for _ in range(DRAWS)
+    ]
+    return Clusteredness(best, count, float(np.mean(chance)))
+
+
+def silhouette(points: FloatArray, labels: IntArray) -> float:
+    """Mean over points (n, d) of (b - a) / max(a, b): a, b are the mean distances to the others
+    of its own cluster and to those of the nearest other one; 0 for a point alone in its
+    cluster. Raises ValueError for fewer than two clusters."""
+    return _silhouette(squareform(pdist(points)), labels)
+
+
+def _best(rows: FloatArray) -> tuple[float, int]:
+    tree, distances = linkage(rows, "ward"), squareform(pdist(rows))
+    found = [(0.0, 1)]
+    for count in range(2, min(MOST_CLUSTERS, len(rows) - 1) + 1):
+        labels = fcluster(tree, count, "maxclust")
+        if len(np.unique(labels)) > 1:
+            found.append((_silhouette(distances, labels), count))
+    return max(found, key=lambda one: (one[0], -one[1]))
+
+
+def _silhouette(distances: FloatArray, labels: IntArray) -> float:
+    names, member = np.unique(labels, return_inverse=True)
+    if len(names) < 2:
+        raise ValueError("a silhouette needs at least two clusters")
+    # (n, clusters): sums of distances to the members of each, then means
+    sums = distances @ np.eye(len(names))[member]
+    sizes = np.bincount(member)
+    own = np.arange(len(member)), member
+    alone = sizes[member] == 1
+    within = sums[own] / np.maximum(sizes[member] - 1, 1)
+    means = sums / sizes
+    means[own] = np.inf
+    between = means.min(axis=1)
+    larger = np.maximum(within, between)
+    scores = np.where(larger > 0, (between - within) / np.where(larger > 0, larger, 1.0), 0.0)
+    return float(np.where(alone, 0.0, scores).mean())

@@ -1,0 +1,74 @@
+"""Clusteredness: clusters are told from their absence."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.clusteredness import clusteredness, silhouette
+
+
+def _clusters(count: int, each: int, spread: float, seed: int = 1) -> tuple[FloatArray, IntArray]:
+    draw = np.random.default_rng(seed)
+    centres = draw.normal(size=(count, 3))
+    labels = np.repeat(np.arange(count), each)
+    return centres[labels] + spread * draw.normal(size=(count * each, 3)), labels
+
+
+def _slow_silhouette(points: FloatArray, labels: IntArray) -> float:
+    """Point by point, as Rousseeuw wrote it."""
+    scores = []
+    for i, point in enumerate(points):
+
+        def mean_distance(label: int, without: int = i, here: FloatArray = point) -> float:
+            others = [j for j in range(len(points)) if labels[j] == label and j != without]
+            return float(np.mean([np.linalg.norm(points[j] - here) for j in others]))
+
+        if (labels == labels[i]).sum() == 1:
+            scores.append(0.0)
+            continue
+        a = mean_distance(labels[i])
+        b = min(mean_distance(label) for label in set(labels) - {labels[i]})
+        scores.append((b - a) / max(a, b))
+    return float(np.mean(scores))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_silhouette_is_rousseeuw_s(seed: int) -> None:
+    points, labels = _clusters(4, 5, 0.4, seed)
+    labels[0] = 9  # alone in its cluster
+    assert silhouette(points, labels) == pytest.approx(_slow_silhouette(points, labels))
+
+
+def test_clusters_are_counted_and_exceed_chance() -> None:
+    points, _ = _clusters(5, 6, 0.03)
+    found = clusteredness(points)
+    assert found is not None
+    assert found.clusters == 5
+    assert found.silhouette > 0.8
+    assert found.gap > 0.3
+
+
+def test_a_cloud_is_as_clustered_as_clouds_are() -> None:
+    cloud = np.random.default_rng(3).normal(size=(60, 3)) * [3.0, 1.0, 0.5]
+    found = clusteredness(cloud)
+    assert found is not None
+    assert abs(found.gap) < 0.06
+    assert clusteredness(cloud) == found, "draws are seeded"
+
+
+@pytest.mark.parametrize("points", [np.zeros((0, 3)), np.zeros((2, 3)), np.ones((9, 3))])
+def test_nothing_is_said_of_too_little(points: FloatArray) -> None:
+    assert clusteredness(points) is None
+
+
+def test_points_that_repeat_are_clusters_of_no_size() -> None:
+    found = clusteredness(np.repeat(np.eye(3), 4, axis=0))
+    assert found is not None
+    assert (found.silhouette, found.clusters) == (1.0, 3)
+
+
+def test_one_cluster_is_none() -> None:
+    with pytest.raises(ValueError, match="two clusters"):
+        silhouette(np.eye(3), np.zeros(3, dtype=int))
