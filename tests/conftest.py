@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 
 import pytest
@@ -11,6 +12,9 @@ from tests.live import Live, serve
 
 ACTORS = ("ada", "bruno")
 TASKS = ("walk", "wave", "kick")
+
+# WordNet takes seconds to load, in every fit of every library; it has a test of its own.
+os.environ.setdefault("KINEDEX_WORDNET", "false")
 
 
 @pytest.fixture(scope="session")

@@ -38,7 +38,10 @@ def search(
         str | None, typer.Argument(help="A motion file, or the id of a stored clip.")
     ] = None,
     words: Annotated[
-        list[str] | None, typer.Option("--words", help="A word; may be given several times.")
+        list[str] | None,
+        typer.Option(
+            "--words", help="Words or a sentence; -word leaves out; may be given several times."
+        ),
     ] = None,
     method: Annotated[Method, typer.Option(help="Of a search by example.")] = Method.FUSED,
     mode: Annotated[str, typer.Option(help="Of a search by words: default or cca.")] = "default",
@@ -60,7 +63,7 @@ def search(
     wanted = filter_of(filter_json)
     with open_library(context) as lib:
         if words:
-            asked = find.WordQuery(_split(words), mode, limit, wanted)
+            asked = find.WordQuery(words, mode, limit, wanted)
             hits = find.find_words(lib, asked)
         else:
             with _content(query or "") as (clip_id, content), _companion(skeleton) as asf:
@@ -129,10 +132,6 @@ def _told(answer: Answer) -> str:
         return answer.label
     nearest = answer.candidates[0].label if answer.candidates else "nothing"
     return f"unknown (nearest: {nearest})"
-
-
-def _split(words: list[str]) -> list[str]:
-    return [word for part in words for word in part.split()]
 
 
 def filter_of(text: str | None) -> dict[str, Any]:

@@ -6,16 +6,18 @@ the correlated space, which need LEAST_CLIPS labelled clips. Shapes: clips N, wo
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from app.errors import NotEnoughLabels
 from app.models.correlated_space import LEAST_CLIPS, CorrelatedSpace, fit_correlated_space
+from app.models.language.wordnet import Meanings
 from app.models.symbol_space import SymbolSpace, fit_symbol_space
 from app.models.word_model import WordModel, clip_cosines, fit_word_model
+from app.models.word_query import WordsAsked, understand
 from app.models.word_vocabulary import WordVocabulary
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm import GaussianHMM
@@ -26,13 +28,19 @@ Arrays = dict[str, np.ndarray[Any, Any]]
 @dataclass(frozen=True, slots=True)
 class LibraryWords:
     """vocabulary: V words; model: the default; space: of all symbols; correlated: None
-    where too few clips have words.
+    where too few clips have words; meanings: what WordNet knows
+    of its words (models.language.wordnet), put in by whoever fits.
     """
 
     vocabulary: WordVocabulary
     model: WordModel
     space: SymbolSpace
     correlated: CorrelatedSpace | None
+    meanings: Meanings = field(default_factory=Meanings)
+
+    def ask(self, texts: Iterable[str]) -> WordsAsked:
+        """What a query of words, phrases or sentences asks of this library."""
+        return understand(texts, self.vocabulary, self.meanings.related)
 
     def word_scores(self, statistics: FloatArray) -> FloatArray:
         """(N, V) how well each word tells each clip, 0..1, by its statistics (N, p)."""
@@ -66,7 +74,10 @@ class LibraryWords:
         parts: dict[str, WordModel | SymbolSpace | CorrelatedSpace | None]
         parts = {"model": self.model, "space": self.space, "correlated": self.correlated}
         arrays: Arrays = {}
-        meta: dict[str, Any] = {"words": list(self.vocabulary.words)}
+        meta: dict[str, Any] = {
+            "words": list(self.vocabulary.words),
+            "meanings": self.meanings.to_meta(),
+        }
         for part, record in parts.items():
             if record is not None:
                 own, meta[part] = record.to_arrays()
@@ -87,6 +98,7 @@ class LibraryWords:
             WordModel.from_arrays(_part(arrays, "model"), meta["model"]),
             SymbolSpace.from_arrays(_part(arrays, "space"), meta["space"]),
             correlated,
+            Meanings.from_meta(meta["meanings"]),
         )
 
 

@@ -1,17 +1,20 @@
 """Words as label vectors (Takano, section 2.2).
 
-A word is normalised (lower case, phrases joined by underscores); a vocabulary is the
-sorted list of those that a library carries; a clip's label set is a binary vector over it.
+A word is normalised (lower case, phrases joined by underscores) and brought to its base form
+(jumping, jumps: jump); a vocabulary is the sorted list of those that a library carries; a
+clip's label set is a binary vector over it.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from app.models.language.inflection import base_form, base_forms
+from app.models.language.lexicon import is_known
 from app.numerics.arrays import FloatArray
 
 _JOINERS = re.compile(r"[\s\-_]+")
@@ -31,19 +34,8 @@ def normalise_words(words: Iterable[str]) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True, slots=True)
-class WordQuery:
-    """A query over a vocabulary: label vector (V,) of ones and zeros, and the known and
-    unknown words in it, normalised.
-    """
-
-    vector: FloatArray
-    known: tuple[str, ...]
-    unknown: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
 class WordVocabulary:
-    """The words of a library, sorted, normalised; V of them."""
+    """The words of a library, sorted, normalised base forms; V of them."""
 
     words: tuple[str, ...]
 
@@ -52,23 +44,51 @@ class WordVocabulary:
 
     @classmethod
     def of(cls, label_sets: Iterable[Iterable[str]]) -> WordVocabulary:
-        """All words of the label sets."""
-        found = {word for labels in label_sets for word in normalise_words(labels)}
-        return cls(tuple(sorted(found)))
+        """All words of the label sets, each in its base form where that is a word too."""
+        carried = {word for labels in label_sets for word in normalise_words(labels)}
+
+        def is_word(word: str) -> bool:
+            return word in carried or is_known(word)
+
+        return cls(tuple(sorted({_label(word, is_word) for word in carried})))
+
+    def find(self, word: str) -> str | None:
+        """The vocabulary's word for a normalised one, inflected or not; None where it has none.
+
+        Both ways: *jumps* finds *jump*, and *jump* finds *jumping* where only that is carried.
+        """
+        found = base_form(word, self._columns().__contains__)
+        if found is not None:
+            return found
+        return next((ours for ours in self.words if word in base_forms(ours)), None)
 
     def label_matrix(self, label_sets: Sequence[Iterable[str]]) -> FloatArray:
         """(N, V) float64 of ones and zeros; words outside the vocabulary are ignored."""
-        columns = {word: column for column, word in enumerate(self.words)}
+        columns = self._columns()
         matrix = np.zeros((len(label_sets), len(self.words)))
+        found: dict[str, str | None] = {}
         for row, labels in enumerate(label_sets):
             for word in normalise_words(labels):
-                if word in columns:
-                    matrix[row, columns[word]] = 1.0
+                if word not in found:
+                    found[word] = self.find(word)
+                if (ours := found[word]) is not None:
+                    matrix[row, columns[ours]] = 1.0
         return matrix
 
-    def query(self, words: Iterable[str]) -> WordQuery:
-        """The label vector of a query; words that no clip carries are told as unknown."""
-        wanted = normalise_words(words)
-        known = tuple(word for word in wanted if word in self.words)
-        unknown = tuple(word for word in wanted if word not in self.words)
-        return WordQuery(self.label_matrix([known])[0], known, unknown)
+    def vector(self, weights: Mapping[str, float]) -> FloatArray:
+        """(V,) `weights` by word of the vocabulary, 0 elsewhere."""
+        columns = self._columns()
+        made = np.zeros(len(self.words))
+        for word, weight in weights.items():
+            made[columns[word]] = weight
+        return made
+
+    def _columns(self) -> dict[str, int]:
+        return {word: column for column, word in enumerate(self.words)}
+
+
+def _label(word: str, is_word: Callable[[str], bool]) -> str:
+    """The base form under which a carried word is counted; itself where there is no other."""
+    if is_known(word):
+        return word
+    return next(filter(is_word, base_forms(word)), word)

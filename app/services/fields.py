@@ -11,7 +11,7 @@ import unicodedata
 from collections.abc import Iterable, Mapping
 
 from app.errors import BadField, Place
-from app.models.word_vocabulary import normalise_words
+from app.models.word_vocabulary import normalise_word, normalise_words
 from app.motion.joint_roles import JointRole
 from app.motion.units import METRES_PER_UNIT
 
@@ -51,6 +51,16 @@ def words(value: str | Iterable[str] | None) -> tuple[str, ...] | None:
     if len(tidy) > MAX_WORDS:
         raise bad_field("words", f"must not be more than {MAX_WORDS}")
     return tidy
+
+
+def queried_words(value: Iterable[str]) -> tuple[str, ...]:
+    """The texts of a query by words, each a word, a phrase or a sentence; at least one."""
+    texts = tuple(filter(None, (text("words", part) for part in value)))
+    if not any(map(normalise_word, texts)):
+        raise bad_field("words", "at least one word is needed")
+    if sum(len(one.split()) for one in texts) > MAX_WORDS:
+        raise bad_field("words", f"must not be more than {MAX_WORDS}")
+    return texts
 
 
 def frame_rate(value: float | str | None) -> float | None:

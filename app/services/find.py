@@ -61,7 +61,10 @@ class MotionQuery:
 
 @dataclass(frozen=True, slots=True)
 class WordQuery:
-    """A search by words: mode "default" (kernel ridge) or "cca" (Takano's correlated space)."""
+    """A search by words: mode "default" (kernel ridge) or "cca" (Takano's correlated space).
+
+    words: words, phrases or sentences; one with a minus before it (-left) is to be left out.
+    """
 
     words: Sequence[str]
     mode: str = "default"
@@ -104,22 +107,20 @@ def find_words(lib: Library, query: WordQuery) -> Hits:
     """
     began = time.perf_counter()
     wanted = _filter(query.filter)
-    words = fields.words(query.words)
-    if not words:
-        raise fields.bad_field("words", "at least one word is needed")
+    texts = fields.queried_words(query.words)
     if query.mode not in WORD_MODES:
         raise fields.bad_field("mode", f"must be one of {', '.join(WORD_MODES)}")
     _check(query.limit, "clips")
     version = lib.index.catch_up(lib.store)
-    found = rank_by_words(lib, words, query.mode, wanted)
-    question = cursors.digest("words", *words, query.mode, wanted, found.model)
+    found = rank_by_words(lib, texts, query.mode, wanted)
+    question = cursors.digest("words", *texts, query.mode, wanted, found.model)
     page = _page(lib, found.ranking, question, query.limit, query.cursor, word_score)
     page = replace(
         page,
         method=query.mode,
         library_version=version,
-        unknown_words=found.unknown,
-        expanded={},
+        unknown_words=found.asked.unknown,
+        expanded=dict(found.asked.expanded),
     )
     return _timed(page, began)
 

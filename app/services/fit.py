@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from app.errors import NotEnoughLabels
+from app.models.language.wordnet import Meanings
 from app.models.library_words import fit_library_words
 from app.models.multilinear import fit_multilinear
 from app.models.recogniser import fit_recogniser
@@ -32,7 +33,16 @@ class Fit:
     figures: Meta
 
 
-def fit_library(store: Store) -> dict[str, Any]:
+@dataclass(frozen=True, slots=True)
+class Before:
+    """What a fit may build on: the meta of the model that is to be replaced, empty where there
+    is none, and whether new words may be looked up in WordNet (seconds)."""
+
+    meta: Meta
+    wordnet: bool
+
+
+def fit_library(store: Store, *, wordnet: bool = False) -> dict[str, Any]:
     """Fit and save every model that the labels allow; says what came of each.
 
     The result holds `library_version` and `library_size` of what was fitted on, and for each
@@ -40,7 +50,7 @@ def fit_library(store: Store) -> dict[str, Any]:
     that fails does not keep the others from being fitted.
     """
     training = read_training_set(store)
-    outcomes = {kind.value: _fit_one(store, training, kind) for kind in ModelKind}
+    outcomes = {kind.value: _fit_one(store, training, kind, wordnet) for kind in ModelKind}
     return {
         "library_version": training.library_version,
         "library_size": len(training),
@@ -48,9 +58,10 @@ def fit_library(store: Store) -> dict[str, Any]:
     }
 
 
-def _fit_one(store: Store, training: TrainingSet, kind: ModelKind) -> dict[str, Any]:
+def _fit_one(store: Store, training: TrainingSet, kind: ModelKind, wordnet: bool) -> dict[str, Any]:
+    before = Before(_meta_in_force(store, kind), wordnet)
     try:
-        fit = _FITS[kind](training)
+        fit = _FITS[kind](training, before)
     except NotEnoughLabels as reason:
         return {"outcome": "skipped", "reason": reason.detail}
     except Exception as defect:  # noqa: BLE001
@@ -69,8 +80,18 @@ def _fit_one(store: Store, training: TrainingSet, kind: ModelKind) -> dict[str, 
     return {"outcome": "fitted", "version": record.version, "figures": fit.figures}
 
 
-def _fit_words(training: TrainingSet) -> Fit:
+def _meta_in_force(store: Store, kind: ModelKind) -> Meta:
+    """The meta of the model that is to be replaced; empty where there is none."""
+    with store.read() as tx:
+        found = {model.kind: model.meta for model in models.list_current(tx)}
+    return dict(found.get(kind.value, {}).get("model", {}))
+
+
+def _fit_words(training: TrainingSet, before: Before) -> Fit:
     model = fit_library_words(training.symbols, training.statistics, training.label_sets)
+    known = Meanings.from_meta(before.meta.get("meanings", {}))
+    meanings = known.of(model.vocabulary.words, look_up=before.wordnet)
+    model = replace(model, meanings=meanings)
     arrays, meta = model.to_arrays()
     return Fit(arrays, meta, word_figures(training))
 
@@ -93,21 +114,21 @@ def recognition_figures(training: TrainingSet) -> dict[str, dict[str, float]]:
     )
 
 
-def _fit_recogniser(training: TrainingSet) -> Fit:
+def _fit_recogniser(training: TrainingSet, _: Before) -> Fit:
     model = fit_recogniser(training.samples, training.persons, training.tasks, training.groups)
     arrays, meta = model.to_arrays()
     figures: Meta = {"held_out": recognition_figures(training)}
     return Fit(arrays, meta, figures | {"unknown": unknown_figures(model)})
 
 
-def _fit_multilinear(training: TrainingSet) -> Fit:
+def _fit_multilinear(training: TrainingSet, _: Before) -> Fit:
     # Its held-out figures stand beside those of the default recogniser.
     model = fit_multilinear(training.samples, training.persons, training.tasks)
     arrays, meta = model.to_arrays()
     return Fit(arrays, meta, {})
 
 
-_FITS: dict[ModelKind, Callable[[TrainingSet], Fit]] = {
+_FITS: dict[ModelKind, Callable[[TrainingSet, Before], Fit]] = {
     ModelKind.WORDS: _fit_words,
     ModelKind.RECOGNISER: _fit_recogniser,
     ModelKind.MULTILINEAR: _fit_multilinear,

@@ -21,7 +21,7 @@ def clips():  # type: ignore[no-untyped-def]
 def test_both_modes_find_clips_for_a_word_and_words_for_a_clip(clips) -> None:  # type: ignore[no-untyped-def]
     symbols, statistics, words = clips
     model = fit_library_words(symbols, statistics, words)
-    query = model.vocabulary.query(["wave"]).vector
+    query = model.vocabulary.vector(model.ask(["waving"]).weights)
     points = model.space.place(symbols)
     default, cca = model.word_scores(statistics), model.word_scores_cca(points)
     for scores in (model.clip_scores(default, query), model.clip_scores_cca(points, query)):

@@ -33,11 +33,23 @@ def test_label_matrix() -> None:
     np.testing.assert_array_equal(vocabulary.label_matrix(labels), expected)
 
 
-def test_a_query_tells_its_unknown_words() -> None:
-    query = WordVocabulary(("left_leg", "walk")).query(["Left leg", "sprint", "sprint"])
-    assert query.known == ("left_leg",)
-    assert query.unknown == ("sprint",)
-    np.testing.assert_array_equal(query.vector, [1.0, 0.0])
+def test_forms_of_a_word_are_one_word() -> None:
+    labels = [["jumping", "walks"], ["jump"], ["waving"], ["bus"]]
+    vocabulary = WordVocabulary.of(labels)
+    assert vocabulary.words == ("bus", "jump", "walk", "wave")
+    np.testing.assert_array_equal(vocabulary.label_matrix(labels).argmax(axis=1), [1, 1, 3, 0])
+
+
+def test_a_word_is_found_in_any_form() -> None:
+    vocabulary = WordVocabulary(("flinging_about", "jump"))
+    assert vocabulary.find("jumps") == "jump"
+    assert vocabulary.find("fling_about") == "flinging_about"
+    assert vocabulary.find("sprint") is None
+
+
+def test_weights_become_a_vector() -> None:
+    vector = WordVocabulary(("jump", "run", "walk")).vector({"walk": 1.0, "run": 0.7})
+    np.testing.assert_array_equal(vector, [0.0, 0.7, 1.0])
 
 
 def test_an_empty_library_has_no_words() -> None:

@@ -83,7 +83,12 @@ class WordSearch(Incoming):
     """Find motions for words."""
 
     words: list[Annotated[str, Field(min_length=1, max_length=300)]] = Field(
-        min_length=1, max_length=100
+        min_length=1,
+        max_length=100,
+        description=(
+            "Words, phrases or sentences; inflected ones and words of the same meaning are "
+            "understood; one with a minus before it (-left) is to be left out."
+        ),
     )
     mode: Literal["default", "cca"] = "default"
     limit: Limit = 10
@@ -92,7 +97,10 @@ class WordSearch(Incoming):
 
     model_config = ConfigDict(
         json_schema_extra={
-            "examples": [{"words": ["walk"], "limit": 5}, {"words": ["kick"], "mode": "cca"}]
+            "examples": [
+                {"words": ["an old man waves with his left hand", "-tired"]},
+                {"words": ["kick"], "mode": "cca"},
+            ]
         }
     )
 

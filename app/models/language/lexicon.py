@@ -1,0 +1,231 @@
+"""A small lexicon of human movement, of our own writing (DESIGN 10, words).
+
+What annotators and searchers call the same: groups of words of one meaning, and which
+meaning is a kind of which. It lets a query find clips whose annotator chose another word
+(*sprint* -> *run*). Likeness of two words: 1 the same word, .9 the same meaning, .7 a kind
+of each other, .5 kinds of the same; 0 beyond.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+SAME_MEANING, KIND_OF, SIBLINGS = 0.9, 0.7, 0.5
+
+_MEANINGS = """
+move locomote travel
+walk stroll amble saunter wander pace
+march parade
+sneak tiptoe creep prowl stalk
+limp hobble shuffle
+stagger stumble totter reel wobble
+step stride
+sidestep sidewalk
+backward backwards reverse
+forward forwards ahead
+run sprint dash race gallop rush
+jog trot lope
+jump leap spring bound vault
+hop skip bounce
+dive plunge
+crawl scramble
+climb clamber ascend
+descend
+turn rotate revolve pivot veer
+spin twirl whirl pirouette
+roll tumble somersault cartwheel flip
+fall collapse drop slip trip
+stand upright
+sit seat perch
+lie recline rest sleep
+kneel genuflect
+squat crouch
+bend stoop lean
+bow curtsy
+rise arise
+lunge
+stretch extend reach
+lift raise hoist heave
+lower
+carry haul lug
+push shove press
+pull drag tug yank
+throw toss hurl fling pitch cast
+catch grab grasp seize grip
+hold clutch
+give hand_over
+take pick pick_up
+put place lay_down
+hit strike beat smash slap
+punch jab box hook uppercut
+kick boot punt
+block parry dodge duck evade
+fight combat spar brawl
+martial martial_arts karate kung_fu judo taekwondo
+slash cut slice chop hack
+stab thrust
+swordplay fence fencing sword
+shoot fire aim
+swing sway
+shake tremble shiver
+wave beckon
+greet salute hello hi welcome
+bye goodbye farewell byebye
+call summon
+point indicate gesture gesticulate
+guide lead direct show
+respond reply answer react
+nod
+clap applaud
+hug embrace cuddle
+kiss
+dance boogie groove
+breakdance breakdancing breaking b_boy
+salsa
+waltz
+ballet
+tango
+hip_hop hiphop
+swim paddle
+ride
+row
+drive steer
+play
+tennis
+golf
+baseball
+basketball dribble
+football soccer
+sing
+read
+write
+type typing
+eat chew
+drink sip
+wash scrub
+clean wipe
+sweep broom mop
+cook stir
+dig shovel
+knock tap
+open
+close shut
+look watch gaze stare
+search seek
+think ponder
+talk speak chat
+laugh giggle
+cry weep sob
+exercise workout train
+push_up press_up
+sit_up crunch
+jumping_jack star_jump
+stop halt pause
+start begin
+hand palm
+arm forearm
+leg shin thigh
+foot feet
+knee
+elbow
+shoulder
+head
+hip waist pelvis
+finger
+left
+right
+both two
+up upward upwards
+down downward downwards
+side sideways lateral
+high
+low
+fast quick rapid swift hasty
+slow leisurely
+angry furious mad enraged cross
+sad unhappy gloomy sorrowful depressed
+happy glad cheerful joyful merry
+proud
+afraid scared fearful frightened
+tired weary fatigued sleepy
+exhausted worn_out drained
+active energetic lively vigorous
+old elderly aged senior
+young youthful juvenile
+childish childlike childishly kiddish
+masculine manly male
+feminine womanly female ladylike
+drunk tipsy intoxicated
+normal neutral ordinary usual plain
+relaxed calm casual
+strong powerful
+weak feeble
+heavy
+light
+"""
+
+_KINDS = """
+move: walk run jump crawl climb dance swim turn
+walk: march sneak limp stagger step sidestep
+run: jog
+jump: hop dive
+turn: spin roll
+bend: bow squat lunge
+lift: carry
+hit: punch kick slash stab
+fight: martial swordplay punch kick block
+dance: breakdance salsa waltz ballet tango hip_hop
+gesture: wave point nod clap bow
+greet: wave bye
+wave: bye
+clean: wash sweep
+tired: exhausted
+sit: kneel
+"""
+
+
+@cache
+def _meaning_of() -> dict[str, int]:
+    return {
+        word: number
+        for number, line in enumerate(_MEANINGS.strip().splitlines())
+        for word in line.split()
+    }
+
+
+@cache
+def _broader() -> dict[int, frozenset[int]]:
+    """Meanings that each is a kind of."""
+    of: dict[int, set[int]] = {}
+    for line in _KINDS.strip().splitlines():
+        broad, kinds = line.split(":")
+        for kind in kinds.split():
+            of.setdefault(_meaning_of()[kind], set()).add(_meaning_of()[broad])
+    return {kind: frozenset(broad) for kind, broad in of.items()}
+
+
+def is_known(word: str) -> bool:
+    """Whether the lexicon has `word` (normalised)."""
+    return word in _meaning_of()
+
+
+def likeness(one: str, other: str) -> float:
+    """0..1, symmetric: how near two normalised words are in meaning; 0 for unknown ones."""
+    if one == other:
+        return 1.0
+    meaning = _meaning_of()
+    if one not in meaning or other not in meaning:
+        return 0.0
+    a, b = meaning[one], meaning[other]
+    if a == b:
+        return SAME_MEANING
+    above_a, above_b = _broader().get(a, frozenset()), _broader().get(b, frozenset())
+    if a in above_b or b in above_a:
+        return KIND_OF
+    return 0.0 if above_a.isdisjoint(above_b - _says_little()) else SIBLINGS
+
+
+@cache
+def _says_little() -> frozenset[int]:
+    """Meanings so broad that kinds of them need not be alike: walking is not jumping."""
+    return frozenset({_meaning_of()["move"]})
