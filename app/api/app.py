@@ -27,9 +27,12 @@ from app.api.routes import (
     imports,
     jobs,
     labels,
+    low_dimensional,
     models,
     recognize,
     search,
+    space,
+    suggestions,
     symbols,
 )
 from app.api.schemas.recognition import Recognize
@@ -49,6 +52,7 @@ Every failure is a problem (RFC 9457, `application/problem+json`).
 _ROUTES = (
     clips,
     clip_views,
+    low_dimensional,
     export,
     imports,
     jobs,
@@ -57,6 +61,8 @@ _ROUTES = (
     models,
     labels,
     symbols,
+    suggestions,
+    space,
     health,
 )
 

@@ -78,7 +78,7 @@ def _default_scores(
 def _cca_scores(
     lib: Library, model_id: str, model: LibraryWords, clip_ids: list[str], query: FloatArray
 ) -> tuple[list[str], FloatArray]:
-    ids, points = lib.symbol_points.of(model_id, clip_ids, partial(_place, lib, model))
+    ids, points = lib.symbol_points.of(model_id, clip_ids, partial(place_symbols, lib, model))
     return ids, model.clip_scores_cca(points, query) if ids else np.zeros(0)
 
 
@@ -92,7 +92,7 @@ def _predict(lib: Library, model: LibraryWords, clip_ids: list[str]) -> dict[str
     return dict(zip(statistics, predicted, strict=True))
 
 
-def _place(lib: Library, model: LibraryWords, clip_ids: list[str]) -> dict[str, FloatArray]:
+def place_symbols(lib: Library, model: LibraryWords, clip_ids: list[str]) -> dict[str, FloatArray]:
     """(d,) coordinates in the symbol space by clip id."""
     with lib.store.read() as tx:
         parts = {name: arrays.get_many(tx, clip_ids, name) for name in SYMBOL_ARRAYS}

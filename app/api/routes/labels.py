@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from typing import Annotated
+
+from fastapi import APIRouter, Query
 
 from app.api.deps import Lib, reads
 from app.api.openapi import refusals
-from app.api.schemas.labels import NamedCounts
-from app.services import labels
+from app.api.schemas.labels import NamedCounts, WordBeginning
+from app.services import labels, suggestions
 
 router = APIRouter(prefix="/v1", tags=["labels"], dependencies=[reads], responses=refusals())
 
@@ -25,6 +27,8 @@ def list_tasks(lib: Lib) -> NamedCounts:
 
 
 @router.get("/words")
-def list_words(lib: Lib) -> NamedCounts:
-    """Words and how many clips carry each."""
-    return NamedCounts.of(labels.words(lib))
+def list_words(lib: Lib, query: Annotated[WordBeginning, Query()]) -> NamedCounts:
+    """Words and how many clips carry each, by name; completions of `q`, the likeliest first."""
+    if query.q is None:
+        return NamedCounts.of(labels.words(lib))
+    return NamedCounts.of(suggestions.complete(lib, query.q, query.limit))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.api.schemas.base import Outgoing
+from app.api.schemas.base import Incoming, Outgoing
 
 
 class NamedCount(Outgoing):
@@ -24,3 +24,41 @@ class NamedCounts(Outgoing):
     def of(cls, counts: list[tuple[str, int]]) -> NamedCounts:
         """Labels as they go over the wire."""
         return cls(items=[NamedCount(name=name, count=count) for name, count in counts])
+
+
+class WordBeginning(Incoming):
+    """What was typed of a word."""
+
+    q: str | None = Field(
+        None, max_length=300, description="Only words that begin with this, or hold it."
+    )
+    limit: int = Field(10, ge=1, le=1000, description="Most completions, with `q`.")
+
+
+class WordSuggestion(Outgoing):
+    """A word that the model would give a clip."""
+
+    word: str
+    score: float = Field(ge=0, le=1)
+
+
+class WordSuggestions(Outgoing):
+    """Words that a clip does not carry yet, the likeliest first; `next` is always null."""
+
+    items: list[WordSuggestion]
+    next: str | None = None
+
+    @classmethod
+    def of(cls, found: tuple[tuple[str, float], ...]) -> WordSuggestions:
+        """Suggestions as they go over the wire."""
+        return cls(items=[WordSuggestion(word=word, score=score) for word, score in found])
+
+
+class AcceptedWords(Incoming):
+    """Which suggestions are right."""
+
+    words: list[str] | None = Field(
+        None,
+        max_length=100,
+        description="Words to add to the clip's; by default all suggestions likelier than not.",
+    )

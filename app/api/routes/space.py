@@ -1,0 +1,22 @@
+"""The map of all motions."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from app.api.deps import Lib, reads
+from app.api.openapi import refusals
+from app.api.schemas.space import SpaceMap, SpaceQuery
+from app.services import space
+
+router = APIRouter(prefix="/v1/space", tags=["search"], dependencies=[reads])
+
+
+@router.get("", responses=refusals(409))
+def get_space(lib: Lib, query: Annotated[SpaceQuery, Query()]) -> SpaceMap:
+    """Every ready clip as a point of the plane or of space, near to what it is like."""
+    dimensions = int(query.dimensions)
+    found = space.draw_map(lib, query.space, dimensions, query.as_filter(), query.limit)
+    return SpaceMap.of(query, found)

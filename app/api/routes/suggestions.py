@@ -1,0 +1,34 @@
+"""Words suggested for a clip."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query
+
+from app.api.bodies import require_json
+from app.api.deps import Lib, reads, writes
+from app.api.openapi import ClipId, refusals
+from app.api.schemas.clips import Clip
+from app.api.schemas.labels import AcceptedWords, WordSuggestions
+from app.services import suggestions
+
+router = APIRouter(prefix="/v1/clips/{clip_id}/word-suggestions", tags=["clips"])
+
+Most = Annotated[int, Query(ge=1, le=suggestions.MOST_SUGGESTED)]
+
+
+@router.get("", dependencies=[reads], responses=refusals(404, 409))
+def suggest_words(lib: Lib, clip_id: ClipId, limit: Most = 10) -> WordSuggestions:
+    """Words that the clip does not carry and that the word model would give it."""
+    return WordSuggestions.of(suggestions.suggest(lib, clip_id, limit))
+
+
+@router.post(
+    "/accept",
+    dependencies=[writes, Depends(require_json)],
+    responses=refusals(400, 404, 409, 413, 415),
+)
+def accept_words(lib: Lib, clip_id: ClipId, accepted: AcceptedWords) -> Clip:
+    """Give the clip suggested words, those named or all likely ones; the next fit learns them."""
+    return Clip.of(suggestions.accept(lib, clip_id, accepted.words))

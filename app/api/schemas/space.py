@@ -1,0 +1,83 @@
+"""The map of all motions."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from app.api.schemas.base import AnyOf, Incoming, Outgoing
+from app.search.filters import as_kept
+from app.services.space import MOST_POINTS, Map, SpaceName
+from app.store.clip_filter import ClipFilter
+
+
+class SpaceQuery(Incoming):
+    """Which map is wanted, and of which clips."""
+
+    space: SpaceName = Field(
+        "symbols", description="The motion symbol space, which is fitted, or motion vectors."
+    )
+    dimensions: Literal["2", "3"] = "2"
+    person: AnyOf | None = None
+    task: AnyOf | None = None
+    word: AnyOf | None = None
+    limit: int = Field(
+        10_000, ge=1, le=MOST_POINTS, description="Most points; of more clips, evenly picked ones."
+    )
+
+    def as_filter(self) -> ClipFilter:
+        """The conditions as the store takes them."""
+        return ClipFilter(
+            person=tuple(as_kept("person", value) for value in self.person or ()),
+            task=tuple(as_kept("task", value) for value in self.task or ()),
+            word=tuple(as_kept("word", value) for value in self.word or ()),
+        )
+
+
+class MapPoint(Outgoing):
+    """A clip on the map."""
+
+    clip_id: str
+    name: str
+    person: str | None
+    task: str | None
+    words: list[str]
+    point: list[float] = Field(description="2 or 3 coordinates.")
+
+
+class SpaceMap(Outgoing):
+    """Clips as points; `next` is always null."""
+
+    space: str
+    dimensions: int
+    variance_kept: float = Field(ge=0, le=1, description="Share of the space that the map shows.")
+    total: int = Field(description="Clips that pass the filter; more than there are items?")
+    library_version: int
+    model: str | None = Field(description="Id of the model that placed the symbols.")
+    items: list[MapPoint]
+    next: str | None = None
+
+    @classmethod
+    def of(cls, query: SpaceQuery, found: Map) -> SpaceMap:
+        """A map as it goes over the wire."""
+        points = found.points.tolist()
+        return cls(
+            space=query.space,
+            dimensions=int(query.dimensions),
+            variance_kept=min(found.kept, 1.0),
+            total=found.total,
+            library_version=found.library_version,
+            model=found.model,
+            items=[
+                MapPoint(
+                    clip_id=clip.id,
+                    name=clip.name,
+                    person=clip.person,
+                    task=clip.task,
+                    words=list(clip.words),
+                    point=point,
+                )
+                for clip, point in zip(found.clips, points, strict=True)
+            ],
+        )

@@ -1,0 +1,63 @@
+"""Words suggested for a clip by the word model, to accept; completions of a word's beginning."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.models.word_vocabulary import normalise_word
+from app.services import fields, labels
+from app.services.clips import get_clip, update_clip
+from app.services.library import Library
+from app.services.query import ready_clip
+from app.services.word_ranking import STATISTICS
+from app.store import arrays
+from app.store.clip_record import ClipRecord
+
+LIKELY = 0.5
+"""Score from which a suggestion is accepted unasked: likelier than not."""
+MOST_SUGGESTED = 100
+
+Suggestions = tuple[tuple[str, float], ...]
+"""(word, score 0..1), the best first."""
+
+
+def suggest(lib: Library, clip_id: str, limit: int = 10) -> Suggestions:
+    """Words that the clip does not carry and that the word model would give it.
+
+    Raises ClipNotFound, ClipNotReady, ModelNotFitted, BadField.
+    """
+    if not 1 <= limit <= MOST_SUGGESTED:
+        raise fields.bad_field("limit", f"must be from 1 to {MOST_SUGGESTED}")
+    clip = ready_clip(lib, clip_id)
+    model = lib.models.words(lib.store).model
+    with lib.store.read() as tx:
+        statistics = arrays.get_one(tx, clip_id, STATISTICS)
+    scores = model.word_scores(statistics[None])[0]
+    carried = model.vocabulary.label_matrix([clip.words])[0] > 0
+    order = np.argsort(-np.where(carried, -1.0, scores), kind="stable")
+    found = [(model.vocabulary.words[i], float(scores[i])) for i in order if not carried[i]]
+    return tuple(pair for pair in found[:limit] if pair[1] > 0)
+
+
+def accept(lib: Library, clip_id: str, words: Sequence[str] | None = None) -> ClipRecord:
+    """Give the clip these words besides its own; by default the suggestions that are LIKELY.
+
+    The next fit learns from them. Raises ClipNotFound, BadField; by default also ClipNotReady
+    and ModelNotFitted.
+    """
+    if words is None:
+        words = [word for word, score in suggest(lib, clip_id, MOST_SUGGESTED) if score >= LIKELY]
+    new = fields.words(words) or ()
+    carried = get_clip(lib, clip_id).words
+    return update_clip(lib, clip_id, {"words": (*carried, *new)})
+
+
+def complete(lib: Library, beginning: str, limit: int = 10) -> labels.Counts:
+    """(word, clips) of the library's words that begin with what was typed, or hold it, in that
+    order, the frequent ones first."""
+    typed = normalise_word(beginning)
+    found = [(word, count) for word, count in labels.words(lib) if typed in word]
+    found.sort(key=lambda pair: (not pair[0].startswith(typed), -pair[1], pair[0]))
+    return found[:limit]

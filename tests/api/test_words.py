@@ -1,0 +1,48 @@
+"""Words over HTTP: completed, suggested, accepted; sentences; the map of motions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import httpx2
+import pytest
+
+
+def test_a_sentence_is_understood(demo: httpx2.Client) -> None:
+    told = demo.post(
+        "/v1/search/words", json={"words": ["somebody is strolling", "-kicking", "zebra"]}
+    ).json()
+    assert told["unknown_words"] == ["zebra"]
+    assert told["items"][0]["clip"]["task"] == "walk"
+    assert "kick" not in {hit["clip"]["task"] for hit in told["items"]}
+
+
+def test_words_are_completed(demo: httpx2.Client) -> None:
+    every = demo.get("/v1/words").json()["items"]
+    first = every[0]["name"]
+    found = demo.get("/v1/words", params={"q": first[:2].upper(), "limit": 3}).json()["items"]
+    assert first in {item["name"] for item in found}
+    assert 1 <= len(found) <= 3
+
+
+def test_words_are_suggested_and_accepted(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    path = f"/v1/clips/{walk['id']}/word-suggestions"
+    found = demo.get(path, params={"limit": 2}).json()
+    assert len(found["items"]) == 2
+    assert found["next"] is None
+    same = demo.post(f"{path}/accept", json={"words": walk["words"][:1]})
+    assert same.status_code == 200
+    assert same.json()["words"] == walk["words"]
+    assert demo.get("/v1/clips/nobody/word-suggestions").status_code == 404
+    assert demo.post("/v1/clips/nobody/word-suggestions/accept", json={}).status_code == 404
+
+
+@pytest.mark.parametrize("space", ["symbols", "vectors"])
+def test_the_map_names_every_clip(demo: httpx2.Client, space: str) -> None:
+    told = demo.get("/v1/space", params={"space": space, "dimensions": 3}).json()
+    assert told["dimensions"] == 3
+    assert len(told["items"]) == told["total"] > 0
+    assert all(len(item["point"]) == 3 for item in told["items"])
+    only = demo.get("/v1/space", params={"space": space, "task": "walk"}).json()
+    assert {item["task"] for item in only["items"]} == {"walk"}
+    assert demo.get("/v1/space", params={"dimensions": 4}).status_code == 422
