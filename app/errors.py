@@ -180,6 +180,12 @@ class NotEnoughLabels(Conflict):
     code = "not_enough_labels"
 
 
+class NotEnoughKeyposes(Conflict):
+    """Too few keyposes were found to make this of them."""
+
+    code = "not_enough_keyposes"
+
+
 class LeaseLost(Conflict):
     """The job is over, or was given to another worker."""
 

@@ -7,12 +7,14 @@ neither form ever holds more than a few frames of them.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 from fastapi import Request
 from fastapi.responses import Response, StreamingResponse
 
+from app.numerics.arrays import FloatArray
 from app.services.views import MotionView
 
 OCTETS = "application/octet-stream"
@@ -42,9 +44,20 @@ def as_octets(view: MotionView) -> Response:
     return StreamingResponse(_octets(content), media_type=OCTETS, headers=headers)
 
 
-def as_json(view: MotionView) -> Response:
-    """The members of the schema `Motion`."""
-    return StreamingResponse(_json(view), media_type="application/json", headers={"Vary": "Accept"})
+def as_json(
+    view: MotionView,
+    more: Mapping[str, Any] | None = None,
+    curves: Mapping[str, FloatArray] | None = None,
+) -> Response:
+    """The members of the schema `Motion`, and more: small ones, and arrays as long as it."""
+    head = {
+        "frame_rate": view.frame_rate,
+        "joint_names": view.joint_names,
+        "parents": view.parents,
+        **(more or {}),
+    }
+    content = _json(head, {**(curves or {}), "positions": view.positions})
+    return StreamingResponse(content, media_type="application/json", headers={"Vary": "Accept"})
 
 
 def _octets(content: np.ndarray[tuple[int, ...], np.dtype[np.float32]]) -> Iterator[bytes]:
@@ -52,18 +65,16 @@ def _octets(content: np.ndarray[tuple[int, ...], np.dtype[np.float32]]) -> Itera
         yield content[start : start + FRAMES_AT_ONCE].tobytes()
 
 
-def _json(view: MotionView) -> Iterator[str]:
-    head = {
-        "frame_rate": view.frame_rate,
-        "joint_names": view.joint_names,
-        "parents": view.parents,
-    }
-    yield json.dumps(head)[:-1] + ', "positions": ['
-    for start in range(0, len(view.positions), FRAMES_AT_ONCE):
-        part = view.positions[start : start + FRAMES_AT_ONCE].astype(np.float64)
-        frames = json.dumps(np.round(part, DECIMALS).tolist(), separators=(",", ":"))
-        yield ("," if start else "") + frames[1:-1]
-    yield "]}"
+def _json(head: Mapping[str, Any], arrays: Mapping[str, FloatArray]) -> Iterator[str]:
+    yield json.dumps(head, allow_nan=False)[:-1]
+    for name, array in arrays.items():
+        yield f', "{name}": ['
+        for start in range(0, len(array), FRAMES_AT_ONCE):
+            part = array[start : start + FRAMES_AT_ONCE].astype(np.float64)
+            rows = json.dumps(np.round(part, DECIMALS).tolist(), separators=(",", ":"))
+            yield ("," if start else "") + rows[1:-1]
+        yield "]"
+    yield "}"
 
 
 def _weights(accept: str) -> Iterator[tuple[str, float]]:

@@ -7,11 +7,13 @@ from typing import Annotated
 
 import typer
 
+from app.analysis.low_dimensional import Basis
 from app.cli.output import AsJson, print_json
 from app.cli.settings import open_library
 from app.errors import BadField, Place
 from app.services import export as exporting
 from app.services.export import ExportFormat, ExportSkeleton
+from app.services.low_dimensional import Reduction
 
 
 def export(
@@ -30,12 +32,21 @@ def export(
     skeleton: Annotated[
         ExportSkeleton, typer.Option(help="The clip's own joints, or one body for all clips.")
     ] = ExportSkeleton.OWN,
+    dimensions: Annotated[
+        int | None, typer.Option(help="Drawn from so many dimensions of the clip's keyposes.")
+    ] = None,
+    basis: Annotated[
+        Basis, typer.Option(help="With --dimensions: keyposes, or as many poses at equal times.")
+    ] = Basis.KEYPOSE,
     as_json: AsJson = False,
 ) -> None:
     """Export a clip as BVH, GLB, NPZ or CSV."""
     wanted = format or _by_ending(output)
     with open_library(context) as lib:
-        file = exporting.export(lib, clip_id, wanted, fps=fps, skeleton=skeleton)
+        reduction = None if dimensions is None else Reduction(dimensions, basis)
+        file = exporting.export(
+            lib, clip_id, wanted, fps=fps, skeleton=skeleton, reduction=reduction
+        )
         path = output or Path(file.file_name)
         size = _write(path, file)
     if as_json:

@@ -4,6 +4,9 @@ BVH and GLB hold rotations. They are the file's own where it had some: its bytes
 again, in a child process, and turned and scaled as the clip was. Otherwise, and where the
 bytes no longer give the stored positions, they are solved from the positions. Joints whose
 bones change their length have translations; positions come back within 0.1 mm.
+
+A motion drawn from few dimensions has the 13 joint roles, and rotations solved from their
+positions; its bones change their length, on the canonical body they do not.
 """
 
 from __future__ import annotations
@@ -30,6 +33,7 @@ from app.numerics.arrays import FloatArray, IntArray
 from app.services import fields
 from app.services.ingest import order_for
 from app.services.library import Library
+from app.services.low_dimensional import Reduction, as_motion, reduce
 from app.services.query import ready_clip
 from app.services.stored_motion import load_motion
 from app.store.clip_record import ClipRecord
@@ -86,26 +90,36 @@ def export(
     *,
     fps: float | None = None,
     skeleton: ExportSkeleton | str = ExportSkeleton.OWN,
+    reduction: Reduction | None = None,
 ) -> Export:
     """A clip as a file of `format`, resampled by time to `fps` (default: its own rate).
 
-    Raises BadField, ClipNotFound, ClipNotReady.
+    reduction: drawn from few dimensions instead, on the 13 joint roles, by default at 30 Hz.
+    Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes.
     """
     wanted = _choice("format", ExportFormat, format)
     body = _choice("skeleton", ExportSkeleton, skeleton)
     clip = ready_clip(lib, clip_id)
     rate = _rate(lib, clip, fps)
-    motion = load_motion(lib, clip)
+    ending = "-canonical" if body is ExportSkeleton.CANONICAL else ""
+    if reduction is None:
+        motion = load_motion(lib, clip)
+    else:
+        found = reduce(lib, clip, reduction)
+        motion = as_motion(found, clip)
+        rate = motion.frame_rate if fps is None else rate
+        ending = f"-{found.basis.value}-{found.dimensions}dim{ending}"
     if body is ExportSkeleton.CANONICAL:
         blocks = _of_animation(wanted, on_canonical_body(_resampled(motion, rate)), clip)
-    elif wanted in (ExportFormat.BVH, ExportFormat.GLB):
-        blocks = _of_animation(wanted, _own_animation(lib, clip, motion, rate), clip)
-    else:
+    elif wanted in (ExportFormat.NPZ, ExportFormat.CSV):
         motion = _resampled(motion, rate)
         blocks = _of_positions(
             wanted, _Positions(motion.names, motion.parents, motion.positions, rate)
         )
-    ending = "-canonical" if body is ExportSkeleton.CANONICAL else ""
+    elif reduction is None:
+        blocks = _of_animation(wanted, _own_animation(lib, clip, motion, rate), clip)
+    else:
+        blocks = _of_animation(wanted, _solved(motion, rate), clip)
     return Export(f"{_safe_stem(clip)}{ending}.{wanted.value}", blocks)
 
 
@@ -142,6 +156,10 @@ def _own_animation(lib: Library, clip: ClipRecord, motion: Motion, rate: float) 
         animation = animation_of_recording(recording, motion) if recording else None
         if animation is not None:
             return animation.resampled(rate)
+    return _solved(motion, rate)
+
+
+def _solved(motion: Motion, rate: float) -> Animation:
     motion = _resampled(motion, rate)
     return animation_of_positions(motion.names, motion.parents, motion.positions, rate)
 

@@ -9,20 +9,18 @@ time, so that a kick shows the kick. No scripts, no outside references: safe to 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from xml.sax.saxutils import escape
 
 import numpy as np
 
 from app.motion.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
+from app.services.stick_figure import GROUND, LEFT, PAPER, RIGHT, TRUNK, text, widest_direction
 
 WIDTH, HEIGHT = 320, 180
 MARGIN = 12.0
 """Pixels left free on each side."""
 POSES = 5
 """Figures in a picture; fewer where the clip has fewer frames."""
-EXTENT_WEIGHT = 0.05
-"""Of how far the body extends, beside how far it moves: settles the side of a still one."""
 
 _R = JointRole
 _LIMBS: tuple[tuple[str, tuple[JointRole, ...]], ...] = (
@@ -32,7 +30,7 @@ _LIMBS: tuple[tuple[str, tuple[JointRole, ...]], ...] = (
     ("near", (_R.HIPS, _R.RIGHT_KNEE, _R.RIGHT_FOOT)),
     ("near", (_R.NECK, _R.RIGHT_SHOULDER, _R.RIGHT_ELBOW, _R.RIGHT_HAND)),
 )
-_COLOURS = {"far": "#c2622d", "trunk": "#2b3440", "near": "#1f6f8b"}
+_COLOURS = {"far": LEFT, "trunk": TRUNK, "near": RIGHT}
 _COLUMN = {role: index for index, role in enumerate(SUN_ROLES)}
 
 
@@ -43,7 +41,8 @@ def thumbnail(positions: FloatArray, title: str) -> str:
     the right ones blue.
     """
     chosen = _spread(positions)
-    flat = _project(chosen, _widest_direction(positions))
+    hips = positions[:, _COLUMN[_R.HIPS]]
+    flat = _project(chosen, widest_direction(_around_hips(positions), hips[-1] - hips[0]))
     placed, head, ground = _place(flat)
     figures = "".join(
         _figure(points, head, opacity)
@@ -52,9 +51,9 @@ def thumbnail(positions: FloatArray, title: str) -> str:
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
         f'width="{WIDTH}" height="{HEIGHT}" role="img">'
-        f"<title>{escape(_printable(title))}</title>"
-        f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#f6f4ef"/>'
-        f'<path d="M0 {ground:.1f}H{WIDTH}" stroke="#d5cfc2" stroke-width="1.5"/>'
+        f"<title>{text(title)}</title>"
+        f'<rect width="{WIDTH}" height="{HEIGHT}" fill="{PAPER}"/>'
+        f'<path d="M0 {ground:.1f}H{WIDTH}" stroke="{GROUND}" stroke-width="1.5"/>'
         f'<g fill="none" stroke-width="3" stroke-linecap="round" stroke-linejoin="round">'
         f"{figures}</g></svg>"
     )
@@ -75,22 +74,6 @@ def _around_hips(positions: FloatArray) -> FloatArray:
     """(frames, 13, 3) metres from the hips."""
     hips = positions[:, [_COLUMN[_R.HIPS]], :]
     return np.asarray(positions - hips, dtype=np.float64)
-
-
-def _widest_direction(positions: FloatArray) -> FloatArray:
-    """(2,) horizontal unit vector (x, z) along which the body moves most, and extends."""
-    around = _around_hips(positions)[:, :, [0, 2]]
-    moving = (around - around.mean(axis=0)).reshape(-1, 2)
-    still = around.reshape(-1, 2)
-    _, vectors = np.linalg.eigh(moving.T @ moving + EXTENT_WEIGHT * (still.T @ still))
-    direction: FloatArray = vectors[:, -1]
-    hips = positions[:, _COLUMN[_R.HIPS]]
-    travelled = (hips[-1] - hips[0])[[0, 2]]
-    # Whoever travels goes to the right; else the sign is fixed, so that pictures are stable.
-    sign = float(direction @ travelled)
-    if abs(sign) < 0.05:
-        sign = float(direction[np.argmax(np.abs(direction))])
-    return direction if sign >= 0 else -direction
 
 
 def _project(poses: FloatArray, direction: FloatArray) -> FloatArray:
@@ -131,8 +114,3 @@ def _line(points: FloatArray, roles: tuple[JointRole, ...]) -> str:
 
 def _opacities(count: int) -> Iterator[float]:
     return (0.4 + 0.6 * (i + 1) / count for i in range(count))
-
-
-def _printable(title: str) -> str:
-    """Without the characters that XML does not allow."""
-    return "".join(c for c in title if c.isprintable())

@@ -34,6 +34,10 @@ The clip as an attachment, Y up. Positions come back within 0.1 mm.
 
 `skeleton=canonical` plays the movement on one body of 18 joints, 1.7 m tall, whatever the
 clip's: bones point where the clip's do, and feet that stand stay on the floor.
+
+`dimensions` draws the motion from few dimensions (see `/low-dimensional`), on the 13 joint
+roles and by default at 30 frames a second. Rotations are solved; bones change their length a
+little, so joints have six channels, unless `skeleton=canonical`.
 """
 
 
@@ -54,7 +58,14 @@ clip's: bones point where the clip's do, and feet that stand stay on the floor.
 )
 def get_export(lib: Lib, clip_id: ClipId, wanted: Annotated[ExportQuery, Query()]) -> Response:
     """The clip as a BVH, GLB, NPZ or CSV file."""
-    file = export(lib, clip_id, wanted.format, fps=wanted.fps, skeleton=wanted.skeleton)
+    file = export(
+        lib,
+        clip_id,
+        wanted.format,
+        fps=wanted.fps,
+        skeleton=wanted.skeleton,
+        reduction=wanted.reduction_if_any(),
+    )
     return StreamingResponse(
         iter(file.blocks),
         media_type=MEDIA_TYPES[wanted.format],

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.api.schemas.base import Incoming
+from app.api.schemas.low_dimensional import ReductionFields
 from app.services.export import MAX_FPS, ExportFormat, ExportSkeleton
 
 
-class ExportQuery(Incoming):
-    """Format, frame rate and body of an exported clip."""
+class ExportQuery(ReductionFields):
+    """Format, frame rate and body of an exported clip, and from how many dimensions it is drawn."""
 
     format: ExportFormat = Field(
         description="BVH (centimetres), GLB (glTF 2.0), NPZ (NumPy) or CSV; metres but for BVH."

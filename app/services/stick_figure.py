@@ -1,0 +1,68 @@
+"""What pictures of bodies share: colours, the side that shows most, text that XML allows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from xml.sax.saxutils import escape
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray, IntArray
+
+LEFT, TRUNK, RIGHT = "#c2622d", "#2b3440", "#1f6f8b"
+"""Of limbs: left ones are orange, right ones blue."""
+PAPER, GROUND = "#f6f4ef", "#d5cfc2"
+
+EXTENT_WEIGHT = 0.05
+"""Of how far the body extends, beside how far it moves: settles the side of a still one."""
+STAYS = 0.05
+"""Metres along the picture's x axis below which nobody is said to travel."""
+
+
+def widest_direction(around: FloatArray, travelled: FloatArray) -> FloatArray:
+    """(2,) horizontal unit vector (x, z) along which a body moves most, and extends.
+
+    around: (frames, joints, 3) metres from the hips; travelled: (3,) from the first to the
+    last frame. Whoever travels goes to the right; else the sign is fixed, so that pictures
+    are stable.
+    """
+    flat = np.asarray(around, dtype=np.float64)[:, :, [0, 2]]
+    moving = (flat - flat.mean(axis=0)).reshape(-1, 2)
+    still = flat.reshape(-1, 2)
+    _, vectors = np.linalg.eigh(moving.T @ moving + EXTENT_WEIGHT * (still.T @ still))
+    direction: FloatArray = vectors[:, -1]
+    sign = float(direction @ travelled[[0, 2]])
+    if abs(sign) < STAYS:
+        sign = float(direction[np.argmax(np.abs(direction))])
+    return direction if sign >= 0 else -direction
+
+
+def limbs(parents: IntArray) -> list[list[int]]:
+    """A skeleton as lines: each from a joint that branches, or a root, to the next or an end.
+
+    parents: (joints,), -1 for a root.
+    """
+    children: dict[int, list[int]] = {}
+    for joint, parent in enumerate(parents.tolist()):
+        children.setdefault(parent, []).append(joint)
+    lines = []
+    for start, after in children.items():
+        if start < 0 or (len(after) == 1 and parents[start] >= 0):
+            continue  # above the roots, or within a line
+        for joint in after:
+            line = [start, joint]
+            while len(children.get(line[-1], ())) == 1:
+                line.append(children[line[-1]][0])
+            lines.append(line)
+    return lines
+
+
+def colour(line: Sequence[int], names: Sequence[str]) -> str:
+    """Of a line, by the name of its last joint (`left_...`, `right_...`); the trunk's else."""
+    name = names[line[-1]] if names else ""
+    return LEFT if name.startswith("left_") else RIGHT if name.startswith("right_") else TRUNK
+
+
+def text(value: str) -> str:
+    """Without the characters that XML does not allow, and escaped."""
+    return escape("".join(c for c in value if c.isprintable()))
