@@ -98,6 +98,9 @@ class Settings(BaseSettings):
     refit_growth: float = Field(
         0.1, ge=0, description="Part by which the library must have changed to be fitted again."
     )
+    recognize_persons: bool = Field(
+        True, description="Recognise people by how they move; off: no model holds a person."
+    )
     wordnet: bool = Field(
         True, description="Look words' neighbours up in WordNet at a fit, where it is installed."
     )

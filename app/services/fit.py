@@ -14,9 +14,11 @@ from app.models.multilinear import fit_multilinear
 from app.models.recogniser import fit_recogniser
 from app.models.recognition_figures import held_out_recognition_figures, unknown_figures
 from app.models.word_figures import held_out_word_figures
-from app.services.model_shelf import ModelKind
+from app.services.model_shelf import ModelKind, holds_persons
+from app.services.models import enqueue_fit
 from app.services.training import TrainingSet, read_training_set
-from app.store import models
+from app.store import labels, models
+from app.store.engine import Tx
 from app.store.store import Store
 
 _log = logging.getLogger(__name__)
@@ -42,14 +44,15 @@ class Before:
     wordnet: bool
 
 
-def fit_library(store: Store, *, wordnet: bool = False) -> dict[str, Any]:
+def fit_library(store: Store, *, wordnet: bool = False, persons: bool = True) -> dict[str, Any]:
     """Fit and save every model that the labels allow; says what came of each.
 
     The result holds `library_version` and `library_size` of what was fitted on, and for each
     kind its `outcome`: "fitted" with version and figures, or "skipped" with the reason. A model
-    that fails does not keep the others from being fitted.
+    that fails does not keep the others from being fitted. wordnet: look new words up there
+    (seconds); persons: whether persons may be recognised.
     """
-    training = read_training_set(store)
+    training = replace(read_training_set(store), is_anonymous=not persons)
     outcomes = {kind.value: _fit_one(store, training, kind, wordnet) for kind in ModelKind}
     return {
         "library_version": training.library_version,
@@ -69,6 +72,9 @@ def _fit_one(store: Store, training: TrainingSet, kind: ModelKind, wordnet: bool
         _log.exception("the %s model could not be fitted", kind.value)
         return {"outcome": "failed", "reason": f"{type(defect).__name__}: {defect}"}
     with store.write() as tx:
+        if holds_persons(kind) and _is_someone_gone(tx, training):
+            enqueue_fit(tx)
+            return {"outcome": "skipped", "reason": "A person was removed during the fit."}
         record = models.save(
             tx,
             kind.value,
@@ -78,6 +84,11 @@ def _fit_one(store: Store, training: TrainingSet, kind: ModelKind, wordnet: bool
             library_size=len(training),
         )
     return {"outcome": "fitted", "version": record.version, "figures": fit.figures}
+
+
+def _is_someone_gone(tx: Tx, training: TrainingSet) -> bool:
+    """Whether a person of the training set is in the library no more."""
+    return not set(filter(None, training.persons)) <= dict(labels.persons(tx)).keys()
 
 
 def _meta_in_force(store: Store, kind: ModelKind) -> Meta:

@@ -14,6 +14,6 @@ def fit_in_child(settings: Settings) -> dict[str, Any]:
 
     store = Store.open(settings.database, settings.files_dir)
     try:
-        return fit_library(store, wordnet=settings.wordnet)
+        return fit_library(store, wordnet=settings.wordnet, persons=settings.recognize_persons)
     finally:
         store.close()

@@ -35,6 +35,14 @@ class ModelKind(StrEnum):
     """Who does what, with an honest unknown."""
 
 
+_WITHOUT_PERSONS = frozenset({ModelKind.WORDS})
+
+
+def holds_persons(kind: ModelKind) -> bool:
+    """Whether a model of this kind tells persons apart, so that it must go with any of them."""
+    return kind not in _WITHOUT_PERSONS
+
+
 @dataclass(frozen=True, slots=True)
 class Fitted(Generic[Model]):
     """A model in force; id: of its record, another one after each fit."""
@@ -76,10 +84,12 @@ class ModelShelf:
         build: Callable[[Mapping[str, FloatArray], Mapping[str, Any]], Model],
     ) -> Fitted[Model]:
         with store.read() as tx:
-            version = stored.current_versions(tx).get(kind.value)
+            in_force = stored.current_ids(tx).get(kind.value)
             with self._lock:
                 held = self._loaded.get(kind)
-            if held is not None and held.version == version:
+                if held is not None and held.id != in_force:
+                    del self._loaded[kind]  # nothing that was removed is kept in memory
+            if held is not None and held.id == in_force:
                 return held
             record = stored.current(tx, kind.value)
             arrays = stored.load_arrays(tx, record.id)

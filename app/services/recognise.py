@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from app.errors import ModelNotFitted
 from app.models.multilinear import recognise_multilinear
 from app.models.recogniser import recognise as recognise_by_default
-from app.models.recognition import Answer, Recognition
+from app.models.recognition import NO_ANSWER, Answer, Recognition
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.library import Library
@@ -82,8 +82,13 @@ def _who_does_what(lib: Library, sample: FloatArray, query: RecogniseQuery) -> R
     person = fields.text("known_person", query.known_person)
     task = fields.text("known_task", query.known_task)
     if query.method == "multilinear":
-        return recognise_multilinear(lib.models.multilinear(lib.store).model, sample, person, task)
-    return recognise_by_default(lib.models.recogniser(lib.store).model, sample, person, task)
+        model = lib.models.multilinear(lib.store).model
+        found = recognise_multilinear(model, sample, person, task)
+    else:
+        found = recognise_by_default(lib.models.recogniser(lib.store).model, sample, person, task)
+    if not lib.settings.recognize_persons:
+        return replace(found, person=NO_ANSWER)
+    return found
 
 
 def words_of(lib: Library, statistics: FloatArray) -> WordScores:

@@ -25,7 +25,7 @@ class TrainingSet:
     """N ready clips, sorted by id, at a library version.
 
     groups: (N,) clips of one recording share a name; symbols: N; statistics: (N, 131);
-    samples: (N, 1250).
+    samples: (N, 1250); is_anonymous: persons are not told, since none is to be recognised.
     """
 
     library_version: int
@@ -34,14 +34,15 @@ class TrainingSet:
     symbols: tuple[GaussianHMM, ...]
     statistics: FloatArray
     samples: FloatArray
+    is_anonymous: bool = False
 
     def __len__(self) -> int:
         return len(self.clips)
 
     @property
     def persons(self) -> Sequence[str | None]:
-        """(N,) who moves."""
-        return [clip.person for clip in self.clips]
+        """(N,) who moves; None of all where the set is anonymous."""
+        return [None if self.is_anonymous else clip.person for clip in self.clips]
 
     @property
     def tasks(self) -> Sequence[str | None]:

@@ -93,6 +93,19 @@ def patch(tx: Tx, clip_id: str, changes: ClipChanges) -> ClipRecord:
     return get(tx, clip_id)
 
 
+def forget_person(tx: Tx, person: str) -> tuple[str, ...]:
+    """Takes a person's label from all their clips; their ids."""
+    theirs = clips.c.person == person
+    ids = tuple(tx.execute(select(clips.c.id).where(theirs).order_by(clips.c.id)).scalars())
+    tx.execute(
+        update(clips)
+        .where(theirs, clips.c.state == ClipState.READY.value)
+        .values(changed_version=library.bump(tx))
+    )
+    tx.execute(update(clips).where(theirs).values(person=None))
+    return ids
+
+
 def requeue(tx: Tx, clip_id: str) -> ClipRecord:
     """Back to queued, for another analysis; not searchable until that is done."""
     _enter(tx, clip_id, ClipState.QUEUED, error=None)

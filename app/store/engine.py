@@ -79,6 +79,20 @@ class Database:
                 tx.execute(select(func.pg_advisory_xact_lock(MIGRATION_LOCK)))
             yield tx
 
+    def erase_traces(self) -> None:
+        """Writes the log of changes into the database and empties it, as far as no one reads it.
+
+        SQLite's; what is deleted is overwritten there (secure_delete). Elsewhere the
+        database's own vacuuming does it.
+        """
+        if not self._is_sqlite:
+            return
+        connection = self.engine.raw_connection()
+        try:
+            connection.cursor().execute("PRAGMA wal_checkpoint(TRUNCATE)")
+        finally:
+            connection.close()
+
     def close(self) -> None:
         """Gives back all connections."""
         self.engine.dispose()
@@ -138,6 +152,7 @@ def _open_sqlite(url: URL, common: dict[str, Any], *, foreign_keys: bool) -> Eng
     def _prepare(connection: sqlite3.Connection, _record: object) -> None:
         connection.isolation_level = None  # we say BEGIN ourselves, below
         connection.execute("PRAGMA synchronous = FULL")
+        connection.execute("PRAGMA secure_delete = ON")  # who is forgotten leaves no trace
         connection.execute(f"PRAGMA foreign_keys = {'ON' if foreign_keys else 'OFF'}")
         _ensure_wal(connection)
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
 from numpy.typing import NDArray
-from sqlalchemy import RowMapping, and_, delete, func, insert, select
+from sqlalchemy import RowMapping, Select, and_, delete, func, insert, select
 
 from app.errors import ModelNotFitted
 from app.store import library
@@ -77,21 +77,21 @@ def current(tx: Tx, kind: str) -> ModelRecord:
     return _to_record(row)
 
 
-def current_versions(tx: Tx) -> dict[str, int]:
-    """The version in force by kind: cheap, to see whether a loaded model is out of date."""
-    query = select(models.c.kind, func.max(models.c.version)).group_by(models.c.kind)
-    return {kind: version for kind, version in tx.execute(query)}  # noqa: C416 - rows to a dict
+def current_ids(tx: Tx) -> dict[str, str]:
+    """The id in force by kind: cheap, to see whether a loaded model is out of date."""
+    query = _in_force(select(models.c.kind, models.c.id))
+    return {kind: model_id for kind, model_id in tx.execute(query)}  # noqa: C416 - rows to a dict
 
 
 def list_current(tx: Tx) -> tuple[ModelRecord, ...]:
     """The models in force, by kind."""
-    newest = select(models.c.kind, func.max(models.c.version)).group_by(models.c.kind).subquery()
-    query = (
-        select(models)
-        .join(newest, and_(models.c.kind == newest.c[0], models.c.version == newest.c[1]))
-        .order_by(models.c.kind)
-    )
+    query = _in_force(select(models)).order_by(models.c.kind)
     return tuple(_to_record(row) for row in tx.execute(query).mappings())
+
+
+def remove(tx: Tx, kinds: Collection[str]) -> int:
+    """Removes every version of the models of these kinds; how many there were."""
+    return tx.execute(delete(models).where(models.c.kind.in_(kinds))).rowcount
 
 
 def load_arrays(tx: Tx, model_id: str) -> dict[str, NDArray[Any]]:
@@ -100,6 +100,12 @@ def load_arrays(tx: Tx, model_id: str) -> dict[str, NDArray[Any]]:
         model_arrays.c.name, model_arrays.c.dtype, model_arrays.c.shape, model_arrays.c.data
     ).where(model_arrays.c.model_id == model_id)
     return {name: from_blob(dtype, shape, data) for name, dtype, shape, data in tx.execute(query)}
+
+
+def _in_force(query: Select[Any]) -> Select[Any]:
+    newest = select(models.c.kind, func.max(models.c.version)).group_by(models.c.kind).subquery()
+    is_newest = and_(models.c.kind == newest.c[0], models.c.version == newest.c[1])
+    return query.join(newest, is_newest)
 
 
 def _to_record(row: RowMapping) -> ModelRecord:

@@ -52,6 +52,10 @@ class Store:
                 self.files.remove(sha256)
         return swept + len(orphans)
 
+    def erase_traces(self) -> None:
+        """Writes what was removed over, also where the database keeps its latest changes."""
+        self.database.erase_traces()
+
     def close(self) -> None:
         """Gives back all connections."""
         self.database.close()

@@ -20,7 +20,7 @@ from typing import Any
 from app.config import Settings
 from app.errors import LeaseLost, NotFound, StorageError
 from app.logs import job_id
-from app.services import models, reanalysis
+from app.services import models, persons, reanalysis
 from app.services.library import Library
 from app.store import clips, leases, outcomes, queue
 from app.store.clip_record import ClipRecord
@@ -52,6 +52,8 @@ def run_worker(
     lib = Library.open(settings)
     try:
         swept = lib.store.sweep_files()
+        if not settings.recognize_persons:
+            persons.remove_person_models(lib)
         outdated = reanalysis.requeue_outdated(lib)
         _log.info("worker begins", extra={"fields": {"swept_files": swept, "outdated": outdated}})
         worker = Worker(lib)

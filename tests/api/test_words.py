@@ -46,3 +46,9 @@ def test_the_map_names_every_clip(demo: httpx2.Client, space: str) -> None:
     only = demo.get("/v1/space", params={"space": space, "task": "walk"}).json()
     assert {item["task"] for item in only["items"]} == {"walk"}
     assert demo.get("/v1/space", params={"dimensions": 4}).status_code == 422
+
+
+def test_forgetting_nobody_is_told(demo: httpx2.Client) -> None:
+    answer = demo.delete("/v1/persons/nobody at all")
+    assert answer.status_code == 404
+    assert answer.headers["content-type"].startswith("application/problem+json")

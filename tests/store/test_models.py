@@ -23,7 +23,7 @@ def save(tx: Tx, kind: str, value: float) -> ModelRecord:
 def test_nothing_is_fitted_at_first(store: Store) -> None:
     with store.read() as tx:
         assert models.list_current(tx) == ()
-        assert models.current_versions(tx) == {}
+        assert models.current_ids(tx) == {}
         with pytest.raises(ModelNotFitted, match="words"):
             models.current(tx, "words")
 
@@ -35,7 +35,7 @@ def test_the_newest_is_in_force(store: Store) -> None:
         newest = save(tx, "words", 2.0)
     with store.read() as tx:
         assert models.current(tx, "words") == newest
-        assert models.current_versions(tx) == {"multilinear": 1, "words": 2}
+        assert models.current_ids(tx) == {"multilinear": other.id, "words": newest.id}
         assert models.list_current(tx) == (other, newest)
         weights = models.load_arrays(tx, newest.id)["weights"]
     np.testing.assert_array_equal(weights, np.full((2, 3), 2.0))
@@ -49,6 +49,15 @@ def test_old_ones_go_with_their_arrays(store: Store) -> None:
             save(tx, "words", value)
         count = tx.execute(select(func.count()).select_from(model_arrays)).scalar_one()
     assert count == models.KEPT_VERSIONS
+
+
+def test_kinds_are_removed_with_all_versions(store: Store) -> None:
+    with store.write() as tx:
+        save(tx, "words", 1.0)
+        save(tx, "words", 2.0)
+        kept = save(tx, "multilinear", 3.0)
+        assert models.remove(tx, ["words", "recogniser"]) == 2
+        assert models.list_current(tx) == (kept,)
 
 
 def test_figures_that_are_no_numbers_are_refused(store: Store) -> None:

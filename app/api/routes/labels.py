@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Path, Query
 
-from app.api.deps import Lib, reads
+from app.api.deps import Lib, reads, writes
 from app.api.openapi import refusals
 from app.api.schemas.labels import NamedCounts, WordBeginning
-from app.services import labels, suggestions
+from app.services import labels, persons, suggestions
 
 router = APIRouter(prefix="/v1", tags=["labels"], dependencies=[reads], responses=refusals())
 
@@ -18,6 +18,13 @@ router = APIRouter(prefix="/v1", tags=["labels"], dependencies=[reads], response
 def list_persons(lib: Lib) -> NamedCounts:
     """Persons and how many clips each has."""
     return NamedCounts.of(labels.persons(lib))
+
+
+@router.delete("/persons/{name}", status_code=204, dependencies=[writes], responses=refusals(404))
+def forget_person(lib: Lib, name: Annotated[str, Path(max_length=300)]) -> None:
+    """Take a person's label from all clips, and remove every model that holds them at once;
+    they are fitted anew in the background. The clips stay, and so do names of files."""
+    persons.forget_person(lib, name)
 
 
 @router.get("/tasks")
