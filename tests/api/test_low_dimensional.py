@@ -1,0 +1,160 @@
+"""Low-dimensional motions and pictures that move, over HTTP and in a browser."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import httpx2
+import numpy as np
+import pytest
+
+from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
+from tests.api.conftest import assert_problem
+from tests.bodies import standing
+from tests.formats.arrays import npz
+from tests.live import Live
+
+NAMES = np.array([role.value for role in SUN_ROLES])
+PARENTS = np.array(SUN_PARENTS)
+
+
+@pytest.fixture
+def wave(demo: httpx2.Client) -> dict[str, Any]:
+    clip: dict[str, Any] = demo.get("/v1/clips", params={"task": "wave"}).json()["items"][0]
+    return clip
+
+
+def test_the_answer_tells_motion_model_and_cost(demo: httpx2.Client, wave: dict[str, Any]) -> None:
+    path = f"/v1/clips/{wave['id']}/low-dimensional"
+    told = demo.get(path, params={"dimensions": 2}).json()
+    frames = len(told["positions"])
+    assert (told["basis"], told["dimensions"], told["frame_rate"]) == ("keypose", 2, 30)
+    assert np.array(told["positions"]).shape == (frames, 13, 3)
+    assert np.array(told["eigen_motion"]).shape == (frames, 3)
+    assert len(told["variance_kept"]) == len(told["error"]) == told["poses"]
+    assert told["variance_kept"][-1] == pytest.approx(1)
+    assert [set(pose) for pose in told["eigen_poses"]] == [{"clip_id", "time", "point"}] * told[
+        "poses"
+    ]
+    at = round(told["eigen_poses"][0]["time"] * 30)
+    assert told["eigen_motion"][at] == pytest.approx(told["eigen_poses"][0]["point"], abs=1e-5)
+    assert told["implausible"]["frames"] >= len(told["implausible"]["faults"])
+
+
+def test_octets_hold_the_same_positions(demo: httpx2.Client, wave: dict[str, Any]) -> None:
+    path = f"/v1/clips/{wave['id']}/low-dimensional"
+    params = {"basis": "uniform", "poses": "6", "fps": "20"}
+    told = demo.get(path, params=params).json()
+    answer = demo.get(path, params=params, headers={"Accept": "application/octet-stream"})
+    shape = [int(size) for size in answer.headers["x-shape"].split(",")]
+    assert answer.headers["x-frame-rate"] == "20"
+    octets = np.frombuffer(answer.content, "<f4").reshape(shape)
+    assert np.abs(octets - np.array(told["positions"])).max() < 1e-5
+
+
+def test_models_of_other_clips(demo: httpx2.Client, wave: dict[str, Any]) -> None:
+    waves = demo.get("/v1/clips", params={"task": "wave"}).json()["items"]
+    ids = ",".join(clip["id"] for clip in waves)
+    path = f"/v1/clips/{wave['id']}/low-dimensional"
+    told = demo.get(path, params={"model_clips": ids, "dimensions": 9}).json()
+    assert {pose["clip_id"] for pose in told["eigen_poses"]} == {clip["id"] for clip in waves}
+
+
+@pytest.mark.parametrize(
+    ("params", "location"),
+    [
+        ({"dimensions": "0"}, "query.dimensions"),
+        ({"dimensions": "500"}, "query.dimensions"),
+        ({"basis": "pca"}, "query.basis"),
+        ({"poses": "5"}, "query.poses"),
+        ({"fps": "-1"}, "query.fps"),
+        ({"tea": "1"}, "query.tea"),
+    ],
+)
+def test_what_is_wrong_is_named(
+    demo: httpx2.Client, wave: dict[str, Any], params: dict[str, str], location: str
+) -> None:
+    answer = demo.get(f"/v1/clips/{wave['id']}/low-dimensional", params=params)
+    assert_problem(answer, 422, "bad_field", location)
+
+
+def test_who_never_moves_has_too_few_keyposes(demo: httpx2.Client, demo_service: Live) -> None:
+    file = npz(
+        positions=standing(60), frame_rate=30.0, unit="m", joint_names=NAMES, parents=PARENTS
+    )
+    answer = demo.post("/v1/clips", files={"file": ("still.npz", file)}).json()
+    path = f"/v1/clips/{answer['clip']['id']}"
+    try:
+        assert demo_service.wait_for_job(answer["job"]["id"])["state"] == "succeeded"
+        for basis in ("keypose", "uniform"):
+            refused = demo.get(f"{path}/low-dimensional", params={"basis": basis})
+            assert_problem(refused, 409, "not_enough_keyposes", "model_clips")
+            assert "at least 2 poses; found 0" in refused.json()["detail"]
+        params = {"basis": "uniform", "poses": 5}
+        told = demo.get(f"{path}/low-dimensional", params=params).json()
+        assert told["variance_kept"] == [1.0] * 5
+        assert max(told["error"]) < 1e-5
+    finally:
+        demo.delete(path)
+
+
+def test_unknown_clips_are_not_found(demo: httpx2.Client, wave: dict[str, Any]) -> None:
+    assert_problem(demo.get("/v1/clips/none/low-dimensional"), 404, "clip_not_found")
+    assert_problem(demo.get("/v1/clips/none/animation.svg"), 404, "clip_not_found")
+    params = {"model_clips": "none"}
+    answer = demo.get(f"/v1/clips/{wave['id']}/low-dimensional", params=params)
+    assert_problem(answer, 404, "clip_not_found")
+
+
+@pytest.mark.parametrize("path", ["animation.svg", "export?format=csv"])
+def test_what_goes_with_dimensions_needs_them(
+    demo: httpx2.Client, wave: dict[str, Any], path: str
+) -> None:
+    sign = "&" if "?" in path else "?"
+    answer = demo.get(f"/v1/clips/{wave['id']}/{path}{sign}basis=uniform")
+    assert_problem(answer, 422, "bad_field", "query.dimensions")
+
+
+def test_exports_can_be_low_dimensional(demo: httpx2.Client, wave: dict[str, Any]) -> None:
+    path = f"/v1/clips/{wave['id']}/export"
+    answer = demo.get(path, params={"format": "csv", "dimensions": 2, "basis": "uniform"})
+    assert answer.status_code == 200
+    assert "-uniform-2dim.csv" in answer.headers["content-disposition"]
+    assert answer.text.splitlines()[0].count(",") == 39
+
+
+@pytest.mark.slow
+def test_the_picture_moves_in_a_browser_under_our_policy(
+    demo_service: Live, demo: httpx2.Client, wave: dict[str, Any], tmp_path: Path
+) -> None:
+    browser = shutil.which("chromium") or shutil.which("google-chrome")
+    if browser is None:
+        pytest.skip("NO BROWSER: install chromium to see that pictures move")
+    path = f"/v1/clips/{wave['id']}/animation.svg?dimensions=2"
+    answer = demo.get(path)
+    assert answer.headers["content-type"] == "image/svg+xml"
+    assert answer.headers["content-security-policy"].startswith("default-src 'none'")
+    seen = [
+        _shot(browser, demo_service.url + path, ms, tmp_path / f"{ms}.png") for ms in (700, 1700)
+    ]
+    assert seen[0] != seen[1]
+    still = f"{demo_service.url}/v1/clips/{wave['id']}/animation.svg?start=1&end=1.03"
+    shots = [_shot(browser, still, ms, tmp_path / f"still{ms}.png") for ms in (700, 1700)]
+    assert shots[0] == shots[1], "what has one frame stands still"
+
+
+def _shot(browser: str, url: str, milliseconds: int, target: Path) -> bytes:
+    """What a browser shows so long after it opened a page, in its own time."""
+    subprocess.run(
+        [
+            browser, "--headless", "--no-sandbox", "--no-proxy-server", "--disable-gpu",
+            "--hide-scrollbars", f"--user-data-dir={target.parent / 'profile'}",
+            "--window-size=360,300", f"--virtual-time-budget={milliseconds}",
+            f"--screenshot={target}", url,
+        ],
+        check=True, timeout=60, capture_output=True,
+    )  # fmt: skip
+    return target.read_bytes()
