@@ -13,7 +13,7 @@ import numpy as np
 
 from app.motion.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray
-from app.numerics.cross_correlation import max_cross_correlations
+from app.numerics.cross_correlation import max_cross_correlations, max_cross_correlations_of_rows
 from app.numerics.dtw import dtw_distances
 from app.numerics.rank1 import Rank1, symmetric_rank1
 
@@ -59,7 +59,7 @@ def cross_correlations(
 
     One motion's rho (13,), epsilon (n,) against rhos (c, 13), epsilons of (m,) each.
     """
-    spatial = max_cross_correlations(rho, list(rhos))
+    spatial = max_cross_correlations_of_rows(rho, rhos)
     return 2.0 * spatial + max_cross_correlations(epsilon, epsilons)
 
 

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
-from app.numerics.arrays import FloatArray
+from app.numerics.arrays import FloatArray, IntArray
 
-BATCH = 512
-"""Candidates transformed at once; bounds the memory."""
+CELLS_AT_ONCE = 1 << 16
+"""Numbers transformed at once (half a megabyte): they stay in the processor's cache."""
+LARGEST_WASTE = 1.25
+"""Candidates share a batch while the longest transform is this times the shortest at most."""
 
 
 def max_cross_correlation(a: FloatArray, b: FloatArray) -> float:
@@ -26,24 +28,50 @@ def max_cross_correlations(query: FloatArray, candidates: Sequence[FloatArray]) 
     no value is below 0. Empty sequences give 0.
     """
     query = np.asarray(query, dtype=np.float64)
-    values = np.zeros(len(candidates))
-    by_length = np.argsort([len(candidate) for candidate in candidates], kind="stable")
-    for first in range(0, len(by_length), BATCH):
-        chosen = by_length[first : first + BATCH]
-        values[chosen] = _batch(query, [candidates[i] for i in chosen])
+    lengths = np.array([len(candidate) for candidate in candidates], dtype=np.int64)
+    values = np.zeros(len(lengths))
+    if len(query):
+        for chosen in _batches(lengths, len(query)):
+            values[chosen] = _by_transform(query, [candidates[i] for i in chosen])
     return values
 
 
-def _batch(query: FloatArray, candidates: list[FloatArray]) -> FloatArray:
-    """Maxima for candidates of similar length: (c,)."""
+def max_cross_correlations_of_rows(query: FloatArray, rows: FloatArray) -> FloatArray:
+    """The same for candidates of one length, (candidates, m): one product, for short ones.
+
+    It takes n + m - 1 multiplications a number; the transform wins from some 100 on.
+    """
+    n, m = len(query), rows.shape[1]
+    if not n or not m:
+        return np.zeros(len(rows))
+    # (m, n + m - 1): column k holds the query where it lies m - 1 - k before the row's start
+    shifted = np.zeros((m, n + m - 1))
+    for i in range(m):
+        shifted[i, m - 1 - i : m - 1 - i + n] = query
+    return np.asarray((rows @ shifted).max(axis=1, initial=0.0))
+
+
+def _batches(lengths: IntArray, n: int) -> Iterator[IntArray]:
+    """Indices of candidates whose transforms are about equally long; empty ones left out."""
+    order = np.argsort(lengths, kind="stable")
+    ordered = lengths[order]
+    first = int(np.searchsorted(ordered, 0, side="right"))
+    while first < len(order):
+        longest = int(LARGEST_WASTE * (n + ordered[first])) - n
+        alike = int(np.searchsorted(ordered, max(longest, ordered[first]), side="right")) - first
+        count = min(alike, max(1, CELLS_AT_ONCE // (n + longest)))
+        yield order[first : first + count]
+        first += count
+
+
+def _by_transform(query: FloatArray, candidates: list[FloatArray]) -> FloatArray:
+    """(c,) maxima for candidates of similar length, none empty."""
     longest = max(len(candidate) for candidate in candidates)
-    if not longest or not len(query):
-        return np.zeros(len(candidates))
-    lags = len(query) + longest - 1
-    length = next_fast_len(lags, real=True)
-    padded = np.zeros((len(candidates), longest))
+    # Circular, but as long as all lags together: nothing wraps onto anything.
+    length = next_fast_len(len(query) + longest - 1, real=True)
+    padded = np.zeros((len(candidates), length))
     for row, candidate in zip(padded, candidates, strict=True):
         row[: len(candidate)] = candidate
-    # (c, length) circular correlation; `length` >= lags, so nothing wraps onto anything
-    spectra = rfft(padded[:, ::-1], length) * rfft(query, length)
-    return np.asarray(irfft(spectra, length)[:, :lags].max(axis=1, initial=0.0))
+    spectra = rfft(padded, axis=1)
+    spectra *= rfft(query, length).conj()
+    return np.asarray(irfft(spectra, length, overwrite_x=True).max(axis=1, initial=0.0))

@@ -14,6 +14,7 @@ from app.analysis.motion_volume import (
     warping_distances,
 )
 from app.motion.body_frame import body_track
+from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, standing, turned_about_y, walking, waving
 
 
@@ -52,6 +53,43 @@ def test_the_paper_s_few_iterations_suffice() -> None:
     found = decompose(body_track(motion_of(walking())))
     assert found.converged
     assert found.errors[5] - found.errors[-1] < 1e-4
+
+
+def slow_correlation(a: FloatArray, b: FloatArray) -> float:
+    """max C(a, b) of equation 6, the shorter padded with zeros to the length of the longer."""
+    length = max(len(a), len(b))
+    a, b = (np.pad(vector, (0, length - len(vector))) for vector in (a, b))
+    return max(
+        float(sum(a[i + lag] * b[i] for i in range(length) if 0 <= i + lag < length))
+        for lag in range(1 - length, length)
+    )
+
+
+def slow_warping(a: FloatArray, b: FloatArray) -> float:
+    """DTW(a, b) of equation 7: the least sum of |a_i - b_j| along a path from end to end."""
+    total = np.full((len(a) + 1, len(b) + 1), np.inf)
+    total[0, 0] = 0.0
+    for i in range(len(a)):
+        for j in range(len(b)):
+            before = min(total[i, j], total[i, j + 1], total[i + 1, j])
+            total[i + 1, j + 1] = abs(a[i] - b[j]) + before
+    return float(total[-1, -1])
+
+
+def test_both_measures_sum_over_the_three_vectors_as_printed() -> None:
+    bodies = [walking(seconds=1.5), walking(steps_hz=1.3, turn=1.0, seconds=1.0), waving()]
+    found = [decompose(body_track(motion_of(body))) for body in bodies]
+    vectors = [(f.primary, f.primary, f.secondary) for f in found]
+    rhos, epsilons = np.array([f.primary for f in found]), [f.secondary for f in found]
+    for query in range(len(found)):
+        likeness = cross_correlations(rhos[query], epsilons[query], rhos, epsilons)
+        distances = warping_distances(rhos[query], epsilons[query], rhos, epsilons)
+        for other in range(len(found)):
+            pairs = list(zip(vectors[query], vectors[other], strict=True))
+            assert likeness[other] == pytest.approx(sum(slow_correlation(a, b) for a, b in pairs))
+            assert distances[other] == pytest.approx(
+                sum(slow_warping(a, b) for a, b in pairs), rel=1e-5, abs=1e-6
+            )
 
 
 def test_both_measures_find_the_motion_itself_first() -> None:

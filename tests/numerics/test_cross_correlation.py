@@ -1,4 +1,4 @@
-"""The largest cross-correlation, against numpy's direct one."""
+"""The largest cross-correlation, against a slow obvious one and numpy's direct one."""
 
 from __future__ import annotations
 
@@ -8,12 +8,36 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.numerics import cross_correlation
-from app.numerics.cross_correlation import max_cross_correlation, max_cross_correlations
+from app.numerics.arrays import FloatArray
+from app.numerics.cross_correlation import (
+    max_cross_correlation,
+    max_cross_correlations,
+    max_cross_correlations_of_rows,
+)
+
+
+def slow_twin(a: FloatArray, b: FloatArray) -> float:
+    """Sun's words: zero-pad the shorter to the length of the longer, then every lag."""
+    length = max(len(a), len(b))
+    a, b = (np.pad(sequence, (0, length - len(sequence))) for sequence in (a, b))
+    sums = [
+        sum(a[i + lag] * b[i] for i in range(length) if 0 <= i + lag < length)
+        for lag in range(1 - length, length)
+    ]
+    return float(max(sums))
+
+
+@given(n=st.integers(1, 12), m=st.integers(1, 12), seed=st.integers(0, 10_000))
+@settings(max_examples=60, deadline=None)
+def test_equals_the_slow_twin_on_vectors_of_volumes(n: int, m: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    a, b = rng.random(n), rng.random(m)
+    assert max_cross_correlation(a, b) == pytest.approx(slow_twin(a, b), abs=1e-12)
 
 
 @given(
     n=st.integers(1, 20),
-    lengths=st.lists(st.integers(1, 30), min_size=1, max_size=5),
+    lengths=st.lists(st.integers(1, 200), min_size=1, max_size=9),
     seed=st.integers(0, 10_000),
 )
 @settings(max_examples=100, deadline=None)
@@ -22,6 +46,18 @@ def test_equals_the_direct_one(n: int, lengths: list[int], seed: int) -> None:
     query, candidates = rng.normal(size=n), [rng.normal(size=m) for m in lengths]
     direct = [np.correlate(query, c, "full").max(initial=0.0) for c in candidates]
     np.testing.assert_allclose(max_cross_correlations(query, candidates), direct, atol=1e-10)
+
+
+@given(n=st.integers(1, 20), m=st.integers(1, 20), seed=st.integers(0, 10_000))
+@settings(max_examples=60, deadline=None)
+def test_rows_of_one_length_give_the_same(n: int, m: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    query, rows = rng.normal(size=n), rng.normal(size=(4, m))
+    np.testing.assert_allclose(
+        max_cross_correlations_of_rows(query, rows),
+        max_cross_correlations(query, list(rows)),
+        atol=1e-12,
+    )
 
 
 def test_padding_the_shorter_changes_nothing() -> None:
@@ -39,12 +75,18 @@ def test_a_unit_vector_meets_itself_at_one_wherever_it_begins() -> None:
 
 def test_many_batches_give_what_one_gives(monkeypatch: pytest.MonkeyPatch) -> None:
     rng = np.random.default_rng(2)
-    query, candidates = rng.random(30), [rng.random(m) for m in rng.integers(1, 90, size=20)]
-    at_once = max_cross_correlations(query, candidates)
-    monkeypatch.setattr(cross_correlation, "BATCH", 3)
-    np.testing.assert_allclose(max_cross_correlations(query, candidates), at_once)
+    query, candidates = rng.random(30), [rng.random(m) for m in rng.integers(1, 900, size=40)]
+    as_usual = max_cross_correlations(query, candidates)
+    monkeypatch.setattr(cross_correlation, "LARGEST_WASTE", 100.0)
+    np.testing.assert_allclose(max_cross_correlations(query, candidates), as_usual)
+    monkeypatch.setattr(cross_correlation, "CELLS_AT_ONCE", 1)
+    np.testing.assert_allclose(max_cross_correlations(query, candidates), as_usual)
 
 
 def test_nothing_correlates_with_nothing() -> None:
     assert max_cross_correlations(np.ones(3), []).shape == (0,)
     assert max_cross_correlation(np.ones(3), np.zeros(0)) == 0.0
+    assert max_cross_correlation(np.zeros(0), np.ones(3)) == 0.0
+    assert max_cross_correlations(np.ones(3), [np.zeros(0), np.ones(2)]).tolist() == [0.0, 2.0]
+    assert max_cross_correlations_of_rows(np.ones(3), np.zeros((0, 3))).shape == (0,)
+    assert max_cross_correlations_of_rows(np.ones(3), np.zeros((2, 0))).tolist() == [0.0, 0.0]

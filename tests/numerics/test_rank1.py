@@ -46,13 +46,52 @@ def test_what_is_left_is_what_the_weight_does_not_explain(seed: int) -> None:
     assert np.linalg.norm(found.secondary) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_no_worse_than_an_unsymmetric_decomposition(seed: int) -> None:
-    volume = a_volume(seed)
-    twin = parafac(volume, rank=1, n_iter_max=500, tol=1e-12, init="svd")
+def algorithm_1(volume: FloatArray, iterations: int) -> list[tuple[float, FloatArray, FloatArray]]:
+    """Lambda, rho and epsilon after each iteration of the printed algorithm, number by number."""
+    joints, _, frames = volume.shape
+    rho, epsilon = np.ones(joints) / joints**0.5, np.ones(frames) / frames**0.5
+    told = []
+    for _ in range(iterations):
+        new_rho, new_epsilon = np.zeros(joints), np.zeros(frames)
+        for i, j, k in np.ndindex(*volume.shape):
+            new_rho[i] += volume[i, j, k] * rho[j] * epsilon[k]
+            new_epsilon[k] += volume[i, j, k] * rho[i] * rho[j]
+        rho = new_rho / np.linalg.norm(new_rho)
+        epsilon = new_epsilon / np.linalg.norm(new_epsilon)
+        weight = sum(
+            volume[i, j, k] * rho[i] * rho[j] * epsilon[k] for i, j, k in np.ndindex(*volume.shape)
+        )
+        told.append((weight, rho, epsilon))
+    return told
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_equals_the_printed_algorithm_step_by_step(seed: int) -> None:
+    volume = a_volume(seed, joints=4, frames=5)
     found = symmetric_rank1(volume)
-    assert found.weight == pytest.approx(float(np.abs(twin.weights[0]) * np.prod(
-        [np.linalg.norm(factor) for factor in twin.factors])), rel=1e-6)  # fmt: skip
+    told = algorithm_1(volume, found.iterations)
+    weights = np.array([weight for weight, _, _ in told])
+    np.testing.assert_allclose(
+        found.changes[1:], np.abs(np.diff(weights)) / weights[1:], atol=1e-13
+    )
+    share = weights / np.linalg.norm(volume)
+    np.testing.assert_allclose(found.errors, np.sqrt(1 - share**2), atol=1e-9)
+    np.testing.assert_allclose(found.primary, told[-1][1], atol=1e-12)
+    np.testing.assert_allclose(found.secondary, told[-1][2], atol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_equals_a_general_decomposition(seed: int) -> None:
+    volume = a_volume(seed)
+    twin = parafac(volume, rank=1, n_iter_max=500, tol=1e-14, init="svd")
+    factors = [factor[:, 0] for factor in twin.factors]
+    lengths = [np.linalg.norm(factor) for factor in factors]
+    found = symmetric_rank1(volume)
+    assert found.weight == pytest.approx(np.abs(twin.weights[0]) * np.prod(lengths), rel=1e-9)
+    for mine, factor, length in zip(
+        (found.primary, found.primary, found.secondary), factors, lengths, strict=True
+    ):
+        np.testing.assert_allclose(mine, np.abs(factor) / length, atol=1e-5)
 
 
 def test_errors_fall_and_convergence_is_told() -> None:
@@ -61,6 +100,24 @@ def test_errors_fall_and_convergence_is_told() -> None:
     assert found.converged
     assert found.iterations < 30
     assert not symmetric_rank1(a_volume(3), max_iterations=1).converged
+
+
+def test_it_stops_when_lambda_has_come_to_rest() -> None:
+    found = symmetric_rank1(a_volume(3), smallest_change=1e-6)
+    assert found.changes[-1] <= 1e-6
+    assert found.iterations < symmetric_rank1(a_volume(3)).iterations
+    longer = symmetric_rank1(a_volume(3), smallest_change=0.0, max_iterations=100)
+    np.testing.assert_allclose(symmetric_rank1(a_volume(3)).primary, longer.primary, atol=1e-6)
+
+
+def test_a_rho_that_swings_for_ever_is_brought_to_rest() -> None:
+    """One joint apart from twelve that coincide: lambda rests at once, rho never would."""
+    star = np.zeros((13, 13, 4))
+    star[0, 1:] = star[1:, 0] = 1.0
+    found = symmetric_rank1(star)
+    assert found.converged
+    assert found.weight == pytest.approx(2 * np.sqrt(12))  # the eigenvalue, times |1 1 1 1|
+    assert found.primary[0] == pytest.approx(np.sqrt(0.5))
 
 
 def test_scale_goes_to_the_weight_alone() -> None:
