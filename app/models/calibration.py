@@ -7,7 +7,7 @@ among the training clips. All from held-out clips.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,9 @@ SCALES = np.geomspace(0.5, 100.0, 25)
 
 USUAL_FALSE_REJECTION = 0.02
 """Known clips refused where the library is too small to hold anything out as unknown."""
+
+CURVE_POINTS = 50
+"""Of the curve of false acceptance against false rejection."""
 
 _FAR = 1e30
 
@@ -40,6 +43,32 @@ class Calibration:
         """(n, labels) belief in each label, 0..1, each row's sum = belief in being known."""
         known = sigmoid((self.threshold - novelty) / self.scale)
         return softmax(evidence / self.temperature) * known[:, None]
+
+    def at_false_acceptance(self, rate: float) -> Calibration:
+        """The same with the largest threshold under which at most `rate` (0..1, below 1) of the
+        new ones held out are accepted; as it is where none was held out."""
+        if not len(self.new_novelty):
+            return self
+        beyond = self.new_novelty[int(rate * len(self.new_novelty))]
+        every = np.concatenate([self.known_novelty, self.new_novelty])
+        within = every[every < beyond]
+        middle = (within.max() + beyond) / 2 if len(within) else beyond - 1.0
+        return replace(self, threshold=float(middle))
+
+    def curve(self) -> list[tuple[float, float, float]]:
+        """(threshold, false acceptance, false rejection) along the held-out clips' novelties."""
+        every = np.unique(np.concatenate([self.known_novelty, self.new_novelty]))
+        if not len(every):
+            return []
+        chosen = np.unique(np.linspace(0, len(every) - 1, CURVE_POINTS).round().astype(int))
+        return [(float(t), *self.error_rates(float(t))) for t in every[chosen]]
+
+    def area_under_curve(self) -> float:
+        """Chance that something new is more novel than something known; ties count half."""
+        ranks = np.searchsorted(self.known_novelty, self.new_novelty, side="left")
+        ties = np.searchsorted(self.known_novelty, self.new_novelty, side="right") - ranks
+        pairs = max(len(self.known_novelty) * len(self.new_novelty), 1)
+        return float((ranks + ties / 2).sum() / pairs)
 
     def error_rates(self, threshold: float | None = None) -> tuple[float, float]:
         """(false acceptance of new, false rejection of known), shares of held-out clips."""

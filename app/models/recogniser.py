@@ -10,7 +10,7 @@ over that cell's radius). Both are calibrated on clips, persons and tasks held o
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -42,6 +42,14 @@ class Recogniser:
     hypotheses: Hypotheses
     person_calibration: Calibration
     task_calibration: Calibration
+
+    def accepting(self, false_accept_rate: float) -> Recogniser:
+        """The same, calling something new known at this rate at most (of held-out clips)."""
+        return replace(
+            self,
+            person_calibration=self.person_calibration.at_false_acceptance(false_accept_rate),
+            task_calibration=self.task_calibration.at_false_acceptance(false_accept_rate),
+        )
 
     def to_arrays(self) -> tuple[_Arrays, dict[str, Any]]:
         """Arrays and JSON-able meta from which from_arrays makes the same record."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from app.models.recognition import NO_ANSWER, Answer, Recognition, given
 from app.numerics.arrays import FloatArray, IntArray
 
 Labels = Sequence[str | None]
+
+
+_CURVE = ("threshold", "false_acceptance", "false_rejection")
 
 
 class Clips(NamedTuple):
@@ -59,13 +62,14 @@ def held_out_recognition_figures(
     return figures
 
 
-def unknown_figures(record: Recogniser) -> dict[str, dict[str, float]]:
-    """False acceptance, false rejection and balanced accuracy for "person" and "task".
+def unknown_figures(record: Recogniser) -> dict[str, dict[str, Any]]:
+    """False acceptance, false rejection, balanced accuracy and area under the curve for "person"
+    and "task", and "curve", from which a false-accept rate can be chosen.
 
     From the clips, persons and tasks that were held out when `record` was fitted; the
     threshold was chosen on them, so these are a little too good.
     """
-    figures = {}
+    figures: dict[str, dict[str, Any]] = {}
     for name in ("person", "task"):
         calibration = getattr(record, f"{name}_calibration")
         if len(calibration.new_novelty) and len(calibration.known_novelty):
@@ -74,6 +78,8 @@ def unknown_figures(record: Recogniser) -> dict[str, dict[str, float]]:
                 "false_acceptance": accepted,
                 "false_rejection": rejected,
                 "balanced_accuracy": 1 - (accepted + rejected) / 2,
+                "area_under_curve": calibration.area_under_curve(),
+                "curve": [dict(zip(_CURVE, point, strict=True)) for point in calibration.curve()],
             }
     return figures
 

@@ -37,10 +37,11 @@ class Fit:
 
 @dataclass(frozen=True, slots=True)
 class Before:
-    """What a fit may build on: the meta of the model that is to be replaced, empty where there
-    is none, and whether new words may be looked up in WordNet (seconds)."""
+    """What a fit may build on: the meta and settings of the model that is to be replaced, empty
+    where there is none, and whether new words may be looked up in WordNet (seconds)."""
 
     meta: Meta
+    settings: Meta
     wordnet: bool
 
 
@@ -62,7 +63,7 @@ def fit_library(store: Store, *, wordnet: bool = False, persons: bool = True) ->
 
 
 def _fit_one(store: Store, training: TrainingSet, kind: ModelKind, wordnet: bool) -> dict[str, Any]:
-    before = Before(_meta_in_force(store, kind), wordnet)
+    before = _before(store, kind, wordnet)
     try:
         fit = _FITS[kind](training, before)
     except NotEnoughLabels as reason:
@@ -78,7 +79,7 @@ def _fit_one(store: Store, training: TrainingSet, kind: ModelKind, wordnet: bool
         record = models.save(
             tx,
             kind.value,
-            meta={"model": fit.meta, "figures": fit.figures},
+            meta={"model": fit.meta, "figures": fit.figures, "settings": before.settings},
             arrays=fit.arrays,
             library_version=training.library_version,
             library_size=len(training),
@@ -91,11 +92,12 @@ def _is_someone_gone(tx: Tx, training: TrainingSet) -> bool:
     return not set(filter(None, training.persons)) <= dict(labels.persons(tx)).keys()
 
 
-def _meta_in_force(store: Store, kind: ModelKind) -> Meta:
-    """The meta of the model that is to be replaced; empty where there is none."""
+def _before(store: Store, kind: ModelKind, wordnet: bool) -> Before:
     with store.read() as tx:
-        found = {model.kind: model.meta for model in models.list_current(tx)}
-    return dict(found.get(kind.value, {}).get("model", {}))
+        found = next((m for m in models.list_current(tx) if m.kind == kind.value), None)
+    if found is None:
+        return Before({}, {}, wordnet)
+    return Before(dict(found.meta.get("model", {})), found.settings, wordnet)
 
 
 def _fit_words(training: TrainingSet, before: Before) -> Fit:

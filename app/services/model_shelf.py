@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -35,6 +35,9 @@ class ModelKind(StrEnum):
     """Who does what, with an honest unknown."""
 
 
+FALSE_ACCEPT_RATE = "false_accept_rate"
+"""A setting of the recogniser: how often something new may be called known."""
+
 _WITHOUT_PERSONS = frozenset({ModelKind.WORDS})
 
 
@@ -45,11 +48,12 @@ def holds_persons(kind: ModelKind) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Fitted(Generic[Model]):
-    """A model in force; id: of its record, another one after each fit."""
+    """A model in force; id: of its record, another one after each fit; settings: a client's."""
 
     id: str
     version: int
     model: Model
+    settings: Mapping[str, Any]
 
 
 class ModelShelf:
@@ -69,7 +73,9 @@ class ModelShelf:
         """The default recogniser in force; raises ModelNotFitted."""
         from app.models.recogniser import Recogniser
 
-        return self._get(store, ModelKind.RECOGNISER, Recogniser.from_arrays)
+        fitted = self._get(store, ModelKind.RECOGNISER, Recogniser.from_arrays)
+        rate = fitted.settings.get(FALSE_ACCEPT_RATE)
+        return fitted if rate is None else replace(fitted, model=fitted.model.accepting(rate))
 
     def multilinear(self, store: Store) -> Fitted[Multilinear]:
         """The multilinear model in force; raises ModelNotFitted."""
@@ -87,14 +93,16 @@ class ModelShelf:
             in_force = stored.current_ids(tx).get(kind.value)
             with self._lock:
                 held = self._loaded.get(kind)
-                if held is not None and held.id != in_force:
+                if held is not None and (held.id, held.settings) != in_force:
                     del self._loaded[kind]  # nothing that was removed is kept in memory
-            if held is not None and held.id == in_force:
+                    held = None
+            if held is not None:
                 return held
             record = stored.current(tx, kind.value)
             arrays = stored.load_arrays(tx, record.id)
         try:
-            fitted = Fitted(record.id, record.version, build(arrays, record.meta["model"]))
+            model = build(arrays, record.meta["model"])
+            fitted = Fitted(record.id, record.version, model, record.settings)
         except (ValueError, KeyError) as other:
             raise ModelNotFitted(
                 f"The {kind.value} model was fitted by another version of Kinedex: fit it again."

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from app.services import fields
 from app.services.library import Library
+from app.services.model_shelf import FALSE_ACCEPT_RATE, ModelKind
 from app.store import jobs, library
 from app.store import models as stored
 from app.store.clip_filter import ClipFilter
@@ -24,6 +26,22 @@ def list_models(lib: Library) -> tuple[ModelRecord, ...]:
     """The model in force of each kind; `meta["figures"]` holds its held-out figures."""
     with lib.store.read() as tx:
         return stored.list_current(tx)
+
+
+def set_false_accept_rate(lib: Library, model_id: str, rate: float | None) -> ModelRecord:
+    """How often the recogniser may call something new known; None: where both errors weigh alike.
+
+    Takes effect with the next question, on every replica, and stays when the model is fitted
+    anew. Raises NotFound, BadField for another kind of model or a rate outside 0..1.
+    """
+    if rate is not None and not 0 < rate < 1:
+        raise fields.bad_field(FALSE_ACCEPT_RATE, "must be above 0 and below 1, or null")
+    with lib.store.write() as tx:
+        record = stored.get(tx, model_id)
+        if record.kind != ModelKind.RECOGNISER:
+            raise fields.bad_field(FALSE_ACCEPT_RATE, f"cannot be set for {record.kind} models")
+        settings = {} if rate is None else {FALSE_ACCEPT_RATE: rate}
+        return stored.set_settings(tx, model_id, settings)
 
 
 def request_fit(lib: Library) -> JobRecord:

@@ -8,9 +8,9 @@ from datetime import datetime
 from typing import Any
 
 from numpy.typing import NDArray
-from sqlalchemy import RowMapping, Select, and_, delete, func, insert, select
+from sqlalchemy import RowMapping, Select, and_, delete, func, insert, select, update
 
-from app.errors import ModelNotFitted
+from app.errors import ModelNotFitted, NotFound
 from app.store import library
 from app.store.blobs import from_blob, to_blob
 from app.store.engine import Tx
@@ -35,6 +35,11 @@ class ModelRecord:
     library_size: int
     meta: dict[str, Any]
     created_at: datetime
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What a client has set for models of this kind; a fit carries it over."""
+        return dict(self.meta.get("settings", {}))
 
 
 def save(
@@ -77,10 +82,26 @@ def current(tx: Tx, kind: str) -> ModelRecord:
     return _to_record(row)
 
 
-def current_ids(tx: Tx) -> dict[str, str]:
-    """The id in force by kind: cheap, to see whether a loaded model is out of date."""
-    query = _in_force(select(models.c.kind, models.c.id))
-    return {kind: model_id for kind, model_id in tx.execute(query)}  # noqa: C416 - rows to a dict
+def current_ids(tx: Tx) -> dict[str, tuple[str, dict[str, Any]]]:
+    """The id in force and its settings, by kind: cheap, to see whether a loaded model is out
+    of date."""
+    query = _in_force(select(models.c.kind, models.c.id, models.c.meta["settings"]))
+    return {kind: (model_id, dict(said or {})) for kind, model_id, said in tx.execute(query)}
+
+
+def get(tx: Tx, model_id: str) -> ModelRecord:
+    """A model by id; raises NotFound."""
+    row = tx.execute(select(models).where(models.c.id == model_id)).mappings().one_or_none()
+    if row is None:
+        raise NotFound(f"There is no model with the id {model_id!r}")
+    return _to_record(row)
+
+
+def set_settings(tx: Tx, model_id: str, settings: Mapping[str, Any]) -> ModelRecord:
+    """Changes what is set for a model; raises NotFound."""
+    meta = get(tx, model_id).meta | {"settings": dict(settings)}
+    tx.execute(update(models).where(models.c.id == model_id).values(meta=meta))
+    return get(tx, model_id)
 
 
 def list_current(tx: Tx) -> tuple[ModelRecord, ...]:

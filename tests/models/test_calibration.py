@@ -1,6 +1,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from app.models.calibration import fit_calibration, softmax
 
@@ -40,3 +43,36 @@ def test_nothing_held_out_still_calibrates() -> None:
 
 def test_softmax_survives_impossible_labels() -> None:
     np.testing.assert_allclose(softmax(np.array([[-np.inf, 0.0, -1e9]])), [[0.0, 1.0, 0.0]])
+
+
+@given(
+    st.lists(st.floats(-50, 50), min_size=1, max_size=40),
+    st.lists(st.floats(-50, 50), min_size=1, max_size=40),
+    st.floats(0.001, 0.999),
+)
+def test_no_more_new_ones_are_accepted_than_allowed(
+    known: list[float], new: list[float], rate: float
+) -> None:
+    novelty = np.array([*known, *new])
+    truth = np.array([0] * len(known) + [-1] * len(new))
+    found = fit_calibration(np.zeros((len(novelty), 1)), novelty, truth)
+    accepted, rejected = found.at_false_acceptance(rate).error_rates()
+    assert accepted <= rate
+    looser = [t for t in new if (np.array(new) <= t).mean() <= rate]
+    best = (np.array(known) > max(looser)).mean() if looser else 1.0
+    assert rejected <= best
+
+
+def test_the_curve_falls_and_its_area_tells_how_well_they_part() -> None:
+    rng = np.random.default_rng(1)
+    novelty = np.concatenate([rng.normal(0, 1, 300), rng.normal(2, 1, 200)])
+    truth = np.array([0] * 300 + [-1] * 200)
+    found = fit_calibration(np.zeros((500, 1)), novelty, truth)
+    thresholds, accepted, rejected = np.array(found.curve()).T
+    assert (np.diff(thresholds) > 0).all()
+    assert (np.diff(accepted) >= 0).all()
+    assert (np.diff(rejected) <= 0).all()
+    pairs = (novelty[300:, None] > novelty[None, :300]).mean()
+    assert found.area_under_curve() == pytest.approx(pairs)
+    assert fit_calibration(*NONE).curve() == []
+    assert fit_calibration(*NONE).at_false_acceptance(0.1).threshold == 0.0

@@ -80,3 +80,33 @@ def test_what_cannot_be_fitted_is_skipped_with_its_reason(
     clip = upload(lib, some_demo_clips[0]).clip
     with pytest.raises(ModelNotFitted):
         recognise.recognise(lib, RecogniseQuery(clip.id))
+
+
+def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
+    lib: Library, some_demo_clips: list[DemoClip]
+) -> None:
+    for clip in some_demo_clips:
+        upload(lib, clip)
+    models.request_fit(lib)
+    work(lib.settings)
+    (record,) = (r for r in models.list_models(lib) if r.kind == "recogniser")
+    curve = record.meta["figures"]["unknown"]["person"]["curve"]
+    assert {"threshold", "false_acceptance", "false_rejection"} == set(curve[0])
+    threshold = lib.models.recogniser(lib.store).model.person_calibration.threshold
+
+    changed = models.set_false_accept_rate(lib, record.id, 0.001)
+    assert changed.settings == {"false_accept_rate": 0.001}
+    strict = lib.models.recogniser(lib.store).model.person_calibration
+    assert strict.error_rates()[0] == 0.0
+    assert strict.threshold <= threshold
+
+    models.request_fit(lib)
+    work(lib.settings)
+    (again,) = (r for r in models.list_models(lib) if r.kind == "recogniser")
+    assert again.settings == changed.settings
+    assert models.set_false_accept_rate(lib, again.id, None).settings == {}
+
+    (words,) = (r for r in models.list_models(lib) if r.kind == "words")
+    for model_id, rate in ((words.id, 0.1), (again.id, 0.0), (again.id, 1.0)):
+        with pytest.raises(BadField, match="false_accept_rate"):
+            models.set_false_accept_rate(lib, model_id, rate)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from sqlalchemy import func, select
 
-from app.errors import ModelNotFitted
+from app.errors import ModelNotFitted, NotFound
 from app.store import models
 from app.store.engine import Tx
 from app.store.models import ModelRecord
@@ -35,7 +35,7 @@ def test_the_newest_is_in_force(store: Store) -> None:
         newest = save(tx, "words", 2.0)
     with store.read() as tx:
         assert models.current(tx, "words") == newest
-        assert models.current_ids(tx) == {"multilinear": other.id, "words": newest.id}
+        assert models.current_ids(tx) == {"multilinear": (other.id, {}), "words": (newest.id, {})}
         assert models.list_current(tx) == (other, newest)
         weights = models.load_arrays(tx, newest.id)["weights"]
     np.testing.assert_array_equal(weights, np.full((2, 3), 2.0))
@@ -49,6 +49,18 @@ def test_old_ones_go_with_their_arrays(store: Store) -> None:
             save(tx, "words", value)
         count = tx.execute(select(func.count()).select_from(model_arrays)).scalar_one()
     assert count == models.KEPT_VERSIONS
+
+
+def test_settings_are_told_with_the_model_in_force(store: Store) -> None:
+    with store.write() as tx:
+        saved = save(tx, "words", 1.0)
+        changed = models.set_settings(tx, saved.id, {"rate": 0.1})
+        assert changed.settings == {"rate": 0.1}
+        assert changed.meta["figures"] == saved.meta["figures"]
+        with pytest.raises(NotFound):
+            models.set_settings(tx, "nobody", {})
+    with store.read() as tx:
+        assert models.current_ids(tx) == {"words": (saved.id, {"rate": 0.1})}
 
 
 def test_kinds_are_removed_with_all_versions(store: Store) -> None:

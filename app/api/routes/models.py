@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from typing import Annotated
 
+from fastapi import APIRouter, Depends, Path
+
+from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import refusals
 from app.api.schemas.jobs import Job, JobStarted
-from app.api.schemas.models import Model, ModelList
+from app.api.schemas.models import Model, ModelList, ModelPatch
 from app.services import models
 
 router = APIRouter(prefix="/v1/models", tags=["models"])
@@ -17,6 +20,18 @@ router = APIRouter(prefix="/v1/models", tags=["models"])
 def list_models(lib: Lib) -> ModelList:
     """The current model of each kind, with the library's size at the fit and held-out figures."""
     return ModelList(items=[Model.of(record) for record in models.list_models(lib)])
+
+
+@router.patch(
+    "/{model_id}",
+    dependencies=[writes, Depends(require_json)],
+    responses=refusals(400, 404, 413, 415),
+)
+def update_model(
+    lib: Lib, model_id: Annotated[str, Path(max_length=64)], patch: ModelPatch
+) -> Model:
+    """Set the recogniser's false-accept rate; it takes effect at once and outlives fits."""
+    return Model.of(models.set_false_accept_rate(lib, model_id, patch.false_accept_rate))
 
 
 @router.post("/fit", status_code=202, dependencies=[writes], responses=refusals(409))

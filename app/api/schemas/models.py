@@ -7,7 +7,8 @@ from typing import Any
 
 from pydantic import Field
 
-from app.api.schemas.base import Outgoing
+from app.api.schemas.base import Incoming, Outgoing
+from app.services.model_shelf import FALSE_ACCEPT_RATE
 from app.store.models import ModelRecord
 
 
@@ -20,6 +21,9 @@ class Model(Outgoing):
     library_version: int = Field(description="The library's version at the fit.")
     library_size: int = Field(description="Clips in the library at the fit.")
     figures: dict[str, Any] = Field(description="Held-out figures, by name.")
+    false_accept_rate: float | None = Field(
+        description="How often the recogniser may call something new known, if that was set."
+    )
     created_at: datetime
 
     @classmethod
@@ -32,8 +36,21 @@ class Model(Outgoing):
             library_version=record.library_version,
             library_size=record.library_size,
             figures=dict(record.meta.get("figures", {})),
+            false_accept_rate=record.settings.get(FALSE_ACCEPT_RATE),
             created_at=record.created_at,
         )
+
+
+class ModelPatch(Incoming):
+    """What can be set of a model."""
+
+    false_accept_rate: float | None = Field(
+        gt=0,
+        lt=1,
+        description="Of the recogniser: how often it may call something new known; see `curve` in "
+        "its figures. null: where false acceptance and false rejection weigh alike.",
+        examples=[0.05],
+    )
 
 
 class ModelList(Outgoing):
