@@ -1,0 +1,39 @@
+"""All distances of a batch against the obvious subtraction."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.numerics import euclidean
+from app.numerics.euclidean import distances, squared_lengths
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_distances_are_those_of_subtraction(scale: float) -> None:
+    rng = np.random.default_rng(1)
+    rows = (scale * rng.normal(size=(7, 20))).astype(np.float32)
+    others = (scale * rng.normal(size=(50, 20))).astype(np.float32)
+    expected = np.linalg.norm(rows[:, None].astype(float) - others[None], axis=2)
+    found = distances(rows, others, squared_lengths(others))
+    np.testing.assert_allclose(found, expected, rtol=1e-5)
+
+
+@pytest.mark.parametrize("pairs_at_once", [3, 10_000])
+def test_close_rows_keep_their_digits_and_equal_ones_are_not_apart(
+    monkeypatch: pytest.MonkeyPatch, pairs_at_once: int
+) -> None:
+    rng = np.random.default_rng(2)
+    monkeypatch.setattr(euclidean, "RETAKEN_AT_ONCE", pairs_at_once)
+    rows = (100 + rng.normal(size=(4, 20))).astype(np.float32)
+    near = rows + rng.normal(scale=1e-3, size=rows.shape).astype(np.float32)
+    others = np.concatenate([rows, near])
+    found = distances(rows, others, squared_lengths(others))
+    assert np.diag(found).tolist() == [0.0] * 4
+    expected = np.linalg.norm(rows.astype(float) - near, axis=1)
+    np.testing.assert_allclose(np.diag(found[:, 4:]), expected, rtol=1e-4)
+
+
+def test_nothing_is_at_no_distance_from_nothing() -> None:
+    nothing = np.zeros((0, 3), dtype=np.float32)
+    assert distances(np.ones((2, 3), np.float32), nothing, squared_lengths(nothing)).shape == (2, 0)

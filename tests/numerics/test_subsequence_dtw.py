@@ -1,0 +1,130 @@
+"""Subsequence DTW against its slow, obvious twin, and on matches that are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.numerics import subsequence_dtw as module
+from app.numerics.arrays import FloatArray
+from app.numerics.subsequence_dtw import Matches, subsequence_dtw
+
+Match = tuple[int, int, int, float]
+
+
+def naive_matches(query: FloatArray, streams: list[FloatArray]) -> list[Match]:
+    """(stream, start, end, cost) of each local minimum, cell by cell."""
+    found = []
+    for number, stream in enumerate(streams):
+        last = [_cell(query, stream, len(query) - 1, j, {}) for j in range(len(stream))]
+        costs = [np.inf, *(cost for cost, _ in last), np.inf]
+        for j, (cost, start) in enumerate(last):
+            if np.isfinite(cost) and costs[j] >= cost < costs[j + 2]:
+                found.append((number, start, j + 1, cost / len(query)))
+    return found
+
+
+def _cell(
+    query: FloatArray,
+    stream: FloatArray,
+    i: int,
+    j: int,
+    known: dict[tuple[int, int], tuple[float, int]],
+) -> tuple[float, int]:
+    """Total cost and start of the best path to a cell, by the recursion as it is written."""
+    if i == -1 and j >= -1:
+        return 0.0, j + 1
+    if i < 0 or j < 0:
+        return np.inf, 0
+    if (i, j) not in known:
+
+        def cost(row: int, column: int) -> float:
+            return float(np.linalg.norm(query[row] - stream[column]))
+
+        def before(rows: int, columns: int) -> tuple[float, int]:
+            return _cell(query, stream, i - rows, j - columns, known)
+
+        total, start = before(1, 1)
+        ways = [(total + cost(i, j), start)]
+        if j >= 1:
+            total, start = before(1, 2)
+            ways.append((total + (cost(i, j - 1) + cost(i, j)) / 2, start))
+        if i >= 1:
+            total, start = before(2, 1)
+            ways.append((total + cost(i - 1, j) + cost(i, j), start))
+        known[i, j] = min(ways, key=lambda way: way[0])
+    return known[i, j]
+
+
+def _told(found: Matches) -> list[tuple[int, int, int]]:
+    return list(
+        zip(found.streams.tolist(), found.starts.tolist(), found.ends.tolist(), strict=True)
+    )
+
+
+@given(
+    n=st.integers(1, 9),
+    lengths=st.lists(st.integers(1, 60), min_size=1, max_size=5),
+    dimensions=st.sampled_from([1, 2, 5]),
+    cells=st.sampled_from([10, 300, 4_000_000]),
+    seed=st.integers(0, 10_000),
+)
+@settings(max_examples=40, deadline=None)
+def test_it_finds_what_the_naive_twin_finds_in_pieces_and_batches_of_any_size(
+    n: int, lengths: list[int], dimensions: int, cells: int, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    query = rng.normal(size=(n, dimensions))
+    streams = [rng.normal(size=(m, dimensions)) for m in lengths]
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(module, "CELLS_AT_ONCE", cells)
+        found = subsequence_dtw(query, streams)
+    expected = naive_matches(query, streams)
+    assert _told(found) == [match[:3] for match in expected]
+    np.testing.assert_allclose(found.costs, [match[3] for match in expected], rtol=1e-4)
+
+
+@pytest.mark.parametrize("factor", [0.6, 0.9, 1.0, 1.1, 1.7])
+def test_a_piece_played_at_another_speed_is_bounded_exactly(
+    factor: float,
+) -> None:
+    rng = np.random.default_rng(3)
+    query = np.cumsum(rng.normal(size=(40, 4)), axis=0)
+    times = np.linspace(0, 39, round(40 * factor))
+    played = np.stack([np.interp(times, np.arange(40), column) for column in query.T], axis=1)
+    around = np.cumsum(rng.normal(size=(500, 4)), axis=0) + 30
+    stream = np.concatenate([around[:201], played, around[201:]])
+    found = subsequence_dtw(query, [stream])
+    best = int(np.argmin(found.costs))
+    assert abs(found.starts[best] - 201) <= 1
+    assert abs(found.ends[best] - (201 + len(played))) <= 1
+
+
+def test_every_place_where_the_query_stands_is_a_minimum_of_cost_nothing() -> None:
+    rng = np.random.default_rng(4)
+    query = rng.normal(size=(12, 82)).astype(np.float32)
+    gaps = [rng.normal(size=(m, 82)).astype(np.float32) for m in (5, 30, 17)]
+    streams = [np.concatenate([gaps[0], query, gaps[1], query]), gaps[2], query]
+    found = subsequence_dtw(query, streams)
+    exact = np.flatnonzero(found.costs == 0.0)
+    assert [_told(found)[i] for i in exact] == [(0, 5, 17), (0, 47, 59), (2, 0, 12)]
+
+
+def test_a_match_is_between_half_and_twice_as_long_as_the_query() -> None:
+    rng = np.random.default_rng(5)
+    found = subsequence_dtw(rng.normal(size=(10, 2)), [rng.normal(size=(400, 2))])
+    lengths = found.ends - found.starts
+    assert (lengths.min(), lengths.max()) >= (5, 10)
+    assert lengths.max() <= 20
+
+
+def test_streams_too_short_for_a_match_and_none_at_all() -> None:
+    query = np.ones((10, 2))
+    for streams in ([], [np.zeros((4, 2))], [np.zeros((0, 2)), np.zeros((1, 2))]):
+        found = subsequence_dtw(query, streams)
+        assert _told(found) == []
+        assert found.costs.shape == (0,)
+    with pytest.raises(ValueError, match="empty"):
+        subsequence_dtw(np.zeros((0, 2)), [np.zeros((5, 2))])
