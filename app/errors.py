@@ -186,6 +186,12 @@ class NotEnoughKeyposes(Conflict):
     code = "not_enough_keyposes"
 
 
+class AlreadyVoted(Conflict):
+    """This voter has voted on this sequence."""
+
+    code = "already_voted"
+
+
 class LeaseLost(Conflict):
     """The job is over, or was given to another worker."""
 

@@ -32,6 +32,7 @@ from app.api.routes import (
     recognize,
     search,
     space,
+    studies,
     suggestions,
     symbols,
 )
@@ -63,6 +64,7 @@ _ROUTES = (
     symbols,
     suggestions,
     space,
+    studies,
     health,
 )
 

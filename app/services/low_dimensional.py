@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,11 +19,11 @@ from app.analysis.low_dimensional import (
 )
 from app.analysis.plausibility import Plausibility, judge_poses
 from app.errors import NotEnoughKeyposes, Place
-from app.motion.body_frame import BodyTrack, body_track
+from app.motion.body_frame import ANALYSIS_RATE, BodyTrack, body_track
 from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES, JointRole
 from app.motion.motion import Motion
 from app.motion.resampling import resample
-from app.numerics.arrays import FloatArray
+from app.numerics.arrays import FloatArray, IntArray
 from app.services import fields
 from app.services.keypose_frames import keypose_frames
 from app.services.library import Library
@@ -38,6 +38,9 @@ MOST_MODEL_CLIPS = 50
 MOST_POSES = 1000
 """Uniform poses of one clip that can be asked for."""
 
+Keyposes = dict[str, list[int]]
+"""Frames at 30 Hz by clip id."""
+
 
 @dataclass(frozen=True, slots=True)
 class Reduction:
@@ -45,13 +48,15 @@ class Reduction:
 
     dimensions: K', from 1 to the model's poses (default: 3, or fewer where those are fewer);
     model_clips: ids of the clips whose poses make the model, default the clip itself; poses:
-    of each clip, with the uniform basis only (default: as many as it has keyposes).
+    of each clip, with the uniform basis only (default: as many as it has keyposes);
+    keyposes: frames at 30 Hz by clip id, where they are known, in place of model_clips.
     """
 
     dimensions: int | None = None
     basis: Basis | str = Basis.KEYPOSE
     model_clips: Sequence[str] = ()
     poses: int | None = None
+    keyposes: Mapping[str, Sequence[int]] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,15 +106,15 @@ def view(lib: Library, clip_id: str, wanted: Reduction, fps: float | None = None
     Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes.
     """
     clip = ready_clip(lib, clip_id)
-    rate = _rate(lib, clip, fps)
+    rate = frame_rate(lib, clip, fps)
     found = reduce(lib, clip, wanted)
     track = found.reduced
     names = tuple(role.value for role in SUN_ROLES)
-    positions = resample(track.positions, track.rate, rate or track.rate)
+    positions = resample(track.positions, track.rate, rate)
     return ReducedView(
         found,
-        MotionView(rate or track.rate, names, SUN_PARENTS, positions.astype(np.float32)),
-        resample(found.eigen_motion, track.rate, rate or track.rate),
+        MotionView(rate, names, SUN_PARENTS, positions.astype(np.float32)),
+        resample(found.eigen_motion, track.rate, rate),
         judge_poses(track.local),
         judge_poses(found.original.local),
     )
@@ -140,6 +145,31 @@ def reduce(lib: Library, clip: ClipRecord, wanted: Reduction) -> Reduced:
         variance_kept=model.variance_kept(),
         errors=reconstruction_errors(model, track),
     )
+
+
+def keyposes_of(lib: Library, clip: ClipRecord, model_clips: Sequence[str] = ()) -> Keyposes:
+    """The frames, at 30 Hz by clip id, that would make a model of `model_clips`, or of `clip`.
+
+    Raises BadField, ClipNotFound, ClipNotReady.
+    """
+    _check_clips(model_clips)
+    found: Keyposes = {}
+    for clip_id in dict.fromkeys(model_clips) or (clip.id,):
+        track = body_track(load_motion(lib, ready_clip(lib, clip_id)))
+        found[clip_id] = keypose_frames(lib, clip_id, track).tolist()
+    return found
+
+
+def frame_rate(lib: Library, clip: ClipRecord, fps: float | None) -> float:
+    """`fps`, or 30 Hz. Raises BadField where that makes no motion, or one that is too long."""
+    if fps is None:
+        return ANALYSIS_RATE
+    if not (math.isfinite(fps) and 0 < fps <= MAX_FPS):
+        raise fields.bad_field("fps", f"must be above 0 and at most {MAX_FPS:g}")
+    if fps * (clip.duration or 0.0) > lib.settings.max_frames:
+        message = f"would make more than {lib.settings.max_frames} frames"
+        raise fields.bad_field("fps", message)
+    return fps
 
 
 def as_motion(found: Reduced, clip: ClipRecord) -> Motion:
@@ -177,11 +207,14 @@ def _model_poses(
     poses: list[ModelPose] = []
     local: list[FloatArray] = []
     counts: dict[str, int] = {}
-    for clip_id in dict.fromkeys(wanted.model_clips) or (clip.id,):
+    for clip_id in wanted.keyposes or dict.fromkeys(wanted.model_clips) or (clip.id,):
         found = track
         if clip_id != clip.id:
             found = body_track(load_motion(lib, ready_clip(lib, clip_id)))
-        frames = keypose_frames(lib, clip_id, found)
+        if wanted.keyposes is None:
+            frames = keypose_frames(lib, clip_id, found)
+        else:
+            frames = _within(wanted.keyposes[clip_id], found)
         counts[clip_id] = len(frames)
         count = wanted.poses or len(frames)
         if basis is Basis.UNIFORM and count:
@@ -191,6 +224,11 @@ def _model_poses(
     if len(poses) < FEWEST_POSES:
         raise _too_few(counts, len(poses))
     return tuple(poses), np.concatenate(local)
+
+
+def _within(frames: Sequence[int], track: BodyTrack) -> IntArray:
+    """Of frames that were kept, those that the clip still has: it may be read anew since."""
+    return np.array([frame for frame in frames if 0 <= frame < track.frames], dtype=np.int64)
 
 
 def _too_few(counts: dict[str, int], poses: int) -> NotEnoughKeyposes:
@@ -209,8 +247,7 @@ def _checked(wanted: Reduction) -> Basis:
         raise fields.bad_field("basis", f"must be one of {', '.join(Basis)}") from None
     if wanted.dimensions is not None and wanted.dimensions < 1:
         raise fields.bad_field("dimensions", "must be at least 1")
-    if len(wanted.model_clips) > MOST_MODEL_CLIPS:
-        raise fields.bad_field("model_clips", f"must be at most {MOST_MODEL_CLIPS} clips")
+    _check_clips(wanted.model_clips)
     if wanted.poses is not None and basis is not Basis.UNIFORM:
         raise fields.bad_field("poses", "goes with basis=uniform; keyposes are as many as they are")
     if wanted.poses is not None and not 1 <= wanted.poses <= MOST_POSES:
@@ -218,15 +255,9 @@ def _checked(wanted: Reduction) -> Basis:
     return basis
 
 
-def _rate(lib: Library, clip: ClipRecord, fps: float | None) -> float | None:
-    if fps is None:
-        return None
-    if not (math.isfinite(fps) and 0 < fps <= MAX_FPS):
-        raise fields.bad_field("fps", f"must be above 0 and at most {MAX_FPS:g}")
-    if fps * (clip.duration or 0.0) > lib.settings.max_frames:
-        message = f"would make more than {lib.settings.max_frames} frames"
-        raise fields.bad_field("fps", message)
-    return fps
+def _check_clips(model_clips: Sequence[str]) -> None:
+    if len(model_clips) > MOST_MODEL_CLIPS:
+        raise fields.bad_field("model_clips", f"must be at most {MOST_MODEL_CLIPS} clips")
 
 
 def _shown(model: EigenModel, poses: FloatArray) -> FloatArray:

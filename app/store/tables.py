@@ -208,3 +208,34 @@ api_keys = Table(
     Column("created_at", UtcDateTime, nullable=False),
     Column("revoked_at", UtcDateTime),
 )
+
+study_pairs = Table(
+    "study_pairs",
+    metadata,
+    Column("id", String, primary_key=True),
+    _clip_key(nullable=False, index=True),
+    Column("dimensions", Integer, nullable=False),
+    # Which frames of which clips make the models: what is voted on must not change.
+    _json("keyposes", nullable=False),
+    Column("sequence", String, nullable=False, index=True),
+    Column("left_basis", String, nullable=False),
+    Column("created_at", UtcDateTime, nullable=False, index=True),
+)
+
+study_votes = Table(
+    "study_votes",
+    metadata,
+    Column("id", String, primary_key=True),
+    Column(
+        "pair_id",
+        String,
+        ForeignKey("study_pairs.id", ondelete="CASCADE"),
+        nullable=False,
+        index=True,
+    ),
+    Column("sequence", String, nullable=False),
+    Column("choice", String, nullable=False),
+    Column("voter_sha256", String),
+    Column("created_at", UtcDateTime, nullable=False),
+    UniqueConstraint("sequence", "voter_sha256"),
+)

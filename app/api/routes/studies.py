@@ -1,0 +1,106 @@
+"""The study of low-dimensional motions (Perera 2009, Table 2): pairs, votes, and the tally."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query, Request, Response
+
+from app.api.bodies import require_json
+from app.api.deps import Lib, reads, writes
+from app.api.openapi import refusals
+from app.api.routes.clip_views import OCTET_ANSWER
+from app.api.routes.low_dimensional import SVG_ANSWER
+from app.api.schemas.studies import (
+    PAIRS,
+    NewPair,
+    NewVote,
+    Pair,
+    PairList,
+    PairsQuery,
+    SideQuery,
+    StudyTally,
+    TallyQuery,
+    Vote,
+)
+from app.api.schemas.views import Motion
+from app.api.streams import as_json, as_octets, wants_octets
+from app.services import studies
+from app.services.studies import Side
+
+router = APIRouter(tags=["studies"])
+
+_BODY_REFUSALS = refusals(400, 404, 409, 413, 415)
+
+
+@router.post(
+    PAIRS, status_code=201, dependencies=[writes, Depends(require_json)], responses=_BODY_REFUSALS
+)
+def draw_pair(lib: Lib, new: NewPair) -> Pair:
+    """Draw a pair to be compared: the clip drawn from as many dimensions of its keyposes and of
+    uniform poses, sides by lot. Draw one for each voter, so that sides even out."""
+    return Pair.of(studies.draw_pair(lib, new.clip_id, new.dimensions, new.model_clips))
+
+
+@router.get(PAIRS, dependencies=[reads], responses=refusals())
+def list_pairs(lib: Lib, query: Annotated[PairsQuery, Query()]) -> PairList:
+    """Pairs, the newest first."""
+    page = studies.list_pairs(lib, query.limit, query.cursor)
+    return PairList(items=[Pair.of(pair) for pair in page.items], next=page.next)
+
+
+@router.get(PAIRS + "/{pair_id}", dependencies=[reads], responses=refusals(404))
+def get_pair(lib: Lib, pair_id: str) -> Pair:
+    """One pair."""
+    return Pair.of(studies.get_pair(lib, pair_id))
+
+
+@router.delete(
+    PAIRS + "/{pair_id}", status_code=204, dependencies=[writes], responses=refusals(404)
+)
+def delete_pair(lib: Lib, pair_id: str) -> None:
+    """Forget a pair and the votes on it."""
+    studies.delete_pair(lib, pair_id)
+
+
+@router.get(
+    PAIRS + "/{pair_id}/animation.svg",
+    dependencies=[reads],
+    response_class=Response,
+    responses={200: SVG_ANSWER, **refusals(404, 409)},
+)
+def get_pair_animation(lib: Lib, pair_id: str) -> Response:
+    """The three motions side by side in one time, the original in the middle (fig. 12)."""
+    return Response(studies.animation(lib, pair_id), media_type="image/svg+xml")
+
+
+@router.get(
+    PAIRS + "/{pair_id}/{side}",
+    dependencies=[reads],
+    response_model=Motion,
+    responses={200: OCTET_ANSWER, **refusals(404, 409)},
+)
+def get_pair_motion(
+    lib: Lib, request: Request, pair_id: str, side: Side, wanted: Annotated[SideQuery, Query()]
+) -> Response:
+    """The motion on a side, as `/motion` gives it: JSON, or octets. Nothing tells what it is."""
+    view = studies.motion(lib, pair_id, side, wanted.fps)
+    return as_octets(view) if wants_octets(request) else as_json(view)
+
+
+@router.post(
+    PAIRS + "/{pair_id}/votes",
+    status_code=201,
+    dependencies=[writes, Depends(require_json)],
+    responses=_BODY_REFUSALS,
+)
+def vote(lib: Lib, pair_id: str, new: NewVote) -> Vote:
+    """Say which side is nearer to the original."""
+    vote_id = studies.vote(lib, pair_id, new.choice, new.voter)
+    return Vote(id=vote_id, pair_id=pair_id, choice=new.choice)
+
+
+@router.get("/v1/studies/low-dimensional/tally", dependencies=[reads], responses=refusals(404))
+def get_tally(lib: Lib, query: Annotated[TallyQuery, Query()]) -> StudyTally:
+    """The votes as in Table 2: how many found the keyposes' motion nearer to the original."""
+    return StudyTally.of(studies.tally(lib, query.clip_id))

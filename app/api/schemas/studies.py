@@ -1,0 +1,189 @@
+"""The study of low-dimensional motions: pairs, votes and the tally."""
+
+from __future__ import annotations
+
+from datetime import datetime
+
+from pydantic import ConfigDict, Field
+
+from app.analysis.low_dimensional import SHOWN
+from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing
+from app.services import studies
+from app.services.low_dimensional import MOST_MODEL_CLIPS
+from app.services.studies import MOST_VOTER
+from app.store.studies import Choice, PairRecord
+
+PAIRS = "/v1/studies/low-dimensional/pairs"
+
+
+class NewPair(Incoming):
+    """What shall be compared."""
+
+    clip_id: str = Field(min_length=1, max_length=100)
+    dimensions: int = Field(
+        SHOWN, ge=1, le=10**6, description="Of both versions; up to the poses of the model."
+    )
+    model_clips: list[str] = Field(
+        default_factory=list,
+        max_length=MOST_MODEL_CLIPS,
+        description="Clips whose poses make the models; default: the clip itself.",
+    )
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"clip_id": "CLIP_ID", "dimensions": 3}]}
+    )
+
+
+class Pair(Outgoing):
+    """Two versions of a clip: one drawn from keyposes, one from uniform poses. Nothing tells
+    which stands on which side."""
+
+    id: str
+    clip_id: str
+    dimensions: int
+    left: str = Field(description="Path of the motion on the left.")
+    original: str = Field(description="Path of the original, on the same joints.")
+    right: str = Field(description="Path of the motion on the right.")
+    animation: str = Field(description="Path of a picture of the three that moves.")
+    votes: str = Field(description="Path to which votes are posted.")
+    created_at: datetime
+
+    @classmethod
+    def of(cls, pair: PairRecord) -> Pair:
+        """A pair as it goes over the wire: without its sides."""
+        path = f"{PAIRS}/{pair.id}"
+        return cls(
+            id=pair.id,
+            clip_id=pair.clip_id,
+            dimensions=pair.dimensions,
+            left=f"{path}/left",
+            original=f"{path}/original",
+            right=f"{path}/right",
+            animation=f"{path}/animation.svg",
+            votes=f"{path}/votes",
+            created_at=pair.created_at,
+        )
+
+
+class PairList(Outgoing):
+    """A page of pairs, the newest first."""
+
+    items: list[Pair]
+    next: str | None
+
+
+class PairsQuery(Incoming):
+    """Which page of the pairs."""
+
+    limit: Limit = 50
+    cursor: Cursor | None = None
+
+
+class SideQuery(Incoming):
+    """How a motion of a pair is wanted."""
+
+    fps: float | None = Field(
+        None, gt=0, le=1000, description="Resampled by time; default: 30, at which it is made."
+    )
+
+
+class NewVote(Incoming):
+    """Which version is nearer to the original."""
+
+    choice: Choice
+    voter: str | None = Field(
+        None,
+        min_length=1,
+        max_length=MOST_VOTER,
+        description="Anything that tells voters apart, such as a random number that the page "
+        "keeps; one vote each on a sequence. Kept as a hash only.",
+    )
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"choice": "left", "voter": "f3b1c9"}]}
+    )
+
+
+class Vote(Outgoing):
+    """A vote that was kept. Which basis it was for is not told: the voter may see more pairs."""
+
+    id: str
+    pair_id: str
+    choice: Choice
+
+
+class TallyQuery(Incoming):
+    """Whose votes."""
+
+    clip_id: str | None = Field(
+        None, min_length=1, max_length=100, description="Of this clip's pairs only."
+    )
+
+
+class Tally(Outgoing):
+    """Votes as in Perera's Table 2."""
+
+    keypose: int = Field(description="How often the version drawn from keyposes was chosen.")
+    uniform: int
+    same: int = Field(description="How often nobody could tell.")
+    share: float | None = Field(
+        ge=0, le=1, description="keypose / (keypose + uniform); null without such votes."
+    )
+    interval: list[float] = Field(
+        min_length=2, max_length=2, description="Of the share, 95 % (Wilson)."
+    )
+    chance: float = Field(
+        ge=0,
+        le=1,
+        description="Probability of a share as far from one half if nobody could tell (exact "
+        "binomial test; takes votes for independent).",
+    )
+
+    @classmethod
+    def of(cls, tally: studies.Tally) -> Tally:
+        """A tally as it goes over the wire."""
+        return cls(
+            keypose=tally.keypose,
+            uniform=tally.uniform,
+            same=tally.same,
+            share=tally.share,
+            interval=list(tally.interval),
+            chance=tally.chance,
+        )
+
+
+class SequenceTally(Tally):
+    """The votes on one clip with one model and so many dimensions."""
+
+    clip_id: str
+    name: str
+    dimensions: int
+
+    @classmethod
+    def of_sequence(cls, found: studies.SequenceTally) -> SequenceTally:
+        """A row of Table 2 as it goes over the wire."""
+        return cls(
+            **dict(Tally.of(found.votes)),
+            clip_id=found.clip_id,
+            name=found.name,
+            dimensions=found.dimensions,
+        )
+
+
+class StudyTally(Outgoing):
+    """Table 2 of this library."""
+
+    sequences: list[SequenceTally]
+    total: Tally
+    left_share: float | None = Field(
+        ge=0, le=1, description="How often the left side was chosen; one half is fair."
+    )
+
+    @classmethod
+    def of(cls, found: studies.StudyTally) -> StudyTally:
+        """The table as it goes over the wire."""
+        return cls(
+            sequences=[SequenceTally.of_sequence(row) for row in found.sequences],
+            total=Tally.of(found.total),
+            left_share=found.left_share,
+        )
