@@ -1,0 +1,88 @@
+"""Long motions made of many, with pieces hidden in them: what searches in windows must find.
+
+All bodies are (frames, 13, 3) positions in metres, at the rate that is told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.motion.body_frame import body_length, body_track
+from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.resampling import sample_at
+from app.numerics.arrays import FloatArray
+from tests.bodies import motion_of, turned_about_y
+
+GAP_SECONDS = 0.6
+"""How long the body takes from the end of one piece to the start of the next."""
+
+HIPS = SUN_ROLES.index(JointRole.HIPS)
+
+
+@dataclass(frozen=True)
+class Stream:
+    """A long motion, and where in it each part stands: (start, end) in seconds."""
+
+    body: FloatArray
+    rate: float
+    spans: tuple[tuple[float, float], ...]
+
+
+def joined(parts: Sequence[FloatArray], rate: float, gap: float = GAP_SECONDS) -> Stream:
+    """The parts one after the other: each turned and moved to go on where the last ended.
+
+    In between, every joint follows the cubic that continues both movements.
+    """
+    laid: list[FloatArray] = [parts[0]]
+    firsts, count = [0], len(parts[0])
+    frames = max(2, round(gap * rate))
+    for part in parts[1:]:
+        placed = _continuing(laid[-1], part, rate, gap)
+        laid += [_bridge(laid[-1], placed, frames), placed]
+        firsts.append(count + frames)
+        count = firsts[-1] + len(placed)
+    spans = [(f / rate, (f + len(p)) / rate) for f, p in zip(firsts, parts, strict=True)]
+    return Stream(np.concatenate(laid), rate, tuple(spans))
+
+
+def warped(body: FloatArray, factor: float, bend: float = 0.0) -> FloatArray:
+    """`body` in `factor` times as many frames; its speed sways by `bend` (0.1: by 10 %)."""
+    passed = np.linspace(0.0, 1.0, max(2, round(len(body) * factor)))
+    passed = passed + bend * np.sin(2 * np.pi * passed) / (2 * np.pi)
+    return sample_at(body, passed * (len(body) - 1))
+
+
+def at_rate(body: FloatArray, rate: float, other: float) -> FloatArray:
+    """`body` of `rate` Hz read at `other` Hz."""
+    times = np.arange(int((len(body) - 1) / rate * other + 1e-6) + 1) * (rate / other)
+    return sample_at(body, times)
+
+
+def of_size(body: FloatArray, length: float = 1.1) -> FloatArray:
+    """`body` scaled to a body length (torso, neck to head and shin) in metres."""
+    return body * (length / body_length(motion_of(body)))
+
+
+def _continuing(before: FloatArray, part: FloatArray, rate: float, gap: float) -> FloatArray:
+    """`part` turned and moved along the ground to where `before` leads in `gap` seconds."""
+    turned = turned_about_y(part, _heading(before[-2:], rate) - _heading(part[:2], rate))
+    way = (before[-1, HIPS] - before[-2, HIPS]) + (turned[1, HIPS] - turned[0, HIPS])
+    target = before[-1, HIPS] + way * (rate * gap / 2)
+    return turned + (target - turned[0, HIPS]) * [1.0, 0.0, 1.0]
+
+
+def _heading(two: FloatArray, rate: float) -> float:
+    return float(body_track(motion_of(two, 30.0)).heading[-1])
+
+
+def _bridge(before: FloatArray, after: FloatArray, frames: int) -> FloatArray:
+    """(frames, 13, 3) between two bodies: cubic Hermite, with the speeds of both ends."""
+    steps = frames + 1
+    u = (np.arange(1, steps) / steps)[:, None, None]
+    leave, arrive = (before[-1] - before[-2]) * steps, (after[1] - after[0]) * steps
+    rise = after[0] - before[-1]
+    bend = (leave - rise) * (1 - u) + (rise - arrive) * u
+    return np.asarray(before[-1] + u * rise + u * (1 - u) * bend)
