@@ -48,7 +48,7 @@ class Block:
 
 def squared_lengths(vectors: FloatArray) -> FloatArray:
     """(n,) float32 squared lengths of `vectors` (n, d), summed in float64."""
-    return np.einsum("ij,ij->i", vectors, vectors, dtype=np.float64).astype(np.float32)
+    return np.asarray(np.einsum("ij,ij->i", vectors, vectors, dtype=np.float64), dtype=np.float32)
 
 
 def nearest(

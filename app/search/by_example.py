@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from app.numerics.arrays import FloatArray
+from app.search.cursor import Anchor
 from app.search.distances import Loader, QueryArrays, distances_to
 from app.search.index import VectorIndex
 from app.search.methods import Method
-from app.search.rank import IdArray, Ranking, behind, ranking
+from app.search.rank import IdArray, Page, Ranked, Ranking
+from app.search.reranked import ReRanked
 from app.store.clip_filter import ClipFilter
 
 SHORTLIST = 200
@@ -39,32 +43,25 @@ def rank_by_example(
     wanted: ClipFilter,
     exclude: frozenset[str],
     load: Loader,
-) -> Ranking:
-    """Every clip that passes the filter and is not excluded, from the nearest on."""
-    if method is Method.FUSED:
-        return _fused(index, query, wanted, exclude, load)
-    if method is Method.VECTOR:
+    anchor: Anchor | None = None,
+) -> Ranked:
+    """Every clip that passes the filter and is not excluded, from the nearest on.
+
+    anchor: of the cursor that goes on, if one does.
+    """
+    if method in (Method.FUSED, Method.VECTOR):
         near = index.nearest(query.vector, wanted, exclude)
-        return ranking(near.ids, near.distances)
+        if method is Method.VECTOR:
+            return near
+        return ReRanked(near, partial(_fused, query, load), SHORTLIST, anchor)
     ids = index.candidates(wanted, exclude).ids
     return _known(ids, distances_to(query, list(ids), method, load))
 
 
-def _fused(
-    index: VectorIndex,
-    query: QueryArrays,
-    wanted: ClipFilter,
-    exclude: frozenset[str],
-    load: Loader,
-) -> Ranking:
-    """The shortlist by both distances, the rest behind it in the order of their vectors."""
-    near = index.nearest(query.vector, wanted, exclude)
-    first = ranking(near.ids, near.distances)
-    ids, vector = first.ids[:SHORTLIST], first.distances[:SHORTLIST]
-    warped = distances_to(query, list(ids), Method.DTW, load)
-    head = fuse(vector, warped)
-    tail = behind(head[np.isfinite(head)], vector, first.distances[SHORTLIST:])
-    return _known(first.ids, np.concatenate([head, tail]))
+def _fused(query: QueryArrays, load: Loader, shortlist: Page) -> Ranking:
+    """The shortlist by both distances."""
+    warped = distances_to(query, list(shortlist.ids), Method.DTW, load)
+    return _known(shortlist.ids, fuse(shortlist.distances, warped))
 
 
 def fuse(vector: FloatArray, warped: FloatArray) -> FloatArray:
@@ -75,4 +72,4 @@ def fuse(vector: FloatArray, warped: FloatArray) -> FloatArray:
 def _known(ids: IdArray, distances: FloatArray) -> Ranking:
     """The ranking without clips that were deleted while they were compared."""
     there = np.isfinite(distances)
-    return ranking(ids[there], distances[there])
+    return Ranking(ids[there], distances[there])

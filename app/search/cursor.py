@@ -2,7 +2,8 @@
 
 A cursor remembers the last hit of a page as (rank, distance, clip id) and a digest of the
 question. The next page starts behind that key, so that clips that arrive in between
-shift nothing; a cursor used with another question is refused.
+shift nothing; a cursor used with another question is refused. Where only a shortlist was
+ranked again, it also remembers where that ended.
 """
 
 from __future__ import annotations
@@ -18,12 +19,26 @@ from app.errors import BadField, Place
 
 
 @dataclass(frozen=True, slots=True)
+class Anchor:
+    """Where a shortlist ended, so that the next page has the same shortlist.
+
+    distance, clip_id: of its farthest clip before it was ranked again; end: the largest
+    distance in it afterwards, behind which all other clips follow.
+    """
+
+    distance: float
+    clip_id: str
+    end: float
+
+
+@dataclass(frozen=True, slots=True)
 class Position:
-    """The last hit that was seen: its rank (from 1), distance and clip id."""
+    """The last hit that was seen: its rank (from 1), distance and clip id; see `Anchor`."""
 
     rank: int
     distance: float
     clip_id: str
+    anchor: Anchor | None = None
 
 
 def digest(*parts: object) -> str:
@@ -34,7 +49,9 @@ def digest(*parts: object) -> str:
 
 def encode(position: Position, question: str) -> str:
     """A cursor for what follows `position` in the answer to `question` (a digest)."""
-    body = json.dumps([question, position.rank, position.distance, position.clip_id])
+    anchor = position.anchor
+    told = [] if anchor is None else [anchor.distance, anchor.clip_id, anchor.end]
+    body = json.dumps([question, position.rank, position.distance, position.clip_id, *told])
     return base64.urlsafe_b64encode(body.encode()).decode().rstrip("=")
 
 
@@ -42,13 +59,18 @@ def decode(cursor: str, question: str) -> Position:
     """The position in a cursor; raises BadField where it is none, or of another question."""
     try:
         padded = cursor.encode("ascii") + b"=" * (-len(cursor) % 4)
-        found, rank, distance, clip_id = json.loads(base64.urlsafe_b64decode(padded))
-        position = Position(_rank(rank), _distance(distance), _text(clip_id))
+        found, rank, distance, clip_id, *told = json.loads(base64.urlsafe_b64decode(padded))
+        anchor = _anchor(*told) if told else None
+        position = Position(_rank(rank), _distance(distance), _text(clip_id), anchor)
     except (ValueError, TypeError, binascii.Error) as problem:
         raise _refused("this is no cursor that was given out") from problem
     if found != question:
         raise _refused("this cursor belongs to another question")
     return position
+
+
+def _anchor(distance: object, clip_id: object, end: object) -> Anchor:
+    return Anchor(_distance(distance), _text(clip_id), _distance(end))
 
 
 def _rank(value: object) -> int:

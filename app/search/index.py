@@ -1,7 +1,8 @@
-"""The index: every ready clip's motion vector in memory, exact search by one BLAS product.
+"""The index: every ready clip's vectors in memory, and exact search over them.
 
 It follows the library version: `catch_up` reads one number and loads what changed since.
-A lock makes it safe to share between threads; it is held for milliseconds.
+Only that takes a lock, and only where something did; searches read a `RowsView` of their
+own, side by side, whatever is loaded meanwhile.
 """
 
 from __future__ import annotations
@@ -10,46 +11,46 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
-from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.arrays import FloatArray
+from app.search.near import Near
 from app.search.rank import IdArray
-from app.search.rows import Rows
-from app.store import arrays, clips, library
+from app.search.rows import Layout, Rows, RowsView
+from app.store import index_feed, library
 from app.store.clip_filter import ClipFilter
 from app.store.engine import Tx
 from app.store.store import Store
 
 VECTOR = "motion_vector"
 WIDTH = 128
-LOAD_BATCH = 5000
-"""Clips loaded at a time, so that a first load does not hold the library twice."""
-EXACT = 1000
-"""So many of the nearest are measured again without the rounding of the product."""
+MOTION_VECTORS = Layout(VECTOR, WIDTH)
 
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """Clips that passed a filter, in the index's order: ids (n,), distances (n,) or empty."""
+    """Clips that passed a filter, in the index's order: ids (n,), of a library version."""
 
     version: int
     ids: IdArray
-    distances: FloatArray
 
 
 class VectorIndex:
-    """Motion vectors (n, 128) float32 of the ready clips, with the labels that filters need."""
+    """Vectors float32 of the ready clips, with the labels that filters need."""
 
-    def __init__(self, on_change: Callable[[tuple[str, ...]], None] | None = None) -> None:
-        """`on_change` is told the ids of clips that changed or went."""
+    def __init__(
+        self,
+        on_change: Callable[[tuple[str, ...]], None] | None = None,
+        layout: Layout = MOTION_VECTORS,
+    ) -> None:
+        """`on_change` is told the ids of clips that changed or went; layout: what is kept."""
         self._on_change = on_change
-        self._rows = Rows(WIDTH)
-        self._version = 0
+        self._layout = layout
+        self._rows = Rows(layout)
+        self._state = 0, self._rows.view()
         self._loaded = False
         self._lock = threading.Lock()
 
     def __len__(self) -> int:
-        return self._rows.count
+        return len(self._rows)
 
     @property
     def is_loaded(self) -> bool:
@@ -59,64 +60,64 @@ class VectorIndex:
     @property
     def version(self) -> int:
         """The library version that it stands at."""
-        return self._version
+        return self._state[0]
+
+    @property
+    def state(self) -> tuple[int, RowsView]:
+        """The library version and the rows at that version."""
+        return self._state
 
     def catch_up(self, store: Store) -> int:
         """Bring the index to the library's version and return that.
 
         One cheap query when nothing is new.
         """
+        with store.read() as tx:
+            if self._loaded and library.version(tx) == self.version:
+                return self.version
         with self._lock, store.read() as tx:
-            changes = library.changed_since(tx, self._version)
-            for clip_id in changes.removed:
-                self._rows.remove(clip_id)
-            for start in range(0, len(changes.changed), LOAD_BATCH):
-                self._load(tx, changes.changed[start : start + LOAD_BATCH])
-            if self._on_change and (touched := changes.changed + changes.removed):
-                self._on_change(touched)
-            self._version, self._loaded = changes.version, True
-            return self._version
+            now = library.version(tx)
+            if not self._loaded or now != self.version:
+                self._follow(tx, now)
+            return now
 
     def candidates(self, wanted: ClipFilter, exclude: frozenset[str] = frozenset()) -> Candidates:
         """The clips that pass a filter, without distances."""
-        with self._lock:
-            rows = self._rows.passing(wanted, exclude)
-            return Candidates(self._version, self._rows.ids[rows], np.zeros(0))
+        version, rows = self._state
+        return Candidates(version, rows.labels.ids[rows.labels.passing(wanted, exclude)])
 
     def nearest(
         self, query: FloatArray, wanted: ClipFilter, exclude: frozenset[str] = frozenset()
-    ) -> Candidates:
-        """The clips that pass a filter with their Euclidean distances to `query` (128,)."""
-        with self._lock:
-            rows = self._rows.passing(wanted, exclude)
-            distances = self._distances(np.asarray(query, dtype=np.float32), rows)
-            return Candidates(self._version, self._rows.ids[rows], distances)
+    ) -> Near:
+        """The clips that pass a filter, ranked by Euclidean distance to `query` (width,)."""
+        version, rows = self._state
+        return Near(version, rows, rows.labels.passing(wanted, exclude), query)
 
     def labels(self, clip_id: str) -> frozenset[str]:
-        """The words of a clip that is in the index."""
-        with self._lock:
-            words: frozenset[str] = self._rows.words[self._rows.row_of[clip_id]]
-            return words
+        """The words of a clip; none where it is not in the index."""
+        return self._state[1].labels.words(clip_id)
 
-    def _load(self, tx: Tx, clip_ids: tuple[str, ...]) -> None:
-        vectors = arrays.get_many(tx, clip_ids, VECTOR)
-        for clip in clips.get_many(tx, clip_ids).values():
-            self._rows.put(clip, vectors[clip.id])
+    def _follow(self, tx: Tx, now: int) -> None:
+        """Take what changed up to version `now`; what searches see changes at once, at the end."""
+        since = self.version
+        if self._loaded:
+            self._forget(library.buried_since(tx, since))
+        else:
+            self._rows = Rows(self._layout)  # a load that failed half-way may have left some
+        for batch in index_feed.changed_since(tx, since, self._layout.array):
+            ready = [clip for clip in batch if clip.is_ready]
+            self._forget(tuple(clip.id for clip in batch if not clip.is_ready))
+            self._rows.put(ready)
+            self._tell(tuple(clip.id for clip in ready))
+        if self._rows.is_wasteful:
+            self._rows = self._rows.living()
+        self._state = now, self._rows.view()
+        self._loaded = True
 
-    def _distances(self, query: FloatArray, rows: IntArray) -> FloatArray:
-        """(n,) float64: |q - x|, by |q|^2 - 2 q.x + |x|^2, the nearest again without rounding."""
-        if not len(rows):
-            return np.zeros(0)
-        count = self._rows.count
-        # One product over all rows is faster than gathering the few that a filter leaves.
-        products = (self._rows.vectors[:count] @ query)[rows].astype(np.float64)
-        squares = self._rows.squares[rows] + float(query @ query) - 2.0 * products
-        distances = np.sqrt(np.maximum(squares, 0.0))
-        near = np.argsort(distances, kind="stable")[:EXACT]
-        far = np.ones(len(rows), dtype=bool)
-        far[near] = False
-        difference = self._rows.vectors[rows[near]].astype(np.float64) - query
-        distances[near] = np.linalg.norm(difference, axis=1)
-        # What was not measured again must not overtake what was.
-        distances[far] = np.maximum(distances[far], distances[near].max())
-        return np.asarray(distances)
+    def _forget(self, clip_ids: tuple[str, ...]) -> None:
+        self._rows.remove(clip_ids)
+        self._tell(clip_ids)
+
+    def _tell(self, clip_ids: tuple[str, ...]) -> None:
+        if clip_ids and self._on_change:
+            self._on_change(clip_ids)

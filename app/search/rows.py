@@ -1,126 +1,191 @@
-"""The columns of the index: what filters look at, one entry a clip, kept in step.
+"""What an index holds: the clips' labels, and one vector of each clip or several.
 
-Names become small integers, so that a filter over a million clips is a few array
-comparisons; rows are removed by moving the last one into the gap.
+Rows only grow, in blocks that never move; a clip that went stays as a dead row until half
+of all are dead, when the living are copied. What a search reads is a `RowsView`, which
+nothing that comes later changes.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipRecord
+from app.numerics.nearest import Block, squared_lengths
+from app.search.labels import Column, Labels, LabelView
+from app.store.index_feed import IndexedClip
 
-NAMED = ("person", "task", "license", "source")
-_FIRST_CAPACITY = 1024
+BLOCK = 32_768
+"""Rows of one block."""
+FEW_DEAD = 4096
+"""Dead clips that are put up with, however few are alive."""
+COPIED = 5000
+"""Clips copied at a time when the dead are dropped."""
 
 
-@dataclass(slots=True)
-class Rows:
-    """Growing columns of `count` clips and their vectors.
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """How a stored array becomes rows: (told + width,) one row, or (m, told + width) m rows.
 
-    ids: (capacity,) objects; vectors: (capacity, width) float32; squares: (capacity,) their
-    squared lengths; durations: (capacity,) seconds; named: (capacity,) int32 codes by label.
+    array: its name in the store; width: numbers of a row that are compared; told: numbers
+    before them that say what the row is; several: whether a clip may have any number of rows.
     """
 
+    array: str
     width: int
-    count: int = 0
-    ids: np.ndarray = field(init=False)
-    vectors: FloatArray = field(init=False)
-    squares: FloatArray = field(init=False)
-    durations: FloatArray = field(init=False)
-    words: np.ndarray = field(init=False)
-    named: dict[str, IntArray] = field(init=False)
-    codes: dict[str, dict[str | None, int]] = field(init=False)
-    row_of: dict[str, int] = field(default_factory=dict)
+    told: int = 0
+    several: bool = False
 
-    def __post_init__(self) -> None:
-        """Empty columns."""
-        self.ids = np.empty(_FIRST_CAPACITY, dtype=object)
-        self.vectors = np.zeros((_FIRST_CAPACITY, self.width), dtype=np.float32)
-        self.squares = np.zeros(_FIRST_CAPACITY, dtype=np.float32)
-        self.durations = np.zeros(_FIRST_CAPACITY)
-        self.words = np.empty(_FIRST_CAPACITY, dtype=object)
-        self.named = {name: np.zeros(_FIRST_CAPACITY, dtype=np.int32) for name in NAMED}
-        self.codes = {name: {} for name in NAMED}
+    def rows_of(self, array: NDArray[Any] | None) -> NDArray[Any] | None:
+        """(m, told + width) rows of a clip's array, m > 0; None where it is not such an array.
 
-    def put(self, clip: ClipRecord, vector: FloatArray) -> None:
-        """Add a clip, or write over what was known of it."""
-        row = self.row_of.setdefault(clip.id, self.count)
-        if row == self.count:
-            self.count += 1
-            self._grow()
-        self.ids[row] = clip.id
-        self.vectors[row] = vector
-        self.squares[row] = self.vectors[row] @ self.vectors[row]
-        self.durations[row] = clip.duration or 0.0
-        self.words[row] = frozenset(clip.words)
-        for name in NAMED:
-            codes = self.codes[name]
-            self.named[name][row] = codes.setdefault(getattr(clip, name), len(codes))
-
-    def remove(self, clip_id: str) -> None:
-        """Forget a clip; nothing happens if it is not known."""
-        row = self.row_of.pop(clip_id, None)
-        if row is None:
-            return
-        self.count -= 1
-        last = self.count
-        for column in self._columns():
-            column[row] = column[last]
-        self.ids[last] = self.words[last] = None
-        if row != last:
-            self.row_of[self.ids[row]] = row
-
-    def passing(self, wanted: ClipFilter, exclude: frozenset[str]) -> IntArray:
-        """Rows of the clips that pass a filter and are not excluded, ascending.
-
-        The state and the name are not looked at: every row is a ready clip.
+        So it is with clips of an earlier analysis, until they are analysed again.
         """
-        mask = self._within(wanted)
-        for name in NAMED:
-            if values := getattr(wanted, name):
-                codes = [self.codes[name][value] for value in values if value in self.codes[name]]
-                mask &= np.isin(self.named[name][: self.count], codes)
-        for clip_id in exclude & self.row_of.keys():
-            mask[self.row_of[clip_id]] = False
-        rows = np.flatnonzero(mask)
-        if wanted.word:
-            words = frozenset(wanted.word)
-            rows = rows[[not words.isdisjoint(carried) for carried in self.words[rows]]]
-        return rows
-
-    def _within(self, wanted: ClipFilter) -> BoolArray:
-        durations = self.durations[: self.count]
-        mask = np.ones(self.count, dtype=bool)
-        if wanted.min_duration is not None:
-            mask &= durations >= wanted.min_duration
-        if wanted.max_duration is not None:
-            mask &= durations <= wanted.max_duration
-        return mask
-
-    def _columns(self) -> list[np.ndarray]:
-        return [
-            self.ids,
-            self.vectors,
-            self.squares,
-            self.durations,
-            self.words,
-            *self.named.values(),
-        ]
-
-    def _grow(self) -> None:
-        """Double the capacity when it is used up."""
-        if self.count <= len(self.ids):
-            return
-        self.ids, self.words = _doubled(self.ids), _doubled(self.words)
-        self.vectors, self.squares = _doubled(self.vectors), _doubled(self.squares)
-        self.durations = _doubled(self.durations)
-        self.named = {name: _doubled(column) for name, column in self.named.items()}
+        lengths = (self.told + self.width,)
+        if array is None or array.shape[self.several :] != lengths or not array.size:
+            return None
+        return array.reshape(-1, *lengths)
 
 
-def _doubled(column: np.ndarray) -> np.ndarray:
-    return np.concatenate([column, np.empty_like(column)])
+@dataclass(frozen=True, slots=True)
+class RowsView:
+    """Rows at one moment.
+
+    labels: of the n clips; blocks: vectors of all rows; told: (rows, t) float32 what rows say
+    of themselves; owners: (rows,) each row's clip, ascending; starts: (n,) each clip's first row.
+    """
+
+    labels: LabelView
+    blocks: tuple[Block, ...]
+    told: FloatArray
+    owners: IntArray | None
+    starts: IntArray | None
+
+    def masks(self, passing: BoolArray) -> list[BoolArray]:
+        """Of each block, which rows (m,) belong to the clips (n,) that are `passing`."""
+        rows = passing if self.owners is None else passing[self.owners]
+        ends = np.cumsum([len(block) for block in self.blocks])
+        return np.split(rows, ends[:-1]) if self.blocks else []
+
+
+class Rows:
+    """The rows of an index, to which clips are added and from which they are taken."""
+
+    def __init__(self, layout: Layout) -> None:
+        self._layout = layout
+        self._labels = Labels()
+        self._vectors = _Vectors(layout.width)
+        self._told = Column(np.float32, (layout.told,))
+        self._owners = Column(np.int32)
+        self._starts = Column(np.int64)
+
+    def __len__(self) -> int:
+        """Clips that are there."""
+        return len(self._labels)
+
+    def put(self, clips: Sequence[IndexedClip]) -> None:
+        """Add clips, each once, in place of what was known of them; some may have no array."""
+        self._labels.remove([clip.id for clip in clips])
+        rows = [(clip, self._layout.rows_of(clip.array)) for clip in clips]
+        there = [(clip, some) for clip, some in rows if some is not None]
+        if there:
+            self._append([clip for clip, _ in there], [some for _, some in there])
+
+    def remove(self, clip_ids: Iterable[str]) -> None:
+        """Forget clips; those that are not known are nothing to forget."""
+        self._labels.remove(clip_ids)
+
+    @property
+    def is_wasteful(self) -> bool:
+        """Whether most rows are dead."""
+        return self._labels.used - len(self) > max(FEW_DEAD, len(self))
+
+    def living(self) -> Rows:
+        """The same without dead rows."""
+        found = Rows(self._layout)
+        numbers = np.flatnonzero(self._labels.view().alive)
+        for start in range(0, len(numbers), COPIED):
+            some = numbers[start : start + COPIED].tolist()
+            found.put([self._labels.clip_at(n, self._array_at(n)) for n in some])
+        return found
+
+    def view(self) -> RowsView:
+        """The rows at this moment."""
+        several = self._layout.several
+        return RowsView(
+            labels=self._labels.view(),
+            blocks=self._vectors.view(),
+            told=self._told.view(),
+            owners=self._owners.view() if several else None,
+            starts=self._starts.view() if several else None,
+        )
+
+    def _append(self, clips: Sequence[IndexedClip], rows: list[NDArray[Any]]) -> None:
+        counts = [len(some) for some in rows]
+        every = np.concatenate(rows)
+        if self._layout.several:
+            numbers = self._labels.used + np.arange(len(clips))
+            self._starts.extend(self._vectors.count + np.cumsum([0, *counts[:-1]]))
+            self._owners.extend(np.repeat(numbers, counts))
+        self._told.extend(every[:, : self._layout.told])
+        self._vectors.extend(every[:, self._layout.told :])
+        self._labels.add(clips)
+
+    def _array_at(self, number: int) -> NDArray[Any]:
+        """A clip's array as it was given."""
+        first, stop = number, number + 1
+        if self._layout.several:
+            starts = self._starts.view()
+            first = int(starts[number])
+            stop = int(starts[stop]) if stop < len(starts) else self._vectors.count
+        rows = np.hstack([self._told.view()[first:stop], self._vectors.part(first, stop)])
+        return rows if self._layout.several else rows[0]
+
+
+class _Vectors:
+    """Vectors (rows, width) float32 in blocks that are filled one after another."""
+
+    def __init__(self, width: int) -> None:
+        self.count = 0
+        self._width = width
+        self._full: list[Block] = []
+        self._vectors, self._squares = self._empty()
+
+    def extend(self, vectors: FloatArray) -> None:
+        """Add vectors (m, width)."""
+        done = 0
+        while done < len(vectors):
+            held = self.count % BLOCK
+            some = vectors[done : done + BLOCK - held]
+            stop = held + len(some)
+            self._vectors[held:stop] = some
+            self._squares[held:stop] = squared_lengths(self._vectors[held:stop])
+            self.count += len(some)
+            done += len(some)
+            if stop == BLOCK:
+                self._full.append(Block(self._vectors, self._squares))
+                self._vectors, self._squares = self._empty()
+
+    def part(self, first: int, stop: int) -> FloatArray:
+        """(stop - first, width) copied."""
+        blocks = [*(block.vectors for block in self._full), self._vectors]
+        return np.concatenate(
+            [
+                blocks[i][max(first - i * BLOCK, 0) : stop - i * BLOCK]
+                for i in range(first // BLOCK, (stop - 1) // BLOCK + 1)
+            ]
+        )
+
+    def view(self) -> tuple[Block, ...]:
+        """All vectors so far."""
+        held = self.count % BLOCK
+        last = [Block(self._vectors[:held], self._squares[:held])] if held else []
+        return (*self._full, *last)
+
+    def _empty(self) -> tuple[FloatArray, FloatArray]:
+        # Memory is taken only as it is written.
+        return np.empty((BLOCK, self._width), np.float32), np.empty(BLOCK, np.float32)

@@ -11,11 +11,12 @@ from typing import Any
 
 from app.search import cursor as cursors
 from app.search.by_example import SCALES, rank_by_example
+from app.search.cursor import Position
 from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays
 from app.search.filters import parse_filter
 from app.search.index import VECTOR
 from app.search.methods import Method
-from app.search.rank import Ranking, score
+from app.search.rank import Ranked, score
 from app.services import fields
 from app.services.hits import Hit, Hits
 from app.services.library import Library
@@ -86,6 +87,7 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
     asked = describe(lib, _question(query), _NAMES)
     question = _fingerprint(asked, method, wanted, query)
     exclude = frozenset({query.clip_id} if query.clip_id and not query.include_self else ())
+    after = _position(query.cursor, question)
     found = rank_by_example(
         lib.index,
         _query_arrays(asked),
@@ -93,10 +95,9 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
         wanted,
         exclude,
         partial(lib.arrays.get_many, lib.store),
+        after.anchor if after else None,
     )
-    page = _page(
-        lib, found, question, query.limit, query.cursor, partial(score, scale=SCALES[method])
-    )
+    page = _page(lib, found, question, query.limit, after, partial(score, scale=SCALES[method]))
     return _timed(replace(page, method=method.value, library_version=version), began)
 
 
@@ -114,7 +115,8 @@ def find_words(lib: Library, query: WordQuery) -> Hits:
     version = lib.index.catch_up(lib.store)
     found = rank_by_words(lib, texts, query.mode, wanted)
     question = cursors.digest("words", *texts, query.mode, wanted, found.model)
-    page = _page(lib, found.ranking, question, query.limit, query.cursor, word_score)
+    after = _position(query.cursor, question)
+    page = _page(lib, found.ranking, question, query.limit, after, word_score)
     page = replace(
         page,
         method=query.mode,
@@ -150,20 +152,22 @@ def _fingerprint(asked: Answered, method: Method, wanted: ClipFilter, query: Mot
     return cursors.digest(query.clip_id, content, method, wanted, query.include_self)
 
 
+def _position(cursor: str | None, question: str) -> Position | None:
+    return None if cursor is None else cursors.decode(cursor, question)
+
+
 def _page(
     lib: Library,
-    found: Ranking,
+    found: Ranked,
     question: str,
     limit: int,
-    cursor: str | None,
+    after: Position | None,
     to_score: Callable[[float], float],
 ) -> Hits:
     """One page of a ranking, its clips as they are now; those deleted meanwhile are left out."""
-    position = cursors.decode(cursor, question) if cursor is not None else None
-    start = found.after(position)
-    rank = position.rank if position else 0
-    ids = [str(clip_id) for clip_id in found.ids[start : start + limit]]
-    distances = [float(d) for d in found.distances[start : start + limit]]
+    page = found.page(after, limit)
+    rank = after.rank if after else 0
+    ids, distances = [str(clip_id) for clip_id in page.ids], page.distances.tolist()
     with lib.store.read() as tx:
         clips = stored.get_many(tx, ids)
     hits = [
@@ -171,9 +175,10 @@ def _page(
         for place, (clip_id, distance) in enumerate(zip(ids, distances, strict=True), rank + 1)
         if (clip := clips.get(clip_id)) is not None
     ]
-    more = start + limit < len(found)
-    last = cursors.Position(rank + len(ids), distances[-1], ids[-1]) if more else None
-    return Hits("", 0.0, 0, tuple(hits), cursors.encode(last, question) if last else None)
+    if not page.more:
+        return Hits("", 0.0, 0, tuple(hits))
+    last = Position(rank + len(ids), distances[-1], ids[-1], found.anchor)
+    return Hits("", 0.0, 0, tuple(hits), cursors.encode(last, question))
 
 
 def _method(value: Method | str) -> Method:

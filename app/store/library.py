@@ -71,13 +71,22 @@ def changed_since(tx: Tx, since: int) -> LibraryChanges:
         .where(clips.c.changed_version > since)
         .order_by(clips.c.changed_version, clips.c.id)
     ).all()
-    dead = tx.execute(
-        select(tombstones.c.clip_id)
-        .where(tombstones.c.version > since)
-        .order_by(tombstones.c.version)
-    ).scalars()
     return LibraryChanges(
         version=now,
         changed=tuple(row.id for row in touched if row.state == ClipState.READY),
-        removed=(*(row.id for row in touched if row.state != ClipState.READY), *dead),
+        removed=(
+            *(row.id for row in touched if row.state != ClipState.READY),
+            *buried_since(tx, since),
+        ),
+    )
+
+
+def buried_since(tx: Tx, since: int) -> tuple[str, ...]:
+    """Ids of the clips that searches may know from version `since` and that were deleted."""
+    return tuple(
+        tx.execute(
+            select(tombstones.c.clip_id)
+            .where(tombstones.c.version > since)
+            .order_by(tombstones.c.version)
+        ).scalars()
     )

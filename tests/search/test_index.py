@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+import threading
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -9,10 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.errors import StorageError
 from app.search.array_cache import ArrayCache
 from app.search.index import VECTOR, WIDTH, VectorIndex
-from app.search.rows import Rows
-from app.store import arrays, clips, schema
+from app.store import arrays, clips, index_feed, schema
 from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipFacts, ClipRecord, NewClip
 from app.store.store import Store
@@ -122,22 +126,139 @@ def test_filters_agree_with_those_of_lists(store: Store, add: Add, wanted: ClipF
     assert set(index.candidates(wanted, exclude=some).ids) == expected - some
 
 
-def test_rows_survive_any_order_of_adding_and_removing() -> None:
-    rng = np.random.default_rng(3)
-    rows, kept = Rows(2), {}
-    for step in range(3000):
-        clip_id = f"c{rng.integers(1500)}"
-        if rng.random() < 0.4:
-            rows.remove(clip_id)
-            kept.pop(clip_id, None)
+def test_it_is_loaded_in_batches(store: Store, add: Add, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(index_feed, "BATCH", 3)
+    made = [add(f"c{i}", words=("slow",) if i % 2 else ("fast", "sad")) for i in range(8)]
+    told: list[str] = []
+    index = VectorIndex(on_change=told.extend)
+    index.catch_up(store)
+    assert sorted(told) == sorted(index.candidates(ClipFilter()).ids)
+    assert len(index) == len(made)
+    assert index.labels(made[0].id) == {"fast", "sad"}
+    assert set(index.candidates(ClipFilter(word=("slow",))).ids) == {c.id for c in made[1::2]}
+
+
+def test_a_load_that_fails_is_done_anew(
+    store: Store, add: Add, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(index_feed, "BATCH", 2)
+    kept, gone, third = add("kept"), add("gone"), add("third")
+    index = VectorIndex()
+    whole = index_feed.changed_since
+
+    def broken(*asked: Any) -> Iterator[Any]:
+        yield next(whole(*asked))
+        raise StorageError("the disk is gone")
+
+    monkeypatch.setattr(index_feed, "changed_since", broken)
+    with pytest.raises(StorageError):
+        index.catch_up(store)
+    assert not index.is_loaded
+    with store.write() as tx:
+        clips.delete_clip(tx, gone.id)
+    monkeypatch.setattr(index_feed, "changed_since", whole)
+    index.catch_up(store)
+    assert set(index.candidates(ClipFilter()).ids) == {kept.id, third.id}
+
+
+def test_searches_go_on_while_changes_are_loaded(
+    store: Store, add: Add, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = add("first")
+    index = VectorIndex()
+    index.catch_up(store)
+    late = add("late")
+    loading, finish, whole = threading.Event(), threading.Event(), index_feed.changed_since
+
+    def slow(*asked: Any) -> Iterator[Any]:
+        loading.set()
+        assert finish.wait(10)
+        return whole(*asked)
+
+    monkeypatch.setattr(index_feed, "changed_since", slow)
+    thread = threading.Thread(target=index.catch_up, args=(store,))
+    thread.start()
+    assert loading.wait(10)
+    assert list(index.nearest(np.zeros(WIDTH), ClipFilter()).ids) == [first.id]
+    finish.set()
+    thread.join(10)
+    assert set(index.nearest(np.zeros(WIDTH), ClipFilter()).ids) == {first.id, late.id}
+
+
+def test_many_threads_search_while_clips_come_and_go(store: Store, add: Add) -> None:
+    """Each search sees a whole library: ready clips, in order, none twice, none half-changed."""
+    stays = {add(f"stays {i}", person="ada", task="walk").id for i in range(20)}
+    index = VectorIndex()
+    stop, wrong = threading.Event(), []
+
+    def search() -> None:
+        while not stop.is_set():
+            index.catch_up(store)
+            near = index.nearest(np.zeros(WIDTH), ClipFilter(person=("ada",), task=("walk",)))
+            page = near.page(None, 1000)
+            if not stays <= set(page.ids) or len(set(page.ids)) != len(page.ids):
+                wrong.append(list(page.ids))
+            if len(page.ids) != len(near) or np.any(np.diff(page.distances) < 0):
+                wrong.append(list(page.ids))
+
+    threads = [threading.Thread(target=search) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for i in range(12):
+        clip = add(f"comes {i}", person="bruno", task="walk")
+        with store.write() as tx:
+            clips.patch(tx, clip.id, {"person": "ada", "task": "run"})
+        with store.write() as tx:
+            clips.delete_clip(tx, clip.id)
+    stop.set()
+    for thread in threads:
+        thread.join(10)
+    assert not wrong
+
+
+OTHER_PROCESS = """
+import sys, time
+from pathlib import Path
+from app.store import clips
+from app.store.store import Store
+
+store = Store.open(sys.argv[1], Path(sys.argv[2]))
+for clip_id in sys.argv[3:]:
+    with store.write() as tx:
+        if clip_id.startswith("-"):
+            clips.delete_clip(tx, clip_id[1:])
         else:
-            vector = np.array([step, -step], dtype=np.float32)
-            rows.put(_record(clip_id), vector)
-            kept[clip_id] = vector
-    found = rows.passing(ClipFilter(), frozenset())
-    assert {rows.ids[r]: rows.vectors[r].tolist() for r in found} == {
-        clip_id: vector.tolist() for clip_id, vector in kept.items()
-    }
+            clips.patch(tx, clip_id, {"task": "found"})
+    print(time.time(), flush=True)
+    sys.stdin.readline()
+"""
+
+
+def test_it_follows_another_process_within_a_second(store: Store, add: Add, tmp_path: Path) -> None:
+    changed, gone = add("changed"), add("gone")
+    index = VectorIndex()
+    index.catch_up(store)
+    command = [sys.executable, "-c", OTHER_PROCESS, str(store.database.engine.url)]
+    other = subprocess.Popen(
+        [*command, str(tmp_path / "files"), changed.id, f"-{gone.id}"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert other.stdin is not None
+    assert other.stdout is not None
+    try:
+        for left in (2, 1):
+            committed = float(other.stdout.readline())
+            index.catch_up(store)
+            assert time.time() - committed < 1.0
+            assert list(index.candidates(ClipFilter(task=("found",))).ids) == [changed.id]
+            assert len(index) == left
+            other.stdin.write("\n")
+            other.stdin.flush()
+    finally:
+        other.kill()
+        other.communicate()
 
 
 def test_the_cache_stays_within_its_bytes_and_forgets_on_request(store: Store, add: Add) -> None:
@@ -151,11 +272,3 @@ def test_the_cache_stays_within_its_bytes_and_forgets_on_request(store: Store, a
     cache.forget(ids)
     assert cache.bytes_kept == 0
     assert cache.get_many(store, [*ids[-1:], "clip_gone"], VECTOR).keys() == {ids[-1]}
-
-
-def _record(clip_id: str) -> Any:
-    from types import SimpleNamespace
-
-    return SimpleNamespace(
-        id=clip_id, duration=1.0, words=(), person=None, task=None, license=None, source=None
-    )

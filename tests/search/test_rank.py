@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from app.search.cursor import Position
 from app.search.rank import behind, ranking, score
+from tests.search.walking import walked
 
 DISTANCES = st.lists(st.sampled_from([0.0, 1e-10, 0.5, 0.5 + 1e-9, 2.0, 2.0, 150.0]), max_size=30)
 
@@ -39,18 +40,18 @@ def test_scores_are_equal_only_where_distances_are(distances: list[float], scale
 @given(DISTANCES, st.integers(1, 7))
 def test_pages_put_together_are_the_ranking(distances: list[float], size: int) -> None:
     ranked = ranking(_ids(len(distances)), np.array(distances))
-    seen: list[str] = []
-    position = None
-    while (start := ranked.after(position)) < len(ranked):
-        page = ranked.ids[start : start + size]
-        seen += list(page)
-        position = Position(len(seen), float(ranked.distances[start + len(page) - 1]), page[-1])
-    assert seen == list(ranked.ids)
+    assert walked(ranked, size) == list(ranked.ids)
 
 
 def test_a_page_goes_on_where_its_last_clip_was_although_that_is_gone() -> None:
     ranked = ranking(np.array(["a", "c"], dtype=object), np.array([0.1, 0.3]))
-    assert ranked.after(Position(1, 0.2, "b")) == 1
+    assert list(ranked.page(Position(1, 0.2, "b"), 5).ids) == ["c"]
+
+
+def test_a_page_tells_whether_there_is_more() -> None:
+    ranked = ranking(_ids(3), np.array([0.1, 0.3, 0.3]))
+    assert [ranked.page(None, limit).more for limit in (1, 2, 3, 4)] == [True, True, False, False]
+    assert not ranking(_ids(0), np.zeros(0)).page(None, 1).more
 
 
 def test_what_a_rerank_left_out_follows_in_its_own_order() -> None:

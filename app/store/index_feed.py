@@ -1,0 +1,102 @@
+"""What an index takes from the library: labels and one array of each clip, in batches.
+
+Rows are streamed and never become `ClipRecord`s, so that a million clips are loaded in
+seconds and are never held twice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
+from sqlalchemy import and_, bindparam, select
+
+from app.store.blobs import from_blob
+from app.store.clip_record import ClipState
+from app.store.engine import Tx
+from app.store.tables import clip_arrays, clip_words, clips
+
+BATCH = 5000
+"""Clips of one batch."""
+
+_CLIPS = (
+    select(
+        clips.c.changed_version,
+        clips.c.id,
+        clips.c.state,
+        clips.c.person,
+        clips.c.task,
+        clips.c.license,
+        clips.c.source,
+        clips.c.duration,
+        clip_arrays.c.dtype,
+        clip_arrays.c.shape,
+        clip_arrays.c.data,
+    )
+    .join_from(
+        clips,
+        clip_arrays,
+        and_(clip_arrays.c.clip_id == clips.c.id, clip_arrays.c.name == bindparam("array")),
+        isouter=True,
+    )
+    # Nothing about the state: SQLite would go by its index, through all that are ready.
+    .where(clips.c.changed_version > bindparam("since"))
+    .order_by(clips.c.changed_version)
+)
+_WORDS = (
+    select(clip_words.c.clip_id, clip_words.c.word)
+    .join_from(clips, clip_words, clip_words.c.clip_id == clips.c.id)
+    .where(clips.c.changed_version.between(bindparam("first"), bindparam("last")))
+)
+
+
+@dataclass(frozen=True, slots=True)
+class IndexedClip:
+    """What a search looks at of a clip, without what it shows of it.
+
+    duration: seconds; array: the one that was asked for, read-only, None where the clip has
+    none (it was analysed before there was such an array).
+    """
+
+    id: str
+    is_ready: bool
+    person: str | None
+    task: str | None
+    license: str | None
+    source: str | None
+    duration: float
+    words: frozenset[str]
+    array: NDArray[Any] | None
+
+
+def changed_since(tx: Tx, since: int, array: str) -> Iterator[list[IndexedClip]]:
+    """The clips that changed after library version `since`, oldest change first."""
+    asked = {"since": since, "array": array}
+    rows = tx.execute(_CLIPS, asked, execution_options={"yield_per": BATCH})
+    for batch in rows.partitions(BATCH):
+        words = _words(tx, batch[0].changed_version, batch[-1].changed_version)
+        yield [_indexed(row, words.get(row.id, frozenset())) for row in batch]
+
+
+def _words(tx: Tx, first: int, last: int) -> dict[str, frozenset[str]]:
+    found: dict[str, list[str]] = {}
+    for clip_id, word in tx.execute(_WORDS, {"first": first, "last": last}).all():
+        found.setdefault(clip_id, []).append(word)
+    return {clip_id: frozenset(words) for clip_id, words in found.items()}
+
+
+def _indexed(row: Sequence[Any], words: frozenset[str]) -> IndexedClip:
+    _, clip_id, state, person, task, license_, source, duration, dtype, shape, data = row
+    return IndexedClip(
+        clip_id,
+        state == ClipState.READY,
+        person,
+        task,
+        license_,
+        source,
+        duration or 0.0,
+        words,
+        None if data is None else from_blob(dtype, shape, data),
+    )
