@@ -1,0 +1,45 @@
+"""What the symbol space keeps of the divergences is told by dimensions and by way."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.errors import NotEnoughLabels
+from app.models.symbol_figures import SymbolFigures, symbol_figures
+from tests.models.word_clips import word_clips
+
+
+@pytest.fixture(scope="module")
+def found() -> SymbolFigures:
+    symbols, _, _ = word_clips(6)
+    return symbol_figures(symbols)
+
+
+def test_more_dimensions_err_less(found: SymbolFigures) -> None:
+    errors = [each.s_stress for each in found.errors]
+    assert [each.dimensions for each in found.errors] == list(range(1, len(errors) + 1))
+    assert errors[-1] < 0.5 * errors[0]
+    assert all(after <= before * 1.02 for before, after in zip(errors, errors[1:], strict=False))
+    assert found.errors[-1].gamma is None
+
+
+def test_the_paper_s_own_error_is_lowest_where_it_is_what_is_minimised(
+    found: SymbolFigures,
+) -> None:
+    for each in found.errors:
+        assert each.s_stress <= min(each.classical, each.smacof) * 1.001
+
+
+def test_new_symbols_are_placed_nearly_as_well_as_landmarks(found: SymbolFigures) -> None:
+    assert 0.0 <= found.fitting_error <= found.placing_error < 0.3
+
+
+def test_the_fast_divergence_ranks_as_monte_carlo_does(found: SymbolFigures) -> None:
+    assert found.agreement > 0.95
+    assert found.pairs == 12 * 11
+
+
+def test_too_few_symbols_are_told() -> None:
+    symbols, _, _ = word_clips(1)
+    with pytest.raises(NotEnoughLabels):
+        symbol_figures(symbols[:4])
