@@ -26,7 +26,6 @@ MOST_SYMBOLS = 200
 """Scaled at once; of more, randomly picked ones."""
 MOST_DIMENSIONS = 15
 COMPARED = 12
-"""Symbols of which every pair is drawn by Monte Carlo."""
 DRAWS = 10
 LEAST_SYMBOLS = 5
 
@@ -58,8 +57,12 @@ class SymbolFigures:
     pairs: int
 
 
-def symbol_figures(symbols: Sequence[GaussianHMM], *, seed: int = 0) -> SymbolFigures:
+def symbol_figures(
+    symbols: Sequence[GaussianHMM], *, compared: int = COMPARED, seed: int = 0
+) -> SymbolFigures:
     """The figures of a library's symbols; deterministic for a seed.
+
+    compared: symbols of which every pair is drawn by Monte Carlo, which is slow.
 
     Raises NotEnoughLabels below LEAST_SYMBOLS symbols.
     """
@@ -72,7 +75,7 @@ def symbol_figures(symbols: Sequence[GaussianHMM], *, seed: int = 0) -> SymbolFi
     chosen = [symbols[int(row)] for row in rows]
     distances = symbol_distances(chosen, chosen)
     fitting, placing = _placing_errors(distances, rng)
-    some = chosen[:: max(len(chosen) // COMPARED, 1)][:COMPARED]
+    some = chosen[:: max(len(chosen) // compared, 1)][:compared]
     return SymbolFigures(
         symbols=len(chosen),
         errors=_errors(distances),
@@ -95,8 +98,8 @@ def _errors(distances: FloatArray) -> tuple[SpaceErrors, ...]:
         for count in range(1, most + 1)
     ]
     return tuple(
-        SpaceErrors(index + 1, *errors, gamma=_gamma(errors[-1], found[index + 1 : index + 2]))
-        for index, errors in enumerate(found)
+        SpaceErrors(count, *errors, _gamma(errors[-1], found[count : count + 1]))
+        for count, errors in enumerate(found, 1)
     )
 
 
@@ -109,14 +112,10 @@ def _placing_errors(distances: FloatArray, rng: np.random.RandomState) -> tuple[
     order = rng.permutation(len(distances))
     landmarks = order[: max(len(landmark_rows(len(order))) // 2, LEAST_SYMBOLS - 1)]
     others = np.setdiff1d(order, landmarks)
-    points = metric_mds(
-        distances[np.ix_(landmarks, landmarks)], min(DIMENSIONS, len(landmarks) - 1)
-    )
-    placed = place(distances[np.ix_(others, landmarks)], points)
-    return (
-        _relative(points, points, distances[np.ix_(landmarks, landmarks)]),
-        _relative(placed, points, distances[np.ix_(others, landmarks)]),
-    )
+    among, across = distances[np.ix_(landmarks, landmarks)], distances[np.ix_(others, landmarks)]
+    points = metric_mds(among, min(DIMENSIONS, len(landmarks) - 1))
+    placed = place(across, points)
+    return _relative(points, points, among), _relative(placed, points, across)
 
 
 def _relative(left: FloatArray, right: FloatArray, wanted: FloatArray) -> float:
