@@ -3,7 +3,8 @@
 Arrays (float32 unless told otherwise; n frames at 30 Hz, m at 10 Hz):
 role_positions (n, 13, 3) metres, world; features_10hz (m, 82); motion_vector (128,);
 msv_lambda (1,), msv_rho (13,), msv_epsilon (n,); motion_sample (1250,); symbol_statistics
-(131,); keypose_frames (k,) int32, among the n; and of the motion symbol with K states
+(131,); window_vectors_* (w, 125) float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s;
+keypose_frames (k,) int32, among the n; and of the motion symbol with K states
 symbol_means (K, 26), symbol_variances (K, 26), symbol_transitions (K, K).
 """
 
@@ -22,6 +23,7 @@ from app.analysis.motion_symbol import describe_symbol
 from app.analysis.motion_vector import motion_vector
 from app.analysis.motion_volume import decompose
 from app.analysis.symbol_features import symbol_features, symbol_statistics
+from app.analysis.windows import window_arrays
 from app.motion.body_frame import BodyTrack, body_track
 from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
@@ -55,10 +57,11 @@ def describe_for_search(motion: Motion) -> Analysis:
 
 def _for_search(track: BodyTrack) -> dict[str, FloatArray]:
     features = frame_features(track)
+    features_10hz = features_at_10hz(features, track.rate)
     volume = decompose(track)
     arrays = {
         "role_positions": track.positions,
-        "features_10hz": features_at_10hz(features, track.rate),
+        "features_10hz": features_10hz,
         "motion_vector": motion_vector(features),
         "msv_lambda": np.array([volume.weight]),
         "msv_rho": volume.primary,
@@ -66,4 +69,5 @@ def _for_search(track: BodyTrack) -> dict[str, FloatArray]:
         "motion_sample": motion_sample(track),
         "symbol_statistics": symbol_statistics(symbol_features(track), track.rate),
     }
-    return {name: array.astype(np.float32) for name, array in arrays.items()}
+    described = {name: array.astype(np.float32) for name, array in arrays.items()}
+    return described | window_arrays(features_10hz)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from app.analysis.analyse import analyse, describe_for_search
+from app.analysis.windows import WINDOW_SCALES, window_frames
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, standing, walking, waving
 
@@ -16,6 +17,8 @@ BODIES = {"walk": walking(turn=0.3), "wave": waving(), "still": standing(90), "t
 def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray) -> None:
     arrays = dict(analyse(motion_of(body)).arrays)
     keyposes = arrays.pop("keypose_frames")
+    windows = {scale: arrays.pop(scale.vectors) for scale in WINDOW_SCALES}
+    spans = {scale: arrays.pop(scale.spans) for scale in WINDOW_SCALES}
     n, states = len(body), len(arrays["symbol_means"])
     shapes = {
         "role_positions": (n, 13, 3), "features_10hz": ((n - 1) // 3 + 1, 82),
@@ -28,6 +31,10 @@ def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray
     assert all(np.isfinite(array).all() for array in arrays.values())
     assert (keyposes.dtype, keyposes.ndim) == (np.int32, 1)
     assert (np.diff(keyposes, prepend=-1, append=n) > 0).all()
+    for scale in WINDOW_SCALES:
+        count = len(window_frames((n - 1) // 3 + 1, scale))
+        assert (windows[scale].shape, windows[scale].dtype) == ((count, 125), np.float16)
+        assert (spans[scale].shape, spans[scale].dtype) == ((count, 2), np.float32)
 
 
 def test_the_same_motion_gives_the_same_bytes() -> None:
