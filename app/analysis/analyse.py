@@ -2,7 +2,8 @@
 
 Arrays (float32 unless told otherwise; n frames at 30 Hz, m at 10 Hz):
 role_positions (n, 13, 3) metres, world; features_10hz (m, 82); motion_vector (128,);
-msv_lambda (1,), msv_rho (13,), msv_epsilon (n,); motion_sample (1250,); symbol_statistics
+msv_lambda (1,), msv_rho (13,), msv_epsilon (n,), msv_convergence (i, 2), the error and the
+change of lambda after each of i iterations; motion_sample (1250,); symbol_statistics
 (131,); window_vectors_* (w, 125) float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s;
 keypose_frames (k,) int32, among the n; and of the motion symbol with K states
 symbol_means (K, 26), symbol_variances (K, 26), symbol_transitions (K, K).
@@ -66,6 +67,7 @@ def _for_search(track: BodyTrack) -> dict[str, FloatArray]:
         "msv_lambda": np.array([volume.weight]),
         "msv_rho": volume.primary,
         "msv_epsilon": volume.secondary,
+        "msv_convergence": np.column_stack([volume.errors, volume.changes]),
         "motion_sample": motion_sample(track),
         "symbol_statistics": symbol_statistics(symbol_features(track), track.rate),
     }

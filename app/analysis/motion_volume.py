@@ -69,3 +69,15 @@ def warping_distances(
     """(c,) D_dtw of equation 7, smaller for more alike: rho counts twice; shapes as above."""
     spatial = dtw_distances(rho, list(rhos), per_step=False)
     return 2.0 * spatial + dtw_distances(epsilon, epsilons, per_step=False)
+
+
+def compression_ratio(frames: Sequence[int], joints: int = 13) -> float:
+    """Size of the factors of clips of these lengths, as a share of their joints' positions.
+
+    Section 5.3: R = m / (3 sum T) + 1 / (3 h), of m clips of T frames and h joints: rho is
+    kept once, not twice. Raises ValueError without a frame.
+    """
+    total = sum(frames)
+    if total < 1 or joints < 1:
+        raise ValueError("there is nothing to compress")
+    return len(frames) / (3 * total) + 1 / (3 * joints)

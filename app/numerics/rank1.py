@@ -115,7 +115,7 @@ def _change(weights: Sequence[float] | FloatArray) -> float:
 
 def _relative_errors(weights: FloatArray, size: float) -> FloatArray:
     """From |A - weight * rank-1|^2 = |A|^2 - weight^2, which holds for unit vectors."""
-    return np.sqrt(np.maximum(0.0, 1.0 - (weights / size) ** 2))
+    return np.asarray(np.sqrt(np.maximum(0.0, 1.0 - (weights / size) ** 2)))
 
 
 def _constant(count: int) -> FloatArray:

@@ -22,6 +22,7 @@ from app.services.thumbnail import thumbnail
 from app.store import arrays
 
 MAX_FPS = 1000.0
+CONVERGENCE = "msv_convergence"
 KEYPOSE_METHODS = ("rms", "printed")
 
 
@@ -51,13 +52,16 @@ class KeyposesView:
 class DescriptorView:
     """A clip's descriptors.
 
-    msv_lambda: weight; msv_rho: (13,); msv_epsilon: (n,); motion_vector: (128,);
+    msv_lambda: weight; msv_rho: (13,); msv_epsilon: (n,); msv_convergence: (iterations, 2)
+    error and change of lambda, None of a clip analysed before they were kept;
+    motion_vector: (128,);
     symbol_states: K; symbol_means, symbol_variances: (K, 26); analysis_version: of them all.
     """
 
     msv_lambda: float
     msv_rho: FloatArray
     msv_epsilon: FloatArray
+    msv_convergence: FloatArray | None
     motion_vector: FloatArray
     symbol_states: int
     symbol_means: FloatArray
@@ -121,10 +125,12 @@ def descriptor(lib: Library, clip_id: str) -> DescriptorView:
     with lib.store.read() as tx:
         for name in names:
             found[name] = arrays.get_one(tx, clip_id, name)
+        convergence = arrays.get_many(tx, [clip_id], CONVERGENCE).get(clip_id)
     return DescriptorView(
         msv_lambda=float(found["msv_lambda"][0]),
         msv_rho=found["msv_rho"],
         msv_epsilon=found["msv_epsilon"],
+        msv_convergence=convergence,
         motion_vector=found["motion_vector"],
         symbol_states=len(found["symbol_means"]),
         symbol_means=found["symbol_means"],

@@ -23,6 +23,7 @@ def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray
     shapes = {
         "role_positions": (n, 13, 3), "features_10hz": ((n - 1) // 3 + 1, 82),
         "motion_vector": (128,), "msv_lambda": (1,), "msv_rho": (13,), "msv_epsilon": (n,),
+        "msv_convergence": (len(arrays["msv_convergence"]), 2),
         "motion_sample": (1250,), "symbol_statistics": (131,), "symbol_means": (states, 26),
         "symbol_variances": (states, 26), "symbol_transitions": (states, states),
     }  # fmt: skip

@@ -7,6 +7,7 @@ import pytest
 
 from app.analysis.motion_volume import (
     LARGEST_CROSS_CORRELATION,
+    compression_ratio,
     cross_correlations,
     decompose,
     motion_volume,
@@ -115,3 +116,11 @@ def test_stillness_has_a_volume() -> None:
     track = body_track(motion_of(standing(2)))
     assert motion_volume(track).shape == (13, 13, 2)
     np.testing.assert_allclose(decompose(track).secondary, np.sqrt([0.5, 0.5]))
+
+
+def test_the_factors_are_small_beside_the_positions() -> None:
+    frames = [90, 400, 1000]
+    kept, positions = sum(13 + t for t in frames), sum(3 * 13 * t for t in frames)
+    assert compression_ratio(frames) == pytest.approx(kept / positions)
+    with pytest.raises(ValueError, match="nothing to compress"):
+        compression_ratio([])

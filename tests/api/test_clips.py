@@ -182,6 +182,11 @@ def test_descriptor_tells_what_is_compared(demo: httpx2.Client, walk: dict[str, 
     assert len(told["motion_vector"]) == 128
     assert len(told["msv"]["rho"]) == 13
     assert told["msv"]["lambda"] > 0
+    convergence = told["msv"]["convergence"]
+    assert convergence["converged"] is True
+    assert len(convergence["errors"]) == len(convergence["changes"]) > 3
+    assert 0 < convergence["errors"][-1] <= convergence["errors"][0] < 1
+    assert convergence["changes"][-1] < 1e-10 < convergence["changes"][0]
     assert told["symbol"]["states"] == len(told["symbol"]["means"])
     assert told["versions"]["analysis"] >= 1
 

@@ -49,8 +49,17 @@ def test_the_descriptor_is_what_searches_compare(ready_library: Library, clip_of
     assert found.motion_vector.shape == (128,)
     assert found.msv_rho.shape == (13,)
     assert np.linalg.norm(found.msv_rho) == pytest.approx(1, abs=1e-5)
+    assert found.msv_convergence is not None
+    assert found.msv_convergence.shape[1] == 2
     assert found.symbol_means.shape == found.symbol_variances.shape == (found.symbol_states, 26)
     assert found.analysis_version >= 1
+
+
+def test_a_clip_analysed_before_convergence_was_kept_has_a_descriptor(
+    ready_library: Library, clip_of: FindClip, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(views, "CONVERGENCE", "an array that no clip has")
+    assert views.descriptor(ready_library, clip_of("ada", "walk").id).msv_convergence is None
 
 
 def test_the_picture_shows_a_few_figures_and_nothing_active(

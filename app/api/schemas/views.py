@@ -10,6 +10,7 @@ from pydantic import Field
 
 from app.api.schemas.base import Incoming, Outgoing
 from app.motion.joint_roles import SUN_ROLES
+from app.numerics.rank1 import MAX_ITERATIONS
 from app.services.views import DescriptorView, KeyposesView
 
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
@@ -92,12 +93,31 @@ class Keyposes(Outgoing):
         )
 
 
+class Convergence(Outgoing):
+    """How the factors were found: by alternating least squares until lambda rests."""
+
+    errors: list[float] = Field(
+        description="Share of the volume that the factors leave unexplained, by iteration."
+    )
+    changes: list[float] = Field(description="Relative change of lambda, by iteration.")
+    converged: bool = Field(description="False when the iterations were used up before.")
+
+    @classmethod
+    def of(cls, steps: NDArray[Any]) -> Convergence:
+        """From (iterations, 2) errors and changes."""
+        errors, changes = plain(steps.T)
+        return cls(errors=errors, changes=changes, converged=len(errors) < MAX_ITERATIONS)
+
+
 class VolumeFactors(Outgoing):
     """Rank-1 factors of the motion sequence volume (Sun 2011)."""
 
     lambda_: float = Field(alias="lambda")
     rho: list[float] = Field(description="Primary vector, (13,).")
     epsilon: list[float] = Field(description="Secondary vector, (frames,) at 30 Hz.")
+    convergence: Convergence | None = Field(
+        description="null for a clip that was analysed before this was kept."
+    )
 
 
 class SymbolSummary(Outgoing):
@@ -130,6 +150,9 @@ class Descriptor(Outgoing):
                 **{"lambda": view.msv_lambda},
                 rho=plain(view.msv_rho),
                 epsilon=plain(view.msv_epsilon),
+                convergence=(
+                    None if view.msv_convergence is None else Convergence.of(view.msv_convergence)
+                ),
             ),
             motion_vector=plain(view.motion_vector),
             symbol=SymbolSummary(
