@@ -3,35 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import Annotated, Any
+from typing import Any
 
 import typer
 
+from app.cli.evaluate_retrieval import retrieval
 from app.cli.find import filter_of
-from app.cli.output import AsJson, print_json, print_table, progress_bar
+from app.cli.options import FilterJson
+from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 from app.search.filters import parse_filter
 from app.services import evaluate
 
 program = typer.Typer(help="Figures on your own library.", no_args_is_help=True)
-
-FilterJson = Annotated[
-    str | None, typer.Option("--filter", help='JSON, as {"source": ["my studio"]}.')
-]
-
-
-@program.command("retrieval")
-def retrieval(
-    context: typer.Context, filter_json: FilterJson = None, as_json: AsJson = False
-) -> None:
-    """Each clip asks for the others; relevant is what carries the same task."""
-    wanted = parse_filter(filter_of(filter_json))
-    with open_library(context) as lib, progress_bar() as bar:
-        task = bar.add_task("asking", total=None)
-        figures = evaluate.judge_retrieval(
-            lib, wanted, progress=lambda done, total: bar.update(task, completed=done, total=total)
-        )
-    _show([asdict(row) for row in figures], as_json)
+program.command("retrieval")(retrieval)
 
 
 @program.command("words")

@@ -71,7 +71,7 @@ def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
     return TrainingSet(
         library_version=version,
         clips=tuple(records[clip_id] for clip_id in whole),
-        groups=tuple(_recording(records[clip_id]) for clip_id in whole),
+        groups=tuple(recording_of_clip(records[clip_id]) for clip_id in whole),
         symbols=tuple(
             symbol_from_arrays({name: found[name][clip_id] for name in SYMBOL_ARRAYS})
             for clip_id in whole
@@ -81,7 +81,7 @@ def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
     )
 
 
-def _recording(clip: ClipRecord) -> str:
+def recording_of_clip(clip: ClipRecord) -> str:
     """What files of one recording share: their name but for its ending, and their labels.
 
     The labels are there because libraries call takes of different people by the same name.

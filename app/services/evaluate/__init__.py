@@ -5,7 +5,26 @@ out: no clip is judged by a model that has seen it, or another file of its recor
 """
 
 from app.services.evaluate.recognition import judge_recognition
-from app.services.evaluate.retrieval import RetrievalFigures, judge_retrieval
+from app.services.evaluate.retrieval import (
+    MOST_QUERIES,
+    JudgedWay,
+    K,
+    RetrievalEvaluation,
+    RetrievalFigures,
+    judge_retrieval,
+)
+from app.services.evaluate.volumes import VolumeEvaluation, judge_volumes
 from app.services.evaluate.words import judge_words
 
-__all__ = ["RetrievalFigures", "judge_recognition", "judge_retrieval", "judge_words"]
+__all__ = [
+    "MOST_QUERIES",
+    "JudgedWay",
+    "K",
+    "RetrievalEvaluation",
+    "RetrievalFigures",
+    "VolumeEvaluation",
+    "judge_recognition",
+    "judge_retrieval",
+    "judge_volumes",
+    "judge_words",
+]

@@ -1,108 +1,189 @@
-"""Query by example: each labelled clip asks for the others of its task."""
+"""Query by example: each labelled clip asks for the others of its task (Sun 2011, section 5)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+import itertools
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
-from app.errors import NotEnoughLabels
-from app.models.ranking_figures import average_precision, precision_at_k
-from app.search.by_example import rank_by_example
-from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays
-from app.search.index import VECTOR
+from app.models.class_rankings import (
+    JudgedRanking,
+    confusion_matrix,
+    true_positive_rates,
+)
+from app.numerics.arrays import FloatArray
 from app.search.methods import Method
+from app.services import fields
+from app.services.evaluate.labelled import LabelledClips, read_labelled
+from app.services.evaluate.ways import Volumes, Way, by_method
 from app.services.library import Library
-from app.services.training import ready_only
-from app.store import arrays, clip_listing, clips
 from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipRecord
 
-AT = 4
-"""Precision is told among so many of the nearest."""
+K = 20
+"""Of the paper: so many of the nearest are looked at."""
+HIDDEN_CLASSES = 4
+"""Of the paper's experiment 1: walk, run, jump, kick."""
+SUNS = (Method.MSV_DTW, Method.MSV_XCORR)
+MOST_QUERIES = 1000
+"""Each asks the whole library by every method; more take hours and change no figure."""
 
 Progress = Callable[[int, int], None]
-"""Told after each query: done, in all."""
+"""Told after each step: done, in all."""
 
 
 @dataclass(frozen=True, slots=True)
 class RetrievalFigures:
     """Query by example with one method; relevant is what carries the query's task.
 
-    nearest: share of queries whose nearest clip is relevant; precision_at_4 and
-    mean_average_precision: means over the queries; queries: those that have a relevant clip.
+    nearest: share of queries whose nearest clip is relevant; precision_at_4, precision_at_20
+    and mean_average_precision: means over the queries; queries: how many asked.
     """
 
     method: str
     nearest: float
     precision_at_4: float
+    precision_at_20: float
     mean_average_precision: float
     queries: int
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedWay:
+    """One method's part of the tables.
+
+    rates: (chosen,) true-positive rates of experiment 1; confusion: (C, C) of experiment 2,
+    rows are the true classes and sum to 1.
+    """
+
+    figures: RetrievalFigures
+    rates: FloatArray
+    confusion: FloatArray
+
+    @property
+    def overall(self) -> float:
+        """Table 1's last column: the mean over the classes."""
+        return float(self.rates.mean())
+
+
+@dataclass(frozen=True, slots=True)
+class RetrievalEvaluation:
+    """What `kinedex evaluate retrieval` tells.
+
+    ways: by method; chosen: the classes hidden in the mixture of all `mixture` labelled
+    clips; classes: (C,) of the confusion; k: how many of the nearest both look at;
+    unlabelled, alone: clips without a task, and those whose task no other recording carries
+    (they ask nothing, but stand in the mixture).
+    """
+
+    ways: tuple[JudgedWay, ...]
+    chosen: tuple[str, ...]
+    classes: tuple[str, ...]
+    k: int
+    mixture: int
+    unlabelled: int
+    alone: int
 
 
 def judge_retrieval(
     lib: Library,
     wanted: ClipFilter | None = None,
     methods: Sequence[Method] = tuple(Method),
+    *,
+    classes: Sequence[str] | None = None,
+    k: int = K,
+    threshold: float = 0.0,
+    most_queries: int = MOST_QUERIES,
     progress: Progress | None = None,
-) -> tuple[RetrievalFigures, ...]:
-    """Each clip that passes the filter asks for the others. Raises NotEnoughLabels."""
+) -> RetrievalEvaluation:
+    """Clips that pass the filter ask for the others, by each method.
+
+    Sun's two are judged with q = 1 too, and with a threshold eta > 0 (body lengths) with
+    both q again. classes: those of table 1, the largest four where None. Another file of the
+    query's own recording is neither right nor wrong, nor is a clip without a task.
+    Raises NotEnoughLabels, BadField for a class that cannot be judged or a wrong number.
+    """
+    _check(k, threshold, most_queries)
     lib.index.catch_up(lib.store)
-    labelled = _with_a_fellow(_ready_clips(lib, wanted))
-    if not labelled:
-        raise NotEnoughLabels("No two ready clips carry the same task.")
-    total, done, found = len(labelled) * len(methods), 0, []
-    for method in methods:
-        rows = []
-        for row in _judged(lib, labelled, method, wanted or ClipFilter()):
-            rows.append(row)
-            done += 1
-            if progress is not None:
-                progress(done, total)
-        nearest, precision, average = np.mean(rows, axis=0)
-        found.append(
-            RetrievalFigures(
-                method.value, float(nearest), float(precision), float(average), len(rows)
+    labelled = read_labelled(lib, wanted)
+    chosen = labelled.chosen(classes, HIDDEN_CLASSES)
+    queries = labelled.queries(most_queries)
+    suns = [method for method in methods if method in SUNS]
+    settings = _settings(threshold) if suns else []
+    step = _stepper(
+        len(queries) * (len(methods) + len(suns) * len(settings))
+        + len(labelled.clips) * len(settings),
+        progress,
+    )
+
+    def judge(way: Way) -> Iterator[JudgedRanking]:
+        for clip in queries:
+            yield labelled.judge(clip, way(clip), k)
+            step()
+
+    found = {method.value: list(judge(by_method(lib, method, wanted))) for method in methods}
+    for q, eta in settings:
+        volumes = Volumes.of(lib, labelled.clips, q=q, threshold=eta, step=step)
+        for method in suns:
+            told = f"{method.value} q={q}" + (f" eta={eta:g}" if eta else "")
+            found[told] = list(judge(volumes.by(method)))
+    return _evaluation(labelled, chosen, k, found)
+
+
+def _check(k: int, threshold: float, most_queries: int) -> None:
+    if k < 1:
+        raise fields.bad_field("k", "must be at least 1")
+    if not (math.isfinite(threshold) and threshold >= 0):
+        raise fields.bad_field("threshold", "must be 0 (keep the distances) or above")
+    if most_queries < 1:
+        raise fields.bad_field("queries", "must be at least 1")
+
+
+def _settings(threshold: float) -> list[tuple[int, float]]:
+    """(q, eta) to judge besides q = 2 without a threshold, which searches use."""
+    return [(1, 0.0)] + ([(1, threshold), (2, threshold)] if threshold else [])
+
+
+def _stepper(total: int, progress: Progress | None) -> Callable[[], None]:
+    """To be called after each of `total` steps."""
+    done = itertools.count(1)
+
+    def step() -> None:
+        if progress is not None:
+            progress(next(done), total)
+
+    return step
+
+
+def _evaluation(
+    labelled: LabelledClips,
+    chosen: Sequence[str],
+    k: int,
+    found: Mapping[str, Sequence[JudgedRanking]],
+) -> RetrievalEvaluation:
+    of_class = [labelled.classes.index(name) for name in chosen]
+    count = len(labelled.classes)
+    return RetrievalEvaluation(
+        ways=tuple(
+            JudgedWay(
+                figures=_figures(name, judged),
+                rates=true_positive_rates(judged, count)[of_class],
+                confusion=confusion_matrix(judged, count),
             )
-        )
-    return tuple(found)
+            for name, judged in found.items()
+        ),
+        chosen=tuple(chosen),
+        classes=labelled.classes,
+        k=k,
+        mixture=len(labelled.clips),
+        unlabelled=labelled.unlabelled,
+        alone=len(labelled.clips) - len(labelled.in_a_class),
+    )
 
 
-def _ready_clips(lib: Library, wanted: ClipFilter | None) -> list[ClipRecord]:
-    with lib.store.read() as tx:
-        ids = sorted(clip_listing.list_ids(tx, ready_only(wanted)))
-        return list(clips.get_many(tx, ids).values())
-
-
-def _with_a_fellow(found: Sequence[ClipRecord]) -> list[ClipRecord]:
-    """The clips whose task another one carries too."""
-    tasks = [clip.task for clip in found if clip.task]
-    return [clip for clip in found if clip.task and tasks.count(clip.task) > 1]
-
-
-def _judged(
-    lib: Library, labelled: Sequence[ClipRecord], method: Method, wanted: ClipFilter
-) -> Iterator[tuple[float, float, float]]:
-    """For each query: whether the nearest is relevant, precision at 4, average precision."""
-    task_of = {clip.id: clip.task for clip in labelled}
-    load = partial(lib.arrays.get_many, lib.store)
-    for clip in labelled:
-        query = _query(lib, clip)
-        ranked = rank_by_example(lib.index, query, method, wanted, frozenset({clip.id}), load)
-        is_relevant = np.array([task_of.get(i) == clip.task for i in ranked.ids], dtype=bool)
-        closeness = -np.arange(len(is_relevant), dtype=float)
-        yield (
-            float(is_relevant[0]),
-            precision_at_k(closeness, is_relevant, min(AT, len(is_relevant))),
-            average_precision(closeness, is_relevant),
-        )
-
-
-def _query(lib: Library, clip: ClipRecord) -> QueryArrays:
-    with lib.store.read() as tx:
-        vector, features, rho, epsilon = (
-            arrays.get_one(tx, clip.id, name) for name in (VECTOR, FEATURES, RHO, EPSILON)
-        )
-    return QueryArrays(vector, features, rho, epsilon)
+def _figures(name: str, judged: Sequence[JudgedRanking]) -> RetrievalFigures:
+    nearest, at_4, at_20 = np.mean([one.precision for one in judged], axis=0).tolist()
+    average = float(np.mean([one.average_precision for one in judged]))
+    return RetrievalFigures(name, nearest, at_4, at_20, average, len(judged))

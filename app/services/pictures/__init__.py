@@ -3,9 +3,9 @@
 They need matplotlib, the extra `plots`; nothing else in Kinedex does.
 """
 
-from app.services.pictures.confusion import confusion_picture
+from app.services.pictures.confusion import confusion_picture, confusions_picture
 from app.services.pictures.curves import Curve, Panel, curves_picture
-from app.services.pictures.drawing import Format, format_of, need_plots
+from app.services.pictures.drawing import Format, format_of, need_plots, shown
 from app.services.pictures.scatter import Cloud, scatter_picture
 
 __all__ = [
@@ -14,8 +14,10 @@ __all__ = [
     "Format",
     "Panel",
     "confusion_picture",
+    "confusions_picture",
     "curves_picture",
     "format_of",
     "need_plots",
     "scatter_picture",
+    "shown",
 ]

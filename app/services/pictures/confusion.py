@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +12,7 @@ from app.services.pictures.drawing import Format, drawn, shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.collections import QuadMesh
     from matplotlib.figure import Figure
 
 CELL = 0.42
@@ -35,33 +36,52 @@ def confusion_picture(
 
     Raises ValueError when the shapes do not fit.
     """
+    return confusions_picture({title: shares}, classes, form, rows=rows, columns=columns)
+
+
+def confusions_picture(
+    by_title: Mapping[str, FloatArray],
+    classes: Sequence[str],
+    form: Format,
+    *,
+    rows: str = "true class",
+    columns: str = "taken for",
+) -> bytes:
+    """Matrices of the same classes beside one another, as in figure 8; else as for one."""
     count = len(classes)
-    if shares.shape != (count, count) or not count:
+    if not count or not by_title or {m.shape for m in by_title.values()} != {(count, count)}:
         raise ValueError("a confusion matrix has one row and one column a class")
     side = CELL * max(min(count, MOST_LARGE), 4) + 0.2 * max(count - MOST_LARGE, 0)
-    names = [shown(name) for name in classes]
 
     def draw(figure: Figure) -> None:
-        axes = figure.add_subplot()
-        axes.set(title=title, xlabel=columns, ylabel=rows)
-        # an SVG of squares stays sharp, and white edges part them
-        mesh = axes.pcolormesh(
-            shares, cmap="Blues", vmin=0.0, vmax=1.0, edgecolors="white", linewidth=1.0
-        )
-        middles = np.arange(count) + 0.5
-        axes.set_xticks(middles, names, rotation=60, ha="right", rotation_mode="anchor")
-        axes.set_yticks(middles, names)
-        axes.set_aspect("equal")
-        axes.invert_yaxis()
-        axes.grid(visible=False)
-        axes.tick_params(length=0)
-        axes.spines[:].set_visible(False)
-        if count <= MOST_WITH_NUMBERS:
-            _number(axes, shares, size=8.0 if count <= MOST_LARGE else 5.0)
+        for place, (title, shares) in enumerate(by_title.items(), 1):
+            axes = figure.add_subplot(1, len(by_title), place)
+            axes.set(title=title, xlabel=columns, ylabel=rows if place == 1 else "")
+            mesh = _fill(axes, shares, classes, with_rows=place == 1)
         bar = figure.colorbar(mesh, ax=axes, shrink=0.6, aspect=25, pad=0.02, label="share")
         bar.outline.set_visible(False)
 
-    return drawn(draw, (side + 2.6, side + 1.6), form)
+    return drawn(draw, ((side + 0.3) * len(by_title) + 2.6, side + 1.6), form)
+
+
+def _fill(axes: Axes, shares: FloatArray, classes: Sequence[str], *, with_rows: bool) -> QuadMesh:
+    count = len(classes)
+    names = [shown(name) for name in classes]
+    # squares of their own stay sharp in an SVG, and white edges part them
+    mesh = axes.pcolormesh(
+        shares, cmap="Blues", vmin=0.0, vmax=1.0, edgecolors="white", linewidth=1.0
+    )
+    middles = np.arange(count) + 0.5
+    axes.set_xticks(middles, names, rotation=60, ha="right", rotation_mode="anchor")
+    axes.set_yticks(middles, names if with_rows else [""] * count)
+    axes.set_aspect("equal")
+    axes.invert_yaxis()
+    axes.grid(visible=False)
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
+    if count <= MOST_WITH_NUMBERS:
+        _number(axes, shares, size=8.0 if count <= MOST_LARGE else 5.0)
+    return mesh
 
 
 def _number(axes: Axes, shares: FloatArray, size: float) -> None:

@@ -76,6 +76,8 @@ def _draw(axes: Axes, panel: Panel, groups: Sequence[str]) -> dict[str, Line2D]:
     axes.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
     if panel.log_y:
         axes.set_yscale("log")
+        # matplotlib's own powers of ten are formulas, which are switched off (see _STYLE)
+        axes.yaxis.set_major_formatter("{x:.0e}")
     if panel.y_range:
         axes.set_ylim(*panel.y_range)
     if panel.ticks:

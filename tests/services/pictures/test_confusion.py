@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from app.services.pictures import Format, confusion_picture
+from app.services.pictures import Format, confusion_picture, confusions_picture
 
 SIGNATURES: dict[Format, bytes] = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
 
@@ -32,6 +32,19 @@ def test_cells_are_dark_where_the_share_is_large() -> None:
     pixels = imread(io.BytesIO(confusion_picture(np.eye(3), ["a", "b", "c"], "png")))
     dark = (pixels[..., 2] > 0.3) & (pixels[..., 0] < 0.1)
     assert 0.02 < dark.mean() < 0.3  # a third of the cells, and the bar's end
+
+
+def test_matrices_of_the_same_classes_stand_side_by_side() -> None:
+    def width(count: int) -> int:
+        matrices = {f"method {i}": np.eye(3) for i in range(count)}
+        picture = confusions_picture(matrices, ["a", "b", "c"], "png")
+        return int(imread(io.BytesIO(picture)).shape[1])
+
+    assert width(3) > 1.6 * width(1)
+    with pytest.raises(ValueError, match="one row and one column"):
+        confusions_picture({"one": np.eye(2), "other": np.eye(3)}, ["a", "b"], "svg")
+    with pytest.raises(ValueError, match="one row and one column"):
+        confusions_picture({}, ["a", "b"], "svg")
 
 
 @pytest.mark.slow

@@ -7,6 +7,7 @@ import io
 import numpy as np
 import pytest
 from matplotlib.image import imread
+from matplotlib.text import Text
 
 from app.services.pictures import Curve, Panel, curves_picture
 
@@ -44,6 +45,21 @@ def test_ranges_ticks_and_logarithms_are_taken() -> None:
         Panel([]),
     ):
         assert curves_picture([panel], "svg") != curves_picture([Panel([curve])], "svg")
+
+
+def test_powers_of_ten_are_written_plainly(monkeypatch: pytest.MonkeyPatch) -> None:
+    texts: list[str] = []
+    draw = Text.draw
+
+    def noted(text: Text, *args: object, **kwargs: object) -> None:
+        texts.append(text.get_text())
+        draw(text, *args, **kwargs)
+
+    monkeypatch.setattr(Text, "draw", noted)
+    curve = Curve(np.arange(3.0), np.array([1.0, 1e-3, 1e-6]), "a $name$")
+    curves_picture([Panel([curve], log_y=True)], "svg")
+    assert "1e\N{MINUS SIGN}06" in texts
+    assert [text for text in texts if "$" in text and text != "a $name$"] == []
 
 
 def test_a_picture_of_nothing_is_refused() -> None:

@@ -1,0 +1,201 @@
+"""`kinedex evaluate retrieval`: the tables and figures of Sun 2011 for one's own library."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+from app.cli.find import filter_of
+from app.cli.options import FilterJson
+from app.cli.output import AsJson, print_json, print_table, progress_bar
+from app.cli.settings import open_library
+from app.search.filters import parse_filter
+from app.search.methods import Method
+from app.services import evaluate, pictures
+from app.services.evaluate import (
+    JudgedWay,
+    RetrievalEvaluation,
+    VolumeEvaluation,
+    retrieval_pictures,
+)
+
+Classes = Annotated[
+    str | None,
+    typer.Option(help="Tasks of table 1, as walk,run,jump,kick; default: the four largest."),
+]
+Methods = Annotated[
+    list[Method] | None, typer.Option("--method", help="Judge this one; may be repeated.")
+]
+K = Annotated[int, typer.Option("--k", min=1, help="Look at so many of the nearest.")]
+Eta = Annotated[
+    float,
+    typer.Option(
+        min=0.0, help="Judge the MSV methods with this threshold too, in body lengths, as 0.3."
+    ),
+]
+Queries = Annotated[
+    int, typer.Option(min=1, help="At most so many clips ask, drawn evenly from the tasks.")
+]
+Picture = Annotated[
+    Path | None, typer.Option(help="Draw the confusion matrices: a .svg, .png or .pdf file.")
+]
+Pictures = Annotated[
+    Path | None,
+    typer.Option("--pictures", help="Draw confusions, vectors, convergence into this folder."),
+]
+PictureFormat = Annotated[str, typer.Option(help="Of the pictures in the folder: svg, png or pdf.")]
+
+
+def retrieval(
+    context: typer.Context,
+    classes: Classes = None,
+    method: Methods = None,
+    k: K = evaluate.K,
+    eta: Eta = 0.0,
+    queries: Queries = evaluate.MOST_QUERIES,
+    filter_json: FilterJson = None,
+    picture: Picture = None,
+    pictures_dir: Pictures = None,
+    picture_format: PictureFormat = "svg",
+    as_json: AsJson = False,
+) -> None:
+    """Each clip asks for the others; relevant is what carries the same task (Sun 2011)."""
+    wanted = parse_filter(filter_of(filter_json))
+    names = None if classes is None else [name.strip() for name in classes.split(",")]
+    drawing = _Drawing.prepared(picture, pictures_dir, picture_format)
+    with open_library(context) as lib, progress_bar() as bar:
+        task = bar.add_task("asking", total=None)
+        found = evaluate.judge_retrieval(
+            lib,
+            wanted,
+            method or tuple(Method),
+            classes=names,
+            k=k,
+            threshold=eta,
+            most_queries=queries,
+            progress=lambda done, total: bar.update(task, completed=done, total=total),
+        )
+        volumes = evaluate.judge_volumes(lib, wanted, classes=names, threshold=eta)
+    drawing.draw(found, volumes)
+    if as_json:
+        print_json(_document(found, volumes))
+    else:
+        _print(found, volumes)
+
+
+@dataclass(frozen=True, slots=True)
+class _Drawing:
+    """Where pictures go; checked before the work, so that it is not done in vain."""
+
+    file: Path | None
+    folder: Path | None
+    folder_format: pictures.Format
+
+    @classmethod
+    def prepared(cls, file: Path | None, folder: Path | None, picture_format: str) -> _Drawing:
+        folder_format = pictures.format_of(Path(f"picture.{picture_format}"))
+        if file is not None:
+            pictures.format_of(file)
+            file.parent.mkdir(parents=True, exist_ok=True)
+        if folder is not None:
+            folder.mkdir(parents=True, exist_ok=True)
+        if file is not None or folder is not None:
+            pictures.need_plots()
+        return cls(file, folder, folder_format)
+
+    def draw(self, found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
+        if self.file is not None:
+            names = retrieval_pictures.shown_ways(found)
+            form = pictures.format_of(self.file)
+            self.file.write_bytes(retrieval_pictures.confusion_figure(found, names, form))
+        if self.folder is not None:
+            drawn = retrieval_pictures.all_figures(found, volumes, self.folder_format)
+            for name, content in drawn.items():
+                (self.folder / name).write_bytes(content)
+
+
+def _document(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> dict[str, Any]:
+    return {
+        "figures": [asdict(way.figures) for way in found.ways],
+        "true_positive_rates": {
+            "classes": found.chosen,
+            "k": found.k,
+            "mixture": found.mixture,
+            "methods": {
+                way.figures.method: {
+                    **dict(zip(found.chosen, way.rates.tolist(), strict=True)),
+                    "overall": way.overall,
+                }
+                for way in found.ways
+            },
+        },
+        "confusion": {
+            "classes": found.classes,
+            "k": found.k,
+            "methods": {way.figures.method: way.confusion.tolist() for way in found.ways},
+        },
+        "left_out": {"unlabelled": found.unlabelled, "alone": found.alone},
+        "volumes": {
+            "q": volumes.q,
+            "eta": volumes.threshold,
+            "clips": len(volumes.iterations),
+            "converged": volumes.converged,
+            "median_iterations": float(np.median(volumes.iterations)),
+            "most_iterations": max(volumes.iterations),
+            "compression": asdict(volumes.compression),
+        },
+    }
+
+
+def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
+    queries = found.ways[0].figures.queries if found.ways else 0
+    typer.echo(f"{queries} clips ask for the others of their task, among {found.mixture}:\n")
+    print_table(
+        ["method", "1-NN", "P@4", "P@20", "MAP"],
+        [list(asdict(way.figures).values())[:5] for way in found.ways],
+    )
+    typer.echo(f"\nTrue-positive rates: of the {found.k} nearest in the mixture (table 1):\n")
+    print_table(
+        ["method", *found.chosen, "overall"],
+        [[way.figures.method, *way.rates.tolist(), way.overall] for way in found.ways],
+    )
+    for way in found.ways:
+        if way.figures.method in retrieval_pictures.shown_ways(found):
+            typer.echo(f"\nWhat the {found.k} nearest are by {way.figures.method}, % (figure 8):\n")
+            _print_confusion(found.classes, way)
+    typer.echo("\n" + "\n".join(_remarks(found, volumes)))
+
+
+def _print_confusion(classes: Sequence[str], way: JudgedWay) -> None:
+    """Rows are tasks, columns their numbers; lines are not broken, however many there are."""
+    names = [f"{number:>2} {pictures.shown(name)}" for number, name in enumerate(classes, 1)]
+    width = max(map(len, names))
+    typer.echo(" " * width + "".join(f"{number:>4}" for number in range(1, len(names) + 1)))
+    for name, row in zip(names, way.confusion, strict=True):
+        cells = [f"{100 * share:>4.0f}" if share >= 0.005 else "   ." for share in row]
+        typer.echo(f"{name:<{width}}" + "".join(cells))
+
+
+def _remarks(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> list[str]:
+    compression = volumes.compression
+    remarks = [
+        f"Of a task with fewer than {found.k} other clips, as many of the nearest are looked at.",
+        f"Rank-1 factors (q = {volumes.q}) of {len(volumes.iterations)} clips of these tasks:"
+        f" {volumes.converged} converged, in {np.median(volumes.iterations):.0f} iterations"
+        f" (median; {max(volumes.iterations)} at most).",
+        f"Compression ratio (section 5.3): {compression.formula:.4f} by the formula,"
+        f" {compression.measured:.4f} as stored, of {compression.clips} clips"
+        f" with {compression.frames} frames.",
+    ]
+    if found.alone:
+        remarks.append(
+            f"{found.alone} clips are the only recording of their task: they asked nothing."
+        )
+    if found.unlabelled:
+        remarks.append(f"{found.unlabelled} clips carry no task and were left out.")
+    return remarks

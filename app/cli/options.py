@@ -1,0 +1,11 @@
+"""Options that several commands take."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+FilterJson = Annotated[
+    str | None, typer.Option("--filter", help='JSON, as {"source": ["my studio"]}.')
+]

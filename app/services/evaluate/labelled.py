@@ -1,0 +1,106 @@
+"""The clips that an evaluation of retrieval asks, and what counts as their like."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.errors import NotEnoughLabels
+from app.models.class_rankings import JudgedRanking, judge_ranking
+from app.services import fields
+from app.services.library import Library
+from app.services.training import ready_only, recording_of_clip
+from app.store import clip_listing, clips
+from app.store.clip_filter import ClipFilter
+from app.store.clip_record import ClipRecord
+
+SHOWN_TASKS = 30
+"""Tasks named in a message."""
+
+
+@dataclass(frozen=True, slots=True)
+class LabelledClips:
+    """The ready clips that carry a task.
+
+    clips: (N,) by id; classes: (C,) tasks of which two recordings are there, so that one can
+    ask for another, the largest first; code: by clip id, the number of its class, C where it
+    is of none; recording: by clip id, what files of one recording share; unlabelled: clips
+    without a task, of which nobody knows whether they would be right answers.
+    """
+
+    clips: tuple[ClipRecord, ...]
+    classes: tuple[str, ...]
+    code: dict[str, int]
+    recording: dict[str, str]
+    unlabelled: int
+
+    @property
+    def in_a_class(self) -> tuple[ClipRecord, ...]:
+        """The clips that can ask."""
+        return tuple(clip for clip in self.clips if self.code[clip.id] < len(self.classes))
+
+    def queries(self, most: int) -> tuple[ClipRecord, ...]:
+        """The clips that ask: at most so many, drawn evenly from the classes, one of each at least.
+
+        Every clip of a class has something to find: another recording of its task.
+        """
+        able = self.in_a_class
+        taken: Counter[int] = Counter()
+        turns: list[tuple[int, int]] = []
+        for place in np.random.RandomState(0).permutation(len(able)).tolist():
+            code = self.code[able[place].id]
+            turns.append((taken[code], place))
+            taken[code] += 1
+        drawn = sorted(turns)[: max(most, len(self.classes))]
+        return tuple(able[place] for place in sorted(place for _, place in drawn))
+
+    def judge(self, query: ClipRecord, found: Sequence[str], k: int) -> JudgedRanking:
+        """A ranking, without what has no task and the other files of the query's recording."""
+        own = self.recording[query.id]
+        codes = [self.code[i] for i in found if i in self.code and self.recording[i] != own]
+        return judge_ranking(np.array(codes), self.code[query.id], len(self.classes), k)
+
+    def chosen(self, names: Sequence[str] | None, count: int) -> tuple[str, ...]:
+        """These classes, or the `count` largest. Raises BadField for an unknown one."""
+        if names is None:
+            return self.classes[:count]
+        for name in names:
+            if name not in self.classes:
+                known = ", ".join(self.classes[:SHOWN_TASKS])
+                message = f"no two recordings carry the task {name!r}; they do of {known}"
+                raise fields.bad_field("classes", message)
+        return tuple(dict.fromkeys(names))
+
+
+def read_labelled(lib: Library, wanted: ClipFilter | None) -> LabelledClips:
+    """What there is to judge. Raises NotEnoughLabels unless two classes can be told apart."""
+    with lib.store.read() as tx:
+        ids = sorted(clip_listing.list_ids(tx, ready_only(wanted)))
+        return labelled_among(tuple(clips.get_many(tx, ids).values()))
+
+
+def labelled_among(ready: Sequence[ClipRecord]) -> LabelledClips:
+    """Of these clips, those to judge. Raises NotEnoughLabels as above."""
+    labelled = tuple(clip for clip in ready if clip.task)
+    recording = {clip.id: recording_of_clip(clip) for clip in labelled}
+    takes = Counter(task for task, _ in {(clip.task, recording[clip.id]) for clip in labelled})
+    sizes = Counter(clip.task for clip in labelled if takes[clip.task] > 1)
+    classes = tuple(sorted(filter(None, sizes), key=lambda task: (-sizes[task], task)))
+    if not classes:
+        raise NotEnoughLabels("No two ready clips carry the same task, so nothing can be judged.")
+    if len(classes) == len(takes) == 1:
+        raise NotEnoughLabels(
+            f"All labelled clips carry the task {classes[0]!r}: whatever is found is right. "
+            "Clips of a second task are needed."
+        )
+    codes = {task: number for number, task in enumerate(classes)}
+    return LabelledClips(
+        clips=labelled,
+        classes=classes,
+        code={clip.id: codes.get(clip.task or "", len(classes)) for clip in labelled},
+        recording=recording,
+        unlabelled=len(ready) - len(labelled),
+    )

@@ -1,0 +1,87 @@
+"""Ways to rank the library for a clip: the methods of searches, and Sun's with other settings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from app.analysis.motion_volume import cross_correlations, decompose, warping_distances
+from app.motion.body_frame import body_track
+from app.numerics.rank1 import Rank1
+from app.search.by_example import rank_by_example
+from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays
+from app.search.index import VECTOR
+from app.search.methods import Method
+from app.services.library import Library
+from app.services.stored_motion import load_motion
+from app.store import arrays
+from app.store.clip_filter import ClipFilter
+from app.store.clip_record import ClipRecord
+
+Way = Callable[[ClipRecord], Sequence[str]]
+"""Ids of all clips that pass the filter, the nearest first; the clip itself may be there."""
+
+
+def by_method(lib: Library, method: Method, wanted: ClipFilter | None) -> Way:
+    """The very ranking that searches use."""
+    load = partial(lib.arrays.get_many, lib.store)
+
+    def rank(clip: ClipRecord) -> Sequence[str]:
+        query, itself = _query(lib, clip), frozenset({clip.id})
+        found = rank_by_example(lib.index, query, method, wanted or ClipFilter(), itself, load)
+        return list(found.ids)
+
+    return rank
+
+
+def _query(lib: Library, clip: ClipRecord) -> QueryArrays:
+    with lib.store.read() as tx:
+        vector, features, rho, epsilon = (
+            arrays.get_one(tx, clip.id, name) for name in (VECTOR, FEATURES, RHO, EPSILON)
+        )
+    return QueryArrays(vector, features, rho, epsilon)
+
+
+@dataclass(frozen=True, slots=True)
+class Volumes:
+    """Rank-1 factors of clips' motion volumes with one q and threshold, by clip id."""
+
+    factors: dict[str, Rank1]
+
+    @classmethod
+    def of(
+        cls,
+        lib: Library,
+        chosen: Sequence[ClipRecord],
+        *,
+        q: int,
+        threshold: float,
+        step: Callable[[], None] = lambda: None,
+    ) -> Volumes:
+        """Computed anew from the stored motions; `step` is called after each."""
+        factors = {}
+        for clip in chosen:
+            track = body_track(load_motion(lib, clip))
+            factors[clip.id] = decompose(track, q=q, threshold=threshold)
+            step()
+        return cls(factors)
+
+    def by(self, method: Method) -> Way:
+        """By D_dtw (eq. 7, smallest first) or by D_xcorr (eq. 6, largest first)."""
+        compare = {
+            Method.MSV_DTW: warping_distances,
+            Method.MSV_XCORR: lambda *volumes: -cross_correlations(*volumes),
+        }[method]
+        ids = list(self.factors)
+        rhos = np.stack([one.primary for one in self.factors.values()])
+        epsilons = [one.secondary for one in self.factors.values()]
+
+        def rank(clip: ClipRecord) -> Sequence[str]:
+            query = self.factors[clip.id]
+            distances = compare(query.primary, query.secondary, rhos, epsilons)
+            return [ids[i] for i in np.argsort(distances, kind="stable") if ids[i] != clip.id]
+
+        return rank

@@ -1,0 +1,70 @@
+"""`kinedex evaluate retrieval`: tables, JSON, pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Kinedex
+
+QUICK = ("evaluate", "retrieval", "--method", "vector", "--method", "msv-xcorr")
+
+
+def test_tables_for_people(kinedex: Kinedex) -> None:
+    ended = kinedex(*QUICK, "--k", "3")
+    assert ended.code == 0, ended.err
+    lines = ended.out.splitlines()
+    assert lines[0] == "12 clips ask for the others of their task, among 12:"
+    assert lines[2].split() == ["method", "1-NN", "P@4", "P@20", "MAP"]
+    assert [line.split()[0] for line in lines[3:6]] == ["vector", "msv-xcorr", "msv-xcorr"]
+    assert ["method", "kick", "walk", "wave", "overall"] in [line.split() for line in lines]
+    assert any(line.startswith("What the 3 nearest are by msv-xcorr") for line in lines)
+    row = next(line for line in lines if line.startswith(" 1 kick"))
+    assert sum(int(cell) for cell in row.split()[2:] if cell != ".") == pytest.approx(100, abs=1)
+    assert "Compression ratio (section 5.3): 0.0" in ended.out
+
+
+def test_json_for_programs(kinedex: Kinedex) -> None:
+    told = kinedex(*QUICK, "--classes", "walk,kick", "--eta", "0.4", "--json").json()
+    names = [row["method"] for row in told["figures"]]
+    assert names[:3] == ["vector", "msv-xcorr", "msv-xcorr q=1"]
+    assert names[3:] == ["msv-xcorr q=1 eta=0.4", "msv-xcorr q=2 eta=0.4"]
+    rates = told["true_positive_rates"]
+    assert (rates["classes"], rates["k"], rates["mixture"]) == (["walk", "kick"], 20, 12)
+    for name in names:
+        row = rates["methods"][name]
+        assert row["overall"] == pytest.approx((row["walk"] + row["kick"]) / 2)
+        matrix = told["confusion"]["methods"][name]
+        assert [sum(line) for line in matrix] == pytest.approx([1.0] * 3)
+    assert told["volumes"]["converged"] == told["volumes"]["clips"] == 8
+    assert told["left_out"] == {"unlabelled": 0, "alone": 0}
+
+
+def test_pictures_go_where_they_are_wanted(kinedex: Kinedex, tmp_path: Path) -> None:
+    one, folder = tmp_path / "new" / "figure_8.png", tmp_path / "all"
+    ended = kinedex(*QUICK[:4], "--picture", str(one), "--pictures", str(folder))
+    assert ended.code == 0, ended.err
+    assert one.read_bytes().startswith(b"\x89PNG")
+    names = {"confusion-vector.svg", "vectors.svg", "convergence.svg"}
+    assert {path.name for path in folder.iterdir()} == names
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--classes", "walk,fly"), "'fly'; they do of kick, walk, wave"),
+        (("--filter", '{"task": "walk"}'), "'walk': whatever is found is right"),
+        (("--filter", '{"task": "nothing"}'), "nothing can be judged"),
+        (("--picture", "figure.gif"), ".svg, .png, .pdf"),
+        (("--pictures", "figures", "--picture-format", "bmp"), ".svg, .png, .pdf"),
+    ],
+)
+def test_what_cannot_be_done_is_said_at_once(
+    kinedex: Kinedex, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: list[str], told: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    ended = kinedex(*QUICK, *words)
+    assert ended.code == 1
+    assert told in ended.err
+    assert list(tmp_path.iterdir()) == []
