@@ -28,7 +28,8 @@ def test_more_dimensions_err_less(found: SymbolFigures) -> None:
 def test_the_paper_s_own_error_is_lowest_where_it_is_what_is_minimised(
     found: SymbolFigures,
 ) -> None:
-    assert all(each.s_stress <= each.classical for each in found.errors)
+    short_of_exact = found.errors[:-1]  # as many dimensions as points leave nothing but rounding
+    assert all(each.s_stress <= each.classical for each in short_of_exact)
     # Each finds a minimum near its start, seldom not the lowest one.
     assert sum(e.s_stress for e in found.errors) < sum(e.smacof for e in found.errors)
 
