@@ -1,146 +1,206 @@
 """Keyposes: the poses at which a motion comes to rest on its beats (Perera 2009, section 3).
 
-Around each beat the energy's minimum is a candidate if it is small (T1) or far below the
-maximum (T2); a candidate of the global energy comes before one of the local energy.
-Where the motion has no beat, every deep minimum of the energy is looked at instead.
+Around each beat the energy's minimum is a candidate; it is a keypose if it is small (T1) or
+far below the maxima beside it (T2). A candidate of the global energy comes before one of the
+local energy. Where the motion has no beat, or only one estimated from the motion itself,
+every rest is a candidate: such a beat knows nothing that the rests do not. A walker does not
+rest; where a motion goes on for long, its keyposes are the poses at which it is slowest as
+seen from the waist: the feet furthest apart, at each step.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
-from scipy.signal import find_peaks
 
 from app.analysis.beats import Beats, find_beats
-from app.analysis.energy import EnergyMethod, energies
+from app.analysis.candidates import Candidate, Scope, at_beats, at_rests
+from app.analysis.energy import Energies, EnergyMethod, Weights, energies
+from app.analysis.rests import find_rests
 from app.motion.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray, IntArray
 
-T1 = 0.35
+T1 = 0.25
 """A minimum is small below this share of the median local maximum."""
 
 T2 = 0.7
-"""A minimum is deep if it lies this share of the median local maximum below the maximum."""
-
-SEARCH = 0.5
-"""How far around a beat to look, in beats."""
-
-LONE_BEAT = 15.0
-"""Frames; taken for the beat where only one is given."""
+"""A minimum is deep if it lies this share of the median local maximum below the maxima."""
 
 LEAST_APART = 0.2
 """Seconds between keyposes."""
 
-RIPPLE = 0.2
-"""Where there are no beats, a minimum must lie this share of the median local maximum
-below what is on both its sides."""
+GOES_ON = 3.0
+"""Seconds without a keypose after which a motion is one that does not rest."""
+
+SLOWEST = 2.4
+"""Factor on T1 for what counts as slow there."""
+
+REPEATED = 2
+"""Slow poses that there must be: one alone is an accident."""
+
+OVERLAP = 3
+"""Frames by which a local rest may miss a global one and still be the same."""
 
 
 @dataclass(frozen=True, slots=True)
 class Keyposes:
     """Where the keyposes are and from what they were found.
 
-    frames: (k,) at ANALYSIS_RATE, rising; times: (k,) seconds; global_energy, local_energy:
-    (n,) body lengths per second; beats: the beats used, `beats.tempo` None where none.
+    frames: (k,) at ANALYSIS_RATE, rising; times: (k,) seconds; chosen_by: (k,) which energy
+    chose each; energies: the curves, (n,) each; beats: the beats used, `beats.tempo` None
+    where none.
     """
 
     frames: IntArray
     times: FloatArray
-    global_energy: FloatArray
-    local_energy: FloatArray
+    chosen_by: tuple[Scope, ...]
+    energies: Energies
     beats: Beats
     method: EnergyMethod
+    weights: Weights
     t1: float
     t2: float
+
+    @property
+    def global_energy(self) -> FloatArray:
+        """(n,) body lengths per second."""
+        return self.energies.global_energy
+
+    @property
+    def local_energy(self) -> FloatArray:
+        """(n,) body lengths per second."""
+        return self.energies.local_energy
+
+
+@dataclass(frozen=True, slots=True)
+class Candidates:
+    """All candidates of a motion, global ones first, each of the two in order."""
+
+    rate: float
+    energies: Energies
+    beats: Beats
+    found: tuple[Candidate, ...] = field(repr=False)
+
+    @property
+    def on_beats(self) -> bool:
+        """Whether the beats were known, so that keyposes are sought on them alone."""
+        return any(candidate.beat is not None for candidate in self.found)
+
+    def select(self, t1: float = T1, t2: float = T2) -> tuple[Candidate, ...]:
+        """The keyposes under thresholds in units of each curve's median local maximum."""
+        chosen: list[Candidate] = []
+        for scope in Scope:
+            fresh = [c for c in self.found if c.scope is scope and _passes(c, t1, t2)]
+            chosen += _not_there_yet(fresh, chosen)
+        if not self.on_beats:
+            chosen += self._where_it_goes_on(chosen, SLOWEST * t1)
+        return _apart(chosen, LEAST_APART * self.rate)
+
+    def _where_it_goes_on(self, chosen: list[Candidate], slow: float) -> list[Candidate]:
+        """The slow poses between keyposes that are further apart than GOES_ON."""
+        last = len(self.energies.local_energy) - 1
+        walls = [0, *sorted(c.frame for c in chosen), last]
+        local = [c for c in self.found if c.scope is Scope.LOCAL and c.rest.energy < slow]
+        found: list[Candidate] = []
+        for left, right in pairwise(walls):
+            between = [c for c in local if left < c.frame < right]
+            long = right - left >= GOES_ON * self.rate or not chosen
+            found += between if long and len(between) >= REPEATED else []
+        return found
 
 
 def find_keyposes(
     track: BodyTrack,
     *,
     method: EnergyMethod | str = EnergyMethod.RMS,
+    weights: Weights | str = Weights.UNIFORM,
     t1: float = T1,
     t2: float = T2,
-    beats: FloatArray | None = None,
+    beats: Beats | FloatArray | None = None,
 ) -> Keyposes:
     """The keyposes of `track`.
 
-    beats: (b,) seconds, where they are known; otherwise estimated from the motion.
-    t1, t2: thresholds in units of the median local maximum of each energy curve.
-    Raises ValueError for another method.
+    beats: (b,) seconds, where they are known, none if there are none; None: estimated from
+    the motion. t1, t2: thresholds in units of the median local maximum of each energy curve.
+    Raises ValueError for another method or other weights.
     """
-    method = EnergyMethod(method)
-    curves = energies(track, method)
-    if beats is None:
-        found = find_beats(energies(track).global_energy, track.rate)
-    else:
-        found = Beats(np.asarray(beats, dtype=np.float64), _tempo(beats), 1.0)
-    whole, own = curves.global_energy, curves.local_energy
-    frames = (
-        _on_beats(whole, own, found.times * track.rate, t1, t2)
-        if len(found.times)
-        else _deep_minima(whole, t1, t2)
+    method, weights = EnergyMethod(method), Weights(weights)
+    candidates = find_candidates(track, method=method, weights=weights, beats=beats)
+    chosen = candidates.select(t1, t2)
+    frames = np.array([candidate.frame for candidate in chosen], dtype=np.int64)
+    return Keyposes(
+        frames=frames,
+        times=frames / track.rate,
+        chosen_by=tuple(candidate.scope for candidate in chosen),
+        energies=candidates.energies,
+        beats=candidates.beats,
+        method=method,
+        weights=weights,
+        t1=t1,
+        t2=t2,
     )
-    kept = _apart(frames, whole, LEAST_APART * track.rate)
-    return Keyposes(kept, kept / track.rate, whole, own, found, method, t1, t2)
 
 
-def _tempo(beats: FloatArray) -> float | None:
-    return float(60.0 / np.median(np.diff(beats))) if len(beats) > 1 else None
+def find_candidates(
+    track: BodyTrack,
+    *,
+    method: EnergyMethod = EnergyMethod.RMS,
+    weights: Weights = Weights.UNIFORM,
+    beats: Beats | FloatArray | None = None,
+) -> Candidates:
+    """What `find_keyposes` selects from."""
+    curves = energies(track, method, weights)
+    known = _known(beats)
+    used = known or find_beats(energies(track).global_energy, track.rate)
+    look = at_beats if known is not None and len(used.times) else at_rests
+    found = (
+        candidate
+        for curve, scope in ((curves.whole, Scope.GLOBAL), (curves.own, Scope.LOCAL))
+        for candidate in look(find_rests(curve), used.times * track.rate, scope)
+    )
+    return Candidates(track.rate, curves, used, tuple(found))
 
 
-def _on_beats(
-    whole: FloatArray, own: FloatArray, beats: FloatArray, t1: float, t2: float
-) -> list[int]:
-    """For each beat (in frames) its candidate by global, else by local energy."""
-    reach = SEARCH * (float(np.median(np.diff(beats))) if len(beats) > 1 else LONE_BEAT)
-    curves = [(curve, _median_maximum(curve)) for curve in (whole, own)]
-    found = []
-    for beat in beats:
-        candidates = (_near_beat(c, beat, reach, t1 * unit, t2 * unit) for c, unit in curves)
-        found += [frame for frame in candidates if frame is not None][:1]
-    return found
+def _known(beats: Beats | FloatArray | None) -> Beats | None:
+    if beats is None or isinstance(beats, Beats):
+        return beats
+    times = np.unique(np.asarray(beats, dtype=np.float64))
+    tempo = float(60.0 / np.median(np.diff(times))) if len(times) > 1 else None
+    return Beats(times, tempo, 1.0)
 
 
-def _median_maximum(curve: FloatArray) -> float:
-    """The median local maximum of an energy curve; its maximum where it has none inside."""
-    peaks, _ = find_peaks(curve)
-    return float(np.median(curve[peaks])) if len(peaks) else float(curve.max())
+def _passes(candidate: Candidate, t1: float, t2: float) -> bool:
+    return candidate.rest.energy < t1 or candidate.rest.drop > t2
 
 
-def _near_beat(
-    curve: FloatArray, beat: float, reach: float, small: float, drop: float
-) -> int | None:
-    """The least-energy frame around a beat, if it is small, or far below what is around it."""
-    first, stop = max(0, round(beat - reach)), min(len(curve), round(beat + reach) + 1)
-    if first >= stop:
-        return None
-    around = curve[first:stop]
-    lowest = first + int(np.argmin(around))
-    rests = curve[lowest] < small or around.max() - curve[lowest] > drop
-    return lowest if rests and _is_minimum(curve, lowest) else None
+def _not_there_yet(fresh: list[Candidate], chosen: list[Candidate]) -> list[Candidate]:
+    """Those of `fresh` whose beat, or rest where there are no beats, is not chosen yet."""
+    beats = {candidate.beat for candidate in chosen} - {None}
+    spans = np.array([(c.rest.first, c.rest.last) for c in chosen if c.beat is None])
+    return [
+        candidate
+        for candidate in fresh
+        if candidate.beat not in beats and not _overlaps(candidate, spans)
+    ]
 
 
-def _is_minimum(curve: FloatArray, frame: int) -> bool:
-    """Not merely the lower end of a slope that runs on outside what was looked at."""
-    before, after = curve[max(frame - 1, 0)], curve[min(frame + 1, len(curve) - 1)]
-    return bool(curve[frame] <= before and curve[frame] <= after)
+def _overlaps(candidate: Candidate, spans: IntArray) -> bool:
+    if not len(spans):
+        return False
+    rest = candidate.rest
+    early, late = spans[:, 0] - OVERLAP, spans[:, 1] + OVERLAP
+    return bool(np.any((rest.first <= late) & (rest.last >= early)))
 
 
-def _deep_minima(curve: FloatArray, t1: float, t2: float) -> list[int]:
-    """Minima, beats or not, that are small or deep on both sides, and no mere ripple."""
-    unit = _median_maximum(curve)
-    minima, found = find_peaks(-curve, prominence=RIPPLE * unit, plateau_size=1)
-    deep = (curve[minima] < t1 * unit) | (found["prominences"] > t2 * unit)
-    return [int(frame) for frame in minima[deep]]
-
-
-def _apart(frames: list[int], curve: FloatArray, least: float) -> IntArray:
-    """Rising frames at least `least` apart; of those too close the one of less energy stays."""
-    kept: list[int] = []
-    for frame in sorted(set(frames)):
-        if kept and frame - kept[-1] < least:
-            kept[-1] = min(kept[-1], frame, key=lambda f: float(curve[f]))
+def _apart(chosen: Iterable[Candidate], least: float) -> tuple[Candidate, ...]:
+    """In order, at least `least` frames apart; of those too close the one of less energy stays."""
+    kept: list[Candidate] = []
+    for candidate in sorted(chosen, key=lambda each: each.frame):
+        if kept and candidate.frame - kept[-1].frame < least:
+            kept[-1] = min(kept[-1], candidate, key=lambda each: each.rest.energy)
         else:
-            kept.append(frame)
-    return np.array(kept, dtype=np.int64)
+            kept.append(candidate)
+    return tuple(kept)

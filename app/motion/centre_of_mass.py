@@ -33,7 +33,6 @@ _SEGMENTS: tuple[tuple[JointRole, JointRole, float, float], ...] = (
 
 
 def _weights() -> FloatArray:
-    """(13,): each role's share; the sum is 1."""
     weights = np.zeros(len(SUN_ROLES))
     for start, end, mass, along in _SEGMENTS:
         weights[SUN_ROLES.index(start)] += mass * (1 - along)
@@ -41,10 +40,11 @@ def _weights() -> FloatArray:
     return np.asarray(weights / weights.sum())
 
 
-_WEIGHTS = _weights()
+ROLE_MASSES = _weights()
+"""(13,) share of the body's mass that each of SUN_ROLES stands for; the sum is 1."""
 
 
 def centre_of_mass(role_positions: FloatArray) -> FloatArray:
     """(frames, 3) of role positions (frames, 13, 3) in SUN_ROLES order, same unit."""
     positions = np.asarray(role_positions, dtype=np.float64)
-    return np.asarray(np.einsum("r,frc->fc", _WEIGHTS, positions))
+    return np.asarray(np.einsum("r,frc->fc", ROLE_MASSES, positions))
