@@ -12,6 +12,11 @@ from tests.bodies import motion_of, standing, walking, waving
 
 BODIES = {"walk": walking(turn=0.3), "wave": waving(), "still": standing(90), "two": standing(2)}
 
+SEGMENT_TYPES = {
+    "segment_spans": (np.float32, 2), "segment_vectors": (np.float16, 185),
+    "segment_cycles": (np.int32, 3),
+}  # fmt: skip
+
 
 @pytest.mark.parametrize("body", BODIES.values(), ids=BODIES.keys())
 def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray) -> None:
@@ -19,6 +24,7 @@ def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray
     keyposes = arrays.pop("keypose_frames")
     windows = {scale: arrays.pop(scale.vectors) for scale in WINDOW_SCALES}
     spans = {scale: arrays.pop(scale.spans) for scale in WINDOW_SCALES}
+    segments = {name: arrays.pop(name) for name in SEGMENT_TYPES}
     n, states = len(body), len(arrays["symbol_means"])
     shapes = {
         "role_positions": (n, 13, 3), "features_10hz": ((n - 1) // 3 + 1, 82),
@@ -32,6 +38,8 @@ def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray
     assert all(np.isfinite(array).all() for array in arrays.values())
     assert (keyposes.dtype, keyposes.ndim) == (np.int32, 1)
     assert (np.diff(keyposes, prepend=-1, append=n) > 0).all()
+    assert {name: (a.dtype, a.shape[1]) for name, a in segments.items()} == SEGMENT_TYPES
+    assert len(segments["segment_spans"]) == max(len(keyposes) - 1, 0)
     for scale in WINDOW_SCALES:
         count = len(window_frames((n - 1) // 3 + 1, scale))
         assert (windows[scale].shape, windows[scale].dtype) == ((count, 125), np.float16)
@@ -47,6 +55,6 @@ def test_a_query_is_described_as_a_stored_clip_is() -> None:
     stored = analyse(motion_of(BODIES["walk"])).arrays
     query = describe_for_search(motion_of(BODIES["walk"])).arrays
     assert set(stored) - set(query) == {
-        "keypose_frames", "symbol_means", "symbol_variances", "symbol_transitions",
+        "keypose_frames", "symbol_means", "symbol_variances", "symbol_transitions", *SEGMENT_TYPES,
     }  # fmt: skip
     assert all(stored[name].tobytes() == query[name].tobytes() for name in query)

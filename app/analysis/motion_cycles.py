@@ -1,0 +1,164 @@
+"""Cycles: sequences of segments that are danced again and again.
+
+A cycle begins and ends at keyposes and is followed by one that is like it. Two parts are
+compared at as many times, evenly spaced in each, so that tempo does not matter, and a
+keypose that was missed within one of them does no harm. How like they are is told by Lin's
+concordance (1989): 1 minus the mean squared distance over the sum of both variances, so that
+a body that holds still or shakes repeats nothing.
+
+Of all runs of such parts the one is taken that repeats best for longest, its first cycle not
+counted: two steps danced four times are four cycles, not two of four steps. Then the next
+among what is left.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from heapq import heapify, heappop, heappush
+from itertools import pairwise
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray
+
+MOST_SEGMENTS = 32
+"""In one cycle."""
+SAMPLES = 32
+"""Times at which two parts are compared."""
+LEAST_CONCORDANCE = 0.6
+"""Of two cycles: 1 where they are the same, 0 where they have nothing in common."""
+MOST_STRETCH = 1.3
+"""Between the durations of a cycle and of the next."""
+MISSED = 1
+"""A cycle may have so many segments more or fewer than the one before."""
+
+_SMALLEST = 1e-6
+"""Variance, square body lengths: of less only rounding is told."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cycle:
+    """Segments first..stop-1, one time through what is repeated; run: which repeated sequence
+    it belongs to, from 0, in order of time."""
+
+    first: int
+    stop: int
+    run: int
+
+
+def find_cycles(poses: FloatArray, bounds: FloatArray) -> tuple[Cycle, ...]:
+    """The cycles of a motion in order of time, at least two in a row.
+
+    poses: (n, d) in the body frame; bounds: (m + 1,) the rising times of keyposes, in frames,
+    which bound m segments.
+    """
+    if len(bounds) < 3 or len(poses) < 2:
+        return ()
+    links = _linked(poses.astype(np.float32), bounds)
+    return tuple(
+        Cycle(first, stop, number)
+        for number, run in enumerate(sorted(_runs(links, bounds)))
+        for first, stop in pairwise(run)
+    )
+
+
+_Part = tuple[int, int]
+"""A first segment and a number of segments."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Link:
+    """To the part behind that is most like: its number of segments, and what it is worth, its
+    duration times its concordance."""
+
+    length: int
+    worth: float
+
+
+def _linked(poses: FloatArray, bounds: FloatArray) -> dict[_Part, _Link]:
+    """The links of the parts that have one."""
+    longest = min(MOST_SEGMENTS, len(bounds) - 2)
+    links: dict[_Part, _Link] = {}
+    near: dict[int, _Parts] = {}
+    for length in range(1, longest + 1):
+        others = range(max(length - MISSED, 1), min(length + MISSED, longest) + 1)
+        # only those of about this length are kept: all together would be large
+        near = {other: near.get(other) or _Parts(poses, bounds, other) for other in others}
+        best = np.full(len(bounds), LEAST_CONCORDANCE)
+        for other in others:
+            likeness = near[length].concordance(near[other])
+            for first in np.flatnonzero(likeness > best[: len(likeness)]):
+                best[first] = likeness[first]
+                lasts = near[other].durations[first + length]
+                links[int(first), length] = _Link(other, float(lasts * likeness[first]))
+    return links
+
+
+class _Parts:
+    """All parts of as many segments: (c, SAMPLES, d) poses, and what compares them."""
+
+    def __init__(self, poses: FloatArray, bounds: FloatArray, length: int) -> None:
+        self.length = length
+        starts, ends = bounds[:-length], bounds[length:]
+        at = starts[:, None] + (ends - starts)[:, None] * np.linspace(0.0, 1.0, SAMPLES)
+        at = np.clip(at, 0, len(poses) - 1)
+        left = np.minimum(at.astype(np.int64), len(poses) - 2)
+        share = (at - left).astype(np.float32)[..., None]
+        self.poses = poses[left] * (1 - share) + poses[left + 1] * share
+        self.durations = ends - starts
+        self.variances = self.poses.var(axis=1).sum(axis=-1)
+
+    def concordance(self, other: _Parts) -> FloatArray:
+        """(c,) of each part with the part of `other` behind it; -1 where durations differ, or
+        nothing moves."""
+        count = max(len(other.poses) - self.length, 0)
+        one, two = slice(0, count), slice(self.length, self.length + count)
+        apart = np.square(self.poses[one] - other.poses[two]).sum(axis=-1).mean(axis=1)
+        both = self.variances[one] + other.variances[two]
+        stretch = other.durations[two] / self.durations[one]
+        near = (stretch <= MOST_STRETCH) & (stretch >= 1 / MOST_STRETCH) & (both > _SMALLEST)
+        return np.where(near, 1 - apart / np.maximum(both, _SMALLEST), -1.0)
+
+
+def _runs(links: dict[_Part, _Link], bounds: FloatArray) -> list[list[int]]:
+    """The bounds of the cycles of each run, the run that is worth most first; no two share a
+    segment."""
+    # of two that are worth the same the earlier one, with the shorter cycles
+    queue = [(-worth, *part, end) for part, (worth, end) in _ends(links).items()]
+    heapify(queue)
+    taken = np.zeros(len(bounds) - 1, dtype=bool)
+    runs: list[list[int]] = []
+    while queue:
+        _, first, length, end = heappop(queue)
+        if taken[first]:
+            continue
+        blocked = np.flatnonzero(taken[first:end])
+        high = first + int(blocked[0]) if len(blocked) else end
+        worth, run = _followed(links, (first, length), high)
+        if run[-1] == end:
+            taken[first:end] = True
+            runs.append(run)
+        elif len(run) > 2:
+            heappush(queue, (-worth, first, length, run[-1]))
+    return runs
+
+
+def _ends(links: dict[_Part, _Link]) -> dict[_Part, tuple[float, int]]:
+    """By part what the run that begins with it is worth, and the bound at which it ends."""
+    ends: dict[_Part, tuple[float, int]] = {}
+    for part in sorted(links, reverse=True):
+        link, first = links[part], sum(part)
+        worth, end = ends.get((first, link.length), (0.0, first + link.length))
+        ends[part] = link.worth + worth, end
+    return ends
+
+
+def _followed(links: dict[_Part, _Link], part: _Part, high: int) -> tuple[float, list[int]]:
+    """What a run is worth, and the bounds of its cycles, as far as they do not pass `high`."""
+    worth, run = 0.0, [part[0], sum(part)]
+    while link := links.get((run[-2], run[-1] - run[-2])):
+        if run[-1] + link.length > high:
+            break
+        worth += link.worth
+        run.append(run[-1] + link.length)
+    return worth, run
