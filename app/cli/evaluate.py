@@ -8,6 +8,7 @@ from typing import Any
 import typer
 
 from app.cli.evaluate_retrieval import retrieval
+from app.cli.evaluate_symbols import symbols
 from app.cli.find import filter_of
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table
@@ -17,6 +18,7 @@ from app.services import evaluate
 
 program = typer.Typer(help="Figures on your own library.", no_args_is_help=True)
 program.command("retrieval")(retrieval)
+program.command("symbols")(symbols)
 
 
 @program.command("words")

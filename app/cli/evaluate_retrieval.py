@@ -73,7 +73,7 @@ def retrieval(
         found = evaluate.judge_retrieval(
             lib,
             wanted,
-            method or tuple(Method),
+            method or evaluate.JUDGED,
             classes=names,
             k=k,
             threshold=eta,

@@ -15,6 +15,6 @@ class Method(StrEnum):
     DTW = "dtw"
     """Dynamic time warping of the body-frame features at 10 Hz, over every clip."""
     MSV_DTW = "msv-dtw"
-    """Sun 2011, section 4: DTW of secondary vectors and distance of primary vectors."""
+    """Sun 2011, equation 7: DTW of the primary vectors, twice, and of the secondary ones."""
     MSV_XCORR = "msv-xcorr"
-    """Sun 2011, section 4: 3 - D_xcorr, the cross-correlation likeness turned around."""
+    """Sun 2011, equation 6: 3 - D_xcorr, the cross-correlation likeness turned around."""

@@ -6,6 +6,7 @@ out: no clip is judged by a model that has seen it, or another file of its recor
 
 from app.services.evaluate.recognition import judge_recognition
 from app.services.evaluate.retrieval import (
+    JUDGED,
     MOST_QUERIES,
     JudgedWay,
     K,
@@ -13,18 +14,22 @@ from app.services.evaluate.retrieval import (
     RetrievalFigures,
     judge_retrieval,
 )
+from app.services.evaluate.symbols import draw_symbols, judge_symbols
 from app.services.evaluate.volumes import VolumeEvaluation, judge_volumes
 from app.services.evaluate.words import judge_words
 
 __all__ = [
+    "JUDGED",
     "MOST_QUERIES",
     "JudgedWay",
     "K",
     "RetrievalEvaluation",
     "RetrievalFigures",
     "VolumeEvaluation",
+    "draw_symbols",
     "judge_recognition",
     "judge_retrieval",
+    "judge_symbols",
     "judge_volumes",
     "judge_words",
 ]
