@@ -102,7 +102,7 @@ def _shares(weights: Weights, joints: int) -> FloatArray:
 
 
 def _printed(positions: FloatArray, rate: float, shares: FloatArray) -> EnergyCurve:
-    sums = np.einsum("j,njx->nx", shares, _velocities(positions, rate, SMOOTHING))
+    sums = np.einsum("j,njx->nx", shares, velocities(positions, rate, SMOOTHING))
     return EnergyCurve(np.linalg.norm(sums, axis=-1), 0.0, SMOOTHING)
 
 
@@ -128,13 +128,14 @@ def _smoothing(lightly: EnergyCurve) -> float:
 def _above_noise(
     positions: FloatArray, rate: float, shares: FloatArray, noise: float, smoothing: float
 ) -> EnergyCurve:
-    squares = np.square(_velocities(positions, rate, smoothing)).sum(axis=-1) @ shares
+    squares = np.square(velocities(positions, rate, smoothing)).sum(axis=-1) @ shares
     added = noise * noise_of_speed(smoothing * rate) * rate**2
     values = np.sqrt(np.maximum(squares - added, UNSURE**2 * added))
     return EnergyCurve(values, float(np.sqrt(added)), smoothing)
 
 
-def _velocities(positions: FloatArray, rate: float, smoothing: float) -> FloatArray:
+def velocities(positions: FloatArray, rate: float, smoothing: float) -> FloatArray:
+    """Of joints at `positions` (n, joints, 3), smoothed by `smoothing` s before; per second."""
     return np.asarray(np.gradient(_smoothed(positions, smoothing * rate), axis=0)) * rate
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from app.analysis.beats import Beats, find_beats
 from app.analysis.candidates import Candidate, Scope, at_beats, at_rests
 from app.analysis.energy import Energies, EnergyMethod, Weights, energies
-from app.analysis.rests import find_rests
+from app.analysis.rests import Rest, find_rests
 from app.motion.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray, IntArray
 
@@ -93,7 +93,7 @@ class Candidates:
         """The keyposes under thresholds in units of each curve's median local maximum."""
         chosen: list[Candidate] = []
         for scope in Scope:
-            fresh = [c for c in self.found if c.scope is scope and _passes(c, t1, t2)]
+            fresh = [c for c in self.found if c.scope is scope and passes(c.rest, t1, t2)]
             chosen += _not_there_yet(fresh, chosen)
         if not self.on_beats:
             chosen += self._where_it_goes_on(chosen, SLOWEST * t1)
@@ -172,8 +172,9 @@ def _known(beats: Beats | FloatArray | None) -> Beats | None:
     return Beats(times, tempo, 1.0)
 
 
-def _passes(candidate: Candidate, t1: float, t2: float) -> bool:
-    return candidate.rest.energy < t1 or candidate.rest.drop > t2
+def passes(rest: Rest, t1: float, t2: float) -> bool:
+    """Whether a rest's energy is small enough, or far enough below the maxima beside it."""
+    return rest.energy < t1 or rest.drop > t2
 
 
 def _not_there_yet(fresh: list[Candidate], chosen: list[Candidate]) -> list[Candidate]:
