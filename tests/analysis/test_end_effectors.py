@@ -27,7 +27,7 @@ def test_feet_that_never_move_are_at_rest() -> None:
     track = body_track(motion_of(waving(6.0, hz=1.0)))
     found = end_effector_keyposes(track, NO_BEATS)
     assert len(found) == 12  # the hand turns round twice in a second
-    assert set(np.diff(found)) == {15}
+    assert set(np.diff(found)) <= {14, 15, 16}
 
 
 def test_hands_that_rest_while_feet_walk_on_make_none() -> None:
