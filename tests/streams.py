@@ -10,11 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.formats.read import read_recording
 from app.motion.body_frame import body_length, body_track
+from app.motion.canonical import canonicalise
 from app.motion.joint_roles import SUN_ROLES, JointRole
 from app.motion.resampling import sample_at
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, turned_about_y
+from tests.formats.arrays import npz
 
 GAP_SECONDS = 0.6
 """How long the body takes from the end of one piece to the start of the next."""
@@ -86,3 +89,19 @@ def _bridge(before: FloatArray, after: FloatArray, frames: int) -> FloatArray:
     rise = after[0] - before[-1]
     bend = (leave - rise) * (1 - u) + (rise - arrive) * u
     return np.asarray(before[-1] + u * rise + u * (1 - u) * bend)
+
+
+def body_of(content: bytes, frame_rate: float | None = None) -> FloatArray:
+    """(frames, 13, 3) of a motion file at 30 Hz, of the usual size."""
+    motion = canonicalise(read_recording(content), frame_rate=frame_rate)
+    return of_size(body_track(motion).positions)
+
+
+def npz_of(body: FloatArray, rate: float) -> bytes:
+    """A body as a file."""
+    return npz(
+        positions=body.astype(np.float32),
+        joint_names=np.array([role.value for role in SUN_ROLES]),
+        frame_rate=np.float64(rate),
+        unit=np.str_("m"),
+    )

@@ -27,11 +27,17 @@ def distances(rows: FloatArray, others: FloatArray, squares: FloatArray) -> Floa
 
     squares: (k,) `squared_lengths(others)`, which a caller has use for more than once.
     """
+    apart = squared_distances(rows, others, squares)
+    return np.asarray(np.sqrt(apart, out=apart))
+
+
+def squared_distances(rows: FloatArray, others: FloatArray, squares: FloatArray) -> FloatArray:
+    """(n, k) float32 squares of `distances`."""
     apart = (-2.0 * rows) @ others.T
     apart += squared_lengths(rows)[:, None]
     apart += squares
     _retake_close(apart, rows, others, TOO_CLOSE * squares)
-    return np.asarray(np.sqrt(apart, out=apart))
+    return np.asarray(apart)
 
 
 def _retake_close(

@@ -12,7 +12,9 @@ D / n is the mean distance of a query frame to where it is found; a match is bet
 and twice as long as the query, so that none shrinks to a single frame. No cell depends on
 its own row: one numpy step computes a row of many streams laid end to end. Which of the
 three each cell took is kept, and followed back from every end that is a local minimum.
-Sequences are (frames, dimensions); cost is Euclidean.
+Sequences are (frames, dimensions). A stream is a curve of which its frames are samples, and
+each stands for the lines half-way to the frames beside it: c is the Euclidean distance of a
+query frame to those. So it does not matter where between two movements the samples fell.
 """
 
 from __future__ import annotations
@@ -23,7 +25,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
-from app.numerics.euclidean import distances, squared_lengths
+from app.numerics.euclidean import squared_distances, squared_lengths
 
 CELLS_AT_ONCE = 4_000_000
 """Cells (query frames x stream frames) of one table; two bytes each."""
@@ -32,7 +34,10 @@ MOST_FRAMES_AT_ONCE = 20_000
 """Frames of one table: its rows stay near the caches."""
 
 COSTS_AT_ONCE = 250_000
-"""Distances (4 bytes each) that are held at a time."""
+"""Costs (4 bytes each) that are computed at a time: near the caches."""
+
+STILL = 1e-9
+"""Squared length below which a line between two frames is a point."""
 
 LONGEST_MATCH = 2
 """Of the query's length: the slope constraint."""
@@ -176,11 +181,40 @@ def _cost_rows(query: FloatArray, laid: FloatArray, firsts: IntArray) -> Iterato
     """For each query frame its (k,) distances to the columns; walls are infinitely far."""
     squares = squared_lengths(laid)
     walls = np.concatenate([firsts - back for back in range(1, WALL + 1)])
+    steps = squared_lengths(laid[1:] - laid[:-1])
+    is_line = steps > STILL
+    is_line[walls[walls < len(steps)]] = False
+    is_line[walls[walls > 0] - 1] = False
+    share = np.zeros_like(steps)
+    np.divide(0.25, steps, out=share, where=is_line)
     rows = max(1, COSTS_AT_ONCE // len(laid))
     for first in range(0, len(query), rows):
-        costs = distances(query[first : first + rows], laid, squares)
+        costs = squared_distances(query[first : first + rows], laid, squares)
+        _draw_near(costs, steps, share)
         costs[:, walls] = np.inf
-        yield from costs
+        yield from np.sqrt(costs, out=costs)
+
+
+def _draw_near(apart: FloatArray, steps: FloatArray, share: FloatArray) -> None:
+    """From squared distances (n, k) to the columns to those to the lines half-way, in place.
+
+    steps: (k - 1,) squared lengths s of the lines from a column to the next; share: 1 / (4 s),
+    0 where there is no line. With a and b the squared distances to a line's ends, that to the
+    point at t of it is a - t g + t^2 s, g = a - b + s: least at t = g / (2 s), for the near half
+    held to 0..1/2. For the half that is the next column's, a and b change places.
+    """
+    to_here, to_next = apart[:, :-1].copy(), apart[:, 1:].copy()
+    gain = to_here - to_next
+    gain += steps
+    held = np.clip(gain, 0.0, steps)
+    to_here -= held * (2.0 * gain - held) * share
+    np.subtract(2.0 * steps, gain, out=gain)
+    np.clip(gain, 0.0, steps, out=held)
+    to_next -= held * (2.0 * gain - held) * share
+    np.minimum(apart[:, :-1], to_here, out=apart[:, :-1])
+    np.minimum(apart[:, 1:], to_next, out=apart[:, 1:])
+    # below 0 only by rounding
+    np.maximum(apart, 0.0, out=apart)
 
 
 def _ends(costs: FloatArray, piece: _Piece, first: int) -> IntArray:

@@ -18,6 +18,7 @@ from app.search.index import VECTOR
 from app.search.methods import Method
 from app.search.rank import Ranked, score
 from app.services import fields
+from app.services.find_windows import Paging, find_in_windows
 from app.services.hits import Hit, Hits
 from app.services.library import Library
 from app.services.query import Answered, Question, describe
@@ -29,6 +30,7 @@ from app.store.files import Readable
 DEFAULT_LIMIT = 10
 MAX_LIMIT = 1000
 WORD_MODES = ("default", "cca")
+SCOPES = ("clips", "windows")
 _NAMES = (VECTOR, FEATURES, RHO, EPSILON)
 
 Filter = ClipFilter | Mapping[str, Any] | None
@@ -40,7 +42,8 @@ class MotionQuery:
     """A search by example: exactly one of `clip_id` and `content`.
 
     start, end: seconds, the part of the query that is meant; skeleton, frame_rate (Hz), unit,
-    roles, stack: of an uploaded query; limit: 1 to 1,000.
+    roles, stack: of an uploaded query; limit: 1 to 1,000; scope: whether clips are compared as
+    they are, or parts of them found, wherever they stand in it ("windows").
     """
 
     clip_id: str | None = None
@@ -75,7 +78,7 @@ class WordQuery:
 
 
 def find_motion(lib: Library, query: MotionQuery) -> Hits:
-    """Clips in order of likeness to a motion.
+    """Clips, or parts of clips, in order of likeness to a motion.
 
     Raises BadField, ClipNotFound, ClipNotReady, and BadContent for an upload that cannot be
     used.
@@ -84,6 +87,9 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
     method, wanted = _method(query.method), _filter(query.filter)
     _check(query.limit, query.scope)
     version = lib.index.catch_up(lib.store)
+    if query.scope == "windows":
+        paging = Paging(query.limit, query.cursor, query.include_self)
+        return _timed(find_in_windows(lib, _question(query), method, wanted, paging), began)
     asked = describe(lib, _question(query), _NAMES)
     question = _fingerprint(asked, method, wanted, query)
     exclude = frozenset({query.clip_id} if query.clip_id and not query.include_self else ())
@@ -196,10 +202,8 @@ def _filter(value: Filter) -> ClipFilter:
 def _check(limit: int, scope: str) -> None:
     if not 1 <= limit <= MAX_LIMIT:
         raise fields.bad_field("limit", f"must be from 1 to {MAX_LIMIT}")
-    if scope == "windows":
-        raise fields.bad_field("scope", "searching in windows is not there yet; use clips")
-    if scope != "clips":
-        raise fields.bad_field("scope", "must be clips")
+    if scope not in SCOPES:
+        raise fields.bad_field("scope", f"must be one of {', '.join(SCOPES)}")
 
 
 def _timed(hits: Hits, began: float) -> Hits:

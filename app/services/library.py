@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Self
 
+from app.analysis.windows import WIDTH, WINDOW_SCALES
 from app.config import Settings
 from app.search.array_cache import ArrayCache
 from app.search.index import VectorIndex
 from app.search.projections import Projections
+from app.search.span_index import SpanIndex
 from app.services.analysis_pool import AnalysisPool, Limits
 from app.services.model_shelf import ModelShelf
 from app.store import schema
@@ -22,7 +25,8 @@ ARRAY_CACHE_BYTES = 128 * 2**20
 class Library:
     """What every service call gets; one for each process, safe to share between threads.
 
-    pool analyses uploaded queries; a worker has a pool of its own.
+    pool analyses uploaded queries; a worker has a pool of its own. windows: the windows of all
+    clips by the name of their scale, loaded by the first search that asks for them.
     """
 
     settings: Settings
@@ -33,6 +37,7 @@ class Library:
     word_outputs: Projections
     symbol_points: Projections
     pool: AnalysisPool
+    windows: Mapping[str, SpanIndex]
 
     @classmethod
     def open(cls, settings: Settings, *, prepare: bool = True) -> Self:
@@ -57,6 +62,7 @@ class Library:
             word_outputs=word_outputs,
             symbol_points=symbol_points,
             pool=AnalysisPool(query_limits(settings)),
+            windows={s.name: SpanIndex(s.vectors, s.spans, WIDTH) for s in WINDOW_SCALES},
         )
 
     def close(self) -> None:

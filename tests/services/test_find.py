@@ -120,7 +120,7 @@ def test_a_part_of_a_clip_is_described_by_itself(
         ({"method": "nearest"}, "method"),
         ({"limit": 0}, "limit"),
         ({"limit": 1001}, "limit"),
-        ({"scope": "windows"}, "scope"),
+        ({"scope": "frames"}, "scope"),
         ({"start": -1.0}, "start"),
         ({"start": 1.0, "end": 0.5}, "end"),
         ({"start": 1e6}, "start"),
