@@ -8,10 +8,12 @@ beside the energies, to be measured, and is no default.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from app.analysis.beats import Beats
-from app.analysis.candidates import Scope, at_beats, at_rests
+from app.analysis.candidates import Candidate, Scope, at_beats, at_rests
 from app.analysis.energy import SMOOTHING, EnergyCurve, velocities
 from app.analysis.keyposes import LEAST_APART, T1, T2, passes
 from app.analysis.rests import Rest, find_rests
@@ -26,26 +28,36 @@ TOGETHER = 6.0
 """Frames by which the rests of hands and feet may miss each other."""
 
 
-def end_effector_keyposes(
-    track: BodyTrack, beats: Beats, *, t1: float = T1, t2: float = T2
-) -> IntArray:
-    """(k,) frames, rising. beats: all that is known of them; without, rests alone count.
+@dataclass(frozen=True, slots=True)
+class EndEffectorCandidates:
+    """moments: rests of the hands, on beats where there are any; standing: rests of the feet."""
 
-    t1, t2: in units of the median local maximum of each speed, as for the energies.
-    """
+    rate: float
+    moments: tuple[Candidate, ...]
+    standing: tuple[Rest, ...]
+
+    def times(self, t1: float = T1, t2: float = T2) -> FloatArray:
+        """(k,) seconds of the keyposes, rising.
+
+        t1, t2: in units of the median local maximum of each speed, as for the energies.
+        """
+        planted = [rest for rest in self.standing if passes(rest, t1, t2)]
+        frames = [
+            moment.frame
+            for moment in self.moments
+            if passes(moment.rest, t1, t2)
+            and (not self.standing or any(_holds(rest, moment.frame) for rest in planted))
+        ]
+        return _apart(frames, LEAST_APART * self.rate) / self.rate
+
+
+def end_effector_candidates(track: BodyTrack, beats: Beats) -> EndEffectorCandidates:
+    """What the method selects from. beats: all that is known; without any, rests alone count."""
     hands, feet = end_effector_speeds(track)
     times = beats.times * track.rate
     look = at_beats if len(times) else at_rests
     moments = look(find_rests(hands), times, Scope.LOCAL)
-    standing = find_rests(feet)
-    planted = [rest for rest in standing if passes(rest, t1, t2)]
-    frames = [
-        moment.frame
-        for moment in moments
-        if passes(moment.rest, t1, t2)
-        and (not standing or any(_holds(rest, moment.frame) for rest in planted))
-    ]
-    return _apart(frames, LEAST_APART * track.rate)
+    return EndEffectorCandidates(track.rate, moments, find_rests(feet))
 
 
 def end_effector_speeds(track: BodyTrack) -> tuple[EnergyCurve, EnergyCurve]:

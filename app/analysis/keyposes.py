@@ -99,6 +99,10 @@ class Candidates:
             chosen += self._where_it_goes_on(chosen, SLOWEST * t1)
         return _apart(chosen, LEAST_APART * self.rate)
 
+    def times(self, t1: float = T1, t2: float = T2) -> FloatArray:
+        """(k,) seconds of the keyposes under these thresholds."""
+        return np.array([candidate.frame for candidate in self.select(t1, t2)]) / self.rate
+
     def _where_it_goes_on(self, chosen: list[Candidate], slow: float) -> list[Candidate]:
         """The slow poses between keyposes that are further apart than GOES_ON."""
         last = len(self.energies.local_energy) - 1
