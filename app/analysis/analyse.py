@@ -5,7 +5,8 @@ role_positions (n, 13, 3) metres, world; features_10hz (m, 82); motion_vector (1
 msv_lambda (1,), msv_rho (13,), msv_epsilon (n,), msv_convergence (i, 2), the error and the
 change of lambda after each of i iterations; motion_sample (1250,); symbol_statistics
 (131,); window_vectors_* (w, 125) float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s;
-keypose_frames (k,) int32, among the n; segment_spans (s, 2) seconds, segment_vectors (s, 185)
+keypose_frames (k,) int32, among the n; pose_cover (p, 38), the frame, radius and vector of
+poses that stand for all; segment_spans (s, 2) seconds, segment_vectors (s, 185)
 float16, segment_cycles (c, 3) int32; and of the motion symbol with K states
 symbol_means (K, 26), symbol_variances (K, 26), symbol_transitions (K, K).
 """
@@ -24,6 +25,7 @@ from app.analysis.motion_sample import motion_sample
 from app.analysis.motion_symbol import describe_symbol
 from app.analysis.motion_vector import motion_vector
 from app.analysis.motion_volume import decompose
+from app.analysis.pose_cover import pose_cover
 from app.analysis.segments import describe_segments
 from app.analysis.symbol_features import symbol_features, symbol_statistics
 from app.analysis.windows import window_arrays
@@ -49,6 +51,7 @@ def analyse(motion: Motion) -> Analysis:
     arrays: dict[str, NDArray[Any]] = {**_for_search(track), **describe_symbol(track)}
     keyposes = find_keyposes(track).frames
     arrays["keypose_frames"] = keyposes.astype(np.int32)
+    arrays["pose_cover"] = pose_cover(arrays["role_positions"], keyposes)
     arrays |= describe_segments(arrays["features_10hz"], keyposes / track.rate)
     return Analysis(motion, arrays)
 

@@ -29,7 +29,7 @@ SHIN_PER_TORSO = 0.85
 MIN_AXIS_SHARE = 0.2
 """Where less than this share of the left-right line is horizontal it gives no heading."""
 
-_SMALLEST_BODY = 1e-6
+SMALLEST_BODY = 1e-6
 
 _LEFT_RIGHT: tuple[tuple[JointRole, JointRole], ...] = (
     (JointRole.LEFT_SHOULDER, JointRole.RIGHT_SHOULDER),
@@ -121,7 +121,7 @@ def body_length(motion: Motion) -> float:
     has_head = r.HEAD in roles and r.NECK in roles
     head = _distance(motion, r.NECK, r.HEAD) if has_head else torso * NECK_TO_HEAD_PER_TORSO
     length = torso + head + (float(np.mean(shins)) if shins else torso * SHIN_PER_TORSO)
-    if not length > _SMALLEST_BODY:
+    if not length > SMALLEST_BODY:
         message = "hips, neck, head, knees and feet are all in one place"
         raise NotHuman(f"The body has no size: {message}.", places=[Place("joints", message)])
     return length
@@ -159,7 +159,7 @@ def _left_axis(motion: Motion) -> FloatArray | None:
 
 def _gives_heading(line: FloatArray) -> BoolArray:
     across = np.hypot(line[:, 0], line[:, 2])
-    least = np.maximum(MIN_AXIS_SHARE * np.linalg.norm(line, axis=1), _SMALLEST_BODY)
+    least = np.maximum(MIN_AXIS_SHARE * np.linalg.norm(line, axis=1), SMALLEST_BODY)
     return np.asarray(across > least)
 
 

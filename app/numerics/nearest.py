@@ -78,6 +78,26 @@ def nearest(
     return rows, distances
 
 
+def squared_distances(blocks: Sequence[Block], query: FloatArray) -> tuple[FloatArray, float]:
+    """(n,) float32 squared distances of `query` (d,) to all vectors, and their largest error.
+
+    Some may be below zero, by rounding.
+    """
+    query = np.asarray(query, dtype=np.float32)
+    length = float(np.linalg.norm(query.astype(np.float64)))
+    error = _largest_error(len(query), length, _longest(blocks))
+    found = np.empty(sum(len(block) for block in blocks), dtype=np.float32)
+    first = 0
+    for block in blocks:
+        values = found[first : first + len(block)]
+        np.matmul(block.vectors, query, out=values)
+        values *= -2.0
+        values += block.squares
+        first += len(block)
+    found += np.float32(length**2)
+    return found, error
+
+
 def distances_to(blocks: Sequence[Block], rows: IntArray, query: FloatArray) -> FloatArray:
     """(m,) float64 rounded distances of `query` (d,) to the vectors of ascending `rows` (m,)."""
     exact = np.asarray(query, dtype=np.float32).astype(np.float64)

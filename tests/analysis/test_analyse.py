@@ -30,6 +30,7 @@ def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray
         "role_positions": (n, 13, 3), "features_10hz": ((n - 1) // 3 + 1, 82),
         "motion_vector": (128,), "msv_lambda": (1,), "msv_rho": (13,), "msv_epsilon": (n,),
         "msv_convergence": (len(arrays["msv_convergence"]), 2),
+        "pose_cover": (len(arrays["pose_cover"]), 38),
         "motion_sample": (1250,), "symbol_statistics": (131,), "symbol_means": (states, 26),
         "symbol_variances": (states, 26), "symbol_transitions": (states, states),
     }  # fmt: skip
@@ -38,6 +39,7 @@ def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray
     assert all(np.isfinite(array).all() for array in arrays.values())
     assert (keyposes.dtype, keyposes.ndim) == (np.int32, 1)
     assert (np.diff(keyposes, prepend=-1, append=n) > 0).all()
+    assert set(keyposes.tolist()) <= set(arrays["pose_cover"][:, 0].astype(int).tolist())
     assert {name: (a.dtype, a.shape[1]) for name, a in segments.items()} == SEGMENT_TYPES
     assert len(segments["segment_spans"]) == max(len(keyposes) - 1, 0)
     for scale in WINDOW_SCALES:
@@ -55,6 +57,7 @@ def test_a_query_is_described_as_a_stored_clip_is() -> None:
     stored = analyse(motion_of(BODIES["walk"])).arrays
     query = describe_for_search(motion_of(BODIES["walk"])).arrays
     assert set(stored) - set(query) == {
-        "keypose_frames", "symbol_means", "symbol_variances", "symbol_transitions", *SEGMENT_TYPES,
+        "keypose_frames", "pose_cover", "symbol_means", "symbol_variances", "symbol_transitions",
+        *SEGMENT_TYPES,
     }  # fmt: skip
     assert all(stored[name].tobytes() == query[name].tobytes() for name in query)
