@@ -137,6 +137,14 @@ clip_arrays = Table(
     Column("data", LargeBinary, nullable=False),
 )
 
+keypose_annotations = Table(
+    "keypose_annotations",
+    metadata,
+    _clip_key(primary_key=True),
+    _json("times", nullable=False),
+    Column("annotated_at", UtcDateTime, nullable=False),
+)
+
 jobs = Table(
     "jobs",
     metadata,
