@@ -44,6 +44,9 @@ def search(
         ),
     ] = None,
     method: Annotated[Method, typer.Option(help="Of a search by example.")] = Method.FUSED,
+    scope: Annotated[
+        str, typer.Option(help="clips, or windows: parts of clips, wherever they stand.")
+    ] = "clips",
     mode: Annotated[str, typer.Option(help="Of a search by words: default or cca.")] = "default",
     start: Annotated[float | None, typer.Option(help="Seconds: search by a part.")] = None,
     end: Annotated[float | None, typer.Option(help="Seconds: where the part ends.")] = None,
@@ -60,6 +63,8 @@ def search(
     """Find motions like one (a file or a stored clip), or motions for words."""
     if (query is None) == (not words):
         raise typer.BadParameter("give either a file or clip id, or --words")
+    if words and scope != "clips":
+        raise typer.BadParameter("--scope goes with a file or clip id, not with --words")
     wanted = filter_of(filter_json)
     with open_library(context) as lib:
         if words:
@@ -77,13 +82,14 @@ def search(
                         method=method,
                         limit=limit,
                         filter=wanted,
+                        scope=scope,
                         skeleton=asf,
                         frame_rate=frame_rate,
                         unit=unit,
                         stack=stack,
                     ),
                 )
-    _show(hits, as_json, by_words=bool(words))
+    _show(hits, as_json, by_words=bool(words), parts=scope == "windows")
 
 
 def recognize(
@@ -165,15 +171,25 @@ def _companion(skeleton: Path | None) -> Iterator[Readable | None]:
         yield content
 
 
-def _show(hits: Hits, as_json: bool, *, by_words: bool) -> None:
+def _show(hits: Hits, as_json: bool, *, by_words: bool, parts: bool) -> None:
     if as_json:
         answer = WordHits.of(hits) if by_words else MotionHits.of(hits)
         print_json(answer.model_dump(mode="json"))
         return
-    rows = [
-        (hit.rank, hit.score, hit.clip.name, hit.clip.person, hit.clip.task, hit.clip.id)
-        for hit in hits.items
-    ]
-    print_table(("rank", "score", "name", "person", "task", "id"), rows)
+    print_table(
+        ("rank", "score", *(("start", "end") if parts else ()), "name", "person", "task", "id"),
+        [
+            (
+                hit.rank,
+                hit.score,
+                *((hit.start, hit.end) if parts else ()),
+                hit.clip.name,
+                hit.clip.person,
+                hit.clip.task,
+                hit.clip.id,
+            )
+            for hit in hits.items
+        ],
+    )
     if hits.unknown_words:
         typer.echo(f"No clip carries: {', '.join(hits.unknown_words)}", err=True)

@@ -88,6 +88,43 @@ def test_an_upload_that_cannot_be_used_names_its_place(demo: httpx2.Client, take
     assert answer.json()["errors"]
 
 
+def test_parts_of_clips_by_a_part_of_one(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    asked = {"clip_id": walk["id"], "start": 0.5, "end": 1.7, "scope": "windows"}
+    told = _search(demo, **asked, limit=20)
+    assert set(told) == {"method", "took_ms", "library_version", "items", "next"}
+    assert told["items"][0]["clip"]["task"] == "walk"
+    for hit in told["items"]:
+        assert set(hit) == {"rank", "score", "distance", "start", "end", "clip"}
+        assert 0 <= hit["start"] < hit["end"] <= hit["clip"]["duration"]
+        own = hit["clip"]["id"] == walk["id"]
+        assert not (own and hit["start"] < 1.6 and hit["end"] > 0.6)
+    following = _search(demo, **asked, limit=20, cursor=told["next"])
+    assert [hit["rank"] for hit in following["items"][:2]] == [21, 22]
+    itself = _search(demo, **asked, limit=1, include_self=True)["items"][0]
+    assert [itself["start"], itself["end"]] == pytest.approx([0.5, 1.7], abs=0.1)
+
+
+@pytest.mark.parametrize("method", ["fused", "vector", "dtw"])
+def test_parts_of_clips_by_a_part_of_an_upload(
+    demo: httpx2.Client, take: DemoClip, method: str
+) -> None:
+    form = {"start": "0.4", "end": "2", "scope": "windows", "method": method, "limit": "1000"}
+    form["filter"] = json.dumps({"person": "ada"})
+    answer = demo.post("/v1/search/motion", files={"file": ("query.bvh", take.content)}, data=form)
+    assert answer.status_code == 200, answer.text
+    told = answer.json()
+    assert told["next"] is None
+    assert told["items"][0]["clip"]["task"] == "walk"
+    assert {hit["clip"]["person"] for hit in told["items"]} == {"ada"}
+
+
+def test_methods_that_find_no_parts_of_clips(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    body = {"clip_id": walk["id"], "scope": "windows", "method": "msv-dtw"}
+    answer = demo.post("/v1/search/motion", json=body)
+    assert_problem(answer, 422, "bad_field", "body.method")
+    assert "fused, vector, dtw" in answer.json()["errors"][0]["message"]
+
+
 def test_a_part_outside_of_the_clip(demo: httpx2.Client, walk: dict[str, Any]) -> None:
     answer = demo.post("/v1/search/motion", json={"clip_id": walk["id"], "start": 1e5})
     assert_problem(answer, 422, "bad_field", "body.start")

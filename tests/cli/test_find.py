@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from app.api.schemas.recognition import Recognition
 from app.api.schemas.search import MotionHits, WordHits
 from tests.cli.conftest import Kinedex
@@ -38,6 +40,22 @@ def test_hits_as_a_table(kinedex: Kinedex, folder: Path) -> None:
     assert lines[0].split() == ["rank", "score", "name", "person", "task", "id"]
     assert lines[1].split()[:5] == ["1", "1.000", "walk_01", "ada", "walk"]
     assert len(lines) == 3
+
+
+def test_parts_of_clips_are_found_with_their_bounds(kinedex: Kinedex, folder: Path) -> None:
+    part = ("search", _file(folder, "kick"), "--start", "0.5", "--end", "2.0")
+    asked = (*part, "--scope", "windows", "--limit", "2")
+    found = kinedex(*asked, "--json").json()
+    assert MotionHits.model_validate(found).model_dump(mode="json") == found
+    first = found["items"][0]
+    assert (first["clip"]["person"], first["clip"]["task"]) == ("ada", "kick")
+    assert [first["start"], first["end"]] == pytest.approx([0.5, 2.0], abs=0.11)
+    lines = kinedex(*asked).out.splitlines()
+    told = ["rank", "score", "start", "end", "name", "person", "task", "id"]
+    assert lines[0].split() == told
+    assert lines[1].split()[2:4] == [f"{first['start']:.3f}", f"{first['end']:.3f}"]
+    assert "scope: " in _refused(kinedex, *part, "--scope", "frames")
+    assert kinedex("search", "--words", "kick", "--scope", "windows").code == 2
 
 
 def test_words_find_clips_and_unknown_ones_are_told(kinedex: Kinedex) -> None:

@@ -31,6 +31,12 @@ _MOTION_EXAMPLES = {
         "method": "dtw",
         "filter": {"task": ["walk"]},
     },
+    "parts of clips like a part of it": {
+        "clip_id": "CLIP_ID",
+        "start": 0.5,
+        "end": 2.5,
+        "scope": "windows",
+    },
 }
 
 
@@ -86,7 +92,10 @@ async def _uploaded_query(request: Request) -> MotionQuery:
     ),
 )
 def search_motion(lib: Lib, query: Annotated[MotionQuery, Depends(_motion_query)]) -> MotionHits:
-    """Find motions like a stored clip, a part of one, or an uploaded file."""
+    """Find motions like a stored clip, a part of one, or an uploaded file.
+
+    With scope `windows`, find parts of clips, with their start and end.
+    """
     return MotionHits.of(find.find_motion(lib, query))
 
 

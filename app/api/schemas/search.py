@@ -20,6 +20,11 @@ class Filter(Incoming):
     word: AnyOf | None = None
     license: AnyOf | None = None
     source: AnyOf | None = None
+    not_person: AnyOf | None = Field(None, description="None of these persons.")
+    not_task: AnyOf | None = Field(None, description="None of these tasks.")
+    not_word: AnyOf | None = Field(None, description="Carrying none of these words.")
+    not_license: AnyOf | None = Field(None, description="None of these licences.")
+    not_source: AnyOf | None = Field(None, description="None of these sources.")
     min_duration: Seconds | None = Field(None, description="Seconds.")
     max_duration: Seconds | None = Field(None, description="Seconds.")
 
@@ -33,8 +38,16 @@ class _MotionOptions(Incoming):
     end: Seconds | None = Field(None, description="Seconds: where that part ends.")
     method: Method = Method.FUSED
     limit: Limit = 10
-    scope: Literal["clips", "windows"] = "clips"
-    include_self: bool = Field(False, description="Whether the query clip may be among the hits.")
+    scope: Literal["clips", "windows"] = Field(
+        "clips",
+        description="windows: parts of clips are found, wherever they stand in them, by the "
+        "methods fused, vector and dtw; the query is up to 120 s long.",
+    )
+    include_self: bool = Field(
+        False,
+        description="Whether the query clip (of windows: what overlaps the queried part) may be "
+        "among the hits.",
+    )
     cursor: Cursor | None = None
 
 
@@ -52,6 +65,7 @@ class MotionSearch(_MotionOptions):
             "examples": [
                 {"clip_id": "CLIP_ID", "limit": 5},
                 {"clip_id": "CLIP_ID", "start": 0.5, "end": 1.5, "filter": {"task": "walk"}},
+                {"clip_id": "CLIP_ID", "start": 0.5, "end": 2.5, "scope": "windows"},
             ]
         }
     )
@@ -111,8 +125,11 @@ class Hit(Outgoing):
     rank: int = Field(ge=1)
     score: float = Field(ge=0, le=1, description="Higher is closer.")
     distance: float
-    start: float = Field(description="Seconds from the clip's begin.")
-    end: float
+    start: float = Field(
+        description="Seconds from the clip's begin, 0 with scope clips; with windows, where the "
+        "part that was found begins."
+    )
+    end: float = Field(description="Seconds: where it ends.")
     clip: Clip
 
     @classmethod
