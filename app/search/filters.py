@@ -1,7 +1,8 @@
 """What narrows a search before anything is ranked (DESIGN 8, "Search input").
 
 A filter names any of `person task word license source` (a string, or an array meaning any
-of) and `min_duration max_duration` (seconds). All that are named must hold.
+of), the same with `not_` before them (none of), and `min_duration max_duration` (seconds). All
+that are named must hold; a clip without a label has none of the refused ones.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from app.models.word_vocabulary import normalise_word
 from app.store.clip_filter import ClipFilter
 
 LABEL_KEYS = ("person", "task", "word", "license", "source")
+NOT = "not_"
+REFUSAL_KEYS = tuple(NOT + key for key in LABEL_KEYS)
 DURATION_KEYS = ("min_duration", "max_duration")
 
 
@@ -36,6 +39,11 @@ def parse_filter(given: Mapping[str, Any] | None) -> ClipFilter:
     return ClipFilter(**values)
 
 
+def as_filter(given: ClipFilter | Mapping[str, Any] | None) -> ClipFilter:
+    """A filter that was read already as it is, any other by `parse_filter`."""
+    return given if isinstance(given, ClipFilter) else parse_filter(given)
+
+
 def as_kept(key: str, value: str) -> str:
     """A label as clips keep it: composed (NFC), no space around; a word in lower case, joined."""
     tidy = unicodedata.normalize("NFC", value).strip()
@@ -43,11 +51,11 @@ def as_kept(key: str, value: str) -> str:
 
 
 def _read(key: str, value: Any) -> tuple[str, ...] | float | None:
-    if key in LABEL_KEYS:
-        return _labels(key, value)
+    if key in LABEL_KEYS or key in REFUSAL_KEYS:
+        return _labels(key.removeprefix(NOT), value)
     if key in DURATION_KEYS:
         return _seconds(value)
-    known = ", ".join((*LABEL_KEYS, *DURATION_KEYS))
+    known = ", ".join((*LABEL_KEYS, *REFUSAL_KEYS, *DURATION_KEYS))
     raise ValueError(f"there is no such filter; known are {known}")
 
 
@@ -58,7 +66,7 @@ def _labels(key: str, value: Any) -> tuple[str, ...]:
     if not isinstance(values, list | tuple) or not all(isinstance(v, str) for v in values):
         raise ValueError("must be a string, or an array of strings")
     if not values:
-        raise ValueError("an empty array would find nothing; leave the key out")
+        raise ValueError("an empty array has no meaning; leave the key out")
     return tuple(as_kept(key, v) for v in values)
 
 

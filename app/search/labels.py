@@ -144,6 +144,8 @@ class LabelView:
             mask &= self.durations <= wanted.max_duration
         for name, codes in self.labels.codes(wanted).items():
             mask &= _any_of(self.coded[name], codes)
+        for name, codes in self.labels.codes(wanted, refused=True).items():
+            mask &= ~_any_of(self.coded[name], codes)
         for clip_id in exclude:
             mask[self._numbers_of(clip_id)] = False
         return mask
@@ -202,14 +204,16 @@ class Labels:
             self._alive = self._alive.apart()  # views that were taken keep theirs
             self._alive.view()[numbers] = False
 
-    def codes(self, wanted: ClipFilter) -> dict[str, list[int]]:
-        """For each label that a filter names, the codes that pass."""
+    def codes(self, wanted: ClipFilter, *, refused: bool = False) -> dict[str, list[int]]:
+        """For each label that a filter names, the codes that pass, or those that are refused."""
+        before = "not_" if refused else ""
         found = {
             name: coded.codes(values)
             for name, coded in self._named.items()
-            if (values := getattr(wanted, name))
+            if (values := getattr(wanted, before + name))
         }
-        return found | ({"word": self.words.codes(wanted.word)} if wanted.word else {})
+        words = getattr(wanted, before + "word")
+        return found | ({"word": self.words.codes(words)} if words else {})
 
     def clip_at(self, number: int, array: NDArray[Any]) -> IndexedClip:
         """A clip as it was added, with an array."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sqlalchemy import ColumnElement, and_, select
+from sqlalchemy import ColumnElement, Select, and_, or_, select
 
 from app.store.clip_record import ClipState
 from app.store.tables import clip_words, clips
@@ -14,7 +14,8 @@ from app.store.tables import clip_words, clips
 class ClipFilter:
     """Every condition that is given must hold; a tuple means any of; empty or None: no condition.
 
-    q: part of the name, any case; durations in seconds, both ends included.
+    not_*: none of these; a clip that lacks the label passes. q: part of the name, any case;
+    durations in seconds, both ends included.
     """
 
     person: tuple[str, ...] = ()
@@ -22,6 +23,11 @@ class ClipFilter:
     word: tuple[str, ...] = ()
     license: tuple[str, ...] = ()
     source: tuple[str, ...] = ()
+    not_person: tuple[str, ...] = ()
+    not_task: tuple[str, ...] = ()
+    not_word: tuple[str, ...] = ()
+    not_license: tuple[str, ...] = ()
+    not_source: tuple[str, ...] = ()
     state: tuple[ClipState, ...] = ()
     min_duration: float | None = None
     max_duration: float | None = None
@@ -35,10 +41,11 @@ class ClipFilter:
 
 def condition(wanted: ClipFilter) -> ColumnElement[bool]:
     """The filter as a WHERE clause over `clips`."""
-    terms = [*_any_of_terms(wanted), *_range_terms(wanted)]
+    terms = [*_any_of_terms(wanted), *_none_of_terms(wanted), *_range_terms(wanted)]
     if wanted.word:
-        carriers = select(clip_words.c.clip_id).where(clip_words.c.word.in_(wanted.word))
-        terms.append(clips.c.id.in_(carriers))
+        terms.append(clips.c.id.in_(_carriers(wanted.word)))
+    if wanted.not_word:
+        terms.append(clips.c.id.not_in(_carriers(wanted.not_word)))
     if wanted.q:
         # autoescape: % and _ are looked for as themselves.
         terms.append(clips.c.name_folded.contains(wanted.q.casefold(), autoescape=True))
@@ -54,6 +61,26 @@ def _any_of_terms(wanted: ClipFilter) -> list[ColumnElement[bool]]:
         "state": tuple(state.value for state in wanted.state),
     }
     return [clips.c[name].in_(values) for name, values in choices.items() if values]
+
+
+def _none_of_terms(wanted: ClipFilter) -> list[ColumnElement[bool]]:
+    refused: dict[str, tuple[str, ...]] = {
+        "person": wanted.not_person,
+        "task": wanted.not_task,
+        "license": wanted.not_license,
+        "source": wanted.not_source,
+    }
+    # NOT IN alone would drop the clips that have no such label.
+    return [
+        or_(clips.c[name].is_(None), clips.c[name].not_in(values))
+        for name, values in refused.items()
+        if values
+    ]
+
+
+def _carriers(words: tuple[str, ...]) -> Select[tuple[str]]:
+    """Ids of the clips that carry any of `words`."""
+    return select(clip_words.c.clip_id).where(clip_words.c.word.in_(words))
 
 
 def _range_terms(wanted: ClipFilter) -> list[ColumnElement[bool]]:

@@ -25,6 +25,13 @@ def test_labels_are_looked_for_as_clips_keep_them() -> None:
     assert (read.word, read.person) == (("left_leg", "high_kick"), ("Jos\u00e9",))
 
 
+def test_what_is_refused_is_read_as_what_is_wanted() -> None:
+    read = parse_filter({"not_task": "walk", "not_word": [" Left Leg "], "not_person": ["a", "b"]})
+    assert read.not_task == ("walk",)
+    assert read.not_word == ("left_leg",)
+    assert read.not_person == ("a", "b")
+
+
 def test_durations_are_numbers_of_seconds() -> None:
     read = parse_filter({"min_duration": 1, "max_duration": 2.5})
     assert (read.min_duration, read.max_duration) == (1.0, 2.5)
@@ -37,6 +44,9 @@ def test_durations_are_numbers_of_seconds() -> None:
         ({"state": "failed"}, "filter.state"),
         ({"person": 3}, "filter.person"),
         ({"task": []}, "filter.task"),
+        ({"not_task": []}, "filter.not_task"),
+        ({"not_name": "a"}, "filter.not_name"),
+        ({"not_min_duration": 1}, "filter.not_min_duration"),
         ({"task": ["walk", None]}, "filter.task"),
         ({"min_duration": "1"}, "filter.min_duration"),
         ({"max_duration": True}, "filter.max_duration"),

@@ -99,6 +99,12 @@ FILTERS = [
     ClipFilter(word=("slow", "sad")),
     ClipFilter(license=("CC0",), min_duration=2.0),
     ClipFilter(min_duration=1.5, max_duration=2.5, source=("studio",)),
+    ClipFilter(not_person=("ada",)),
+    ClipFilter(not_task=("walk",), person=("ada", "bruno")),
+    ClipFilter(not_person=("ada", "nobody"), not_source=("field",)),
+    ClipFilter(not_word=("slow",)),
+    ClipFilter(word=("fast",), not_word=("slow", "unheard"), not_license=("CC0",)),
+    ClipFilter(task=("walk",), not_task=("walk",)),
 ]
 
 
@@ -111,8 +117,8 @@ def test_filters_agree_with_those_of_lists(store: Store, add: Add, wanted: ClipF
         add(
             f"clip {i}",
             duration=float(rng.choice([1.0, 2.0, 3.0])),
-            person=str(rng.choice(["ada", "bruno", "chika"])),
-            task=str(rng.choice(["walk", "run"])),
+            person=rng.choice(np.array(["ada", "bruno", "chika", None], dtype=object)),
+            task=rng.choice(np.array(["walk", "run", None], dtype=object)),
             words=tuple(rng.choice(["slow", "fast", "sad"], size=2, replace=False)),
             license=str(rng.choice(["CC0", "CC-BY"])),
             source=str(rng.choice(["studio", "field"])),
