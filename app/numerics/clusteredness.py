@@ -22,18 +22,30 @@ SEED = 20090
 
 
 @dataclass(frozen=True, slots=True)
-class Clusteredness:
-    """silhouette: -1..1, the best over 2..MOST_CLUSTERS clusters; clusters: how many those are;
-    unclustered: mean best silhouette of as many points without clusters."""
+class Clusters:
+    """The clusters, 2 to MOST_CLUSTERS of them, of the best silhouette (-1..1): labels (n,)."""
 
     silhouette: float
-    clusters: int
+    labels: IntArray
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return len(np.unique(self.labels))
+
+
+@dataclass(frozen=True, slots=True)
+class Clusteredness:
+    """The best clusters of points, and unclustered: the mean best silhouette of as many points
+    without clusters."""
+
+    clusters: Clusters
     unclustered: float
 
     @property
     def gap(self) -> float:
         """How much more clustered than by chance."""
-        return self.silhouette - self.unclustered
+        return self.clusters.silhouette - self.unclustered
 
 
 def clusteredness(points: FloatArray) -> Clusteredness | None:
@@ -41,17 +53,30 @@ def clusteredness(points: FloatArray) -> Clusteredness | None:
 
     Deterministic: the draws are seeded.
     """
+    best = best_clusters(points)
+    if best is None:
+        return None
+    rows = np.asarray(points, dtype=np.float64)
+    draw = np.random.RandomState(SEED)
+    _, spreads, axes = np.linalg.svd(rows - rows.mean(axis=0), full_matrices=False)
+    drawn = (draw.standard_normal((len(rows), len(axes))) * spreads @ axes for _ in range(DRAWS))
+    chance = [one.silhouette for one in map(best_clusters, drawn) if one is not None]
+    return Clusteredness(best, float(np.mean(chance)))
+
+
+def best_clusters(points: FloatArray) -> Clusters | None:
+    """Ward's clusters of points (n, d), as many as have the best silhouette; None for fewer
+    than three points, or where all are one."""
     rows = np.asarray(points, dtype=np.float64)
     if len(rows) < 3 or not np.ptp(rows, axis=0).any():
         return None
-    best, count = _best(rows)
-    draw = np.random.RandomState(SEED)
-    _, spreads, axes = np.linalg.svd(rows - rows.mean(axis=0), full_matrices=False)
-    chance = [
-        _best(draw.standard_normal((len(rows), len(axes))) * spreads @ axes)[0]
-        for _ in range(DRAWS)
-    ]
-    return Clusteredness(best, count, float(np.mean(chance)))
+    tree, distances = linkage(rows, "ward"), squareform(pdist(rows))
+    found = []
+    for count in range(2, min(MOST_CLUSTERS, len(rows) - 1) + 1):
+        labels = fcluster(tree, count, "maxclust")
+        if len(np.unique(labels)) > 1:
+            found.append(Clusters(_silhouette(distances, labels), labels))
+    return max(found, key=lambda one: (one.silhouette, -one.count), default=None)
 
 
 def silhouette(points: FloatArray, labels: IntArray) -> float:
@@ -59,16 +84,6 @@ def silhouette(points: FloatArray, labels: IntArray) -> float:
     of its own cluster and to those of the nearest other one; 0 for a point alone in its
     cluster. Raises ValueError for fewer than two clusters."""
     return _silhouette(squareform(pdist(points)), labels)
-
-
-def _best(rows: FloatArray) -> tuple[float, int]:
-    tree, distances = linkage(rows, "ward"), squareform(pdist(rows))
-    found = [(0.0, 1)]
-    for count in range(2, min(MOST_CLUSTERS, len(rows) - 1) + 1):
-        labels = fcluster(tree, count, "maxclust")
-        if len(np.unique(labels)) > 1:
-            found.append((_silhouette(distances, labels), count))
-    return max(found, key=lambda one: (one[0], -one[1]))
 
 
 def _silhouette(distances: FloatArray, labels: IntArray) -> float:

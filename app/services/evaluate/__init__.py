@@ -4,6 +4,10 @@ Retrieval goes through the very ranking that searches use. Words and recognition
 out: no clip is judged by a model that has seen it, or another file of its recording.
 """
 
+from app.services.evaluate.low_dimensional import (
+    LowDimensionalEvaluation,
+    judge_low_dimensional,
+)
 from app.services.evaluate.recognition import judge_recognition
 from app.services.evaluate.retrieval import (
     JUDGED,
@@ -23,10 +27,12 @@ __all__ = [
     "MOST_QUERIES",
     "JudgedWay",
     "K",
+    "LowDimensionalEvaluation",
     "RetrievalEvaluation",
     "RetrievalFigures",
     "VolumeEvaluation",
     "draw_symbols",
+    "judge_low_dimensional",
     "judge_recognition",
     "judge_retrieval",
     "judge_symbols",

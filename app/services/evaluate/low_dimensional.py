@@ -1,0 +1,297 @@
+"""Keyposes against uniform poses as what low-dimensional motion is drawn from (Perera 2009,
+section 4): what each keeps, what it costs, how its poses cluster, what no body does.
+
+Each clip with enough keyposes is drawn from its own poses; and clips of several persons doing
+one task, one clip each, from the poses of all (section 4.2).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.analysis.low_dimensional import (
+    SHOWN,
+    Basis,
+    EigenModel,
+    eigen_model,
+    low_dimensional,
+    reconstruction_errors,
+    uniform_frames,
+)
+from app.analysis.plausibility import Fault, Implausible, Plausibility, judge_poses
+from app.errors import NotEnoughKeyposes
+from app.motion.body_frame import BodyTrack, body_track
+from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.clusteredness import best_clusters, clusteredness
+from app.services.keypose_frames import keypose_frames
+from app.services.library import Library
+from app.services.stored_motion import load_motion
+from app.services.training import ready_only
+from app.store import clip_listing
+from app.store import clips as stored
+from app.store.clip_filter import ClipFilter
+from app.store.clip_record import ClipRecord
+
+MOST_DIMENSIONS = 10
+"""Rows of the table."""
+FEWEST_KEYPOSES = SHOWN + 1
+"""Of a clip that is judged: fewer span less than the three dimensions of the paper."""
+ORIGINAL = "original"
+
+Progress = Callable[[int, int], None]
+"""Told after each clip: done, in all."""
+
+
+@dataclass(frozen=True, slots=True)
+class DimensionRow:
+    """Means over the clips whose models have so many poses.
+
+    variance: share that each basis keeps of its own poses (eq. 9); error: mm, of the whole
+    motion, by basis; best: mm, by as many axes of all frames, the least that there can be;
+    keypose_better: share of the clips that keyposes draw better.
+    """
+
+    dimensions: int
+    clips: int
+    variance: Mapping[str, float]
+    error: Mapping[str, float]
+    best: float
+    keypose_better: float
+
+
+@dataclass(frozen=True, slots=True)
+class PoseRow:
+    """What is drawn from three dimensions: a basis, or the original.
+
+    frames: how many, implausible: how many of them no body takes, and by fault; silhouette:
+    mean over the clips of how well the model's poses cluster, None for the original.
+    """
+
+    name: str
+    frames: int
+    implausible: int
+    faults: Mapping[str, int]
+    silhouette: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class GroupRow:
+    """Several persons doing one task, their poses in one model, three dimensions.
+
+    poses: K; by basis: variance kept, error (mm) over all their clips, silhouette of the poses
+    and how much it exceeds that of poses without clusters (None where they do not differ).
+    """
+
+    task: str
+    persons: int
+    poses: int
+    variance: Mapping[str, float]
+    error: Mapping[str, float]
+    silhouette: Mapping[str, float | None]
+    gap: Mapping[str, float | None]
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedClip:
+    """One clip and the models of its own poses; keyposes: frames of `track`."""
+
+    clip: ClipRecord
+    track: BodyTrack
+    keyposes: IntArray
+    models: Mapping[Basis, EigenModel]
+
+    def poses(self, basis: Basis) -> FloatArray:
+        """(K, 13, 3) of its model, body lengths."""
+        frames = self.keyposes
+        if basis is Basis.UNIFORM:
+            frames = uniform_frames(self.track.frames, len(frames))
+        return np.asarray(self.track.local[frames])
+
+
+@dataclass(frozen=True, slots=True)
+class WorstPose:
+    """The longest fault of a motion drawn by one basis where the original has none: when it is
+    worst, in frames of the clip's track (figs 13, 14)."""
+
+    judged: JudgedClip
+    basis: Basis
+    fault: Implausible
+
+
+@dataclass(frozen=True, slots=True)
+class LowDimensionalEvaluation:
+    """What `kinedex evaluate low-dimensional` tells.
+
+    clips: judged; left_out: ready clips with fewer than FEWEST_KEYPOSES keyposes;
+    more_clustered: share of clips whose keyposes cluster better than their uniform poses;
+    shown: the clip with most keyposes, for the pictures; shown_group: the clips of the largest
+    group; worst: an implausible pose, None where none is drawn.
+    """
+
+    clips: int
+    left_out: int
+    dimensions: tuple[DimensionRow, ...]
+    poses: tuple[PoseRow, ...]
+    more_clustered: float
+    groups: tuple[GroupRow, ...]
+    shown: JudgedClip
+    shown_group: tuple[JudgedClip, ...]
+    worst: WorstPose | None
+
+
+def judge_low_dimensional(
+    lib: Library, wanted: ClipFilter | None = None, progress: Progress | None = None
+) -> LowDimensionalEvaluation:
+    """Both bases on the clips that pass the filter.
+
+    Raises NotEnoughKeyposes where no clip has enough.
+    """
+    with lib.store.read() as tx:
+        ids = sorted(clip_listing.list_ids(tx, ready_only(wanted)))
+        ready = list(stored.get_many(tx, ids).values())
+    judged = list(_judged(lib, ready, progress))
+    if not judged:
+        raise NotEnoughKeyposes(
+            f"No ready clip has {FEWEST_KEYPOSES} keyposes; {len(ready)} were looked at."
+        )
+    groups = _groups(judged)
+    silhouettes = {basis: [_silhouette(one, basis) for one in judged] for basis in Basis}
+    pairs = list(zip(silhouettes[Basis.KEYPOSE], silhouettes[Basis.UNIFORM], strict=True))
+    originals = [judge_poses(one.track.local) for one in judged]
+    drawn = {basis: [_drawn(one, basis) for one in judged] for basis in Basis}
+    return LowDimensionalEvaluation(
+        clips=len(judged),
+        left_out=len(ready) - len(judged),
+        dimensions=tuple(_dimension_rows(judged)),
+        poses=(
+            _pose_row(ORIGINAL, originals, None),
+            *(_pose_row(b.value, drawn[b], float(np.mean(silhouettes[b]))) for b in Basis),
+        ),
+        more_clustered=float(np.mean([keyposes > uniform for keyposes, uniform in pairs])),
+        groups=tuple(_group_row(task, clips) for task, clips in groups.items()),
+        shown=max(judged, key=lambda one: len(one.keyposes)),
+        shown_group=max(groups.values(), key=len, default=()),
+        worst=_worst(judged, originals, drawn),
+    )
+
+
+def _judged(
+    lib: Library, ready: Sequence[ClipRecord], progress: Progress | None
+) -> Iterator[JudgedClip]:
+    """The clips with enough keyposes."""
+    for done, clip in enumerate(ready, 1):
+        track = body_track(load_motion(lib, clip))
+        frames = keypose_frames(lib, clip.id, track)
+        if len(frames) >= FEWEST_KEYPOSES:
+            uniform = uniform_frames(track.frames, len(frames))
+            models = {
+                Basis.KEYPOSE: eigen_model(track.local[frames]),
+                Basis.UNIFORM: eigen_model(track.local[uniform]),
+            }
+            yield JudgedClip(clip, track, frames, models)
+        if progress is not None:
+            progress(done, len(ready))
+
+
+def _dimension_rows(judged: Sequence[JudgedClip]) -> Iterator[DimensionRow]:
+    """Clips leave the table where their models have no more poses."""
+    variances = {b: [one.models[b].variance_kept() for one in judged] for b in Basis}
+    errors = {
+        b: [1000 * reconstruction_errors(one.models[b], one.track) for one in judged] for b in Basis
+    }
+    best = [1000 * reconstruction_errors(eigen_model(o.track.local), o.track) for o in judged]
+    for row in range(MOST_DIMENSIONS):
+        there = [i for i, one in enumerate(judged) if len(one.keyposes) > row]
+        if not there:
+            return
+        by_keyposes, by_uniform = (np.array([errors[b][i][row] for i in there]) for b in Basis)
+        yield DimensionRow(
+            dimensions=row + 1,
+            clips=len(there),
+            variance={
+                b.value: float(np.mean([variances[b][i][row] for i in there])) for b in Basis
+            },
+            error={
+                Basis.KEYPOSE.value: float(by_keyposes.mean()),
+                Basis.UNIFORM.value: float(by_uniform.mean()),
+            },
+            best=float(np.mean([best[i][row] for i in there])),
+            keypose_better=float(np.mean(by_keyposes < by_uniform)),
+        )
+
+
+def _drawn(one: JudgedClip, basis: Basis) -> Plausibility:
+    return judge_poses(low_dimensional(one.models[basis], one.track, SHOWN).local)
+
+
+def _pose_row(name: str, found: Sequence[Plausibility], silhouette: float | None) -> PoseRow:
+    faults: Counter[Fault] = Counter()
+    for plausibility in found:
+        for fault in plausibility.faults:
+            faults[fault.fault] += fault.last - fault.first + 1
+    return PoseRow(
+        name=name,
+        frames=sum(len(plausibility.implausible) for plausibility in found),
+        implausible=sum(plausibility.count for plausibility in found),
+        faults={fault.value: faults[fault] for fault in Fault},
+        silhouette=silhouette,
+    )
+
+
+def _worst(
+    judged: Sequence[JudgedClip],
+    originals: Sequence[Plausibility],
+    drawn: Mapping[Basis, Sequence[Plausibility]],
+) -> WorstPose | None:
+    found = [
+        WorstPose(one, basis, fault)
+        for basis, plausibilities in drawn.items()
+        for one, original, plausibility in zip(judged, originals, plausibilities, strict=True)
+        for fault in plausibility.faults
+        if not original.implausible[fault.worst]
+    ]
+    return max(found, key=lambda one: one.fault.last - one.fault.first, default=None)
+
+
+def _silhouette(one: JudgedClip, basis: Basis) -> float:
+    """0 where the poses do not differ."""
+    found = best_clusters(one.models[basis].coordinates(one.poses(basis), SHOWN))
+    return 0.0 if found is None else found.silhouette
+
+
+def _groups(judged: Sequence[JudgedClip]) -> dict[str, tuple[JudgedClip, ...]]:
+    """By task that several persons do, one clip of each: that with most keyposes."""
+    by_task: dict[str, dict[str, JudgedClip]] = {}
+    for one in sorted(judged, key=lambda one: (-len(one.keyposes), one.clip.id)):
+        if one.clip.task and one.clip.person:
+            by_task.setdefault(one.clip.task, {}).setdefault(one.clip.person, one)
+    return {
+        task: tuple(by_task[task].values()) for task in sorted(by_task) if len(by_task[task]) > 1
+    }
+
+
+def _group_row(task: str, clips: Sequence[JudgedClip]) -> GroupRow:
+    poses = {b: np.concatenate([one.poses(b) for one in clips]) for b in Basis}
+    models = {b: eigen_model(poses[b]) for b in Basis}
+    shown = {b: clusteredness(models[b].coordinates(poses[b], SHOWN)) for b in Basis}
+    return GroupRow(
+        task=task,
+        persons=len(clips),
+        poses=models[Basis.KEYPOSE].poses,
+        variance={b.value: float(models[b].variance_kept()[SHOWN - 1]) for b in Basis},
+        error={b.value: 1000 * _joint_error(models[b], clips) for b in Basis},
+        silhouette={b.value: c.clusters.silhouette if c else None for b, c in shown.items()},
+        gap={b.value: c.gap if c else None for b, c in shown.items()},
+    )
+
+
+def _joint_error(model: EigenModel, clips: Sequence[JudgedClip]) -> float:
+    """Metres, over all frames of all clips."""
+    squares = [
+        one.track.frames * reconstruction_errors(model, one.track)[SHOWN - 1] ** 2 for one in clips
+    ]
+    return float(np.sqrt(sum(squares) / sum(one.track.frames for one in clips)))
