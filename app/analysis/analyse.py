@@ -20,13 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.analysis.frame_features import features_at_10hz, frame_features
-from app.analysis.keyposes import find_keyposes
+from app.analysis.keypose_arrays import keypose_arrays
+from app.analysis.keyposes import T1, T2, find_keyposes
 from app.analysis.motion_sample import motion_sample
 from app.analysis.motion_symbol import describe_symbol
 from app.analysis.motion_vector import motion_vector
 from app.analysis.motion_volume import decompose
 from app.analysis.pose_cover import pose_cover
-from app.analysis.segments import describe_segments
 from app.analysis.symbol_features import symbol_features, symbol_statistics
 from app.analysis.windows import window_arrays
 from app.motion.body_frame import BodyTrack, body_track
@@ -45,14 +45,16 @@ class Analysis:
     arrays: dict[str, NDArray[Any]]
 
 
-def analyse(motion: Motion) -> Analysis:
-    """All arrays of `motion`. Deterministic; raises TooShort or NotHuman."""
+def analyse(motion: Motion, *, t1: float = T1, t2: float = T2) -> Analysis:
+    """All arrays of `motion`; t1, t2: thresholds of its keyposes.
+
+    Deterministic; raises TooShort or NotHuman.
+    """
     track = body_track(motion)
     arrays: dict[str, NDArray[Any]] = {**_for_search(track), **describe_symbol(track)}
-    keyposes = find_keyposes(track).frames
-    arrays["keypose_frames"] = keyposes.astype(np.int32)
+    keyposes = find_keyposes(track, t1=t1, t2=t2).frames
     arrays["pose_cover"] = pose_cover(arrays["role_positions"], keyposes)
-    arrays |= describe_segments(arrays["features_10hz"], keyposes / track.rate)
+    arrays |= keypose_arrays(keyposes, arrays["features_10hz"])
     return Analysis(motion, arrays)
 
 

@@ -26,6 +26,7 @@ from app.api.routes import (
     health,
     imports,
     jobs,
+    keyposes,
     labels,
     low_dimensional,
     models,
@@ -53,6 +54,7 @@ Every failure is a problem (RFC 9457, `application/problem+json`).
 _ROUTES = (
     clips,
     clip_views,
+    keyposes,
     low_dimensional,
     export,
     imports,

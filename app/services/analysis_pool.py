@@ -47,8 +47,8 @@ class Order:
     """What to analyse: `content`, or the file at `path`; and what the client says of it.
 
     skeleton, skeleton_path: the ASF file of an AMC file, in the same way; stack: the animation
-    stack of an FBX file; roles: joint names by role name; for_search: leave out what only
-    stored clips need.
+    stack of an FBX file; thresholds: T1 and T2 of keyposes, the usual ones where None; roles:
+    joint names by role name; for_search: leave out what only stored clips need.
     """
 
     content: bytes | None = None
@@ -56,6 +56,7 @@ class Order:
     skeleton: bytes | None = None
     skeleton_path: str | None = None
     stack: str | None = None
+    thresholds: tuple[float, float] | None = None
     frame_rate: float | None = None
     metres_per_unit: float | None = None
     roles: Mapping[str, str] | None = None
@@ -154,6 +155,7 @@ def analyse_order(order: Order, limits: Limits) -> Analysis:
     Raises BadContent for what cannot be used, TooLarge beyond the limits.
     """
     from app.analysis import analyse
+    from app.analysis.keyposes import T1, T2
     from app.motion.canonical import canonicalise
     from app.motion.joint_roles import JointRole
 
@@ -165,7 +167,10 @@ def analyse_order(order: Order, limits: Limits) -> Analysis:
         metres_per_unit=order.metres_per_unit,
         roles=roles or None,
     )
-    return analyse.describe_for_search(motion) if order.for_search else analyse.analyse(motion)
+    if order.for_search:
+        return analyse.describe_for_search(motion)
+    t1, t2 = order.thresholds or (T1, T2)
+    return analyse.analyse(motion, t1=t1, t2=t2)
 
 
 def read_order(order: Order, limits: Limits) -> Recording:

@@ -19,6 +19,10 @@ MAX_TEXT = 300
 """Characters in a name or label."""
 MAX_WORDS = 100
 """Words on one clip."""
+MAX_LIMIT = 1000
+"""Hits of one page."""
+MAX_KEYPOSES = 10_000
+"""Keyposes that a person names in one clip: three hours of dancing."""
 MAX_FRAME_RATE = 2000.0
 """Hz; above any motion capture."""
 
@@ -100,6 +104,21 @@ def roles(value: Mapping[str, str] | None) -> dict[str, str] | None:
     return dict(value) or None
 
 
+def keyposes(
+    value: str | Iterable[float] | None, field: str = "keyposes"
+) -> tuple[float, ...] | None:
+    """Seconds from the clip's beginning, rising, each once; a string is cut at spaces."""
+    if value is None:
+        return None
+    parts = value.split() if isinstance(value, str) else list(value)
+    if len(parts) > MAX_KEYPOSES:
+        raise bad_field(field, f"must not be more than {MAX_KEYPOSES}")
+    times = sorted({time for part in parts if (time := _number(field, part)) is not None})
+    if times and times[0] < 0:
+        raise bad_field(field, "must not lie before the clip's beginning")
+    return tuple(times)
+
+
 def _number(field: str, value: float | str | None) -> float | None:
     if value is None or (isinstance(value, str) and not value.strip()):
         return None
@@ -124,3 +143,10 @@ def file_name(value: str) -> str:
 def stem(name: str) -> str:
     """A file name without its ending."""
     return name.rpartition(".")[0] or name
+
+
+def limit(value: int) -> int:
+    """How many hits are wanted."""
+    if not 1 <= value <= MAX_LIMIT:
+        raise bad_field("limit", f"must be from 1 to {MAX_LIMIT}")
+    return value

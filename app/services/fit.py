@@ -14,6 +14,8 @@ from app.models.multilinear import fit_multilinear
 from app.models.recogniser import fit_recogniser
 from app.models.recognition_figures import held_out_recognition_figures, unknown_figures
 from app.models.word_figures import held_out_word_figures
+from app.services.annotated import read_annotated
+from app.services.keypose_learning import keypose_figures, learn_keyposes
 from app.services.model_shelf import ModelKind, holds_persons
 from app.services.models import enqueue_fit
 from app.services.training import TrainingSet, read_training_set
@@ -38,11 +40,13 @@ class Fit:
 @dataclass(frozen=True, slots=True)
 class Before:
     """What a fit may build on: the meta and settings of the model that is to be replaced, empty
-    where there is none, and whether new words may be looked up in WordNet (seconds)."""
+    where there is none, whether new words may be looked up in WordNet (seconds), and where
+    else to read."""
 
     meta: Meta
     settings: Meta
     wordnet: bool
+    store: Store
 
 
 def fit_library(store: Store, *, wordnet: bool = False, persons: bool = True) -> dict[str, Any]:
@@ -96,8 +100,8 @@ def _before(store: Store, kind: ModelKind, wordnet: bool) -> Before:
     with store.read() as tx:
         found = next((m for m in models.list_current(tx) if m.kind == kind.value), None)
     if found is None:
-        return Before({}, {}, wordnet)
-    return Before(dict(found.meta.get("model", {})), found.settings, wordnet)
+        return Before({}, {}, wordnet, store)
+    return Before(dict(found.meta.get("model", {})), found.settings, wordnet, store)
 
 
 def _fit_words(training: TrainingSet, before: Before) -> Fit:
@@ -141,8 +145,15 @@ def _fit_multilinear(training: TrainingSet, _: Before) -> Fit:
     return Fit(arrays, meta, {})
 
 
+def _fit_keyposes(_: TrainingSet, before: Before) -> Fit:
+    annotated = read_annotated(before.store)
+    arrays, meta = learn_keyposes(annotated).to_arrays()
+    return Fit(arrays, meta, keypose_figures(annotated))
+
+
 _FITS: dict[ModelKind, Callable[[TrainingSet, Before], Fit]] = {
     ModelKind.WORDS: _fit_words,
     ModelKind.RECOGNISER: _fit_recogniser,
     ModelKind.MULTILINEAR: _fit_multilinear,
+    ModelKind.KEYPOSES: _fit_keyposes,
 }

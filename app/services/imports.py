@@ -40,7 +40,7 @@ from app.services.import_sources import (
 from app.services.library import Library
 from app.services.manifest import MANIFEST_NAME, ManifestRow, read_manifest
 from app.store import imports as stored
-from app.store import jobs, leases
+from app.store import jobs, keypose_annotations, leases
 from app.store.clip_record import ClipState
 from app.store.clip_record import NewClip as NewRow
 from app.store.engine import Tx
@@ -235,6 +235,8 @@ def _store_file(
             if companion is not None:
                 companion.keep()
             created = add(tx, _new_row(path, row, staged, companion), BULK_PRIORITY)
+            if created.is_new and row.keyposes is not None:
+                keypose_annotations.put(tx, created.clip.id, row.keyposes)
             is_done = not created.is_new and created.clip.state is ClipState.READY
             outcome = ImportOutcome.EXISTS if is_done else ImportOutcome.QUEUED
             doing.record(tx, path, outcome, clip_id=created.clip.id)

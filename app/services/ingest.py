@@ -7,9 +7,11 @@ library's version, the job and the imports that wait: a clip is ready wholly or 
 from __future__ import annotations
 
 from app.analysis.analyse import ANALYSIS_VERSION, Analysis
-from app.errors import KinedexError, StorageError
+from app.analysis.energy import EnergyMethod
+from app.errors import KinedexError, ModelNotFitted, StorageError
 from app.motion.motion import Motion
 from app.services.analysis_pool import ChildDied, Order
+from app.services.keypose_frames import named_keyposes
 from app.services.library import Library
 from app.services.stored_motion import motion_arrays
 from app.store import clips as stored
@@ -32,7 +34,16 @@ def order_for(lib: Library, clip: ClipRecord) -> Order:
         frame_rate=clip.frame_rate_override,
         metres_per_unit=clip.metres_per_unit_override,
         roles=clip.roles_override,
+        thresholds=_thresholds(lib),
     )
+
+
+def _thresholds(lib: Library) -> tuple[float, float] | None:
+    try:
+        learned = lib.models.keyposes(lib.store).model.by_method.get(EnergyMethod.RMS)
+    except ModelNotFitted:
+        return None
+    return None if learned is None else (learned.t1, learned.t2)
 
 
 def finish(tx: Tx, claimed: ClaimedJob, clip: ClipRecord, found: Analysis) -> None:
@@ -44,7 +55,7 @@ def finish(tx: Tx, claimed: ClaimedJob, clip: ClipRecord, found: Analysis) -> No
     if _is_superseded(tx, clip):
         _leave(tx, claimed, clip)
         return
-    arrays = {**found.arrays, **motion_arrays(found.motion)}
+    arrays = {**found.arrays, **motion_arrays(found.motion), **named_keyposes(tx, clip, found)}
     outcomes.finish_ingest(
         tx, claimed.lease, clip.id, facts(found.motion), arrays, settles_imports=False
     )

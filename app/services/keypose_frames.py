@@ -1,23 +1,35 @@
-"""A ready clip's keyposes, as everything that is built on them takes them."""
+"""A clip's keyposes, as everything that is built on them takes them.
+
+Where a person has named a clip's keyposes they are its keyposes; else those that were found.
+"""
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from app.analysis.analyse import Analysis
+from app.analysis.keypose_arrays import frames_at, keypose_arrays
 from app.analysis.keyposes import find_keyposes
 from app.errors import NotFound
 from app.motion.body_frame import BodyTrack
-from app.numerics.arrays import IntArray
+from app.numerics.arrays import FloatArray, IntArray
 from app.services.library import Library
-from app.store import arrays
+from app.store import arrays, keypose_annotations
+from app.store.clip_record import ClipRecord
+from app.store.engine import Tx
 
 KEYPOSE_FRAMES = "keypose_frames"
+FEATURES = "features_10hz"
+ROLE_POSITIONS = "role_positions"
 
 
 def keypose_frames(lib: Library, clip_id: str, track: BodyTrack) -> IntArray:
-    """(k,) rising frames of `track` at which the clip's keyposes are.
+    """(k,) rising frames of `track` at which a ready clip's keyposes are.
 
-    Those that its analysis stored; found anew for a clip that was analysed before it did.
+    Those that are stored; found anew for a clip that was analysed before they were.
     """
     try:
         with lib.store.read() as tx:
@@ -25,3 +37,20 @@ def keypose_frames(lib: Library, clip_id: str, track: BodyTrack) -> IntArray:
     except NotFound:
         stored = find_keyposes(track).frames
     return np.asarray(stored[(stored >= 0) & (stored < track.frames)], dtype=np.int64)
+
+
+def named_keyposes(tx: Tx, clip: ClipRecord, found: Analysis) -> dict[str, NDArray[Any]]:
+    """The arrays to store of a clip whose keyposes a person named; none of any other."""
+    named = keypose_annotations.get(tx, clip.id)
+    if named is None:
+        return {}
+    frames = frames_at(np.array(named), len(found.arrays[ROLE_POSITIONS]))
+    return keypose_arrays(frames, found.arrays[FEATURES])
+
+
+def store_keyposes(tx: Tx, clip: ClipRecord, times: FloatArray) -> None:
+    """Put keyposes at `times` (seconds) in place of those of a ready clip, in all that is
+    built on them."""
+    count = len(arrays.get_one(tx, clip.id, ROLE_POSITIONS))
+    changed = keypose_arrays(frames_at(times, count), arrays.get_one(tx, clip.id, FEATURES))
+    arrays.put_some(tx, clip.id, changed, version=clip.analysis_version or 0)

@@ -1,8 +1,9 @@
 """manifest.csv: what a library's owner says about the files beside it.
 
 Columns: `path` (relative to the manifest), and any of `name person task words license source
-fps unit`; words are separated by spaces, a phrase has underscores. Other columns are left
-alone. Rows that cannot be used are kept with their problem, to be told with their file.
+fps unit keyposes`; words are separated by spaces, a phrase has underscores; keyposes are
+seconds, separated by spaces. Other columns are left alone. Rows that cannot be used are kept
+with their problem, to be told with their file.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ class ManifestRow:
     source: str | None = None
     frame_rate: float | None = None
     metres_per_unit: float | None = None
+    keyposes: tuple[float, ...] | None = None
     problem: KinedexError | None = None
 
 
@@ -89,6 +91,7 @@ def _row(line: int, record: dict[str, str]) -> ManifestRow:
             source=fields.text("source", record.get("source")),
             frame_rate=fields.frame_rate(record.get("fps") or record.get("frame_rate")),
             metres_per_unit=fields.metres_per_unit(record.get("unit")),
+            keyposes=fields.keyposes(record.get("keyposes")) or None,
         )
     except BadField as problem:
         places = [

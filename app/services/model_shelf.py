@@ -17,6 +17,7 @@ from app.store import models as stored
 from app.store.store import Store
 
 if TYPE_CHECKING:
+    from app.models.keypose_thresholds import KeyposeThresholds
     from app.models.library_words import LibraryWords
     from app.models.multilinear import Multilinear
     from app.models.recogniser import Recogniser
@@ -33,12 +34,14 @@ class ModelKind(StrEnum):
     """Vasilescu's N-mode decomposition of persons and tasks."""
     RECOGNISER = "recogniser"
     """Who does what, with an honest unknown."""
+    KEYPOSES = "keyposes"
+    """Thresholds of keyposes, from clips whose keyposes a person named."""
 
 
 FALSE_ACCEPT_RATE = "false_accept_rate"
 """A setting of the recogniser: how often something new may be called known."""
 
-_WITHOUT_PERSONS = frozenset({ModelKind.WORDS})
+_WITHOUT_PERSONS = frozenset({ModelKind.WORDS, ModelKind.KEYPOSES})
 
 
 def holds_persons(kind: ModelKind) -> bool:
@@ -82,6 +85,17 @@ class ModelShelf:
         from app.models.multilinear import Multilinear
 
         return self._get(store, ModelKind.MULTILINEAR, Multilinear.from_arrays)
+
+    def keyposes(self, store: Store) -> Fitted[KeyposeThresholds]:
+        """The learned thresholds in force; raises ModelNotFitted."""
+
+        def build(arrays: Mapping[str, FloatArray], meta: Mapping[str, Any]) -> KeyposeThresholds:
+            # A worker asks before each clip; most libraries have none to load.
+            from app.models.keypose_thresholds import KeyposeThresholds
+
+            return KeyposeThresholds.from_arrays(arrays, meta)
+
+        return self._get(store, ModelKind.KEYPOSES, build)
 
     def _get(
         self,

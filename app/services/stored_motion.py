@@ -13,6 +13,7 @@ from app.motion.motion import Motion
 from app.services.library import Library
 from app.store import arrays
 from app.store.clip_record import ClipRecord
+from app.store.engine import Tx
 
 POSITIONS, PARENTS, JOINT_NAMES = "positions", "parents", "joint_names"
 
@@ -34,9 +35,14 @@ def motion_arrays(motion: Motion) -> dict[str, NDArray[Any]]:
 def load_motion(lib: Library, clip: ClipRecord) -> Motion:
     """The motion of a ready clip, at its own frame rate."""
     with lib.store.read() as tx:
-        positions, parents, text = (
-            arrays.get_one(tx, clip.id, name) for name in (POSITIONS, PARENTS, JOINT_NAMES)
-        )
+        return read_motion(tx, clip)
+
+
+def read_motion(tx: Tx, clip: ClipRecord) -> Motion:
+    """As `load_motion`, in the caller's transaction."""
+    positions, parents, text = (
+        arrays.get_one(tx, clip.id, name) for name in (POSITIONS, PARENTS, JOINT_NAMES)
+    )
     names: list[str] = json.loads(text.tobytes())
     return Motion(
         format=clip.format or "",

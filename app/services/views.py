@@ -1,4 +1,4 @@
-"""Ready clips to look at: their motion, keyposes, descriptors, and a small picture."""
+"""Ready clips to look at: their motion, descriptors, and a small picture."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.analysis.keyposes import T1, T2, Keyposes, find_keyposes
-from app.motion.body_frame import body_track
 from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.motion.resampling import resample
 from app.numerics.arrays import FloatArray
@@ -23,7 +21,6 @@ from app.store import arrays
 
 MAX_FPS = 1000.0
 CONVERGENCE = "msv_convergence"
-KEYPOSE_METHODS = ("rms", "printed")
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,18 +31,6 @@ class MotionView:
     joint_names: tuple[str, ...]
     parents: tuple[int, ...]
     positions: FloatArray
-
-
-@dataclass(frozen=True, slots=True)
-class KeyposesView:
-    """Keyposes at the analysis rate (30 Hz), with the pose at each.
-
-    found: frames, times, beats and energy curves; poses: (keyposes, 13, 3) metres.
-    """
-
-    found: Keyposes
-    frame_rate: float
-    poses: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,27 +72,6 @@ def motion(lib: Library, clip_id: str, fps: float | None = None, joints: str = "
         positions = resample(positions, stored.frame_rate, fps)
     positions = np.ascontiguousarray(positions, dtype=np.float32)
     return MotionView(fps or stored.frame_rate, names, parents, positions)
-
-
-def keyposes(
-    lib: Library,
-    clip_id: str,
-    method: str = "rms",
-    t1: float | None = None,
-    t2: float | None = None,
-) -> KeyposesView:
-    """A clip's keyposes by Perera's thresholds T1 and T2 (defaults where None).
-
-    Raises BadField, ClipNotFound, ClipNotReady.
-    """
-    if method not in KEYPOSE_METHODS:
-        raise fields.bad_field("method", f"must be one of {', '.join(KEYPOSE_METHODS)}")
-    for name, value in (("t1", t1), ("t2", t2)):
-        if value is not None and not (math.isfinite(value) and value > 0):
-            raise fields.bad_field(name, "must be a number above 0")
-    track = body_track(load_motion(lib, ready_clip(lib, clip_id)))
-    found = find_keyposes(track, method=method, t1=t1 or T1, t2=t2 or T2)
-    return KeyposesView(found, track.rate, track.positions[found.frames])
 
 
 def descriptor(lib: Library, clip_id: str) -> DescriptorView:

@@ -30,6 +30,19 @@ def put_many(tx: Tx, clip_id: str, arrays: Mapping[str, NDArray[Any]], *, versio
         tx.execute(_ADD, rows)
 
 
+def put_some(tx: Tx, clip_id: str, arrays: Mapping[str, NDArray[Any]], *, version: int) -> None:
+    """Stores arrays in place of those of the same names."""
+    named = clip_arrays.c.name.in_(list(arrays))
+    tx.execute(delete(clip_arrays).where(clip_arrays.c.clip_id == clip_id, named))
+    tx.execute(
+        _ADD,
+        [
+            {"clip_id": clip_id, "name": name, "version": version, **to_blob(array)}
+            for name, array in arrays.items()
+        ],
+    )
+
+
 def get_one(tx: Tx, clip_id: str, name: str) -> NDArray[Any]:
     """One array, read-only; raises NotFound."""
     found = get_many(tx, [clip_id], name)

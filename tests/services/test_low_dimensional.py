@@ -13,6 +13,7 @@ from app.motion.canonical import canonicalise
 from app.motion.canonical_body import BODY_ROLES
 from app.motion.joint_roles import SUN_ROLES
 from app.numerics.arrays import FloatArray
+from app.services import keyposes as services_keyposes
 from app.services import low_dimensional, views
 from app.services.animations import animation_svg
 from app.services.export import export
@@ -48,7 +49,7 @@ def test_both_bases_have_as_many_poses_of_the_clip_itself(
     ready_library: Library, clip_of: FindClip
 ) -> None:
     clip = clip_of("bruno", "wave")
-    keyposes = views.keyposes(ready_library, clip.id).found.frames / 30.0
+    keyposes = services_keyposes.view(ready_library, clip.id).found.frames / 30.0
     by_keyposes = view(ready_library, clip.id, Reduction(2)).reduced
     uniform = view(ready_library, clip.id, Reduction(2, "uniform")).reduced
     assert [pose.time for pose in by_keyposes.poses] == pytest.approx(list(keyposes))

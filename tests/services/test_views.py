@@ -10,7 +10,7 @@ import pytest
 
 from app.errors import BadField, ClipNotFound, ClipNotReady
 from app.motion.joint_roles import SUN_ROLES
-from app.services import clips, views
+from app.services import clips, keyposes, views
 from app.services.clips import NewClip
 from app.services.library import Library
 from app.services.thumbnail import thumbnail
@@ -35,13 +35,6 @@ def test_the_motion_is_told_whole_or_by_roles_at_any_rate(
     assert abs(len(roles.positions) - 10 * clip.duration) <= 1
     hips = whole.joint_names.index(clip.roles["hips"])
     assert np.allclose(roles.positions[0, 4], whole.positions[0, hips], atol=0.02)
-
-
-def test_keyposes_come_with_their_poses(ready_library: Library, clip_of: FindClip) -> None:
-    view = views.keyposes(ready_library, clip_of("ada", "kick").id)
-    assert view.poses.shape == (len(view.found.frames), 13, 3)
-    strict = views.keyposes(ready_library, clip_of("ada", "kick").id, "printed", t1=1e-6, t2=99.0)
-    assert len(strict.found.frames) == 0
 
 
 def test_the_descriptor_is_what_searches_compare(ready_library: Library, clip_of: FindClip) -> None:
@@ -86,8 +79,6 @@ def test_any_motion_has_a_picture(frames: int) -> None:
     [
         (lambda lib, clip: views.motion(lib, clip, fps=0), "fps"),
         (lambda lib, clip: views.motion(lib, clip, joints="some"), "joints"),
-        (lambda lib, clip: views.keyposes(lib, clip, method="best"), "method"),
-        (lambda lib, clip: views.keyposes(lib, clip, t1=float("nan")), "t1"),
     ],
 )
 def test_a_wrong_field_is_named(
@@ -99,7 +90,7 @@ def test_a_wrong_field_is_named(
 
 
 @pytest.mark.parametrize(
-    "view", [views.motion, views.keyposes, views.descriptor, views.thumbnail_svg]
+    "view", [views.motion, keyposes.view, views.descriptor, views.thumbnail_svg]
 )
 def test_only_ready_clips_can_be_seen(lib: Library, view: object) -> None:
     queued = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), NewClip("a.bvh")).clip

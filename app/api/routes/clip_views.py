@@ -1,4 +1,4 @@
-"""Looking at a clip: its motion, keyposes, descriptor and picture."""
+"""Looking at a clip: its motion, descriptor and picture."""
 
 from __future__ import annotations
 
@@ -10,8 +10,6 @@ from app.api.deps import Lib, reads
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.views import (
     Descriptor,
-    KeyposeQuery,
-    Keyposes,
     Motion,
     MotionQueryParameters,
 )
@@ -53,12 +51,6 @@ def _check_length(lib: Library, clip_id: str, fps: float | None) -> None:
     if fps is not None and fps * (clips.get_clip(lib, clip_id).duration or 0.0) > most:
         places = [Place("query.fps", f"would make more than {most} frames")]
         raise BadField("The motion would be too long.", places=places)
-
-
-@router.get("/keyposes", responses=refusals(404, 409))
-def get_keyposes(lib: Lib, clip_id: ClipId, wanted: Annotated[KeyposeQuery, Query()]) -> Keyposes:
-    """Beats, keyposes and energy curves (Perera 2009, section 3)."""
-    return Keyposes.of(views.keyposes(lib, clip_id, wanted.method, wanted.t1, wanted.t2))
 
 
 @router.get("/descriptor", responses=refusals(404, 409))

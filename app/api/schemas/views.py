@@ -1,4 +1,4 @@
-"""What can be seen of a clip: its motion, keyposes and descriptor."""
+"""What can be seen of a clip: its motion and descriptor."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from app.api.schemas.base import Incoming, Outgoing
-from app.motion.joint_roles import SUN_ROLES
 from app.numerics.rank1 import MAX_ITERATIONS
-from app.services.views import DescriptorView, KeyposesView
+from app.services.views import DescriptorView
 
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 
@@ -34,63 +33,6 @@ class Motion(Outgoing):
     joint_names: list[str]
     parents: list[int] = Field(description="Index of each joint's parent, -1 for a root.")
     positions: list[list[Point]] = Field(description="(frames, joints, 3), metres, Y up.")
-
-
-class KeyposeQuery(Incoming):
-    """How keyposes are found."""
-
-    method: Literal["rms", "printed"] = Field(
-        "rms", description="RMS of joint speeds, or equations 1 and 2 as printed."
-    )
-    t1: float | None = Field(
-        None, gt=0, le=100, description="Of the median local maximum; below it a minimum is small."
-    )
-    t2: float | None = Field(
-        None, gt=0, le=100, description="Of the median local maximum; a drop beyond it is deep."
-    )
-
-
-class Energy(Outgoing):
-    """Energy curves, a value a frame, body lengths a second."""
-
-    global_: list[float] = Field(alias="global")
-    local: list[float]
-
-
-class Keyposes(Outgoing):
-    """Poses at which a motion comes to rest on its beats."""
-
-    method: str
-    t1: float
-    t2: float
-    frame_rate: float = Field(description="Of `frames` and of the energy curves.")
-    tempo: float | None = Field(description="Beats a minute; null where no beat was found.")
-    beats: list[float] = Field(description="Seconds.")
-    frames: list[int]
-    times: list[float] = Field(description="Seconds.")
-    roles: list[str] = Field(description="Order of the joints in `poses`.")
-    poses: list[list[Point]] = Field(description="(keyposes, 13, 3), metres, Y up.")
-    energy: Energy
-
-    @classmethod
-    def of(cls, view: KeyposesView) -> Keyposes:
-        """Keyposes as they go over the wire."""
-        found = view.found
-        return cls(
-            method=str(found.method),
-            t1=found.t1,
-            t2=found.t2,
-            frame_rate=view.frame_rate,
-            tempo=found.beats.tempo,
-            beats=plain(found.beats.times),
-            frames=found.frames.tolist(),
-            times=plain(found.times),
-            roles=[role.value for role in SUN_ROLES],
-            poses=plain(view.poses),
-            energy=Energy(
-                **{"global": plain(found.global_energy)}, local=plain(found.local_energy)
-            ),
-        )
 
 
 class Convergence(Outgoing):

@@ -1,0 +1,46 @@
+"""Clips whose keyposes people named: what thresholds are learned from, and judged on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.motion.body_frame import BodyTrack, body_track
+from app.numerics.arrays import FloatArray
+from app.services.stored_motion import read_motion
+from app.services.training import ready_only, recording_of_clip
+from app.store import clip_listing, clips, keypose_annotations
+from app.store.clip_filter import ClipFilter
+from app.store.clip_record import ClipRecord
+from app.store.store import Store
+
+
+@dataclass(frozen=True, slots=True)
+class AnnotatedClip:
+    """A ready clip; true: (k,) seconds, its keyposes as a person named them; group: what
+    files of one recording share."""
+
+    clip: ClipRecord
+    group: str
+    track: BodyTrack
+    true: FloatArray
+
+
+def read_annotated(store: Store, wanted: ClipFilter | None = None) -> tuple[AnnotatedClip, ...]:
+    """The ready clips that carry an annotation and pass a filter, by name and id."""
+    with store.read() as tx:
+        ready = set(clip_listing.list_ids(tx, ready_only(wanted)))
+        ids = [clip_id for clip_id in keypose_annotations.annotated(tx) if clip_id in ready]
+        found = clips.get_many(tx, ids)
+        named = keypose_annotations.get_many(tx, ids)
+        tracks = {clip.id: body_track(read_motion(tx, clip)) for clip in found.values()}
+    return tuple(
+        AnnotatedClip(
+            clip=clip,
+            group=recording_of_clip(clip),
+            track=tracks[clip.id],
+            true=np.array([time for time in named[clip.id] if time <= tracks[clip.id].duration]),
+        )
+        for clip in sorted(found.values(), key=lambda each: (each.name, each.id))
+    )

@@ -1,0 +1,91 @@
+"""Keyposes over HTTP: what is found, whence, and what people name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import httpx2
+import pytest
+
+from tests.api.conftest import assert_problem
+
+
+def test_keyposes_are_told_with_all_that_they_were_found_from(
+    demo: httpx2.Client, walk: dict[str, Any]
+) -> None:
+    told = demo.get(f"/v1/clips/{walk['id']}/keyposes").json()
+    frames = len(told["energy"]["global"])
+    assert frames == len(told["energy"]["local"]) == pytest.approx(30 * walk["duration"], abs=2)
+    assert (told["method"], told["weights"]) == ("rms", "uniform")
+    assert told["energy_unit"] == "body lengths per second"
+    assert told["thresholds"] == {"t1": "default", "t2": "default", "model_version": None}
+    assert 0 <= told["beats_confidence"] <= 1
+    assert set(told["noise"]) == {"global", "local"}
+    assert told["annotated"] is None
+    count = len(told["frames"])
+    assert count == len(told["times"]) == len(told["chosen_by"]) == len(told["poses"]) > 2
+    assert told["times"] == pytest.approx([frame / told["frame_rate"] for frame in told["frames"]])
+    assert set(told["chosen_by"]) <= {"global", "local"}
+
+
+def test_weights_and_method_change_the_curves(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    def curve(**wanted: str) -> list[float]:
+        answer = demo.get(f"/v1/clips/{walk['id']}/keyposes", params=wanted).json()
+        assert {name: answer[name] for name in wanted} == wanted
+        found: list[float] = answer["energy"]["global"]
+        return found
+
+    curves = [
+        curve(method=method, weights=weights)
+        for method in ("rms", "printed")
+        for weights in ("uniform", "mass")
+    ]
+    assert len({tuple(values) for values in curves}) == 4
+
+
+def test_what_a_person_names_is_kept_shown_and_taken_away(
+    demo: httpx2.Client, walk: dict[str, Any]
+) -> None:
+    address = f"/v1/clips/{walk['id']}/keyposes"
+    assert demo.put(address, json={"times": [1.5, 0.5, 1.5]}).json() == {"times": [0.5, 1.5]}
+    assert demo.get(address).json()["annotated"] == [0.5, 1.5]
+    assert demo.put(address, json={"times": [0.75]}).json() == {"times": [0.75]}
+    assert demo.delete(address).status_code == 204
+    assert demo.get(address).json()["annotated"] is None
+    assert demo.put(address, json={"times": [0.5]}).status_code == 200
+    assert demo.put(address, json={"times": []}).json() == {"times": []}
+    assert demo.get(address).json()["annotated"] is None
+    assert demo.delete(address).status_code == 204
+
+
+@pytest.mark.parametrize(
+    ("body", "location"),
+    [
+        ({}, "body.times"),
+        ({"times": 3}, "body.times"),
+        ({"times": ["soon"]}, "body.times.0"),
+        ({"times": [-1.0]}, "body.times.0"),
+        ({"times": [1.0], "beats": []}, "body.beats"),
+        ({"times": [1.0] * 10_001}, "body.times"),
+        ({"times": [1e5]}, "body.times"),
+    ],
+)
+def test_bad_annotations_are_refused_by_name(
+    demo: httpx2.Client, walk: dict[str, Any], body: dict[str, Any], location: str
+) -> None:
+    answer = demo.put(f"/v1/clips/{walk['id']}/keyposes", json=body)
+    assert_problem(answer, 422, "bad_field", location)
+
+
+def test_unknown_clips_and_forms_are_refused(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    for answer in (
+        demo.get("/v1/clips/none/keyposes"),
+        demo.put("/v1/clips/none/keyposes", json={"times": [1.0]}),
+        demo.delete("/v1/clips/none/keyposes"),
+    ):
+        assert_problem(answer, 404, "clip_not_found")
+    answer = demo.put(f"/v1/clips/{walk['id']}/keyposes", content="times=1")
+    assert_problem(answer, 415, "unsupported_media_type")
+    for wanted in ({"weights": "most"}, {"t1": "0"}, {"method": "x"}):
+        answer = demo.get(f"/v1/clips/{walk['id']}/keyposes", params=wanted)
+        assert_problem(answer, 422, "bad_field", f"query.{next(iter(wanted))}")
