@@ -32,6 +32,7 @@ from app.api.routes import (
     models,
     recognize,
     search,
+    segments,
     space,
     studies,
     suggestions,
@@ -67,6 +68,7 @@ _ROUTES = (
     suggestions,
     space,
     studies,
+    segments,
     health,
 )
 

@@ -45,8 +45,12 @@ def search(
     ] = None,
     method: Annotated[Method, typer.Option(help="Of a search by example.")] = Method.FUSED,
     scope: Annotated[
-        str, typer.Option(help="clips, or windows: parts of clips, wherever they stand.")
+        str,
+        typer.Option(help="clips; windows: parts of clips; segments: steps between keyposes."),
     ] = "clips",
+    segment: Annotated[
+        int | None, typer.Option(help="With --scope segments: a clip's step, counted from 0.")
+    ] = None,
     mode: Annotated[str, typer.Option(help="Of a search by words: default or cca.")] = "default",
     start: Annotated[float | None, typer.Option(help="Seconds: search by a part.")] = None,
     end: Annotated[float | None, typer.Option(help="Seconds: where the part ends.")] = None,
@@ -83,13 +87,14 @@ def search(
                         limit=limit,
                         filter=wanted,
                         scope=scope,
+                        segment=segment,
                         skeleton=asf,
                         frame_rate=frame_rate,
                         unit=unit,
                         stack=stack,
                     ),
                 )
-    _show(hits, as_json, by_words=bool(words), parts=scope == "windows")
+    _show(hits, as_json, by_words=bool(words), parts=scope != "clips")
 
 
 def recognize(

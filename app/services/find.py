@@ -18,6 +18,7 @@ from app.search.index import VECTOR
 from app.search.methods import Method
 from app.search.rank import Ranked, score
 from app.services import fields
+from app.services.find_segments import find_in_segments
 from app.services.find_windows import Paging, find_in_windows
 from app.services.hits import Hit, Hits
 from app.services.library import Library
@@ -30,7 +31,7 @@ from app.store.files import Readable
 DEFAULT_LIMIT = 10
 MAX_LIMIT = 1000
 WORD_MODES = ("default", "cca")
-SCOPES = ("clips", "windows")
+SCOPES = ("clips", "windows", "segments")
 _NAMES = (VECTOR, FEATURES, RHO, EPSILON)
 
 Filter = ClipFilter | Mapping[str, Any] | None
@@ -43,7 +44,8 @@ class MotionQuery:
 
     start, end: seconds, the part of the query that is meant; skeleton, frame_rate (Hz), unit,
     roles, stack: of an uploaded query; limit: 1 to 1,000; scope: whether clips are compared as
-    they are, or parts of them found, wherever they stand in it ("windows").
+    they are, or parts of them found, wherever they stand in it ("windows"), or what lies
+    between keyposes ("segments"); segment: with that scope, the clip's own one as the query.
     """
 
     clip_id: str | None = None
@@ -61,6 +63,7 @@ class MotionQuery:
     unit: float | str | None = None
     roles: Mapping[str, str] | None = None
     stack: str | None = None
+    segment: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,8 +90,13 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
     method, wanted = _method(query.method), _filter(query.filter)
     _check(query.limit, query.scope)
     version = lib.index.catch_up(lib.store)
+    paging = Paging(query.limit, query.cursor, query.include_self)
+    if query.scope == "segments":
+        steps = find_in_segments(lib, _question(query), query.segment, method, wanted, paging)
+        return _timed(steps, began)
+    if query.segment is not None:
+        raise fields.bad_field("segment", "goes with scope segments")
     if query.scope == "windows":
-        paging = Paging(query.limit, query.cursor, query.include_self)
         return _timed(find_in_windows(lib, _question(query), method, wanted, paging), began)
     asked = describe(lib, _question(query), _NAMES)
     question = _fingerprint(asked, method, wanted, query)

@@ -53,7 +53,7 @@ def find_in_windows(
         raise fields.bad_field("method", f"with scope windows it must be one of {known}")
     asked = describe(lib, question, (FEATURES,))
     piece = _piece(asked, question)
-    barred = None if paging.include_self else _own_place(asked, question)
+    barred = None if paging.include_self else own_place(asked, question)
     fingerprint = _fingerprint(asked, piece, method, wanted, barred)
     after = None if paging.cursor is None else cursors.decode(paging.cursor, fingerprint)
     found, anchor = _rank(lib, method, wanted, piece, barred, after)
@@ -63,7 +63,7 @@ def find_in_windows(
     if more:
         last = Position(rank + len(told), told[-1].distance, told[-1].key, anchor)
         following = cursors.encode(last, fingerprint)
-    hits = _hits(lib, told, rank, WINDOW_SCORES[method])
+    hits = place_hits(lib, told, rank, WINDOW_SCORES[method])
     return Hits(method.value, 0.0, lib.index.version, hits, following)
 
 
@@ -101,14 +101,14 @@ def _view(lib: Library, wanted: ClipFilter, scale: WindowScale) -> Spans:
 
 
 def _piece(asked: Answered, question: Question) -> Piece:
-    seconds = _seconds(asked, question)
+    seconds = seconds_of(asked, question)
     if seconds > LONGEST_SECONDS:
         most = f"{LONGEST_SECONDS:g} s are the most that is looked for in windows"
         raise fields.bad_field("end", f"{most}; start and end leave {seconds:.1f} s")
     return Piece(asked.arrays[FEATURES], seconds)
 
 
-def _seconds(asked: Answered, question: Question) -> float:
+def seconds_of(asked: Answered, question: Question) -> float:
     """How long the query is: of an upload, as long as what was analysed of it."""
     start, end = question.start or 0.0, question.end
     if end is None and asked.clip is None:
@@ -118,15 +118,15 @@ def _seconds(asked: Answered, question: Question) -> float:
     return (end or 0.0) - start
 
 
-def _own_place(asked: Answered, question: Question) -> Barred | None:
+def own_place(asked: Answered, question: Question) -> Barred | None:
     """The queried part of a stored clip."""
     if asked.clip is None:
         return None
     start = question.start or 0.0
-    return Barred(asked.clip.id, start, start + _seconds(asked, question))
+    return Barred(asked.clip.id, start, start + seconds_of(asked, question))
 
 
-def _hits(lib: Library, told: list[Place], rank: int, scale: float) -> tuple[Hit, ...]:
+def place_hits(lib: Library, told: list[Place], rank: int, scale: float) -> tuple[Hit, ...]:
     """The places with their clips as they are now; those deleted meanwhile are left out."""
     with lib.store.read() as tx:
         clips = stored.get_many(tx, {place.clip_id: None for place in told})

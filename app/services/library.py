@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Self
 
+from app.analysis.segments import SEGMENT_SPANS, SEGMENT_VECTORS, SEGMENT_WIDTH
 from app.analysis.windows import WIDTH, WINDOW_SCALES
 from app.config import Settings
 from app.search.array_cache import ArrayCache
@@ -25,7 +26,8 @@ ARRAY_CACHE_BYTES = 128 * 2**20
 class Library:
     """What every service call gets; one for each process, safe to share between threads.
 
-    pool analyses uploaded queries; a worker has a pool of its own. windows: the windows of all
+    pool analyses uploaded queries; a worker has a pool of its own. segments: what lies between
+    the keyposes of all clips, loaded by the first search that asks. windows: the windows of all
     clips by the name of their scale, loaded by the first search that asks for them.
     """
 
@@ -38,6 +40,7 @@ class Library:
     symbol_points: Projections
     pool: AnalysisPool
     windows: Mapping[str, SpanIndex]
+    segments: SpanIndex
 
     @classmethod
     def open(cls, settings: Settings, *, prepare: bool = True) -> Self:
@@ -63,6 +66,7 @@ class Library:
             symbol_points=symbol_points,
             pool=AnalysisPool(query_limits(settings)),
             windows={s.name: SpanIndex(s.vectors, s.spans, WIDTH) for s in WINDOW_SCALES},
+            segments=SpanIndex(SEGMENT_VECTORS, SEGMENT_SPANS, SEGMENT_WIDTH),
         )
 
     def close(self) -> None:

@@ -37,6 +37,7 @@ _MOTION_EXAMPLES = {
         "end": 2.5,
         "scope": "windows",
     },
+    "steps like one of its steps": {"clip_id": "CLIP_ID", "segment": 0, "scope": "segments"},
 }
 
 
@@ -52,6 +53,7 @@ async def _motion_query(request: Request) -> MotionQuery:
             limit=sent.limit,
             filter=given,
             scope=sent.scope,
+            segment=sent.segment,
             include_self=sent.include_self,
             cursor=sent.cursor,
         )
@@ -94,7 +96,8 @@ async def _uploaded_query(request: Request) -> MotionQuery:
 def search_motion(lib: Lib, query: Annotated[MotionQuery, Depends(_motion_query)]) -> MotionHits:
     """Find motions like a stored clip, a part of one, or an uploaded file.
 
-    With scope `windows`, find parts of clips, with their start and end.
+    With scope `windows`, find parts of clips, with their start and end; with scope `segments`,
+    what is danced from one keypose to the next.
     """
     return MotionHits.of(find.find_motion(lib, query))
 

@@ -38,15 +38,16 @@ class _MotionOptions(Incoming):
     end: Seconds | None = Field(None, description="Seconds: where that part ends.")
     method: Method = Method.FUSED
     limit: Limit = 10
-    scope: Literal["clips", "windows"] = Field(
+    scope: Literal["clips", "windows", "segments"] = Field(
         "clips",
         description="windows: parts of clips are found, wherever they stand in them, by the "
-        "methods fused, vector and dtw; the query is up to 120 s long.",
+        "methods fused, vector and dtw; the query is up to 120 s long. segments: what is danced "
+        "from one keypose to the next is found, by their vectors; the query counts as one.",
     )
     include_self: bool = Field(
         False,
-        description="Whether the query clip (of windows: what overlaps the queried part) may be "
-        "among the hits.",
+        description="Whether the query clip (of windows and segments: what overlaps the queried "
+        "part) may be among the hits.",
     )
     cursor: Cursor | None = None
 
@@ -58,6 +59,12 @@ class MotionSearch(_MotionOptions):
     """Find motions like a stored clip or a part of it."""
 
     clip_id: ClipId
+    segment: int | None = Field(
+        None,
+        ge=0,
+        le=10**6,
+        description="With scope segments: the clip's segment of that index is the query.",
+    )
     filter: Filter | None = None
 
     model_config = ConfigDict(
@@ -66,6 +73,7 @@ class MotionSearch(_MotionOptions):
                 {"clip_id": "CLIP_ID", "limit": 5},
                 {"clip_id": "CLIP_ID", "start": 0.5, "end": 1.5, "filter": {"task": "walk"}},
                 {"clip_id": "CLIP_ID", "start": 0.5, "end": 2.5, "scope": "windows"},
+                {"clip_id": "CLIP_ID", "segment": 0, "scope": "segments"},
             ]
         }
     )

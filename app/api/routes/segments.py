@@ -1,0 +1,22 @@
+"""A clip's segments, from keypose to keypose."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+
+from app.api.deps import Lib, reads
+from app.api.openapi import ClipId, refusals
+from app.api.schemas.segments import SegmentList
+from app.services.segments import list_segments
+
+router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
+
+
+@router.get("/segments", responses=refusals(404, 409))
+def get_segments(lib: Lib, clip_id: ClipId) -> SegmentList:
+    """What is danced from each keypose to the next, and the sequences that repeat themselves.
+
+    Keyposes that a person named come before those that were found. Search with
+    `POST /v1/search/motion` and `"scope": "segments"`, with `segment` or any part of a clip.
+    """
+    return SegmentList.of(list_segments(lib, clip_id))

@@ -1,0 +1,36 @@
+"""Dances as clips of a library."""
+
+from __future__ import annotations
+
+import io
+from typing import Any
+
+import numpy as np
+
+from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
+from app.services import clips
+from app.services.clips import NewClip
+from app.services.library import Library
+from app.store.clip_record import ClipRecord
+from tests.cyclic_dances import CyclicDance
+from tests.formats.arrays import npz
+
+
+def dance_file(dance: CyclicDance) -> bytes:
+    """The dance as an NPZ file."""
+    return npz(
+        compressed=True,
+        positions=dance.positions.astype(np.float32),
+        joint_names=np.array([role.value for role in SUN_ROLES]),
+        parents=np.array(SUN_PARENTS),
+        frame_rate=dance.rate,
+        unit="m",
+        up_axis="y",
+    )
+
+
+def upload_dance(
+    lib: Library, dance: CyclicDance, name: str = "dance.npz", **fields: Any
+) -> ClipRecord:
+    """Hand the dance in, to be analysed."""
+    return clips.create_clip(lib, io.BytesIO(dance_file(dance)), NewClip(name, **fields)).clip
