@@ -75,7 +75,7 @@ def search(
             asked = find.WordQuery(words, mode, limit, wanted)
             hits = find.find_words(lib, asked)
         else:
-            with _content(query or "") as (clip_id, content), _companion(skeleton) as asf:
+            with content_of(query or "") as (clip_id, content), companion_of(skeleton) as asf:
                 hits = find.find_motion(
                     lib,
                     find.MotionQuery(
@@ -112,8 +112,8 @@ def recognize(
     """Tell who it is, what they do, and in which words."""
     with (
         open_library(context) as lib,
-        _content(query) as (clip_id, content),
-        _companion(skeleton) as asf,
+        content_of(query) as (clip_id, content),
+        companion_of(skeleton) as asf,
     ):
         found = recognise.recognise(
             lib,
@@ -157,9 +157,9 @@ def filter_of(text: str | None) -> dict[str, Any]:
 
 
 @contextmanager
-def _content(query: str) -> Iterator[tuple[str | None, Readable | None]]:
+def content_of(query: str | None) -> Iterator[tuple[str | None, Readable | None]]:
     """A file's content where there is such a file, else the query as a clip's id."""
-    path = Path(query)
+    path = Path(query or "")
     if not path.is_file():
         yield query, None
         return
@@ -168,7 +168,8 @@ def _content(query: str) -> Iterator[tuple[str | None, Readable | None]]:
 
 
 @contextmanager
-def _companion(skeleton: Path | None) -> Iterator[Readable | None]:
+def companion_of(skeleton: Path | None) -> Iterator[Readable | None]:
+    """The content of a file that goes with another, where one is given."""
     if skeleton is None:
         yield None
         return

@@ -9,7 +9,19 @@ from typing import Annotated
 import typer
 
 from app import __version__
-from app.cli import db, demo, evaluate, export, find, fit, keys, library, reanalyze, serve
+from app.cli import (
+    db,
+    demo,
+    evaluate,
+    export,
+    find,
+    find_pose,
+    fit,
+    keys,
+    library,
+    reanalyze,
+    serve,
+)
 from app.cli.settings import remember
 from app.errors import KinedexError
 
@@ -28,6 +40,7 @@ program.command("demo")(demo.demo)
 program.command("import")(library.import_clips)
 program.command("reanalyze")(reanalyze.reanalyze)
 program.command("search")(find.search)
+program.command("search-pose")(find_pose.search_pose)
 program.command("recognize")(find.recognize)
 program.command("fit")(fit.fit)
 program.command("export")(export.export)

@@ -13,7 +13,7 @@ from app.search import cursor as cursors
 from app.search.by_example import SCALES, rank_by_example
 from app.search.cursor import Position
 from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays
-from app.search.filters import parse_filter
+from app.search.filters import as_filter
 from app.search.index import VECTOR
 from app.search.methods import Method
 from app.search.rank import Ranked, score
@@ -29,7 +29,6 @@ from app.store.clip_filter import ClipFilter
 from app.store.files import Readable
 
 DEFAULT_LIMIT = 10
-MAX_LIMIT = 1000
 WORD_MODES = ("default", "cca")
 SCOPES = ("clips", "windows", "segments")
 _NAMES = (VECTOR, FEATURES, RHO, EPSILON)
@@ -87,7 +86,7 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
     used.
     """
     began = time.perf_counter()
-    method, wanted = _method(query.method), _filter(query.filter)
+    method, wanted = _method(query.method), as_filter(query.filter)
     _check(query.limit, query.scope)
     version = lib.index.catch_up(lib.store)
     paging = Paging(query.limit, query.cursor, query.include_self)
@@ -121,7 +120,7 @@ def find_words(lib: Library, query: WordQuery) -> Hits:
     Raises BadField, ModelNotFitted. Words that the model does not know are told, and left out.
     """
     began = time.perf_counter()
-    wanted = _filter(query.filter)
+    wanted = as_filter(query.filter)
     texts = fields.queried_words(query.words)
     if query.mode not in WORD_MODES:
         raise fields.bad_field("mode", f"must be one of {', '.join(WORD_MODES)}")
@@ -203,13 +202,8 @@ def _method(value: Method | str) -> Method:
         raise fields.bad_field("method", f"must be one of {known}") from problem
 
 
-def _filter(value: Filter) -> ClipFilter:
-    return value if isinstance(value, ClipFilter) else parse_filter(value)
-
-
 def _check(limit: int, scope: str) -> None:
-    if not 1 <= limit <= MAX_LIMIT:
-        raise fields.bad_field("limit", f"must be from 1 to {MAX_LIMIT}")
+    fields.limit(limit)
     if scope not in SCOPES:
         raise fields.bad_field("scope", f"must be one of {', '.join(SCOPES)}")
 

@@ -12,7 +12,8 @@ class Hit:
     """One clip found.
 
     rank: from 1; score: 0..1, higher is closer, falls strictly with distance;
-    start, end: seconds, the part of the clip that was found (all of it with scope "clips").
+    start, end: seconds, the part of the clip that was found (all of it with scope "clips");
+    time: seconds, of the nearest pose in a search by pose.
     """
 
     rank: int
@@ -21,6 +22,7 @@ class Hit:
     start: float
     end: float
     clip: ClipRecord
+    time: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

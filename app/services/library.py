@@ -10,6 +10,7 @@ from app.analysis.segments import SEGMENT_SPANS, SEGMENT_VECTORS, SEGMENT_WIDTH
 from app.analysis.windows import WIDTH, WINDOW_SCALES
 from app.config import Settings
 from app.search.array_cache import ArrayCache
+from app.search.by_pose import POSES
 from app.search.index import VectorIndex
 from app.search.projections import Projections
 from app.search.span_index import SpanIndex
@@ -28,7 +29,8 @@ class Library:
 
     pool analyses uploaded queries; a worker has a pool of its own. segments: what lies between
     the keyposes of all clips, loaded by the first search that asks. windows: the windows of all
-    clips by the name of their scale, loaded by the first search that asks for them.
+    clips by the name of their scale, and poses: the pose covers of all clips, both loaded by
+    the first search that asks for them.
     """
 
     settings: Settings

@@ -1,0 +1,37 @@
+"""Search by pose."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Depends
+
+from app.api.bodies import require_json
+from app.api.deps import Lib, reads
+from app.api.openapi import refusals
+from app.api.schemas.pose import PoseHits, PoseSearch
+from app.services import find_pose
+from app.services.find_pose import PoseQuery
+
+router = APIRouter(prefix="/v1/search", tags=["search"])
+
+
+@router.post(
+    "/pose",
+    dependencies=[reads, Depends(require_json)],
+    responses=refusals(400, 404, 409, 413, 415),
+)
+def search_pose(lib: Lib, query: PoseSearch) -> PoseHits:
+    """Find the clips that take a pose, and when they do."""
+    hits = find_pose.find_pose(
+        lib,
+        PoseQuery(
+            clip_id=query.clip_id,
+            time=query.time,
+            positions=query.positions,
+            places=query.places,
+            limit=query.limit,
+            filter={} if query.filter is None else query.filter.given(),
+            include_self=query.include_self,
+            cursor=query.cursor,
+        ),
+    )
+    return PoseHits.of(hits)

@@ -1,0 +1,94 @@
+"""Searches by pose."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import ConfigDict, Field, WithJsonSchema
+
+from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, Seconds
+from app.api.schemas.search import ClipId, Filter, Hit, MotionHits
+from app.motion.joint_roles import SUN_ROLES
+from app.search.pose_places import Places
+from app.services import hits as services
+
+_POINT = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
+Positions = Annotated[
+    list[Any],
+    # The service reads them: it can name the joint that is wrong.
+    WithJsonSchema(
+        {"type": "array", "items": _POINT, "minItems": len(SUN_ROLES), "maxItems": len(SUN_ROLES)}
+    ),
+]
+A_POSE: Any = [
+    [0.1, 0.5, 0.0],
+    [-0.1, 0.5, 0.0],
+    [0.1, 0.1, 0.0],
+    [-0.1, 0.1, 0.0],
+    [0.0, 0.95, 0.0],
+    [0.45, 1.45, 0.0],
+    [-0.45, 1.45, 0.0],
+    [0.18, 1.45, 0.0],
+    [-0.18, 1.45, 0.0],
+    [0.0, 1.5, 0.0],
+    [0.0, 1.7, 0.0],
+    [0.7, 1.45, 0.0],
+    [-0.7, 1.45, 0.0],
+]
+"""Arms stretched out to the sides."""
+
+
+class PoseSearch(Incoming):
+    """Find a pose: that of a stored clip at a time, or one of 13 positions."""
+
+    clip_id: ClipId | None = None
+    time: Seconds | None = Field(None, description="Seconds from the clip's begin.")
+    positions: Positions | None = Field(
+        None,
+        description=f"x, y (up) and z of {', '.join(SUN_ROLES)}, in this order, metres. "
+        "Place, heading and size do not matter.",
+    )
+    places: Places = Field(
+        Places.BEST,
+        description="best: one hit a clip, where it comes nearest; all: each place of a clip.",
+    )
+    limit: Limit = 10
+    filter: Filter | None = None
+    include_self: bool = Field(False, description="Whether the query clip may be among the hits.")
+    cursor: Cursor | None = None
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "examples": [
+                {"clip_id": "CLIP_ID", "time": 0.5, "limit": 5},
+                {"positions": A_POSE, "places": "all"},
+            ]
+        }
+    )
+
+
+class PoseHit(Hit):
+    """A place where a clip takes a pose; start and end are how long it stays near it."""
+
+    time: float = Field(description="Seconds: when it is nearest.")
+
+    @classmethod
+    def of(cls, hit: services.Hit) -> PoseHit:
+        """A hit as it goes over the wire."""
+        return cls(**dict(Hit.of(hit)), time=hit.start if hit.time is None else hit.time)
+
+
+class PoseHits(Outgoing):
+    """A page of a ranking by pose, the nearest first."""
+
+    method: str
+    took_ms: float
+    library_version: int
+    items: list[PoseHit]
+    next: str | None
+
+    @classmethod
+    def of(cls, hits: services.Hits) -> PoseHits:
+        """A page as it goes over the wire."""
+        told = {name: value for name, value in dict(MotionHits.of(hits)).items() if name != "items"}
+        return cls(**told, items=[PoseHit.of(hit) for hit in hits.items])

@@ -1,0 +1,94 @@
+"""The pose that a search asks for: of a motion at a time, or 13 positions that a client sends."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from app.analysis.pose_cover import pose_vectors
+from app.errors import BadField, Place
+from app.motion.body_frame import ANALYSIS_RATE
+from app.motion.body_pose import SIDES
+from app.motion.joint_roles import SUN_ROLES
+from app.motion.resampling import sample_at
+from app.numerics.arrays import FloatArray
+from app.services import fields
+
+LARGEST = 1e6
+"""Metres; beyond, a position is a mistake."""
+
+_WHOLE_FRAME = 1e-6
+_ORDER = ", ".join(SUN_ROLES)
+
+
+def pose_at(positions: FloatArray, time: float, duration: float) -> FloatArray:
+    """(36,) vector of the pose at `time` seconds, of positions (n, 13, 3) at ANALYSIS_RATE.
+
+    Between frames it is read off their curve. Raises BadField outside of the motion, and
+    where its pose has no size.
+    """
+    if not (math.isfinite(time) and 0 <= time <= duration):
+        raise fields.bad_field("time", f"must be from 0 to the duration, {duration:.3f} s")
+    frame = time * ANALYSIS_RATE
+    if abs(frame - round(frame)) < _WHOLE_FRAME:
+        frame = round(frame)
+    pose = sample_at(positions.astype(np.float64), np.array([frame]))
+    vector = pose_vectors(pose.astype(np.float32))[0]
+    if not np.isfinite(vector).all():
+        raise fields.bad_field("time", "the body has no size, or no left and right, at that time")
+    return np.asarray(vector)
+
+
+def pose_of(positions: Sequence[Sequence[Any]]) -> FloatArray:
+    """(36,) vector of 13 positions in SUN_ROLES order, any unit.
+
+    Raises BadField naming every joint that cannot be used.
+    """
+    if len(positions) != len(SUN_ROLES):
+        message = f"expected {len(SUN_ROLES)} points ({_ORDER}), found {len(positions)}"
+        raise _refused([Place("positions", message)])
+    bad = [
+        Place(f"positions.{index}", f"{role}: {problem}")
+        for index, (role, point) in enumerate(zip(SUN_ROLES, positions, strict=True))
+        if (problem := _problem(point))
+    ]
+    if bad:
+        raise _refused(bad)
+    points = np.array(positions, dtype=np.float64)
+    vector = pose_vectors(points[None])[0]
+    if not np.isfinite(vector).all():
+        raise _refused(_without_a_body(points))
+    return np.asarray(vector)
+
+
+def _problem(point: Any) -> str | None:
+    expected = "expected x, y and z, finite numbers of metres"
+    if not isinstance(point, list | tuple) or len(point) != 3:
+        return expected
+    numbers = [isinstance(n, int | float) and not isinstance(n, bool) for n in point]
+    if not all(numbers) or not all(math.isfinite(n) for n in point):
+        return expected
+    return f"farther than {LARGEST:g} m" if max(map(abs, point)) > LARGEST else None
+
+
+def _without_a_body(points: FloatArray) -> list[Place]:
+    """Why a pose of good numbers is none."""
+    if (points == points[0]).all():
+        return [Place("positions", "all joints are in one place: the body has no size")]
+    places = []
+    for left, right in SIDES:
+        one, other = SUN_ROLES.index(left), SUN_ROLES.index(right)
+        if np.hypot(*(points[one] - points[other])[[0, 2]]) < 1e-6:
+            message = f"{left} is where {right} is, seen from above: there is no left and right"
+            places.append(Place(f"positions.{one}", message))
+    if len(places) == len(SIDES):
+        return places
+    message = "hips, neck, head, knees and feet are in one place: the body has no size"
+    return [Place("positions", message)]
+
+
+def _refused(places: list[Place]) -> BadField:
+    return BadField("The pose cannot be used.", places=places)

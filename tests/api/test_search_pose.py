@@ -1,0 +1,88 @@
+"""Searches by pose over HTTP."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import httpx2
+import pytest
+
+from app.api.schemas.pose import A_POSE
+from tests.api.conftest import assert_problem
+from tests.api.test_clips import CLIP_FIELDS
+
+
+def _search(client: httpx2.Client, **body: Any) -> dict[str, Any]:
+    answer = client.post("/v1/search/pose", json=body)
+    assert answer.status_code == 200, answer.text
+    told: dict[str, Any] = answer.json()
+    return told
+
+
+def test_hits_have_their_shape_and_a_time(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    told = _search(demo, clip_id=walk["id"], time=0.5, limit=5)
+    assert set(told) == {"method", "took_ms", "library_version", "items", "next"}
+    assert told["method"] == "pose"
+    assert [hit["rank"] for hit in told["items"]] == [1, 2, 3, 4, 5]
+    for hit in told["items"]:
+        assert set(hit) == {"rank", "score", "distance", "start", "end", "time", "clip"}
+        assert set(hit["clip"]) == CLIP_FIELDS
+        assert 0 <= hit["start"] <= hit["time"] < hit["end"] <= hit["clip"]["duration"]
+        assert hit["clip"]["id"] != walk["id"]
+    assert told["items"][0]["clip"]["task"] == "walk"
+
+
+def test_thirteen_positions(demo: httpx2.Client) -> None:
+    told = _search(demo, positions=A_POSE, filter={"task": "wave"}, limit=3)
+    assert {hit["clip"]["task"] for hit in told["items"]} == {"wave"}
+
+
+def test_all_places_page_by_page(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    asked = {"clip_id": walk["id"], "time": 0.5, "places": "all", "include_self": True}
+    whole = _search(demo, **asked, limit=1000)
+    ids = [hit["clip"]["id"] for hit in whole["items"]]
+    assert ids.count(walk["id"]) > 1
+    assert whole["items"][0]["distance"] == 0
+    first = _search(demo, **asked, limit=7)
+    second = _search(demo, **asked, limit=7, cursor=first["next"])
+    together = first["items"] + second["items"]
+    assert [h["distance"] for h in together] == [h["distance"] for h in whole["items"][:14]]
+
+
+@pytest.mark.parametrize(
+    ("body", "location"),
+    [
+        ({}, "body.positions"),
+        ({"clip_id": "CLIP"}, "body.time"),
+        ({"clip_id": "CLIP", "time": 1e5}, "body.time"),
+        ({"clip_id": "CLIP", "time": "soon"}, "body.time"),
+        ({"clip_id": "CLIP", "time": 0.1, "positions": A_POSE}, "body.clip_id"),
+        ({"positions": A_POSE[:12]}, "body.positions"),
+        ({"positions": [*A_POSE[:12], [0, None, 0]]}, "body.positions.12"),
+        ({"positions": [[0, 0, 0]] * 13}, "body.positions"),
+        ({"positions": "here"}, "body.positions"),
+        ({"positions": A_POSE, "places": "some"}, "body.places"),
+        ({"positions": A_POSE, "limit": 1001}, "body.limit"),
+        ({"positions": A_POSE, "pose": 1}, "body.pose"),
+    ],
+)
+def test_what_cannot_be_asked_is_named(
+    demo: httpx2.Client, walk: dict[str, Any], body: dict[str, Any], location: str
+) -> None:
+    asked = body | ({"clip_id": walk["id"]} if "clip_id" in body else {})
+    answer = demo.post("/v1/search/pose", json=asked)
+    assert_problem(answer, 422, "bad_field", location)
+
+
+def test_a_number_that_json_does_not_have(demo: httpx2.Client) -> None:
+    body = '{"positions": [' + ",".join(["[1e999, 0, 0]"] * 13) + "]}"
+    answer = demo.post(
+        "/v1/search/pose", content=body, headers={"content-type": "application/json"}
+    )
+    assert answer.status_code == 422
+    assert "left_knee" in answer.json()["errors"][0]["message"]
+
+
+def test_a_clip_that_is_not_there(demo: httpx2.Client) -> None:
+    answer = demo.post("/v1/search/pose", json={"clip_id": "nobody", "time": 0})
+    assert_problem(answer, 404, "clip_not_found")

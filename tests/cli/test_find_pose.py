@@ -1,0 +1,52 @@
+"""Searches by pose from the command line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from app.api.schemas.pose import A_POSE, PoseHits
+from tests.cli.conftest import Kinedex
+
+
+def test_a_file_finds_its_pose_where_it_is(kinedex: Kinedex, folder: Path) -> None:
+    file = str(folder / "ada" / "kick_01.bvh")
+    found = kinedex("search-pose", file, "--time", "0.8", "--limit", "3", "--json").json()
+    assert PoseHits.model_validate(found).model_dump(mode="json") == found
+    first = found["items"][0]
+    assert (first["clip"]["name"], first["clip"]["person"]) == ("kick_01", "ada")
+    assert abs(first["time"] - 0.8) < 0.02
+    again = kinedex("search-pose", first["clip"]["id"], "--time", "0.8", "--json").json()
+    assert again["items"][0]["clip"]["id"] == found["items"][1]["clip"]["id"]
+
+
+def test_positions_of_a_file_and_a_table(kinedex: Kinedex, tmp_path: Path) -> None:
+    pose = tmp_path / "pose.json"
+    pose.write_text(json.dumps(A_POSE))
+    asked = ("search-pose", "--positions", str(pose), "--limit", "2")
+    found = kinedex(*asked, "--filter", '{"task": "wave"}', "--places", "all", "--json").json()
+    assert {hit["clip"]["task"] for hit in found["items"]} == {"wave"}
+    lines = kinedex(*asked).out.splitlines()
+    assert lines[0].split() == ["rank", "score", "time", "name", "person", "task", "id"]
+    assert len(lines) == 3
+
+
+def test_what_is_refused(kinedex: Kinedex, folder: Path, tmp_path: Path) -> None:
+    file = str(folder / "ada" / "kick_01.bvh")
+    assert kinedex("search-pose").code == 2
+    assert kinedex("search-pose", file).code == 2
+    assert kinedex("search-pose", file, "--positions", file).code == 2
+    late = kinedex("search-pose", file, "--time", "99")
+    assert late.code == 1
+    assert "time: must be from 0 to the duration" in late.err
+    pose = tmp_path / "pose.json"
+    for text, told in (
+        ("{", "positions: "),
+        ("{}", "positions: "),
+        ("[[0, 0, 0]]", "expected 13 points"),
+        (json.dumps([["x", 0, 0], *A_POSE[1:]]), "positions.0: left_knee: "),
+    ):
+        pose.write_text(text)
+        ended = kinedex("search-pose", "--positions", str(pose))
+        assert ended.code == 1
+        assert told in ended.err
