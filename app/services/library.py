@@ -43,6 +43,7 @@ class Library:
     pool: AnalysisPool
     windows: Mapping[str, SpanIndex]
     segments: SpanIndex
+    poses: VectorIndex
 
     @classmethod
     def open(cls, settings: Settings, *, prepare: bool = True) -> Self:
@@ -69,6 +70,7 @@ class Library:
             pool=AnalysisPool(query_limits(settings)),
             windows={s.name: SpanIndex(s.vectors, s.spans, WIDTH) for s in WINDOW_SCALES},
             segments=SpanIndex(SEGMENT_VECTORS, SEGMENT_SPANS, SEGMENT_WIDTH),
+            poses=VectorIndex(layout=POSES),
         )
 
     def close(self) -> None:
