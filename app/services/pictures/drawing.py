@@ -131,4 +131,8 @@ def add_legend(figure: Figure, handles: Sequence[Any], names: Sequence[str]) -> 
     if len(names) > 1 or any(names):
         rows = max(1, int(figure.get_figheight() / LEGEND_ROW) - 1)
         columns = -(-len(names) // rows)
-        figure.legend(handles, [shown(n) for n in names], loc="outside right upper", ncols=columns)
+        legend = figure.legend(
+            handles, [shown(n) for n in names], loc="outside right upper", ncols=columns
+        )
+        for line in legend.get_lines():  # thin and pale where a panel is crowded
+            line.set(alpha=1.0, linewidth=1.6)

@@ -31,20 +31,21 @@ def test_a_panel_more_takes_more_room() -> None:
         height, width = imread(io.BytesIO(picture)).shape[:2]
         return width, height
 
-    one, two, three = size(1), size(2), size(3)
-    assert two[0] > 1.7 * one[0]
-    assert three[1] > 1.7 * two[1]
+    one, three = size(1), size(3)
+    assert three[0] > 1.7 * one[0]
+    assert three[1] > 1.7 * one[1]
 
 
 def test_ranges_ticks_and_logarithms_are_taken() -> None:
     curve = Curve(np.arange(3.0), np.array([1.0, 1e-3, 1e-6]))
+    plain = curves_picture([Panel([curve])], "svg")
     for panel in (
         Panel([curve], log_y=True),
         Panel([curve], y_range=(0.0, 1.0)),
         Panel([curve], ticks=["hips", "neck", "head"]),
         Panel([]),
     ):
-        assert curves_picture([panel], "svg") != curves_picture([Panel([curve])], "svg")
+        assert curves_picture([panel], "svg") != plain
 
 
 def test_powers_of_ten_are_written_plainly(monkeypatch: pytest.MonkeyPatch) -> None:
