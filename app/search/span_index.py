@@ -66,7 +66,7 @@ class SpanIndex:
     def __init__(self, vectors: str, spans: str, width: int) -> None:
         """`width`: numbers of a vector."""
         self._names = vectors, spans
-        self._rows = _Rows(width)
+        self._rows = SpanRows(width)
         self._version = 0
         self._lock = threading.Lock()
 
@@ -107,7 +107,7 @@ class SpanIndex:
             self._rows.add(there, [vectors[i] for i in there], [spans[i] for i in there])
 
 
-class _Rows:
+class SpanRows:
     """Columns that only grow, so that a view of them stays as it is; the dead are marked."""
 
     def __init__(self, width: int) -> None:
@@ -170,9 +170,9 @@ class _Rows:
             squares=self._squares.view(),
         )
 
-    def without_the_dead(self) -> _Rows:
+    def without_the_dead(self) -> SpanRows:
         """The same with the living clips only, in their order."""
-        now, living = self.view(), _Rows(self.width)
+        now, living = self.view(), SpanRows(self.width)
         numbers, spans = np.flatnonzero(now.passing), np.stack([now.starts, now.ends], axis=1)
         for first in range(0, len(numbers), LOAD_BATCH):
             some = numbers[first : first + LOAD_BATCH]
