@@ -15,7 +15,7 @@ from app.search import in_windows
 from app.search.in_windows import by_both, by_warping, by_windows
 from app.search.matches import Region, matches_in, merged
 from app.search.places import Candidates, places
-from app.search.span_index import Spans, SpanRows
+from app.search.span_index import SpanRows, Spans
 from app.search.window_proposals import MOST_WINDOWS, Barred, Piece, propose, scale_for
 
 SECONDS = (30.0, 1.4, 0.5, 12.0)
