@@ -9,6 +9,7 @@ deep minima can. Where the minima keep no common beat there is none.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 from scipy.fft import next_fast_len, rfft, rfftfreq
@@ -54,16 +55,48 @@ TEMPI = 30.0
 """Tempi that may meet the minima by accident, about; see `_confidence`."""
 
 
+class BeatSource(StrEnum):
+    """From what beats are known; each goes before those below it."""
+
+    GIVEN = "given"
+    """A client listed their times."""
+
+    TEMPO = "tempo"
+    """A client told the tempo; their places were sought in the recording or the motion."""
+
+    AUDIO = "audio"
+    """Found in the recording."""
+
+    MOTION = "motion"
+    """Found in the motion's energy."""
+
+    NONE = "none"
+    """No beats were found, which is an answer."""
+
+
 @dataclass(frozen=True, slots=True)
 class Beats:
-    """A steady beat: `times` (beats,) seconds; `tempo` beats per minute, None where none.
+    """Beats of a clip: `times` (beats,) seconds; `tempo` beats per minute, None where none.
 
-    confidence: 0..1, how surely the minima's common beat is no accident.
+    confidence: 0..1, how surely they are no accident.
     """
 
     times: FloatArray
     tempo: float | None
     confidence: float
+    source: BeatSource = BeatSource.MOTION
+
+
+def no_beats(confidence: float = 0.0) -> Beats:
+    """None, with the `confidence` of the best there would have been."""
+    return Beats(np.zeros(0), None, confidence, BeatSource.NONE)
+
+
+def given_beats(times: FloatArray) -> Beats:
+    """Beats that somebody lists: (beats,) seconds, rising."""
+    steps = np.diff(times)
+    tempo = float(60.0 / np.median(steps)) if len(steps) else None
+    return Beats(np.asarray(times, dtype=np.float64), tempo, 1.0, BeatSource.GIVEN)
 
 
 def find_beats(energy: FloatArray, rate: float) -> Beats:
@@ -72,11 +105,11 @@ def find_beats(energy: FloatArray, rate: float) -> Beats:
     signal = _log_energy(energy, rate)
     minima = _deep_minima(signal) / rate
     if slowest >= FASTEST / 60 or len(minima) < LEAST_BEATS:
-        return Beats(np.zeros(0), None, 0.0)
+        return no_beats()
     frequency = _on_minima(minima, _strongest(signal, slowest, rate), slowest)
     confidence = _confidence(minima, frequency)
     if confidence < LEAST_CONFIDENCE:
-        return Beats(np.zeros(0), None, confidence)
+        return no_beats(confidence)
     times = _beat_times(minima, frequency, (len(energy) - 1) / rate)
     return Beats(times, 60.0 * frequency, confidence)
 

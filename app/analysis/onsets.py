@@ -1,0 +1,147 @@
+"""Onsets of a recording: how much new sound begins at each moment.
+
+The spectral flux of Bock & Widmer 2013 ("Maximum filter vibrato suppression for onset
+detection"): the rise of the level in narrow bands, each compared with the loudest of its
+neighbours a moment before, so that a gliding tone is no onset. What librosa's
+`onset_strength` computes, in numpy alone: librosa compiles for 20 s and more when first
+used, in every analysis process where its cache cannot be written.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d, uniform_filter1d
+
+from app.numerics.arrays import FloatArray
+
+RATE = 100.0
+"""Hz of all curves here."""
+
+WINDOW = 0.046
+"""Seconds of sound that one spectrum sees."""
+
+BANDS = 60
+LOWEST, HIGHEST = 30.0, 10_000.0
+"""Hz of the bands, which are evenly spaced in mel."""
+
+BEFORE = 2
+"""Frames back in time to which a level is compared."""
+
+QUIETEST = 60.0
+"""dB below the loudest; what is quieter is silence."""
+
+PARTS: tuple[tuple[float, float], ...] = ((200.0, 1.5), (2000.0, 1.0), (np.inf, 0.6))
+"""Upper edge in Hz, and weight: drums and bass mark beats, cymbals fill what is between."""
+
+LEAST_RISE = 5.0
+"""dB, weighted, that the loudest hundredths of all moments bring at least where anything begins
+at all; held chords and humming machines stay below it."""
+
+LEVELLED = 1.0
+"""Seconds over which the mean strength is taken off."""
+
+FRAMES_AT_ONCE = 512
+
+
+@dataclass(frozen=True, slots=True)
+class Onsets:
+    """Curves at RATE of a recording that lasts `duration` s, frame i at i / RATE.
+
+    strength: (n,) all bands, levelled, in units of its standard deviation, 0 and more;
+    rise: (n,) of the amplitude, linear; bass: (n,) the same below 200 Hz; loudness: (n,)
+    amplitude. All are zeros where the recording is silent.
+    """
+
+    strength: FloatArray
+    rise: FloatArray
+    bass: FloatArray
+    loudness: FloatArray
+    duration: float
+
+
+def find_onsets(samples: FloatArray, rate: float) -> Onsets:
+    """Onsets of a mono recording (samples,) at `rate` Hz."""
+    centres, power = _band_power(samples, rate)
+    loudest, bass = float(power.max(initial=0.0)), centres < PARTS[0][0]
+    curves = np.zeros((4, len(power)))
+    for first in range(0, len(power), FRAMES_AT_ONCE):
+        start = max(0, first - BEFORE)
+        some = power[start : first + FRAMES_AT_ONCE].astype(np.float64)
+        rise = _rise(np.sqrt(some))
+        found = [_flux(some, loudest) @ _weights(centres), rise.sum(axis=1)]
+        found += [rise[:, bass].sum(axis=1), np.sqrt(some.sum(axis=1))]
+        curves[:, first : first + FRAMES_AT_ONCE] = np.array(found)[:, first - start :]
+    flux, rise, low, loudness = curves
+    return Onsets(_levelled(flux), rise, low, loudness, len(samples) / rate)
+
+
+def _band_power(samples: FloatArray, rate: float) -> tuple[FloatArray, FloatArray]:
+    """Centres (BANDS,) in Hz, and power (frames, BANDS), float32, around each frame."""
+    width = int(2 ** round(np.log2(max(WINDOW * rate, 16.0))))
+    centres, bank = _filters(rate, width)
+    frames = int(len(samples) * RATE / rate) + 1
+    padded = np.pad(samples, (width // 2, width))
+    starts = np.round(np.arange(frames) * rate / RATE).astype(np.int64)
+    window, power = np.hanning(width), np.empty((frames, BANDS), dtype=np.float32)
+    for first in range(0, frames, FRAMES_AT_ONCE):
+        some = slice(first, first + FRAMES_AT_ONCE)
+        pieces = padded[starts[some, None] + np.arange(width)] * window
+        power[some] = np.square(np.abs(np.fft.rfft(pieces, axis=1))) @ bank.T
+    return centres, power
+
+
+def _filters(rate: float, width: int) -> tuple[FloatArray, FloatArray]:
+    """Centres (BANDS,) Hz, and triangles (BANDS, width // 2 + 1) over the spectrum's lines."""
+    lines = np.fft.rfftfreq(width, 1.0 / rate)
+    edges = _hertz(np.linspace(_mel(LOWEST), _mel(min(HIGHEST, 0.475 * rate)), BANDS + 2))
+    # A low band may be narrower than the lines are apart: each gets one line at least.
+    half = np.maximum(np.diff(edges), lines[1])
+    up = (lines - edges[:-2, None]) / half[:-1, None]
+    down = (edges[2:, None] - lines) / half[1:, None]
+    bank = np.maximum(np.minimum(up, down), 0.0)
+    nearest = np.abs(lines - edges[1:-1, None]).argmin(axis=1)
+    bank[np.arange(BANDS), nearest] = np.maximum(bank[np.arange(BANDS), nearest], 1e-3)
+    return edges[1:-1], np.asarray(bank / bank.sum(axis=1, keepdims=True), dtype=np.float64)
+
+
+def _mel(hertz: float) -> float:
+    return float(2595.0 * np.log10(1.0 + hertz / 700.0))
+
+
+def _hertz(mel: FloatArray) -> FloatArray:
+    return np.asarray(700.0 * (np.power(10.0, mel / 2595.0) - 1.0), dtype=np.float64)
+
+
+def _rise(level: FloatArray) -> FloatArray:
+    """(frames, BANDS) by how much more there is than BEFORE frames ago; 0 in the first ones."""
+    rise = np.zeros_like(level)
+    rise[BEFORE:] = np.maximum(level[BEFORE:] - level[:-BEFORE], 0.0)
+    return rise
+
+
+def _flux(power: FloatArray, loudest: float) -> FloatArray:
+    """(frames, BANDS) rise in dB over the loudest neighbouring band BEFORE frames ago."""
+    flux: FloatArray = np.zeros_like(power)
+    if loudest > 0:
+        level = 10.0 * np.log10(np.maximum(power / loudest, 10.0 ** (-QUIETEST / 10.0)))
+        earlier = maximum_filter1d(level, 3, axis=1)
+        flux[BEFORE:] = np.maximum(level[BEFORE:] - earlier[:-BEFORE], 0.0)
+    return flux
+
+
+def _weights(centres: FloatArray) -> FloatArray:
+    """(BANDS,) so that each part has its weight, whatever the number of its bands."""
+    part = np.searchsorted([upper for upper, _ in PARTS], centres, side="right")
+    counts = np.bincount(part, minlength=len(PARTS))
+    return np.array([PARTS[index][1] / counts[index] for index in part])
+
+
+def _levelled(curve: FloatArray) -> FloatArray:
+    """Above its local mean, in units of its spread; zeros where nothing begins."""
+    if len(curve) < RATE or float(np.percentile(curve, 98)) < LEAST_RISE:
+        return np.zeros(len(curve))
+    smooth = gaussian_filter1d(curve, 1.0)
+    above = np.maximum(smooth - uniform_filter1d(smooth, round(LEVELLED * RATE)), 0.0)
+    return np.asarray(above / max(float(above.std()), 1e-9))
