@@ -51,10 +51,10 @@ class EndEffectorCandidates:
         return _apart(frames, LEAST_APART * self.rate) / self.rate
 
 
-def end_effector_candidates(track: BodyTrack, beats: Beats) -> EndEffectorCandidates:
-    """What the method selects from. beats: all that is known; without any, rests alone count."""
+def end_effector_candidates(track: BodyTrack, beats: Beats | None) -> EndEffectorCandidates:
+    """What the method selects from. beats: where they are known; else rests alone count."""
     hands, feet = end_effector_speeds(track)
-    times = beats.times * track.rate
+    times = np.zeros(0) if beats is None else beats.times * track.rate
     look = at_beats if len(times) else at_rests
     moments = look(find_rests(hands), times, Scope.LOCAL)
     return EndEffectorCandidates(track.rate, moments, find_rests(feet))

@@ -10,6 +10,7 @@ seen from the waist: the feet furthest apart, at each step.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -26,7 +27,7 @@ from app.numerics.arrays import FloatArray, IntArray
 T1 = 0.25
 """A minimum is small below this share of the median local maximum."""
 
-T2 = 0.7
+T2 = 0.8
 """A minimum is deep if it lies this share of the median local maximum below the maxima."""
 
 LEAST_APART = 0.2
@@ -158,7 +159,7 @@ def find_candidates(
     """What `find_keyposes` selects from."""
     curves = energies(track, method, weights)
     known = _known(beats)
-    used = known or find_beats(energies(track).global_energy, track.rate)
+    used = known or find_beats(_plain(track, curves, method, weights), track.rate)
     look = at_beats if known is not None and len(used.times) else at_rests
     found = (
         candidate
@@ -166,6 +167,14 @@ def find_candidates(
         for candidate in look(find_rests(curve), used.times * track.rate, scope)
     )
     return Candidates(track.rate, curves, used, tuple(found))
+
+
+def _plain(
+    track: BodyTrack, curves: Energies, method: EnergyMethod, weights: Weights
+) -> FloatArray:
+    """The energy in which beats are sought, whatever keyposes are sought in."""
+    is_plain = (method, weights) == (EnergyMethod.RMS, Weights.UNIFORM)
+    return (curves if is_plain else energies(track)).global_energy
 
 
 def _known(beats: Beats | FloatArray | None) -> Beats | None:
@@ -184,20 +193,15 @@ def passes(rest: Rest, t1: float, t2: float) -> bool:
 def _not_there_yet(fresh: list[Candidate], chosen: list[Candidate]) -> list[Candidate]:
     """Those of `fresh` whose beat, or rest where there are no beats, is not chosen yet."""
     beats = {candidate.beat for candidate in chosen} - {None}
-    spans = np.array([(c.rest.first, c.rest.last) for c in chosen if c.beat is None])
-    return [
-        candidate
-        for candidate in fresh
-        if candidate.beat not in beats and not _overlaps(candidate, spans)
-    ]
+    rests = [candidate.rest for candidate in chosen if candidate.beat is None]
+    starts = [rest.first - OVERLAP for rest in rests]
 
+    def overlaps(rest: Rest) -> bool:
+        # Rests of one curve are in order and apart: only the last that starts before can do.
+        before = bisect_right(starts, rest.last)
+        return before > 0 and rests[before - 1].last + OVERLAP >= rest.first
 
-def _overlaps(candidate: Candidate, spans: IntArray) -> bool:
-    if not len(spans):
-        return False
-    rest = candidate.rest
-    early, late = spans[:, 0] - OVERLAP, spans[:, 1] + OVERLAP
-    return bool(np.any((rest.first <= late) & (rest.last >= early)))
+    return [each for each in fresh if each.beat not in beats and not overlaps(each.rest)]
 
 
 def _apart(chosen: Iterable[Candidate], least: float) -> tuple[Candidate, ...]:

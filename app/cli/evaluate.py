@@ -7,6 +7,7 @@ from typing import Any
 
 import typer
 
+from app.cli.evaluate_keyposes import keyposes
 from app.cli.evaluate_low_dimensional import low_dimensional
 from app.cli.evaluate_retrieval import retrieval
 from app.cli.evaluate_symbols import symbols
@@ -19,6 +20,7 @@ from app.services import evaluate
 
 program = typer.Typer(help="Figures on your own library.", no_args_is_help=True)
 program.command("retrieval")(retrieval)
+program.command("keyposes")(keyposes)
 program.command("low-dimensional")(low_dimensional)
 program.command("symbols")(symbols)
 

@@ -87,26 +87,38 @@ class KeyposeThresholds:
         )
 
 
-def learn(examples: Sequence[Example], within: float = TOLERANCE) -> Thresholds:
-    """The thresholds under which the most is right, all keyposes of all clips counting alike.
+@dataclass(frozen=True, slots=True)
+class Lesson:
+    """What every pair of thresholds makes of each example.
 
-    The usual ones without an example.
+    counts: (examples, T1, T2, 3) true, found and correct.
     """
-    return _best(_tried(examples, within).sum(axis=0))
+
+    counts: IntArray
+
+    def learned(self) -> Thresholds:
+        """The thresholds under which the most is right, all keyposes counting alike.
+
+        The usual ones without an example.
+        """
+        return _best(self.counts.sum(axis=0))
+
+    def held_out(self, groups: Sequence[str]) -> tuple[tuple[Thresholds, Counts], ...]:
+        """For each example what the other groups teach, and how it fares with that."""
+        names = np.array(groups)
+        found = []
+        for name, own in zip(groups, self.counts, strict=True):
+            pair = _best(self.counts[names != name].sum(axis=0))
+            at = (TRIED_T1.index(pair.t1), TRIED_T2.index(pair.t2))
+            found.append((pair, Counts(*(int(count) for count in own[at]))))
+        return tuple(found)
 
 
-def held_out(
-    examples: Sequence[Example], groups: Sequence[str], within: float = TOLERANCE
-) -> tuple[tuple[Thresholds, Counts], ...]:
-    """For each example the thresholds that the other groups teach, and how it fares with them."""
-    tried = _tried(examples, within)
-    names = np.array(groups)
-    found = []
-    for name, own in zip(groups, tried, strict=True):
-        pair = _best(tried[names != name].sum(axis=0))
-        at = (TRIED_T1.index(pair.t1), TRIED_T2.index(pair.t2))
-        found.append((pair, Counts(*(int(count) for count in own[at]))))
-    return tuple(found)
+def lesson(examples: Sequence[Example], within: float = TOLERANCE) -> Lesson:
+    """Try every pair on the grid; some 50 ms for half a minute of dance."""
+    pairs = list(product(TRIED_T1, TRIED_T2))
+    counts = np.array([_counts(example, pairs, within) for example in examples], dtype=np.int64)
+    return Lesson(counts.reshape(len(examples), len(TRIED_T1), len(TRIED_T2), 3))
 
 
 def curve_of_t1(
@@ -121,13 +133,6 @@ def curve_of_t2(
 ) -> ThresholdCurve:
     """Fig. 5: T2 varies, T1 is held."""
     return _curve([(t1, t2) for t2 in CURVE_T2], CURVE_T2, examples, within)
-
-
-def _tried(examples: Sequence[Example], within: float) -> IntArray:
-    """(examples, T1, T2, 3): true, found and correct for every pair on the grid."""
-    pairs = list(product(TRIED_T1, TRIED_T2))
-    counts = np.array([_counts(example, pairs, within) for example in examples], dtype=np.int64)
-    return counts.reshape(len(examples), len(TRIED_T1), len(TRIED_T2), 3)
 
 
 def _counts(

@@ -15,7 +15,7 @@ from app.models.recogniser import fit_recogniser
 from app.models.recognition_figures import held_out_recognition_figures, unknown_figures
 from app.models.word_figures import held_out_word_figures
 from app.services.annotated import read_annotated
-from app.services.keypose_learning import keypose_figures, learn_keyposes
+from app.services.keypose_learning import learn_keyposes
 from app.services.model_shelf import ModelKind, holds_persons
 from app.services.models import enqueue_fit
 from app.services.training import TrainingSet, read_training_set
@@ -146,9 +146,9 @@ def _fit_multilinear(training: TrainingSet, _: Before) -> Fit:
 
 
 def _fit_keyposes(_: TrainingSet, before: Before) -> Fit:
-    annotated = read_annotated(before.store)
-    arrays, meta = learn_keyposes(annotated).to_arrays()
-    return Fit(arrays, meta, keypose_figures(annotated))
+    model, figures = learn_keyposes(read_annotated(before.store))
+    arrays, meta = model.to_arrays()
+    return Fit(arrays, meta, figures)
 
 
 _FITS: dict[ModelKind, Callable[[TrainingSet, Before], Fit]] = {

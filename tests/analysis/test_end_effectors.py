@@ -13,24 +13,22 @@ from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, place, standing, waving
 from tests.dances import dance, precision_and_recall
 
-NO_BEATS = Beats(np.zeros(0), None, 0.0)
-
 
 def stops_of(body: FloatArray) -> FloatArray:
-    return end_effector_candidates(body_track(motion_of(body)), NO_BEATS).times()
+    return end_effector_candidates(body_track(motion_of(body)), None).times()
 
 
 def test_stops_of_hands_and_feet_are_found_on_beats_and_without() -> None:
     made = dance(2, 100, beats=20)
     track = body_track(motion_of(made.positions, made.rate))
-    for beats in (Beats(made.beats, made.tempo, 1.0), NO_BEATS):
+    for beats in (Beats(made.beats, made.tempo, 1.0), None):
         found = end_effector_candidates(track, beats).times()
         assert min(precision_and_recall(found, made.stops)) > 0.9
 
 
 def test_feet_that_never_move_are_at_rest() -> None:
     track = body_track(motion_of(waving(6.0, hz=1.0)))
-    found = end_effector_candidates(track, NO_BEATS).times() * track.rate
+    found = end_effector_candidates(track, None).times() * track.rate
     assert len(found) == 12  # the hand turns round twice in a second
     assert set(np.diff(found).round()) <= {14, 15, 16}
 

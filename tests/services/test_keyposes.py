@@ -17,7 +17,7 @@ from app.services.clips import NewClip
 from app.services.demo import DemoClip
 from app.services.demo.dances import dance
 from app.services.imports import import_path
-from app.services.keypose_learning import keypose_figures
+from app.services.keypose_learning import learn_keyposes
 from app.services.keyposes import ThresholdSource, name_keyposes, view
 from app.services.library import Library
 from app.store import arrays, keypose_annotations, models
@@ -167,12 +167,12 @@ def test_figures_are_held_out_by_recording(
     danced: Library, ids: list[str], dances: list[DemoClip]
 ) -> None:
     name_keyposes(danced, ids[0], dances[0].keyposes)
-    alone = keypose_figures(read_annotated(danced.store))
+    _, alone = learn_keyposes(read_annotated(danced.store))
     assert alone["clips"] == 1
     assert "reason" in alone
     assert "learned" not in alone["methods"]["rms"]
     name_keyposes(danced, ids[1], dances[1].keyposes)
-    both = keypose_figures(read_annotated(danced.store))
+    _, both = learn_keyposes(read_annotated(danced.store))
     assert both["methods"]["rms"]["learned"]["f"] > 0.85
     assert both["methods"]["rms"]["learned"]["true"] == sum(len(d.keyposes) for d in dances)
 

@@ -4,6 +4,13 @@ Retrieval goes through the very ranking that searches use. Words and recognition
 out: no clip is judged by a model that has seen it, or another file of its recording.
 """
 
+from app.services.evaluate.keyposes import (
+    JUDGED_KEYPOSES,
+    JudgedClip,
+    JudgedKeyposes,
+    KeyposeEvaluation,
+    judge_keyposes,
+)
 from app.services.evaluate.low_dimensional import (
     LowDimensionalEvaluation,
     judge_low_dimensional,
@@ -24,14 +31,19 @@ from app.services.evaluate.words import judge_words
 
 __all__ = [
     "JUDGED",
+    "JUDGED_KEYPOSES",
     "MOST_QUERIES",
+    "JudgedClip",
+    "JudgedKeyposes",
     "JudgedWay",
     "K",
+    "KeyposeEvaluation",
     "LowDimensionalEvaluation",
     "RetrievalEvaluation",
     "RetrievalFigures",
     "VolumeEvaluation",
     "draw_symbols",
+    "judge_keyposes",
     "judge_low_dimensional",
     "judge_recognition",
     "judge_retrieval",

@@ -1,0 +1,69 @@
+"""`kinedex evaluate keyposes`: from a manifest to Table 1."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Kinedex, end, start
+from tests.named_dances import TEMPI, write_dances
+
+COMMAND = ("evaluate", "keyposes")
+
+
+@pytest.fixture(scope="module")
+def danced(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The data directory of a library of annotated dances, imported by the command."""
+    folder = tmp_path_factory.mktemp("dances")
+    write_dances(folder, seconds=8.0)
+    data = tmp_path_factory.mktemp("danced") / "data"
+    ended = end(start("import", str(folder), data_dir=data))
+    assert ended.code == 0, ended.err
+    return data
+
+
+def test_tables_for_people_fit_a_terminal(kinedex: Kinedex, danced: Path) -> None:
+    ended = kinedex(*COMMAND, data_dir=danced)
+    assert ended.code == 0, ended.err
+    assert "clip    true  found r  right r" in ended.out
+    assert "end-effectors  learned" in ended.out
+    assert "recall" in ended.out
+    assert max(map(len, ended.out.splitlines())) <= 80
+    assert "…" not in ended.out
+
+
+def test_json_for_programs(kinedex: Kinedex, danced: Path) -> None:
+    told = kinedex(*COMMAND, "--json", "--tolerance", "0.05", data_dir=danced).json()
+    assert told["tolerance"] == 0.05
+    assert len(told["clips"]) == told["recordings"] == len(TEMPI)
+    rms = told["methods"]["rms"]
+    assert set(rms) == {"held_out", "usual_thresholds", "learned", "over_t1", "over_t2"}
+    assert len(rms["over_t1"]["values"]) == len(rms["over_t1"]["recall"])
+
+
+def test_the_import_has_learned_thresholds_from_the_manifest(
+    kinedex: Kinedex, danced: Path
+) -> None:
+    fitted = kinedex("fit", "--json", data_dir=danced).json()
+    model = fitted["result"]["models"]["keyposes"]
+    assert model["outcome"] == "fitted"
+    assert model["figures"]["clips"] == len(TEMPI)
+
+
+@pytest.mark.slow
+def test_pictures_go_where_they_are_wanted(kinedex: Kinedex, danced: Path, tmp_path: Path) -> None:
+    curves, folder = tmp_path / "curves.png", tmp_path / "clips"
+    wanted = ("--picture", str(curves), "--pictures", str(folder), "--picture-format", "png")
+    ended = kinedex(*COMMAND, *wanted, data_dir=danced)
+    assert ended.code == 0, ended.err
+    assert curves.read_bytes().startswith(b"\x89PNG")
+    assert len(list(folder.glob("clip_*.png"))) == len(TEMPI) + 1
+
+
+def test_what_cannot_be_done_is_said(kinedex: Kinedex) -> None:
+    ended = kinedex(*COMMAND)
+    assert ended.code != 0
+    assert "keyposes that a person named" in ended.err
+    assert kinedex(*COMMAND, "--tolerance", "0").code != 0
+    assert kinedex(*COMMAND, "--picture", "x.bmp").code != 0
