@@ -17,7 +17,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from app.analysis.beats import Beats, find_beats
+from app.analysis.beats import Beats, BeatSource, find_beats, given_beats
 from app.analysis.candidates import Candidate, Scope, at_beats, at_rests
 from app.analysis.energy import Energies, EnergyMethod, Weights, energies
 from app.analysis.rests import Rest, find_rests
@@ -41,6 +41,9 @@ SLOWEST = 2.4
 
 REPEATED = 2
 """Slow poses that there must be: one alone is an accident."""
+
+KNOWN = frozenset({BeatSource.GIVEN, BeatSource.TEMPO, BeatSource.AUDIO})
+"""Sources of beats that know more than the motion: keyposes are sought on these beats alone."""
 
 OVERLAP = 3
 """Frames by which a local rest may miss a global one and still be the same."""
@@ -128,8 +131,8 @@ def find_keyposes(
 ) -> Keyposes:
     """The keyposes of `track`.
 
-    beats: (b,) seconds, where they are known, none if there are none; None: estimated from
-    the motion. t1, t2: thresholds in units of the median local maximum of each energy curve.
+    beats: as they are known, or (b,) seconds, none if there are none; None: estimated from the
+    motion. t1, t2: thresholds in units of the median local maximum of each energy curve.
     Raises ValueError for another method or other weights.
     """
     method, weights = EnergyMethod(method), Weights(weights)
@@ -158,9 +161,8 @@ def find_candidates(
 ) -> Candidates:
     """What `find_keyposes` selects from."""
     curves = energies(track, method, weights)
-    known = _known(beats)
-    used = known or find_beats(_plain(track, curves, method, weights), track.rate)
-    look = at_beats if known is not None and len(used.times) else at_rests
+    used = _used(beats) or find_beats(_plain(track, curves, method, weights), track.rate)
+    look = at_beats if used.source in KNOWN and len(used.times) else at_rests
     found = (
         candidate
         for curve, scope in ((curves.whole, Scope.GLOBAL), (curves.own, Scope.LOCAL))
@@ -177,12 +179,10 @@ def _plain(
     return (curves if is_plain else energies(track)).global_energy
 
 
-def _known(beats: Beats | FloatArray | None) -> Beats | None:
+def _used(beats: Beats | FloatArray | None) -> Beats | None:
     if beats is None or isinstance(beats, Beats):
         return beats
-    times = np.unique(np.asarray(beats, dtype=np.float64))
-    tempo = float(60.0 / np.median(np.diff(times))) if len(times) > 1 else None
-    return Beats(times, tempo, 1.0)
+    return given_beats(np.unique(np.asarray(beats, dtype=np.float64)))
 
 
 def passes(rest: Rest, t1: float, t2: float) -> bool:

@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+from app.analysis.beats import Beats, BeatSource
 from app.analysis.candidates import Scope
 from app.analysis.energy import EnergyMethod, Weights
 from app.analysis.keyposes import Keyposes, find_candidates, find_keyposes
@@ -135,6 +136,17 @@ def test_the_order_of_beats_and_repetitions_do_not_matter() -> None:
     jumbled = np.concatenate([made.beats[::-1], made.beats])
     one, other = (find_keyposes(track, beats=beats) for beats in (made.beats, jumbled))
     np.testing.assert_array_equal(one.frames, other.frames)
+
+
+def test_beats_of_the_motion_itself_are_hints_and_others_are_law() -> None:
+    made, track = dances()[2]
+    every_other = made.beats[::2]
+    law = find_keyposes(track, beats=Beats(every_other, None, 1.0, BeatSource.AUDIO))
+    hint = find_keyposes(track, beats=Beats(every_other, None, 1.0, BeatSource.MOTION))
+    away = [np.abs(every_other - time).min() for time in law.times]
+    assert max(away) < 0.35 * 60 / made.tempo
+    assert precision_and_recall(hint.times, made.stops)[1] > 0.9
+    assert len(law.times) < 0.7 * len(hint.times)
 
 
 def test_one_beat_and_beats_outside_the_clip_are_allowed() -> None:

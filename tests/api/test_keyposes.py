@@ -19,6 +19,7 @@ def test_keyposes_are_told_with_all_that_they_were_found_from(
     assert (told["method"], told["weights"]) == ("rms", "uniform")
     assert told["energy_unit"] == "body lengths per second"
     assert told["thresholds"] == {"t1": "default", "t2": "default", "model_version": None}
+    assert told["beats_source"] in ("motion", "none")
     assert 0 <= told["beats_confidence"] <= 1
     assert set(told["noise"]) == {"global", "local"}
     assert told["annotated"] is None

@@ -65,6 +65,10 @@ class Keyposes(Outgoing):
     frame_rate: float = Field(description="Of `frames` and of the energy curves.")
     tempo: float | None = Field(description="Beats a minute; null where no beat was found.")
     beats: list[float] = Field(description="Seconds.")
+    beats_source: Literal["given", "tempo", "audio", "motion", "none"] = Field(
+        description="Whence the beats are; keyposes are sought on `given`, `tempo` and `audio` "
+        "ones alone, while `motion` ones only tell which moment of a rest is meant."
+    )
     beats_confidence: float = Field(description="0 to 1: how surely they are no accident.")
     frames: list[int]
     times: list[float] = Field(description="Seconds.")
@@ -98,6 +102,7 @@ class Keyposes(Outgoing):
             frame_rate=view.frame_rate,
             tempo=found.beats.tempo,
             beats=plain(found.beats.times),
+            beats_source=found.beats.source.value,
             beats_confidence=found.beats.confidence,
             frames=found.frames.tolist(),
             times=plain(found.times),
