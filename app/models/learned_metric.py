@@ -25,6 +25,9 @@ from app.numerics.principal_axes import principal_axes
 
 METRIC_VERSION = 1
 
+INPUTS = ("motion_vector", "motion_sample", "symbol_statistics")
+"""Names of the descriptors, in the order in which `Described` has them."""
+
 DIMENSIONS = 160
 """Principal axes of the descriptors, in which labels are parted; 100 to 250 do alike."""
 

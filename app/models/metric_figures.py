@@ -83,7 +83,8 @@ def held_out_metric(
     figures = {f"{held}_held_out": _figures(judged) for held, judged in found.items()}
     told = {name: shares for name, shares in figures.items() if shares}
     error = {"calibration_error": calibration_error(calibration, distances, same)}
-    return MetricEvaluation(told | error | {"labels": _label_counts(counts)}, calibration)
+    counted = {"labels": _label_counts(counts, by_name=factor is Factor.TASK)}
+    return MetricEvaluation(told | error | counted, calibration)
 
 
 def calibration_error(
@@ -177,13 +178,13 @@ def _means(rankings: list[BoolArray]) -> list[float]:
     return [float(value) for value in np.mean(rows, axis=0)]
 
 
-def _label_counts(counts: Counter[str]) -> dict[str, Any]:
-    """How many clips carry each label."""
+def _label_counts(counts: Counter[str], *, by_name: bool) -> dict[str, Any]:
+    """How many clips carry a label; persons are not named: figures outlive who is forgotten."""
     fewest = sorted(counts.items(), key=lambda item: (item[1], item[0]))
-    return {
+    told = {
         "count": len(counts),
         "clips": counts.total(),
         "fewest_clips": fewest[0][1],
         "most_clips": fewest[-1][1],
-        "clips_of": dict(fewest[:TOLD_LABELS]),
     }
+    return told | ({"clips_of": dict(fewest[:TOLD_LABELS])} if by_name else {})

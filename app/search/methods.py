@@ -18,3 +18,11 @@ class Method(StrEnum):
     """Sun 2011, equation 7: DTW of the primary vectors, twice, and of the secondary ones."""
     MSV_XCORR = "msv-xcorr"
     """Sun 2011, equation 6: 3 - D_xcorr, the cross-correlation likeness turned around."""
+    METRIC_TASK = "metric-task"
+    """Euclidean distance in coordinates learned from the library's tasks: the same task first."""
+    METRIC_PERSON = "metric-person"
+    """The same, learned from its persons: the same person, or style, first."""
+
+
+LEARNED = frozenset({Method.METRIC_TASK, Method.METRIC_PERSON})
+"""What needs a fitted model, and scores by the probability that the labels are the same."""

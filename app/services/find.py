@@ -9,19 +9,21 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
+from app.models.learned_metric import INPUTS
 from app.search import cursor as cursors
 from app.search.by_example import SCALES, rank_by_example
 from app.search.cursor import Position
 from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays
 from app.search.filters import as_filter
 from app.search.index import VECTOR
-from app.search.methods import Method
+from app.search.methods import LEARNED, Method
 from app.search.rank import Ranked, score
 from app.services import fields
 from app.services.find_segments import find_in_segments
 from app.services.find_windows import Paging, find_in_windows
 from app.services.hits import Hit, Hits
 from app.services.library import Library
+from app.services.metric_ranking import rank_by_metric
 from app.services.query import Answered, Question, describe
 from app.services.word_ranking import rank_by_words, word_score
 from app.store import clips as stored
@@ -82,8 +84,8 @@ class WordQuery:
 def find_motion(lib: Library, query: MotionQuery) -> Hits:
     """Clips, or parts of clips, in order of likeness to a motion.
 
-    Raises BadField, ClipNotFound, ClipNotReady, and BadContent for an upload that cannot be
-    used.
+    Raises BadField, ClipNotFound, ClipNotReady, BadContent for an upload that cannot be used,
+    and ModelNotFitted for a metric that is not learned yet.
     """
     began = time.perf_counter()
     method, wanted = _method(query.method), as_filter(query.filter)
@@ -97,21 +99,34 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
         raise fields.bad_field("segment", "goes with scope segments")
     if query.scope == "windows":
         return _timed(find_in_windows(lib, _question(query), method, wanted, paging), began)
+    page = (_by_metric if method in LEARNED else _by_example)(lib, query, method, wanted)
+    return _timed(replace(page, method=method.value, library_version=version), began)
+
+
+def _by_example(lib: Library, query: MotionQuery, method: Method, wanted: ClipFilter) -> Hits:
     asked = describe(lib, _question(query), _NAMES)
     question = _fingerprint(asked, method, wanted, query)
-    exclude = frozenset({query.clip_id} if query.clip_id and not query.include_self else ())
     after = _position(query.cursor, question)
     found = rank_by_example(
         lib.index,
         _query_arrays(asked),
         method,
         wanted,
-        exclude,
+        _left_out(query),
         partial(lib.arrays.get_many, lib.store),
         after.anchor if after else None,
     )
-    page = _page(lib, found, question, query.limit, after, partial(score, scale=SCALES[method]))
-    return _timed(replace(page, method=method.value, library_version=version), began)
+    return _page(lib, found, question, query.limit, after, partial(score, scale=SCALES[method]))
+
+
+def _by_metric(lib: Library, query: MotionQuery, method: Method, wanted: ClipFilter) -> Hits:
+    asked = describe(lib, _question(query), INPUTS)
+    found = rank_by_metric(lib, asked.arrays, method, wanted, _left_out(query))
+    question = cursors.digest(
+        query.clip_id, found.digest, method, wanted, query.include_self, found.model
+    )
+    after = _position(query.cursor, question)
+    return _page(lib, found.ranking, question, query.limit, after, found.to_score)
 
 
 def find_words(lib: Library, query: WordQuery) -> Hits:
@@ -152,6 +167,10 @@ def _question(query: MotionQuery) -> Question:
         roles=query.roles,
         stack=query.stack,
     )
+
+
+def _left_out(query: MotionQuery) -> frozenset[str]:
+    return frozenset({query.clip_id} if query.clip_id and not query.include_self else ())
 
 
 def _query_arrays(asked: Answered) -> QueryArrays:

@@ -5,11 +5,14 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from typing import Any
 
 from app.errors import NotEnoughLabels
 from app.models.language.wordnet import Meanings
+from app.models.learned_metric import Factor, LearnedMetric, fit_axes
 from app.models.library_words import fit_library_words
+from app.models.metric_figures import held_out_metric
 from app.models.multilinear import fit_multilinear
 from app.models.recogniser import fit_recogniser
 from app.models.recognition_figures import held_out_recognition_figures, unknown_figures
@@ -151,9 +154,20 @@ def _fit_keyposes(_: TrainingSet, before: Before) -> Fit:
     return Fit(arrays, meta, figures)
 
 
+def _fit_metric(factor: Factor, training: TrainingSet, _: Before) -> Fit:
+    persons, tasks, described = training.persons, training.tasks, training.described
+    judged = held_out_metric(described, persons, tasks, training.groups, factor)
+    labels = tasks if factor is Factor.TASK else persons
+    model = LearnedMetric(fit_axes(described, labels, factor), judged.calibration)
+    arrays, meta = model.to_arrays()
+    return Fit(arrays, meta, judged.figures)
+
+
 _FITS: dict[ModelKind, Callable[[TrainingSet, Before], Fit]] = {
     ModelKind.WORDS: _fit_words,
     ModelKind.RECOGNISER: _fit_recogniser,
     ModelKind.MULTILINEAR: _fit_multilinear,
+    ModelKind.METRIC_TASK: partial(_fit_metric, Factor.TASK),
+    ModelKind.METRIC_PERSON: partial(_fit_metric, Factor.PERSON),
     ModelKind.KEYPOSES: _fit_keyposes,
 }

@@ -12,10 +12,11 @@ from app.config import Settings
 from app.search.array_cache import ArrayCache
 from app.search.by_pose import POSES
 from app.search.index import VectorIndex
+from app.search.projected_index import ProjectedIndex
 from app.search.projections import Projections
 from app.search.span_index import SpanIndex
 from app.services.analysis_pool import AnalysisPool, Limits
-from app.services.model_shelf import ModelShelf
+from app.services.model_shelf import METRICS, ModelKind, ModelShelf
 from app.store import schema
 from app.store.store import Store
 
@@ -44,6 +45,7 @@ class Library:
     windows: Mapping[str, SpanIndex]
     segments: SpanIndex
     poses: VectorIndex
+    metrics: Mapping[ModelKind, ProjectedIndex]
 
     @classmethod
     def open(cls, settings: Settings, *, prepare: bool = True) -> Self:
@@ -59,10 +61,11 @@ class Library:
             for cache in (kept, word_outputs, symbol_points):
                 cache.forget(clip_ids)
 
+        index = VectorIndex(on_change=forget)
         return cls(
             settings=settings,
             store=Store.open(settings.database, settings.files_dir),
-            index=VectorIndex(on_change=forget),
+            index=index,
             arrays=kept,
             models=ModelShelf(),
             word_outputs=word_outputs,
@@ -71,6 +74,7 @@ class Library:
             windows={s.name: SpanIndex(s.vectors, s.spans, WIDTH) for s in WINDOW_SCALES},
             segments=SpanIndex(SEGMENT_VECTORS, SEGMENT_SPANS, SEGMENT_WIDTH),
             poses=VectorIndex(layout=POSES),
+            metrics={kind: ProjectedIndex(index) for kind in METRICS},
         )
 
     def close(self) -> None:

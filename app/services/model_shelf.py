@@ -18,6 +18,7 @@ from app.store.store import Store
 
 if TYPE_CHECKING:
     from app.models.keypose_thresholds import KeyposeThresholds
+    from app.models.learned_metric import LearnedMetric
     from app.models.library_words import LibraryWords
     from app.models.multilinear import Multilinear
     from app.models.recogniser import Recogniser
@@ -34,14 +35,21 @@ class ModelKind(StrEnum):
     """Vasilescu's N-mode decomposition of persons and tasks."""
     RECOGNISER = "recogniser"
     """Who does what, with an honest unknown."""
+    METRIC_TASK = "metric-task"
+    """How near two clips are in task."""
+    METRIC_PERSON = "metric-person"
+    """How near two clips are in person, or style."""
     KEYPOSES = "keyposes"
     """Thresholds of keyposes, from clips whose keyposes a person named."""
 
 
+METRICS = (ModelKind.METRIC_TASK, ModelKind.METRIC_PERSON)
+"""Learned metrics."""
+
 FALSE_ACCEPT_RATE = "false_accept_rate"
 """A setting of the recogniser: how often something new may be called known."""
 
-_WITHOUT_PERSONS = frozenset({ModelKind.WORDS, ModelKind.KEYPOSES})
+_WITHOUT_PERSONS = frozenset({ModelKind.WORDS, ModelKind.METRIC_TASK, ModelKind.KEYPOSES})
 
 
 def holds_persons(kind: ModelKind) -> bool:
@@ -96,6 +104,12 @@ class ModelShelf:
             return KeyposeThresholds.from_arrays(arrays, meta)
 
         return self._get(store, ModelKind.KEYPOSES, build)
+
+    def metric(self, store: Store, kind: ModelKind) -> Fitted[LearnedMetric]:
+        """The learned metric of METRIC_TASK or METRIC_PERSON in force; raises ModelNotFitted."""
+        from app.models.learned_metric import LearnedMetric
+
+        return self._get(store, kind, LearnedMetric.from_arrays)
 
     def _get(
         self,

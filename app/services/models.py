@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from app.services import fields
 from app.services.library import Library
 from app.services.model_shelf import FALSE_ACCEPT_RATE, ModelKind
@@ -22,10 +24,31 @@ FIT_KEY = "fit"
 _READY = ClipFilter(state=(ClipState.READY,))
 
 
+@dataclass(frozen=True, slots=True)
+class Unfitted:
+    """A kind of model that the last fit left as it was; outcome: "skipped" or "failed"."""
+
+    kind: str
+    outcome: str
+    reason: str
+
+
 def list_models(lib: Library) -> tuple[ModelRecord, ...]:
     """The model in force of each kind; `meta["figures"]` holds its held-out figures."""
     with lib.store.read() as tx:
         return stored.list_current(tx)
+
+
+def list_unfitted(lib: Library) -> tuple[Unfitted, ...]:
+    """What the last fit could not fit, with the reason; nothing before the first fit."""
+    with lib.store.read() as tx:
+        last = jobs.list_jobs(tx, kind=JobKind.FIT, state=JobState.SUCCEEDED, limit=1).items
+    outcomes = (last[0].result or {}).get("models", {}) if last else {}
+    return tuple(
+        Unfitted(kind, outcome["outcome"], outcome["reason"])
+        for kind, outcome in outcomes.items()
+        if "reason" in outcome
+    )
 
 
 def set_false_accept_rate(lib: Library, model_id: str, rate: float | None) -> ModelRecord:

@@ -9,6 +9,7 @@ import numpy as np
 
 from app.analysis.motion_symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.folds import recording_of
+from app.models.learned_metric import INPUTS, Described
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm import GaussianHMM
 from app.store import arrays, clip_listing, clips, library
@@ -16,7 +17,7 @@ from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord, ClipState
 from app.store.store import Store
 
-NAMES = (*SYMBOL_ARRAYS, "symbol_statistics", "motion_sample")
+NAMES = (*SYMBOL_ARRAYS, *INPUTS)
 READY = ClipFilter(state=(ClipState.READY,))
 
 
@@ -25,7 +26,8 @@ class TrainingSet:
     """N ready clips, sorted by id, at a library version.
 
     groups: (N,) clips of one recording share a name; symbols: N; statistics: (N, 131);
-    samples: (N, 1250); is_anonymous: persons are not told, since none is to be recognised.
+    samples: (N, 1250); vectors: (N, 128); is_anonymous: persons are not told, since none is to
+    be recognised.
     """
 
     library_version: int
@@ -34,6 +36,7 @@ class TrainingSet:
     symbols: tuple[GaussianHMM, ...]
     statistics: FloatArray
     samples: FloatArray
+    vectors: FloatArray
     is_anonymous: bool = False
 
     def __len__(self) -> int:
@@ -53,6 +56,11 @@ class TrainingSet:
     def label_sets(self) -> Sequence[tuple[str, ...]]:
         """(N,) in which words."""
         return [clip.words for clip in self.clips]
+
+    @property
+    def described(self) -> Described:
+        """What learned metrics look at."""
+        return Described(self.vectors, self.samples, self.statistics)
 
 
 def ready_only(wanted: ClipFilter | None) -> ClipFilter:
@@ -78,6 +86,7 @@ def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
         ),
         statistics=_stacked([found["symbol_statistics"][clip_id] for clip_id in whole]),
         samples=_stacked([found["motion_sample"][clip_id] for clip_id in whole]),
+        vectors=_stacked([found["motion_vector"][clip_id] for clip_id in whole]),
     )
 
 

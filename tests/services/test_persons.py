@@ -77,7 +77,7 @@ def test_a_fit_that_began_before_brings_nobody_back(
     outcome = fit_library(lib.store)["models"]
     assert outcome["recogniser"]["outcome"] == "skipped"
     assert outcome["words"]["outcome"] == "fitted"
-    assert {record.kind for record in models.list_models(lib)} == {"words"}
+    assert {record.kind for record in models.list_models(lib)} == {"words", "metric-task"}
 
 
 def test_switched_off_no_model_holds_a_person(

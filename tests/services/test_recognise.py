@@ -54,7 +54,8 @@ def test_models_tell_what_they_were_fitted_on_and_how_good_they_are(
     ready_library: Library,
 ) -> None:
     fitted = {record.kind: record for record in models.list_models(ready_library)}
-    assert set(fitted) == {"words", "recogniser", "multilinear"}
+    kinds = {"words", "recogniser", "multilinear", "metric-task", "metric-person"}
+    assert set(fitted) == kinds
     assert {record.library_size for record in fitted.values()} == {12}
     words = {row["method"]: row for row in fitted["words"].meta["figures"]["figures"]}
     assert words["default"]["top_3_recognition"] >= words["prior"]["top_3_recognition"]

@@ -10,7 +10,7 @@ from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import refusals
 from app.api.schemas.jobs import Job, JobStarted
-from app.api.schemas.models import Model, ModelList, ModelPatch
+from app.api.schemas.models import Model, ModelList, ModelPatch, UnfittedModel
 from app.services import models
 
 router = APIRouter(prefix="/v1/models", tags=["models"])
@@ -19,7 +19,10 @@ router = APIRouter(prefix="/v1/models", tags=["models"])
 @router.get("", dependencies=[reads], responses=refusals())
 def list_models(lib: Lib) -> ModelList:
     """The current model of each kind, with the library's size at the fit and held-out figures."""
-    return ModelList(items=[Model.of(record) for record in models.list_models(lib)])
+    return ModelList(
+        items=[Model.of(record) for record in models.list_models(lib)],
+        unfitted=[UnfittedModel.of(one) for one in models.list_unfitted(lib)],
+    )
 
 
 @router.patch(

@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import Field
 
 from app.api.schemas.base import Incoming, Outgoing
+from app.services import models as services
 from app.services.model_shelf import FALSE_ACCEPT_RATE
 from app.store.models import ModelRecord
 
@@ -53,8 +54,22 @@ class ModelPatch(Incoming):
     )
 
 
+class UnfittedModel(Outgoing):
+    """A kind of model that the last fit could not fit; an older one may still be in use."""
+
+    kind: str
+    outcome: str = Field(description="skipped, or failed by a defect.")
+    reason: str = Field(description="As: too few clips carry a label.")
+
+    @classmethod
+    def of(cls, unfitted: services.Unfitted) -> UnfittedModel:
+        """An unfitted kind as it goes over the wire."""
+        return cls(kind=unfitted.kind, outcome=unfitted.outcome, reason=unfitted.reason)
+
+
 class ModelList(Outgoing):
     """The current model of each kind; `next` is always null."""
 
     items: list[Model]
+    unfitted: list[UnfittedModel] = Field(description="What the last fit left out, and why.")
     next: str | None = None

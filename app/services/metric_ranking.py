@@ -1,0 +1,83 @@
+"""Rank clips by what the library's labels taught: the same task, or the same person, first."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from app.errors import ModelNotFitted
+from app.models.learned_metric import INPUTS, Described, LearnedMetric
+from app.numerics.arrays import FloatArray
+from app.search.methods import Method
+from app.search.near import Near
+from app.services.library import Library
+from app.services.model_shelf import Fitted, ModelKind
+from app.services.models import list_unfitted
+from app.services.query import Arrays
+from app.store import arrays
+from app.store.clip_filter import ClipFilter
+
+KINDS = {
+    Method.METRIC_TASK: ModelKind.METRIC_TASK,
+    Method.METRIC_PERSON: ModelKind.METRIC_PERSON,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class MetricRanking:
+    """A ranking; model: id of the model that ranked; digest: of what was asked about;
+    to_score: from a distance to the probability that the labels are the same."""
+
+    ranking: Near
+    model: str
+    digest: str
+    to_score: Callable[[float], float]
+
+
+def rank_by_metric(
+    lib: Library,
+    asked: Arrays,
+    method: Method,
+    wanted: ClipFilter,
+    exclude: frozenset[str] = frozenset(),
+) -> MetricRanking:
+    """All clips that pass the filter and are not excluded; the index has caught up.
+
+    asked: the INPUTS of the query. Raises ModelNotFitted.
+    """
+    kind = KINDS[method]
+    if kind is ModelKind.METRIC_PERSON and not lib.settings.recognize_persons:
+        raise ModelNotFitted("Recognising people by how they move is switched off here.")
+    fitted = _fitted(lib, kind)
+    model = fitted.model
+    query = model.axes.project(Described(*(asked[name][None] for name in INPUTS)))[0]
+    found = lib.metrics[kind].nearest(
+        fitted.id, partial(_project, lib, model), query, wanted, exclude
+    )
+    content = hashlib.sha256(b"".join(asked[name].tobytes() for name in INPUTS)).hexdigest()
+    return MetricRanking(found, fitted.id, content, model.calibration.probability)
+
+
+def _fitted(lib: Library, kind: ModelKind) -> Fitted[LearnedMetric]:
+    try:
+        return lib.models.metric(lib.store, kind)
+    except ModelNotFitted as missing:
+        reasons = [one.reason for one in list_unfitted(lib) if one.kind == kind]
+        if not reasons:
+            raise
+        raise ModelNotFitted(f"{missing.detail}. {reasons[0]}") from missing
+
+
+def _project(lib: Library, model: LearnedMetric, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
+    """Coordinates by clip id; clips that are gone are left out."""
+    with lib.store.read() as tx:
+        found = [arrays.get_many(tx, clip_ids, name) for name in INPUTS]
+    there = [clip_id for clip_id in clip_ids if all(clip_id in part for part in found)]
+    if not there:
+        return {}
+    described = Described(*(np.stack([part[clip_id] for clip_id in there]) for part in found))
+    return dict(zip(there, model.axes.project(described), strict=True))
