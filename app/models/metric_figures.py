@@ -161,7 +161,7 @@ def _figures(judged: _Judged) -> dict[str, float | int]:
         "nearest": nearest,
         "precision_at_20": precision,
         "mean_average_precision": average,
-        "motion_vector_mean_average_precision": _means(judged.plain)[2],
+        "motion_vector_map": _means(judged.plain)[2],
         "queries": len(judged.learned),
     }
 

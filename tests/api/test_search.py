@@ -12,7 +12,8 @@ from app.services.demo import DemoClip
 from tests.api.conftest import assert_problem
 from tests.api.test_clips import CLIP_FIELDS
 
-METHODS = ["fused", "vector", "dtw", "msv-dtw", "msv-xcorr"]
+LEARNED = ["metric-task", "metric-person"]
+METHODS = ["fused", "vector", "dtw", "msv-dtw", "msv-xcorr", *LEARNED]
 
 
 def _search(client: httpx2.Client, **body: Any) -> dict[str, Any]:
@@ -64,6 +65,33 @@ def test_filters_narrow(demo: httpx2.Client, walk: dict[str, Any]) -> None:
     for given in ({"task": "kick"}, {"task": ["kick"], "person": ["ada", "bruno"]}):
         told = _search(demo, clip_id=walk["id"], filter=given, limit=100)
         assert {hit["clip"]["task"] for hit in told["items"]} == {"kick"}
+
+
+def test_the_same_person_in_another_task(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    wanted = {"not_task": "walk"}
+    told = _search(demo, clip_id=walk["id"], method="metric-person", filter=wanted, limit=2)
+    assert {hit["clip"]["person"] for hit in told["items"]} == {walk["person"]}
+    assert "walk" not in {hit["clip"]["task"] for hit in told["items"]}
+
+
+@pytest.mark.parametrize("method", LEARNED)
+def test_an_upload_searches_by_a_learned_metric(
+    demo: httpx2.Client, take: DemoClip, method: str
+) -> None:
+    sent = {"method": method, "limit": "1", "filter": json.dumps({"not_word": "no_such"})}
+    files = {"file": ("q.bvh", take.content)}
+    answer = demo.post("/v1/search/motion", data=sent, files=files)
+    assert answer.status_code == 200, answer.text
+    (hit,) = answer.json()["items"]
+    assert hit["clip"]["task"] == take.task
+    assert 0 < hit["score"] <= 1
+
+
+@pytest.mark.parametrize("method", LEARNED)
+def test_a_metric_that_is_not_learned_yet(idle: httpx2.Client, take: DemoClip, method: str) -> None:
+    files = {"file": ("q.bvh", take.content)}
+    answer = idle.post("/v1/search/motion", data={"method": method}, files=files)
+    assert_problem(answer, 409, "model_not_fitted")
 
 
 def test_an_upload_searches_as_a_stored_clip_does(demo: httpx2.Client, take: DemoClip) -> None:
@@ -176,8 +204,16 @@ def test_labels_are_counted(demo: httpx2.Client) -> None:
 
 
 def test_models_tell_what_they_were_fitted_on(demo: httpx2.Client) -> None:
-    told = demo.get("/v1/models").json()["items"]
+    answer = demo.get("/v1/models").json()
+    # nobody has named keyposes of the demo's clips
+    assert [one["kind"] for one in answer["unfitted"] if one["reason"]] == ["keyposes"]
+    told = answer["items"]
     assert told
     for model in told:
         assert set(model) >= {"id", "kind", "version", "library_version", "library_size", "figures"}
         assert model["library_size"] >= 12
+    figures = {model["kind"]: model["figures"] for model in told}
+    for kind in LEARNED:
+        held_out = figures[kind]["clips_held_out"]
+        assert 0 <= held_out["mean_average_precision"] <= 1
+        assert figures[kind]["labels"]["fewest_clips"] >= 4

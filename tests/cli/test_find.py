@@ -33,6 +33,18 @@ def test_a_stored_clip_by_a_method_and_a_filter(kinedex: Kinedex, folder: Path) 
     assert {hit["clip"]["person"] for hit in told["items"]} == {"bruno"}
 
 
+def test_a_file_by_what_the_labels_taught(kinedex: Kinedex, folder: Path) -> None:
+    assert kinedex("fit").code == 0
+    for factor, label in (("task", "kick"), ("person", "ada")):
+        asked = ("search", _file(folder, "kick"), "--method", f"metric-{factor}", "--json")
+        told = kinedex(*asked).json()
+        assert told["method"] == f"metric-{factor}"
+        assert told["items"][0]["clip"][factor] == label
+        others = kinedex(*asked, "--filter", f'{{"not_{factor}": "{label}"}}').json()["items"]
+        assert others
+        assert label not in {hit["clip"][factor] for hit in others}
+
+
 def test_hits_as_a_table(kinedex: Kinedex, folder: Path) -> None:
     ended = kinedex("search", _file(folder, "walk"), "--limit", "2")
     assert ended.code == 0
@@ -103,6 +115,8 @@ def test_a_fit_shows_the_held_out_figures_of_each_model(kinedex: Kinedex) -> Non
         "words",
         "recogniser",
         "multilinear",
+        "metric-task",
+        "metric-person",
     }
     told = [line.split()[3:] for line in ended.out.splitlines()]
     for method in ("prior", "default"):

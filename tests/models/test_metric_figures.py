@@ -31,7 +31,7 @@ def test_what_is_held_out_is_found_better_than_by_motion_vectors(factor: Factor)
         assert shares["queries"] == 120
         assert all(0 <= shares[name] <= 1 for name in shares if name != "queries")
     clips = found.figures["clips_held_out"]
-    assert clips["mean_average_precision"] > clips["motion_vector_mean_average_precision"] + 0.2
+    assert clips["mean_average_precision"] > clips["motion_vector_map"] + 0.2
     assert clips["mean_average_precision"] > 0.9
     assert found.figures["calibration_error"] < 0.05
     json.dumps(found.figures)
