@@ -1,0 +1,62 @@
+"""Motions described and compared by every method, without a store."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.analysis.analyse import describe_for_search
+from app.models.learned_metric import INPUTS, Described, Factor, MetricAxes, fit_axes
+from app.motion.motion import Motion
+from app.numerics.arrays import FloatArray
+from app.search.by_example import fuse
+from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to
+from app.search.index import VECTOR
+from app.search.methods import Method
+
+Arrays = dict[str, FloatArray]
+RERANKED = (Method.DTW, Method.MSV_DTW, Method.MSV_XCORR)
+
+
+@dataclass(frozen=True)
+class Gallery:
+    """Described motions, and metrics learned from all of their labels."""
+
+    arrays: list[Arrays]
+    metrics: dict[Method, MetricAxes]
+
+    def distances(self, query: Arrays) -> dict[Method, FloatArray]:
+        """(n,) distances of all motions to a query, by method."""
+        names = [str(place) for place in range(len(self.arrays))]
+
+        def load(clip_ids: Sequence[str], name: str) -> Arrays:
+            return {i: self.arrays[int(i)][name] for i in clip_ids}
+
+        asked = QueryArrays(query[VECTOR], query[FEATURES], query[RHO], query[EPSILON])
+        found = {method: distances_to(asked, names, method, load) for method in RERANKED}
+        vectors = np.stack([arrays[VECTOR] for arrays in self.arrays]).astype(float)
+        found[Method.VECTOR] = np.linalg.norm(vectors - query[VECTOR], axis=1)
+        found[Method.FUSED] = fuse(found[Method.VECTOR], found[Method.DTW])
+        for method, axes in self.metrics.items():
+            points = axes.project(described(self.arrays))
+            found[method] = np.linalg.norm(points - axes.project(described([query])), axis=1)
+        return found
+
+
+def gallery(motions: Sequence[Motion], persons: Sequence[str], tasks: Sequence[str]) -> Gallery:
+    arrays = [describe_for_search(motion).arrays for motion in motions]
+    factors = {
+        Method.METRIC_TASK: (Factor.TASK, tasks),
+        Method.METRIC_PERSON: (Factor.PERSON, persons),
+    }
+    metrics = {
+        method: fit_axes(described(arrays), labels, factor)
+        for method, (factor, labels) in factors.items()
+    }
+    return Gallery(arrays, metrics)
+
+
+def described(arrays: Sequence[Arrays]) -> Described:
+    return Described(*(np.stack([some[name] for some in arrays]) for name in INPUTS))
