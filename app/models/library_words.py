@@ -16,7 +16,8 @@ from app.errors import NotEnoughLabels
 from app.models.correlated_space import LEAST_CLIPS, CorrelatedSpace, fit_correlated_space
 from app.models.language.wordnet import Meanings
 from app.models.symbol_space import SymbolSpace, fit_symbol_space
-from app.models.word_model import WordModel, clip_cosines, fit_word_model
+from app.models.word_calibration import WordCalibration, calibrate
+from app.models.word_model import WordModel, fit_word_model
 from app.models.word_query import WordsAsked, understand
 from app.models.word_vocabulary import WordVocabulary
 from app.numerics.arrays import FloatArray
@@ -27,13 +28,14 @@ Arrays = dict[str, np.ndarray[Any, Any]]
 
 @dataclass(frozen=True, slots=True)
 class LibraryWords:
-    """vocabulary: V words; model: the default; space: of all symbols; correlated: None
-    where too few clips have words; meanings: what WordNet knows
+    """vocabulary: V words; model: the default; calibration: of its outputs; space: of all
+    symbols; correlated: None where too few clips have words; meanings: what WordNet knows
     of its words (models.language.wordnet), put in by whoever fits.
     """
 
     vocabulary: WordVocabulary
     model: WordModel
+    calibration: WordCalibration
     space: SymbolSpace
     correlated: CorrelatedSpace | None
     meanings: Meanings = field(default_factory=Meanings)
@@ -43,8 +45,8 @@ class LibraryWords:
         return understand(texts, self.vocabulary, self.meanings.related)
 
     def word_scores(self, statistics: FloatArray) -> FloatArray:
-        """(N, V) how well each word tells each clip, 0..1, by its statistics (N, p)."""
-        return self.model.predict(statistics)
+        """(N, V) probability that each word is said of each clip, by its statistics (N, p)."""
+        return self.calibration.probabilities(self.model.outputs(statistics))
 
     def word_scores_cca(self, points: FloatArray) -> FloatArray:
         """(N, V) the same in the correlated space, by symbol coordinates (N, d), 0..1.
@@ -53,9 +55,20 @@ class LibraryWords:
         """
         return (self._correlated().word_cosines(points) + 1.0) / 2.0
 
-    def clip_scores(self, scores: FloatArray, query: FloatArray) -> FloatArray:
-        """(N,) closeness 0..1 of clips, by their word_scores (N, V), to a label vector (V,)."""
-        return clip_cosines(scores, query)
+    def clip_surprises(
+        self, scores: FloatArray, columns: Sequence[str], meant: Sequence[Mapping[str, float]]
+    ) -> FloatArray:
+        """(N,) -ln of the probability that clips carry all that was asked for.
+
+        scores: (N, c) word_scores of the words `columns`; meant: at least one, see WordsAsked.
+        Of the words that may stand for one the likeliest counts, as far as it may.
+        """
+        place = {word: column for column, word in enumerate(columns)}
+        asked = [
+            np.max([weight * scores[:, place[word]] for word, weight in words.items()], axis=0)
+            for words in meant
+        ]
+        return self.calibration.joint_surprise(np.stack(asked, axis=1))
 
     def clip_scores_cca(self, points: FloatArray, query: FloatArray) -> FloatArray:
         """(N,) the same in the correlated space, by symbol coordinates (N, d).
@@ -71,8 +84,13 @@ class LibraryWords:
 
     def to_arrays(self) -> tuple[Arrays, dict[str, Any]]:
         """Arrays and JSON-able meta from which from_arrays makes the same record."""
-        parts: dict[str, WordModel | SymbolSpace | CorrelatedSpace | None]
-        parts = {"model": self.model, "space": self.space, "correlated": self.correlated}
+        parts: dict[str, WordModel | WordCalibration | SymbolSpace | CorrelatedSpace | None]
+        parts = {
+            "model": self.model,
+            "calibration": self.calibration,
+            "space": self.space,
+            "correlated": self.correlated,
+        }
         arrays: Arrays = {}
         meta: dict[str, Any] = {
             "words": list(self.vocabulary.words),
@@ -96,6 +114,7 @@ class LibraryWords:
         return cls(
             WordVocabulary(tuple(meta["words"])),
             WordModel.from_arrays(_part(arrays, "model"), meta["model"]),
+            WordCalibration.from_arrays(_part(arrays, "calibration"), meta["calibration"]),
             SymbolSpace.from_arrays(_part(arrays, "space"), meta["space"]),
             correlated,
             Meanings.from_meta(meta["meanings"]),
@@ -106,23 +125,29 @@ def fit_library_words(
     symbols: Sequence[GaussianHMM],
     statistics: FloatArray,
     label_sets: Sequence[Sequence[str]],
+    groups: Sequence[str] | None = None,
     *,
     seed: int = 0,
 ) -> LibraryWords:
     """Fit on all clips: symbols N, statistics (N, p), label sets N (empty: not labelled).
+
+    groups: N, equal for files of one recording, that scores are not calibrated on copies.
 
     Deterministic for a seed. Raises NotEnoughLabels where no clip has words.
     """
     vocabulary = WordVocabulary.of(label_sets)
     labels = vocabulary.label_matrix(label_sets)
     labelled = np.flatnonzero(labels.any(axis=1))
-    model = fit_word_model(np.asarray(statistics)[labelled], labels[labelled], seed=seed)
+    rows, truth = np.asarray(statistics)[labelled], labels[labelled]
+    model = fit_word_model(rows, truth, seed=seed)
+    own = [str(row) if groups is None else groups[row] for row in labelled]
+    calibration = calibrate(model, rows, truth, own, seed=seed)
     space = fit_symbol_space(symbols, seed=seed)
     correlated = None
     if len(labelled) >= LEAST_CLIPS:
         points = space.place([symbols[int(row)] for row in labelled])
-        correlated = fit_correlated_space(points, labels[labelled])
-    return LibraryWords(vocabulary, model, space, correlated)
+        correlated = fit_correlated_space(points, truth)
+    return LibraryWords(vocabulary, model, calibration, space, correlated)
 
 
 def _part(arrays: Mapping[str, np.ndarray[Any, Any]], part: str) -> Arrays:

@@ -1,7 +1,7 @@
 """The default word model: kernel ridge from clip statistics to label vectors (DESIGN 6, 13).
 
-A clip's words are ranked by the model's output; clips for a query of words by the cosine
-between their outputs and the query's label vector. Shapes: clips N, words V,
+A clip's words are ranked by the model's output. What outputs tell as probabilities, and of
+several words at once, is learned beside it (models.word_calibration). Shapes: clips N, words V,
 statistics p (131 of app.analysis.symbol_features).
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from app.errors import ModelNotFitted, NotEnoughLabels
 from app.numerics.arrays import FloatArray
-from app.numerics.kernel_ridge import KernelRidge, fit_kernel_ridge
+from app.numerics.kernel_ridge import KernelRidge, fit_kernel_ridge, refit_kernel_ridge
 
 WORD_MODEL_VERSION = 1
 
@@ -31,10 +31,13 @@ class WordModel:
     scale: FloatArray
     ridge: KernelRidge
 
+    def outputs(self, statistics: FloatArray) -> FloatArray:
+        """(N, V) of the words for clips' `statistics` (N, p): about 0..1, not limited to it."""
+        return self.ridge.predict(standardise(statistics, self.mean, self.scale))
+
     def predict(self, statistics: FloatArray) -> FloatArray:
-        """(N, V) scores of the words for clips' `statistics` (N, p), in 0..1."""
-        rows = standardise(statistics, self.mean, self.scale)
-        return np.clip(self.ridge.predict(rows), 0.0, 1.0)
+        """(N, V) the same, limited to 0..1."""
+        return np.clip(self.outputs(statistics), 0.0, 1.0)
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
         """Arrays and JSON-able meta from which from_arrays makes the same record."""
@@ -77,6 +80,15 @@ def fit_word_model(statistics: FloatArray, labels: FloatArray, *, seed: int = 0)
     scale = np.where(scale > 1e-6, scale, 1.0)  # a channel that never varies says nothing
     ridge = fit_kernel_ridge(standardise(rows, mean, scale), labels, seed=seed)
     return WordModel(mean, scale, ridge)
+
+
+def refit_word_model(
+    like: WordModel, statistics: FloatArray, labels: FloatArray, *, seed: int = 0
+) -> WordModel:
+    """On some of the clips (n >= 1) that another was fitted on: its kernel and scales kept."""
+    rows = standardise(statistics, like.mean, like.scale)
+    ridge = refit_kernel_ridge(like.ridge, rows, labels, seed=seed)
+    return WordModel(like.mean, like.scale, ridge)
 
 
 def standardise(statistics: FloatArray, mean: FloatArray, scale: FloatArray) -> FloatArray:

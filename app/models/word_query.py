@@ -16,12 +16,14 @@ from app.models.word_vocabulary import WordVocabulary
 
 @dataclass(frozen=True, slots=True)
 class WordsAsked:
-    """weights: 0..1 by word of the vocabulary, 1 for what was asked for itself; excluded: words
+    """weights: 0..1 by word of the vocabulary, 1 for what was asked for itself; meant: of each
+    thing asked for, weights by the words that may stand for it; excluded: words
     of the vocabulary; unknown: what means nothing to the library; expanded: the vocabulary's
     words that stand for a word which is not one of them.
     """
 
     weights: Mapping[str, float]
+    meant: tuple[Mapping[str, float], ...]
     excluded: tuple[str, ...]
     unknown: tuple[str, ...]
     expanded: Mapping[str, tuple[str, ...]]
@@ -38,6 +40,7 @@ def understand(
     """
     asked = read_query(texts, lambda word: vocabulary.find(word) is not None)
     weights: dict[str, float] = {}
+    every: list[Mapping[str, float]] = []
     unknown: list[str] = []
     expanded: dict[str, tuple[str, ...]] = {}
     for word in asked.wanted:
@@ -46,12 +49,15 @@ def understand(
             unknown.append(word)
         elif tuple(meant) != (word,):
             expanded[word] = tuple(meant)
+        if meant and meant not in every:
+            every.append(meant)
         for ours, weight in meant.items():
             weights[ours] = max(weights.get(ours, 0.0), weight)
     excluded = {word: vocabulary.find(word) for word in asked.excluded}
     unknown += [word for word, ours in excluded.items() if ours is None]
     known = tuple(dict.fromkeys(ours for ours in excluded.values() if ours is not None))
-    return WordsAsked(weights, known, tuple(dict.fromkeys(unknown)), expanded)
+    unheard = tuple(dict.fromkeys(unknown))
+    return WordsAsked(weights, tuple(every), known, unheard, expanded)
 
 
 def _meant(

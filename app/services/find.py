@@ -25,7 +25,7 @@ from app.services.hits import Hit, Hits
 from app.services.library import Library
 from app.services.metric_ranking import rank_by_metric
 from app.services.query import Answered, Question, describe
-from app.services.word_ranking import rank_by_words, word_score
+from app.services.word_ranking import rank_by_words
 from app.store import clips as stored
 from app.store.clip_filter import ClipFilter
 from app.store.files import Readable
@@ -144,7 +144,7 @@ def find_words(lib: Library, query: WordQuery) -> Hits:
     found = rank_by_words(lib, texts, query.mode, wanted)
     question = cursors.digest("words", *texts, query.mode, wanted, found.model)
     after = _position(query.cursor, question)
-    page = _page(lib, found.ranking, question, query.limit, after, word_score)
+    page = _page(lib, found.ranking, question, query.limit, after, found.to_score)
     page = replace(
         page,
         method=query.mode,

@@ -19,6 +19,7 @@ from app.models.recognition_figures import held_out_recognition_figures, unknown
 from app.models.word_figures import held_out_word_figures
 from app.services.annotated import read_annotated
 from app.services.keypose_learning import learn_keyposes
+from app.services.known_clips import known_arrays
 from app.services.model_shelf import ModelKind, holds_persons
 from app.services.models import enqueue_fit
 from app.services.training import TrainingSet, read_training_set
@@ -108,11 +109,16 @@ def _before(store: Store, kind: ModelKind, wordnet: bool) -> Before:
 
 
 def _fit_words(training: TrainingSet, before: Before) -> Fit:
-    model = fit_library_words(training.symbols, training.statistics, training.label_sets)
+    model = fit_library_words(
+        training.symbols, training.statistics, training.label_sets, training.groups
+    )
     known = Meanings.from_meta(before.meta.get("meanings", {}))
     meanings = known.of(model.vocabulary.words, look_up=before.wordnet)
     model = replace(model, meanings=meanings)
     arrays, meta = model.to_arrays()
+    ids = [clip.id for clip in training.clips]
+    outputs, points = model.word_scores(training.statistics), model.space.place(training.symbols)
+    arrays |= known_arrays(ids, outputs, points)
     return Fit(arrays, meta, word_figures(training))
 
 

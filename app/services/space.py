@@ -8,7 +8,6 @@ placed at once. space "vectors": motion vectors along their own principal axes.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -18,7 +17,7 @@ from app.numerics.principal_axes import PrincipalAxes, principal_axes
 from app.search.index import VECTOR
 from app.services import fields
 from app.services.library import Library
-from app.services.word_ranking import place_symbols
+from app.services.word_ranking import clip_points
 from app.store import arrays, clips
 from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord
@@ -86,8 +85,7 @@ def _placed(
     if space == "symbols":
         fitted = lib.models.words(lib.store)
         axes = principal_axes(fitted.model.space.points, dimensions)
-        place = partial(place_symbols, lib, fitted.model)
-        there, points = lib.symbol_points.of(fitted.id, ids, place)
+        there, points = clip_points(lib, fitted.id, fitted.model, ids)
         return there, points, axes, fitted.id
     with lib.store.read() as tx:
         found = arrays.get_many(tx, ids, VECTOR)

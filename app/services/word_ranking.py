@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -13,6 +14,7 @@ from app.models.library_words import LibraryWords
 from app.models.word_query import WordsAsked
 from app.numerics.arrays import FloatArray
 from app.search.rank import Ranking, ranking
+from app.services.known_clips import OUTPUTS, POINTS, read_known
 from app.services.library import Library
 from app.store import arrays
 from app.store.clip_filter import ClipFilter
@@ -23,34 +25,59 @@ LIKELIER_THAN_NOT = 0.5
 
 @dataclass(frozen=True, slots=True)
 class WordRanking:
-    """Clips for words; model: id of the model that ranked; asked: what it took them to mean."""
+    """Clips for words; model: id of the model that ranked; asked: what it took them to mean;
+    to_score: a distance of the ranking as a score, 0..1.
+    """
 
     ranking: Ranking
     model: str
     asked: WordsAsked
+    to_score: Callable[[float], float]
 
 
 def rank_by_words(lib: Library, texts: Sequence[str], mode: str, wanted: ClipFilter) -> WordRanking:
     """All clips that pass the filter and are not excluded; none where no word is known.
 
     texts: words, phrases or sentences; a word with a minus leaves out what carries it, and of
-    the clips without words what the model finds likelier to carry it than not. Distance is
-    1 - the model's score, so that it is comparable between queries. Raises ModelNotFitted, and
+    the clips without words what the model finds likelier to carry it than not. The default
+    score is the probability that the clip carries what was asked for, its distance -ln of that;
+    of "cca" it is (1 + cosine) / 2, its distance 1 - score. Raises ModelNotFitted, and
     NotEnoughLabels where mode "cca" could not be fitted.
     """
     fitted = lib.models.words(lib.store)
     asked = fitted.model.ask(texts)
+    rank, to_score = (_by_angle, _complement) if mode == "cca" else (_by_surprise, _probability)
     if not asked.weights:
-        return WordRanking(ranking(np.empty(0, dtype=object), np.zeros(0)), fitted.id, asked)
-    scores_of = _cca_scores if mode == "cca" else _default_scores
+        nothing = ranking(np.empty(0, dtype=object), np.zeros(0))
+        return WordRanking(nothing, fitted.id, asked, to_score)
     candidates = _not_excluded(lib, fitted.id, fitted.model, wanted, asked.excluded)
-    query = fitted.model.vocabulary.vector(asked.weights)
-    ids, scores = scores_of(lib, fitted.id, fitted.model, candidates, query)
-    return WordRanking(_ranked(ids, 1.0 - scores), fitted.id, asked)
+    ids, distances = rank(lib, fitted.id, fitted.model, candidates, asked)
+    return WordRanking(_ranked(ids, distances), fitted.id, asked, to_score)
 
 
-def word_score(distance: float) -> float:
-    """The model's score, 0..1, from the distance of a ranking by words."""
+def clip_points(
+    lib: Library, model_id: str, model: LibraryWords, clip_ids: Sequence[str]
+) -> tuple[list[str], FloatArray]:
+    """The ids that exist, and their coordinates (n, d) in the model's symbol space."""
+    place = partial(place_symbols, lib, model)
+    known = partial(read_known, lib, model_id, POINTS)
+    return lib.symbol_points.of(model_id, clip_ids, place, known)
+
+
+def _clip_outputs(
+    lib: Library, model_id: str, model: LibraryWords, clip_ids: list[str], words: Sequence[str]
+) -> tuple[list[str], FloatArray]:
+    """The ids that exist, and (n, words) probabilities that they carry these words."""
+    predict, known = partial(_predict, lib, model), partial(read_known, lib, model_id, OUTPUTS)
+    columns = [model.vocabulary.words.index(word) for word in words]
+    return lib.word_outputs.of(model_id, clip_ids, predict, known, columns)
+
+
+def _probability(surprise: float) -> float:
+    return math.exp(-surprise)
+
+
+def _complement(distance: float) -> float:
     return 1.0 - distance
 
 
@@ -60,26 +87,29 @@ def _not_excluded(
     ids = [str(clip_id) for clip_id in lib.index.candidates(wanted).ids]
     if not excluded:
         return ids
-    ids, outputs = lib.word_outputs.of(model_id, ids, partial(_predict, lib, model))
+    ids, outputs = _clip_outputs(lib, model_id, model, ids, excluded)
     carried = model.vocabulary.label_matrix([lib.index.labels(clip_id) for clip_id in ids])
     columns = [model.vocabulary.words.index(word) for word in excluded]
-    believed = np.where(carried.any(axis=1, keepdims=True), carried, outputs)
-    is_in = np.flatnonzero((believed[:, columns] < LIKELIER_THAN_NOT).all(axis=1))
+    is_labelled = carried.any(axis=1, keepdims=True)
+    believed = np.where(is_labelled, carried[:, columns], outputs)
+    is_in = np.flatnonzero((believed < LIKELIER_THAN_NOT).all(axis=1))
     return [ids[row] for row in is_in]
 
 
-def _default_scores(
-    lib: Library, model_id: str, model: LibraryWords, clip_ids: list[str], query: FloatArray
+def _by_surprise(
+    lib: Library, model_id: str, model: LibraryWords, clip_ids: list[str], asked: WordsAsked
 ) -> tuple[list[str], FloatArray]:
-    ids, outputs = lib.word_outputs.of(model_id, clip_ids, partial(_predict, lib, model))
-    return ids, model.clip_scores(outputs, query) if ids else np.zeros(0)
+    words = tuple(asked.weights)
+    ids, outputs = _clip_outputs(lib, model_id, model, clip_ids, words)
+    return ids, model.clip_surprises(outputs, words, asked.meant) if ids else np.zeros(0)
 
 
-def _cca_scores(
-    lib: Library, model_id: str, model: LibraryWords, clip_ids: list[str], query: FloatArray
+def _by_angle(
+    lib: Library, model_id: str, model: LibraryWords, clip_ids: list[str], asked: WordsAsked
 ) -> tuple[list[str], FloatArray]:
-    ids, points = lib.symbol_points.of(model_id, clip_ids, partial(place_symbols, lib, model))
-    return ids, model.clip_scores_cca(points, query) if ids else np.zeros(0)
+    query = model.vocabulary.vector(asked.weights)
+    ids, points = clip_points(lib, model_id, model, clip_ids)
+    return ids, 1.0 - model.clip_scores_cca(points, query) if ids else np.zeros(0)
 
 
 def _predict(lib: Library, model: LibraryWords, clip_ids: list[str]) -> dict[str, FloatArray]:

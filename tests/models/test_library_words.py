@@ -21,10 +21,12 @@ def clips():  # type: ignore[no-untyped-def]
 def test_both_modes_find_clips_for_a_word_and_words_for_a_clip(clips) -> None:  # type: ignore[no-untyped-def]
     symbols, statistics, words = clips
     model = fit_library_words(symbols, statistics, words)
-    query = model.vocabulary.vector(model.ask(["waving"]).weights)
+    asked = model.ask(["waving"])
+    query = model.vocabulary.vector(asked.weights)
     points = model.space.place(symbols)
     default, cca = model.word_scores(statistics), model.word_scores_cca(points)
-    for scores in (model.clip_scores(default, query), model.clip_scores_cca(points, query)):
+    surprises = model.clip_surprises(default, model.vocabulary.words, asked.meant)
+    for scores in (np.exp(-surprises), model.clip_scores_cca(points, query)):
         assert ((scores >= 0) & (scores <= 1)).all()
         assert scores.argmax() % 4 == 2
     for scores in (default, cca):

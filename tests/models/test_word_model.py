@@ -18,7 +18,7 @@ def test_words_of_clips_it_has_not_seen() -> None:
     assert ((predicted >= 0) & (predicted <= 1)).all()
     top = np.argsort(-predicted, axis=1)[:, :2]
     assert np.take_along_axis(labels[28:], top, axis=1).any(axis=1).mean() > 0.9
-    wave = clip_cosines(predicted, vocabulary.query(["wave"]).vector)
+    wave = clip_cosines(predicted, vocabulary.vector({"wave": 1.0}))
     assert wave.argmax() % 4 == 2
 
 
