@@ -7,6 +7,8 @@ import pytest
 
 from app.errors import ClipNotFound
 from app.services import clips
+from app.services.find import MotionQuery, find_motion
+from app.services.keyposes import name_keyposes
 from app.services.library import Library
 from app.services.segments import Segments, list_segments, segment_arrays
 from app.store import arrays
@@ -75,3 +77,18 @@ def test_who_holds_no_pose_has_no_segment(ready_library: Library, clip_of: FindC
 def test_unknown_clips_are_not_found(lib: Library) -> None:
     with pytest.raises(ClipNotFound):
         list_segments(lib, "clip_none")
+
+
+def test_segments_follow_the_keyposes_that_a_person_names(
+    danced: tuple[Library, ClipRecord, CyclicDance],
+) -> None:
+    lib, clip, _ = danced
+    found = list_segments(lib, clip.id)
+    name_keyposes(lib, clip.id, [0.5, 1.5, 4.0])
+    named = list_segments(lib, clip.id)
+    assert [(one.start, one.end) for one in named.segments] == [(0.5, 1.5), (1.5, 4.0)]
+    asked = MotionQuery(clip_id=clip.id, segment=0, scope="segments", include_self=True)
+    hits = find_motion(lib, asked).items
+    assert [(hit.start, hit.end) for hit in hits] == [(0.5, 1.5), (1.5, 4.0)]
+    name_keyposes(lib, clip.id, [])
+    assert list_segments(lib, clip.id) == found

@@ -1,0 +1,143 @@
+"""Segments and cycles: real clips, and dances that were not used to choose anything.
+
+Run: pytest -m bench -s tests/bench/test_segments.py
+The weights of segment vectors were chosen on every second real clip (by name), the concordance
+of cycles on generated dances of seeds below 200; what is told is of the others.
+"""
+
+from __future__ import annotations
+
+import time
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.distance import cdist
+
+from app.analysis.frame_features import features_at_10hz, frame_features
+from app.analysis.keyposes import find_keyposes
+from app.analysis.motion_cycles import find_cycles
+from app.analysis.motion_vector import motion_vector
+from app.analysis.segments import describe_segments, segment_spans, segment_vectors
+from app.formats.read import read_recording
+from app.motion.body_frame import BodyTrack, body_track
+from app.motion.canonical import canonicalise
+from app.motion.gait import gait_cycles
+from app.numerics.arrays import FloatArray
+from tests.bodies import motion_of
+from tests.cyclic_dances import cyclic_dance
+from tests.real_clips import manifest, real_clips
+
+pytestmark = pytest.mark.bench
+
+MOST_OF_A_CLIP = 8
+"""Segments of a clip that ask, so that long clips do not outweigh the others."""
+FIRST_SEED = 1000
+DANCES = 40
+
+
+@lru_cache(maxsize=600)
+def _track(path: str, fps: str) -> BodyTrack:
+    """fps: of the manifest; some files lie."""
+    recording = read_recording((real_clips() / path).read_bytes())
+    return body_track(canonicalise(recording, frame_rate=float(fps) if fps else None))
+
+
+def _rows() -> list[dict[str, str]]:
+    rows = [row for row in manifest() if not row["path"].endswith((".amc", ".asf"))]
+    return sorted(rows, key=lambda row: Path(row["path"]).stem)
+
+
+def test_segments_find_those_of_their_task() -> None:
+    """1-NN among the segments of other clips; the segment vector beside the motion vector."""
+    vectors: dict[str, list[FloatArray]] = {"segment vector": [], "motion vector": []}
+    tasks, owners = [], []
+    for number, row in enumerate(_rows()[::2]):
+        track = _track(row["path"], row["fps"])
+        features = frame_features(track)
+        spans = segment_spans(find_keyposes(track).times)[:MOST_OF_A_CLIP]
+        found = segment_vectors(features_at_10hz(features, track.rate), spans)
+        vectors["segment vector"] += list(found.astype(np.float16).astype(float))
+        for first, stop in np.round(spans * track.rate).astype(int):
+            vectors["motion vector"].append(motion_vector(features[first : max(stop, first + 2)]))
+        tasks += [row["task"]] * len(spans)
+        owners += [number] * len(spans)
+    labels, clips = np.array(tasks), np.array(owners)
+    print(f"\n{len(labels)} segments of {len(set(owners))} clips, 1-NN by task:", end="")
+    shares = {}
+    for name, rows in vectors.items():
+        apart = cdist(rows, rows)
+        apart[clips[:, None] == clips[None]] = np.inf
+        shares[name] = float(np.mean(labels[apart.argmin(axis=1)] == labels))
+        print(f"  {name} {shares[name]:.3f}", end="")
+    print()
+    assert shares["segment vector"] > shares["motion vector"] - 0.05
+
+
+def test_walks_have_cycles_and_these_are_their_strides() -> None:
+    walks = agree = found = held = false = 0
+    for row in _rows():
+        track = _track(row["path"], row["fps"])
+        keyposes = find_keyposes(track).frames.astype(float)
+        cycles = find_cycles(track.local.reshape(track.frames, -1), keyposes)
+        if row["task"].startswith("walk") and len(gait := gait_cycles(track)) > 1:
+            walks += 1
+            found += bool(cycles)
+            stride = np.median([stop - first for first, stop in gait])
+            lasts = np.median([keyposes[c.stop] - keyposes[c.first] for c in cycles] or [0.0])
+            agree += abs(lasts / stride - 1) < 0.1
+        if row["task"].startswith("raise-up") or row["task"] == "bow":
+            held += 1
+            false += bool(cycles)
+    print(f"\n{walks} walks: cycles in {found}, as long as a stride within 10 % in {agree}")
+    print(f"{held} clips of one gesture: cycles in {false}")
+    assert found > 0.8 * walks
+    assert agree > 0.8 * found
+    assert false <= 0.05 * held
+
+
+def test_cycles_of_generated_dances() -> None:
+    """Period within 10 %, and no cycle in dances that repeat nothing, by how unlike itself a
+    dancer dances (of each pose's reach)."""
+    for change in (0.0, 0.15, 0.3, 0.5):
+        right = false = 0
+        for seed in range(FIRST_SEED, FIRST_SEED + DANCES):
+            draw = np.random.default_rng(seed)
+            poses, times = int(draw.integers(3, 11)), int(draw.integers(2, 6))
+            tempo = float(draw.uniform(70, 130))
+            dance = cyclic_dance(seed, poses=poses, times=times, tempo=tempo, change=change)
+            lasting = _periods(dance.positions, dance.rate)
+            period = np.median([end - start for start, end in dance.cycles])
+            right += abs(lasting / period - 1) < 0.1
+            other = cyclic_dance(seed + 500, poses=24, times=1, tempo=tempo, change=change)
+            false += _periods(other.positions, other.rate) > 0
+        print(
+            f"\nchange {change:.2f}: period right in {right} of {DANCES}, false in {false}", end=""
+        )
+        assert right >= (0.95 if change < 0.5 else 0.8) * DANCES
+        assert false <= 0.05 * DANCES
+    print()
+
+
+def test_segments_cost_little() -> None:
+    dance = cyclic_dance(FIRST_SEED, poses=8, times=8, tempo=110)
+    track = body_track(motion_of(dance.positions, dance.rate))
+    features = features_at_10hz(frame_features(track), track.rate)
+    times = find_keyposes(track).times
+    began = time.process_time()
+    found = describe_segments(features, times)
+    spent = time.process_time() - began
+    count = len(found["segment_spans"])
+    print(f"\n{count} segments of {track.duration:.0f} s in {1000 * spent:.0f} ms")
+
+
+def _periods(positions: FloatArray, rate: float) -> float:
+    """Seconds of the median cycle of the run with most of them; 0 where there is none."""
+    track = body_track(motion_of(positions, rate))
+    keyposes = find_keyposes(track).frames.astype(float)
+    cycles = find_cycles(track.local.reshape(track.frames, -1), keyposes)
+    runs = [[c for c in cycles if c.run == run] for run in {c.run for c in cycles}]
+    longest = max(runs, key=lambda run: keyposes[run[-1].stop] - keyposes[run[0].first], default=[])
+    lasts = [keyposes[c.stop] - keyposes[c.first] for c in longest]
+    return float(np.median(lasts) / track.rate) if lasts else 0.0
