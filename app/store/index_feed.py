@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from numpy.typing import NDArray
-from sqlalchemy import and_, bindparam, select
+from sqlalchemy import and_, bindparam, func, select
 
 from app.store.blobs import from_blob
 from app.store.clip_record import ClipState
@@ -21,9 +22,13 @@ from app.store.tables import clip_arrays, clip_words, clips
 BATCH = 5000
 """Clips of one batch."""
 
+_WORDS = (
+    select(func.aggregate_strings(clip_words.c.word, " "))
+    .where(clip_words.c.clip_id == clips.c.id)
+    .scalar_subquery()
+)
 _CLIPS = (
     select(
-        clips.c.changed_version,
         clips.c.id,
         clips.c.state,
         clips.c.person,
@@ -31,6 +36,7 @@ _CLIPS = (
         clips.c.license,
         clips.c.source,
         clips.c.duration,
+        _WORDS,
         clip_arrays.c.dtype,
         clip_arrays.c.shape,
         clip_arrays.c.data,
@@ -45,13 +51,6 @@ _CLIPS = (
     .where(clips.c.changed_version > bindparam("since"))
     .order_by(clips.c.changed_version)
 )
-_WORDS = (
-    select(clip_words.c.clip_id, clip_words.c.word)
-    .join_from(clips, clip_words, clip_words.c.clip_id == clips.c.id)
-    .where(clips.c.changed_version.between(bindparam("first"), bindparam("last")))
-)
-
-
 @dataclass(frozen=True, slots=True)
 class IndexedClip:
     """What a search looks at of a clip, without what it shows of it.
@@ -76,19 +75,11 @@ def changed_since(tx: Tx, since: int, array: str) -> Iterator[list[IndexedClip]]
     asked = {"since": since, "array": array}
     rows = tx.execute(_CLIPS, asked, execution_options={"yield_per": BATCH})
     for batch in rows.partitions(BATCH):
-        words = _words(tx, batch[0].changed_version, batch[-1].changed_version)
-        yield [_indexed(row, words.get(row.id, frozenset())) for row in batch]
+        yield [_indexed(row) for row in batch]
 
 
-def _words(tx: Tx, first: int, last: int) -> dict[str, frozenset[str]]:
-    found: dict[str, list[str]] = {}
-    for clip_id, word in tx.execute(_WORDS, {"first": first, "last": last}).all():
-        found.setdefault(clip_id, []).append(word)
-    return {clip_id: frozenset(words) for clip_id, words in found.items()}
-
-
-def _indexed(row: Sequence[Any], words: frozenset[str]) -> IndexedClip:
-    _, clip_id, state, person, task, license_, source, duration, dtype, shape, data = row
+def _indexed(row: Sequence[Any]) -> IndexedClip:
+    clip_id, state, person, task, license_, source, duration, words, dtype, shape, data = row
     return IndexedClip(
         clip_id,
         state == ClipState.READY,
@@ -97,6 +88,12 @@ def _indexed(row: Sequence[Any], words: frozenset[str]) -> IndexedClip:
         license_,
         source,
         duration or 0.0,
-        words,
+        _word_set(words or ""),
         None if data is None else from_blob(dtype, shape, data),
     )
+
+
+@lru_cache(maxsize=10_000)
+def _word_set(text: str) -> frozenset[str]:
+    """The words of a text, one object for equal texts: many clips carry the same."""
+    return frozenset(text.split(" ")) if text else frozenset()

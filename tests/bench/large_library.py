@@ -1,0 +1,155 @@
+"""Libraries of many clips: real ones, their vectors disturbed, written straight into a store.
+
+Nobody has a hundred thousand recordings at hand; searches do not care. All else that a clip
+has (features, volumes, poses) is that of the real clip it was made of, so lengths are real.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from sqlalchemy import insert, update
+
+from app.analysis.analyse import ANALYSIS_VERSION, analyse
+from app.errors import BadContent
+from app.formats.read import read_recording
+from app.motion.canonical import canonicalise
+from app.store import tables as t
+from app.store.blobs import to_blob
+from app.store.clip_record import ClipState
+from app.store.ids import utc_now
+from app.store.index_feed import IndexedClip
+from app.store.store import Store
+from tests.real_clips import manifest, real_clips
+
+VECTOR = "motion_vector"
+SPREAD = 0.03
+"""Of the noise on each number of a vector: a third of a median nearest neighbour's distance."""
+PEOPLE, STYLES = 50, 8
+"""Made-up labels: so many persons, and words of which each clip carries two."""
+AT_ONCE = 2000
+NOT_SEARCHED = ("positions", "symbol_means", "symbol_variances", "symbol_transitions")
+"""Arrays that no search by example or by pose reads, and that would fill the disk."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A real clip: what a manifest says of it, and its arrays."""
+
+    task: str
+    duration: float
+    arrays: dict[str, Any]
+
+    @functools.cached_property
+    def blobs(self) -> list[dict[str, Any]]:
+        """Rows of the table of arrays, but for the vector and the clip's id."""
+        return [
+            {"name": name, "version": ANALYSIS_VERSION, **to_blob(array)}
+            for name, array in self.arrays.items()
+            if name != VECTOR and name not in NOT_SEARCHED
+        ]
+
+
+@functools.lru_cache(maxsize=1)
+def samples(every: int = 3) -> tuple[Sample, ...]:
+    """Every so many of the real clips, analysed."""
+    found = []
+    for row in manifest()[::every]:
+        try:
+            recording = read_recording((real_clips() / row["path"]).read_bytes())
+            motion = canonicalise(recording, frame_rate=float(row["fps"]))
+            found.append(Sample(row["task"], motion.duration, dict(analyse(motion).arrays)))
+        except BadContent:
+            continue
+    return tuple(found)
+
+
+def many_clips(count: int, seed: int = 0) -> Iterator[tuple[Sample, IndexedClip]]:
+    """`count` clips made of the samples, with vectors and labels of their own."""
+    rng = np.random.default_rng(seed)
+    real = samples()
+    vectors = np.stack([sample.arrays[VECTOR] for sample in real])
+    for first in range(0, count, AT_ONCE):
+        chosen = rng.integers(len(real), size=min(AT_ONCE, count - first))
+        noise = rng.normal(scale=SPREAD, size=(len(chosen), vectors.shape[1]))
+        made = (vectors[chosen] + noise).astype(np.float32)
+        people = rng.integers(PEOPLE, size=len(chosen))
+        words = rng.integers(STYLES, size=(len(chosen), 2))
+        for offset, sample in enumerate(chosen):
+            yield (
+                real[sample],
+                IndexedClip(
+                    id=f"clip_{first + offset:020x}",
+                    is_ready=True,
+                    person=f"person {people[offset]}",
+                    task=real[sample].task,
+                    license="CC0-1.0",
+                    source="bench",
+                    duration=real[sample].duration,
+                    words=frozenset(f"word{word}" for word in words[offset]),
+                    array=made[offset],
+                ),
+            )
+
+
+def fill(store: Store, count: int, names: Sequence[str] | None = None) -> None:
+    """Write `count` ready clips into an empty store; names: arrays to write, else all searched."""
+    clips = enumerate(many_clips(count), 1)
+    while batch := list(itertools.islice(clips, AT_ONCE)):
+        with store.write() as tx:
+            tx.execute(insert(t.clips), [_row(number, made) for number, (_, made) in batch])
+            tx.execute(insert(t.clip_words), list(_word_rows(made for _, (_, made) in batch)))
+            rows = [row for _, (sample, made) in batch for row in _array_rows(sample, made, names)]
+            tx.execute(insert(t.clip_arrays), rows)
+            tx.execute(update(t.library).values(version=batch[-1][0]))
+
+
+def _row(number: int, clip: IndexedClip) -> dict[str, Any]:
+    return {
+        "id": clip.id,
+        "content_key": f"{number:064x}",
+        "sha256": f"{number:064x}",
+        "file_name": f"{clip.id}.bvh",
+        "file_size": 1,
+        "name": f"clip {number}",
+        "name_folded": f"clip {number}",
+        "state": ClipState.READY.value,
+        "format": "bvh",
+        "person": clip.person,
+        "task": clip.task,
+        "license": clip.license,
+        "source": clip.source,
+        "frames": round(clip.duration * 30),
+        "frame_rate": 30.0,
+        "declared_frame_rate": 30.0,
+        "duration": clip.duration,
+        "joints": 22,
+        "metres_per_unit": 0.01,
+        "roles": {"hips": "Hips", "head": "Head", "neck": "Neck"},
+        "missing_roles": [],
+        "warnings": [],
+        "analysis_version": ANALYSIS_VERSION,
+        "changed_version": number,
+        "created_at": utc_now(),
+    }
+
+
+def _word_rows(clips: Iterator[IndexedClip]) -> Iterator[dict[str, Any]]:
+    for clip in clips:
+        for position, word in enumerate(sorted(clip.words)):
+            yield {"clip_id": clip.id, "word": word, "position": position}
+
+
+def _array_rows(
+    sample: Sample, clip: IndexedClip, names: Sequence[str] | None
+) -> Iterator[dict[str, Any]]:
+    assert clip.array is not None
+    yield {"clip_id": clip.id, "name": VECTOR, "version": ANALYSIS_VERSION, **to_blob(clip.array)}
+    for blob in sample.blobs:
+        if names is None or blob["name"] in names:
+            yield {"clip_id": clip.id, **blob}
