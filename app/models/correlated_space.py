@@ -101,17 +101,21 @@ class CorrelatedSpace:
         return cls(pair, arrays["words_to_motions"], arrays["motions_to_words"])
 
 
-def fit_correlated_space(points: FloatArray, labels: FloatArray) -> CorrelatedSpace:
+def fit_correlated_space(
+    points: FloatArray, labels: FloatArray, *, ridge: float = RIDGE
+) -> CorrelatedSpace:
     """Fit on symbol coordinates (n, d) and label vectors (n, V) of the labelled clips.
 
+    ridge: 0 for the pseudo-inverse, as printed: then the covariance of g is the identity, and
+    C is the diagonal of canonical correlations (eq. 16).
     Raises NotEnoughLabels below LEAST_CLIPS clips or without words.
     """
     if len(points) < LEAST_CLIPS or labels.shape[1] == 0:
         raise NotEnoughLabels(f"{len(points)} clips have words; {LEAST_CLIPS} are needed.")
-    pair = fit_cca(points, labels, ridge=RIDGE)
+    pair = fit_cca(points, labels, ridge=ridge)
     motions = (points - pair.x_mean) @ pair.a
     words = (labels - pair.y_mean) @ pair.b
-    return CorrelatedSpace(pair, _regress(words, motions), _regress(motions, words))
+    return CorrelatedSpace(pair, _regress(words, motions, ridge), _regress(motions, words, ridge))
 
 
 def _cosines(left: FloatArray, right: FloatArray) -> FloatArray:
@@ -120,8 +124,10 @@ def _cosines(left: FloatArray, right: FloatArray) -> FloatArray:
     return np.asarray(left @ right.T / np.maximum(lengths, 1e-12))
 
 
-def _regress(inputs: FloatArray, outputs: FloatArray) -> FloatArray:
+def _regress(inputs: FloatArray, outputs: FloatArray, ridge: float) -> FloatArray:
     """(k, k) T minimising |outputs - inputs T|^2 under the ridge (eq. 15)."""
     normal = inputs.T @ inputs
-    added = RIDGE * max(float(np.trace(normal)) / len(normal), 1e-12)
+    if ridge == 0.0:
+        return np.asarray(np.linalg.lstsq(inputs, outputs, rcond=None)[0])
+    added = ridge * max(float(np.trace(normal)) / len(normal), 1e-12)
     return np.asarray(np.linalg.solve(normal + added * np.eye(len(normal)), inputs.T @ outputs))

@@ -66,5 +66,49 @@ def top_k_rate(scores: FloatArray, labels: BoolArray, k: int) -> float:
     return float(np.mean(found)) if found else 0.0
 
 
+def precision_at_recalls(
+    scores: FloatArray, is_relevant: BoolArray, recalls: FloatArray
+) -> FloatArray:
+    """(r,) precision where so much is recalled, over all pairs at once (micro), any equal shapes.
+
+    recalls: (r,) in 0..1, at least one pair is retrieved; 0.0 where none is relevant.
+    """
+    hits = is_relevant.ravel()[_best_first(scores.ravel())]
+    places = np.flatnonzero(hits) + 1
+    if not places.size:
+        return np.zeros(len(recalls))
+    found = np.clip(np.ceil(recalls * places.size - 1e-9).astype(np.int64), 1, places.size)
+    return np.asarray(found / places[found - 1])
+
+
+def area_under_curve(scores: FloatArray, is_relevant: BoolArray) -> float:
+    """Chance that a relevant candidate scores above one that is not; ties count half.
+
+    scores, is_relevant: (N,). One half where either kind is missing.
+    """
+    others = np.sort(scores[~is_relevant])
+    own = scores[is_relevant]
+    if not own.size or not others.size:
+        return 0.5
+    below = np.searchsorted(others, own, "left") + np.searchsorted(others, own, "right")
+    return float(below.mean() / (2.0 * others.size))
+
+
+def calibration_error(probabilities: FloatArray, is_so: BoolArray, bins: int = 10) -> float:
+    """Expected calibration error: how far shares lie from probabilities, by equal bins.
+
+    Any equal shapes; each bin counts as much as it holds.
+    """
+    chances, truth = probabilities.ravel(), is_so.ravel().astype(np.float64)
+    place = np.clip((chances * bins).astype(np.int64), 0, bins - 1)
+    off = np.bincount(place, chances - truth, minlength=bins)
+    return float(np.abs(off).sum() / max(len(chances), 1))
+
+
+def brier_score(probabilities: FloatArray, is_so: BoolArray) -> float:
+    """Mean squared difference of probabilities and what is so; any equal shapes."""
+    return float(np.square(probabilities - is_so).mean()) if probabilities.size else 0.0
+
+
 def _best_first(scores: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
     return np.argsort(-scores, kind="stable")

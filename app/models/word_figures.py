@@ -1,8 +1,9 @@
-"""How well words are predicted for clips that were held out (Takano, section 3).
+"""How well words are predicted (Takano, section 3), held out and in-sample.
 
-Every method is fitted on all folds but one and scored on that one, for: the words of a
-clip (top-3 recognition), clips for a single word (F where recall = precision, over all
-words at once) and clips for the label set of each clip (MAP, eq. 20).
+Held out, every method is fitted on all folds but one and scored on that one; in-sample, as
+the paper did for retrieval, it is scored on the very clips that it was fitted on. Judged are
+the words of a clip (top-3 recognition), clips for a single word (F where recall = precision
+over all words at once, fig. 7) and clips for the label set of each clip (MAP, eq. 20).
 """
 
 from __future__ import annotations
@@ -13,23 +14,35 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.errors import NotEnoughLabels
-from app.models.correlated_space import LEAST_CLIPS, CorrelatedSpace, fit_correlated_space
+from app.models.correlated_space import LEAST_CLIPS, RIDGE, CorrelatedSpace, fit_correlated_space
 from app.models.folds import grouped_folds
 from app.models.ranking_figures import (
+    area_under_curve,
+    average_precision,
+    brier_score,
+    calibration_error,
     f_where_recall_is_precision,
     mean_average_precision,
+    precision_at_recalls,
     top_k_rate,
 )
 from app.models.symbol_space import DIMENSIONS, landmark_rows, symbol_distances
+from app.models.word_calibration import WordCalibration, calibrate
 from app.models.word_model import clip_cosines, fit_word_model
 from app.models.word_vocabulary import WordVocabulary
-from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.hmm import GaussianHMM
 from app.numerics.mds import metric_mds, place
 
+PRIOR, DEFAULT = "prior", "default"
 FOLDS = 5
 MOST_CLIPS = 1000
 """Larger libraries are judged on a random part of so many clips."""
+
+RECALLS = np.linspace(0.0, 1.0, 21)
+
+LEAST_RECORDINGS = 5
+"""That carry a word, for it to be judged by itself: about one a fold."""
 
 TOP_WORDS = 3
 """Takano counts a clip as recognised when one of its words is among so many."""
@@ -37,33 +50,74 @@ TOP_WORDS = 3
 
 @dataclass(frozen=True, slots=True)
 class WordFigures:
-    """Held-out figures of one method, each 0..1."""
+    """Figures of one method, each 0..1; precision: of single words at the recalls RECALLS."""
 
     method: str
     top_3_recognition: float
     word_f: float
     set_map: float
+    word_map: float
+    set_f: float
+    precision: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Reliability:
+    """Expected calibration error and Brier score of scores for single words, and for whole
+    label sets; 0 is perfect. prior_brier: of the words' frequency.
+    """
+
+    word_error: float
+    word_brier: float
+    prior_brier: float
+    set_error: float
+    set_brier: float
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedWord:
+    """Held-out figures of clips for one word; clips, recordings: that carry it.
+
+    too_rare: fewer recordings than LEAST_RECORDINGS, so that its figures are mostly chance;
+    they count in the figures over all words.
+    """
+
+    word: str
+    clips: int
+    recordings: int
+    average_precision: float
+    f: float
+    area_under_curve: float
+    too_rare: bool
 
 
 @dataclass(frozen=True, slots=True)
 class WordEvaluation:
-    """figures: one a method; on so many clips, words and folds."""
+    """figures: held out, one a method; on so many clips, words and folds; in_sample: as the
+    paper's; reliability: of the default's held-out scores as probabilities; correlations:
+    canonical ones of all clips by kind of inverse, falling; by_word: the default, held out.
+    """
 
     figures: tuple[WordFigures, ...]
     clips: int
     words: int
     folds: int
+    in_sample: tuple[WordFigures, ...]
+    reliability: Reliability
+    correlations: dict[str, tuple[float, ...]]
+    by_word: tuple[JudgedWord, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class _Clips:
     """Labelled clips: distances (N, N) of their symbols, statistics (N, p), labels (N, V),
-    fold (N,).
+    groups (N), fold (N,).
     """
 
     distances: FloatArray
     statistics: FloatArray
     labels: FloatArray
+    groups: tuple[str, ...]
     fold: IntArray
 
 
@@ -77,7 +131,7 @@ class _Scores:
 
 @dataclass(frozen=True, slots=True)
 class _Tables:
-    """Held-out scores of all clips: words (N, V), singles (V, N), sets (N, N)."""
+    """Scores of all clips: words (N, V), singles (V, N), sets (N, N)."""
 
     words: FloatArray
     singles: FloatArray
@@ -92,7 +146,9 @@ def held_out_word_figures(
     *,
     seed: int = 0,
 ) -> WordEvaluation:
-    """Figures of the prior (word frequency), the default word model and the cca mode.
+    """Figures of the prior (word frequency), the default word model and the cca mode, which
+    stands in four forms: by angle; by distance and with the pseudo-inverse, as printed; through
+    the nearest training symbol (see _score).
 
     symbols: N; statistics: (N, p); label_sets: N; groups: N, equal for files of one
     recording (see folds.recording_of). Clips without words are left out.
@@ -108,12 +164,26 @@ def held_out_word_figures(
         symbol_distances(own_symbols, own_symbols),
         np.asarray(statistics)[chosen],
         vocabulary.label_matrix(labels),
+        tuple(own_groups),
         grouped_folds(own_groups, folds, seed=seed),
     )
     _check_size(clips, folds)
-    tables = _held_out_tables(clips)
-    figures = tuple(_figures(name, table, clips.labels) for name, table in tables.items())
-    return WordEvaluation(figures, len(chosen), len(vocabulary), folds)
+    parts = [
+        (np.flatnonzero(clips.fold != fold), np.flatnonzero(clips.fold == fold))
+        for fold in np.unique(clips.fold)
+    ]
+    everything = np.arange(len(chosen))
+    held_out, in_sample = _tables(clips, parts), _tables(clips, [(everything, everything)])
+    return WordEvaluation(
+        figures=_all_figures(held_out, clips.labels),
+        clips=len(chosen),
+        words=len(vocabulary),
+        folds=folds,
+        in_sample=_all_figures(in_sample, clips.labels),
+        reliability=_reliability(held_out, clips.labels),
+        correlations=_correlations(clips),
+        by_word=_by_word(held_out[DEFAULT].singles, clips, vocabulary.words),
+    )
 
 
 def _chosen(label_sets: Sequence[Sequence[str]], seed: int) -> IntArray:
@@ -128,12 +198,12 @@ def _check_size(clips: _Clips, folds: int) -> None:
         raise NotEnoughLabels(f"{len(clips.fold)} labelled clips are too few to hold some out.")
 
 
-def _held_out_tables(clips: _Clips) -> dict[str, _Tables]:
+def _tables(clips: _Clips, parts: Sequence[tuple[IntArray, IntArray]]) -> dict[str, _Tables]:
+    """By method; parts: rows to fit on and rows to score, which together are all."""
     count, vocabulary = clips.labels.shape
     tables: dict[str, _Tables] = {}
-    for fold in np.unique(clips.fold):
-        held = np.flatnonzero(clips.fold == fold)
-        for name, scores in _score(clips, np.flatnonzero(clips.fold != fold), held).items():
+    for training, held in parts:
+        for name, scores in _score(clips, training, held).items():
             if name not in tables:
                 shapes = (count, vocabulary), (vocabulary, count), (count, count)
                 tables[name] = _Tables(*(np.zeros(shape) for shape in shapes))
@@ -143,36 +213,117 @@ def _held_out_tables(clips: _Clips) -> dict[str, _Tables]:
     return tables
 
 
+def _all_figures(tables: dict[str, _Tables], labels: FloatArray) -> tuple[WordFigures, ...]:
+    return tuple(_figures(name, table, labels) for name, table in tables.items())
+
+
 def _figures(name: str, tables: _Tables, labels: FloatArray) -> WordFigures:
     carries = labels > 0.0
-    carries_all = labels @ labels.T >= labels.sum(axis=1)[:, None]
+    carries_all = _carries_all(labels)
+    precision = precision_at_recalls(tables.singles, carries.T, RECALLS)
     return WordFigures(
         method=name,
         top_3_recognition=top_k_rate(tables.words, carries, TOP_WORDS),
         word_f=f_where_recall_is_precision(tables.singles, carries.T),
         set_map=mean_average_precision(tables.sets, carries_all),
+        word_map=mean_average_precision(tables.singles, carries.T),
+        set_f=f_where_recall_is_precision(tables.sets, carries_all),
+        precision=tuple(precision.tolist()),
     )
+
+
+def _carries_all(labels: FloatArray) -> BoolArray:
+    """(queries, N) whether each clip carries all words of the label set of another."""
+    return np.asarray(labels @ labels.T >= labels.sum(axis=1)[:, None])
+
+
+def _reliability(tables: dict[str, _Tables], labels: FloatArray) -> Reliability:
+    own, carries, carries_all = tables[DEFAULT], labels > 0.0, _carries_all(labels)
+    together = np.exp(own.sets)
+    return Reliability(
+        word_error=calibration_error(own.words, carries),
+        word_brier=brier_score(own.words, carries),
+        prior_brier=brier_score(tables[PRIOR].words, carries),
+        set_error=calibration_error(together, carries_all),
+        set_brier=brier_score(together, carries_all),
+    )
+
+
+def _by_word(singles: FloatArray, clips: _Clips, words: Sequence[str]) -> tuple[JudgedWord, ...]:
+    """The most carried first; singles: (V, N)."""
+    found = []
+    for word, scores, carries in zip(words, singles, clips.labels.T > 0.0, strict=True):
+        recordings = len({clips.groups[row] for row in np.flatnonzero(carries)})
+        judged = JudgedWord(
+            word=word,
+            clips=int(carries.sum()),
+            recordings=recordings,
+            average_precision=average_precision(scores, carries),
+            f=f_where_recall_is_precision(scores, carries),
+            area_under_curve=area_under_curve(scores, carries),
+            too_rare=recordings < LEAST_RECORDINGS,
+        )
+        found.append(judged)
+    return tuple(sorted(found, key=lambda one: (-one.clips, one.word)))
+
+
+def _correlations(clips: _Clips) -> dict[str, tuple[float, ...]]:
+    points = _points(clips, np.arange(len(clips.labels)))
+    return {
+        name: tuple(
+            fit_correlated_space(points, clips.labels, ridge=ridge).pair.correlations.tolist()
+        )
+        for name, ridge in (("ridge", RIDGE), ("pseudo_inverse", 0.0))
+    }
 
 
 def _score(clips: _Clips, training: IntArray, held: IntArray) -> dict[str, _Scores]:
     """Scores of the held-out rows by each method, fitted on the training rows.
 
-    cca-distance is Takano's as printed: nearest by Euclidean distance.
+    cca-distance is Takano's retrieval as printed: nearest by Euclidean distance; cca-pinv has
+    the pseudo-inverse for the ridge besides. cca-symbol is his recognition: an observed motion
+    counts as the training symbol that it is likeliest of, here the one of least divergence from
+    its own symbol, since motions are not kept; the others place its own symbol directly.
     """
     labels = clips.labels[training]
     frequency = np.tile(labels.mean(axis=0), (len(held), 1))
     model = fit_word_model(clips.statistics[training], labels)
-    space, points = _correlated(clips, training, held)
+    own_groups = [clips.groups[row] for row in training]
+    curve = calibrate(model, clips.statistics[training], labels, own_groups)
+    every = _points(clips, training)
+    points, likeliest = every[held], every[_likeliest(clips, training, held)]
+    space = fit_correlated_space(every[training], labels)
+    printed = fit_correlated_space(every[training], labels, ridge=0.0)
     return {
-        "prior": _by_cosine(frequency),
-        "default": _by_cosine(model.predict(clips.statistics[held])),
-        "cca": _Scores(
-            space.word_cosines(points), _each(lambda query: space.clip_cosines(points, query))
-        ),
-        "cca-distance": _Scores(
-            -space.word_distances(points), _each(lambda query: -space.clip_distances(points, query))
-        ),
+        PRIOR: _by_cosine(frequency),
+        DEFAULT: _by_surprise(curve, model.outputs(clips.statistics[held])),
+        "cca": _by_angle(space, points),
+        "cca-distance": _by_distance(space, points),
+        "cca-pinv": _by_distance(printed, points),
+        "cca-symbol": _by_angle(space, likeliest),
     }
+
+
+def _by_surprise(curve: WordCalibration, outputs: FloatArray) -> _Scores:
+    words = curve.probabilities(outputs)
+    return _Scores(words, _each(lambda query: -curve.joint_surprise(words[:, query > 0.0])))
+
+
+def _by_angle(space: CorrelatedSpace, points: FloatArray) -> _Scores:
+    return _Scores(
+        space.word_cosines(points), _each(lambda query: space.clip_cosines(points, query))
+    )
+
+
+def _by_distance(space: CorrelatedSpace, points: FloatArray) -> _Scores:
+    return _Scores(
+        -space.word_distances(points), _each(lambda query: -space.clip_distances(points, query))
+    )
+
+
+def _likeliest(clips: _Clips, training: IntArray, held: IntArray) -> IntArray:
+    """The training row whose symbol is nearest to that of each held-out row."""
+    return np.asarray(training[np.argmin(clips.distances[np.ix_(held, training)], axis=1)])
 
 
 def _by_cosine(words: FloatArray) -> _Scores:
@@ -184,15 +335,11 @@ def _each(score: Callable[[FloatArray], FloatArray]) -> Callable[[FloatArray], F
     return lambda queries: np.array([score(query) for query in queries])
 
 
-def _correlated(
-    clips: _Clips, training: IntArray, held: IntArray
-) -> tuple[CorrelatedSpace, FloatArray]:
-    """The space of the training rows and where the held-out ones (n, d) lie in it.
+def _points(clips: _Clips, training: IntArray) -> FloatArray:
+    """(N, d) where all clips lie in the symbol space of the training rows.
 
     As fit_symbol_space does, but from distances that are computed once for all folds.
     """
     rows = training[landmark_rows(len(training))]
     landmarks = metric_mds(clips.distances[np.ix_(rows, rows)], DIMENSIONS)
-    points = place(clips.distances[:, rows], landmarks)
-    space = fit_correlated_space(points[training], clips.labels[training])
-    return space, points[held]
+    return place(clips.distances[:, rows], landmarks)

@@ -130,7 +130,16 @@ def word_figures(training: TrainingSet) -> Meta:
         )
     except NotEnoughLabels as reason:
         return {"reason": reason.detail}
-    return asdict(found) | {"figures": [asdict(figures) for figures in found.figures]}
+    shown = asdict(found)
+    # Curves and words one by one are long; `kinedex evaluate words` shows them.
+    del shown["by_word"]
+    for name in ("figures", "in_sample"):
+        shown[name] = [{k: v for k, v in row.items() if k != "precision"} for row in shown[name]]
+    correlations = {
+        kind: {str(number): value for number, value in enumerate(values, 1)}
+        for kind, values in found.correlations.items()
+    }
+    return shown | {"correlations": correlations}
 
 
 def recognition_figures(training: TrainingSet) -> dict[str, dict[str, float]]:

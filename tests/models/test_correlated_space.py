@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.errors import ModelNotFitted, NotEnoughLabels
-from app.models.correlated_space import CorrelatedSpace, fit_correlated_space
+from app.models.correlated_space import RIDGE, CorrelatedSpace, fit_correlated_space
 
 KIND = np.tile(np.arange(3), 20)
 
@@ -76,3 +76,38 @@ def test_labels_or_points_that_are_all_the_same_do_no_harm(
     assert np.isfinite(same.clip_cosines(points, labels[0])).all()
     still = fit_correlated_space(np.zeros_like(points), labels)
     assert np.isfinite(still.word_distances(points)).all()
+
+
+def test_the_pseudo_inverse_solves_the_printed_equations(
+    points: np.ndarray, labels: np.ndarray
+) -> None:
+    """Eqs 11-14 and 16 with label vectors that are rank deficient (fast = run, jog or jump)."""
+    space = fit_correlated_space(points, labels, ridge=0.0)
+    pair = space.pair
+    x, y = points - points.mean(axis=0), labels - labels.mean(axis=0)
+    assert np.linalg.matrix_rank(y) < labels.shape[1]
+    s_x, s_y, s_xy = (left.T @ right / 59 for left, right in ((x, x), (y, y), (x, y)))
+    unit = np.eye(pair.a.shape[1])
+    np.testing.assert_allclose(pair.a.T @ s_x @ pair.a, unit, atol=1e-8)
+    np.testing.assert_allclose(pair.b.T @ s_y @ pair.b, unit, atol=1e-8)
+    left = s_xy @ np.linalg.pinv(s_y) @ s_xy.T @ pair.a
+    np.testing.assert_allclose(left, s_x @ pair.a * pair.correlations**2, atol=1e-8)
+    right = s_xy.T @ np.linalg.solve(s_x, s_xy) @ pair.b
+    np.testing.assert_allclose(right, s_y @ pair.b * pair.correlations**2, atol=1e-8)
+    s_fg = (x @ pair.a).T @ (y @ pair.b) / 59
+    np.testing.assert_allclose(space.words_to_motions, s_fg.T, atol=1e-8)
+    np.testing.assert_allclose(space.motions_to_words, s_fg, atol=1e-8)
+    np.testing.assert_allclose(s_fg, np.diag(pair.correlations), atol=1e-8)
+
+
+def test_c_and_d_are_least_squares_under_the_ridge(points: np.ndarray, labels: np.ndarray) -> None:
+    """Eq. 15: no other transform near it has a smaller penalised error."""
+    space = fit_correlated_space(points, labels)
+    f, g = space.motions(points), space.words(labels)
+    for inputs, outputs, found in (
+        (g, f, space.words_to_motions),
+        (f, g, space.motions_to_words),
+    ):
+        penalty = RIDGE * np.trace(inputs.T @ inputs) / inputs.shape[1]
+        gradient = inputs.T @ (inputs @ found - outputs) + penalty * found
+        np.testing.assert_allclose(gradient, 0.0, atol=1e-7)

@@ -4,12 +4,16 @@ import numpy as np
 import pytest
 
 from app.models.ranking_figures import (
+    area_under_curve,
     average_precision,
+    brier_score,
+    calibration_error,
     f_where_recall_is_precision,
     mean_average_precision,
     mean_precision_at_k,
     nearest_neighbour_rate,
     precision_at_k,
+    precision_at_recalls,
     top_k_rate,
 )
 
@@ -54,3 +58,26 @@ def test_top_k_counts_clips_of_which_any_word_is_found() -> None:
 
 def test_equal_scores_keep_their_order() -> None:
     assert precision_at_k(np.zeros(4), RELEVANT, 1) == 1.0
+
+
+def test_precision_at_a_recall_is_that_of_the_shortest_list_that_reaches_it() -> None:
+    scores = np.array([[0.9, 0.8, 0.7], [0.6, 0.5, 0.4]])
+    hits = np.array([[True, False, True], [False, False, True]])
+    found = precision_at_recalls(scores, hits, np.array([0.0, 1 / 3, 0.5, 1.0]))
+    np.testing.assert_allclose(found, [1.0, 1.0, 2 / 3, 0.5])
+
+
+def test_area_under_curve_counts_pairs() -> None:
+    rng = np.random.default_rng(0)
+    scores, hits = rng.integers(6, size=40).astype(float), rng.random(40) < 0.4
+    pairs = [(a > b) + 0.5 * (a == b) for a in scores[hits] for b in scores[~hits]]
+    assert area_under_curve(scores, hits) == pytest.approx(np.mean(pairs))
+    assert area_under_curve(scores, np.zeros(40, dtype=bool)) == 0.5
+
+
+def test_scores_are_off_by_how_far_shares_lie_from_them() -> None:
+    chances = np.repeat([0.15, 0.85], 20)
+    is_so = np.repeat([True, False, True, False], [3, 17, 17, 3])
+    assert calibration_error(chances, is_so) == pytest.approx(0.0, abs=1e-12)
+    assert calibration_error(1.0 - chances, is_so) == pytest.approx(0.7)
+    assert brier_score(chances, is_so) == pytest.approx(0.15 * 0.85)

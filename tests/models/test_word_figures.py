@@ -14,7 +14,8 @@ def test_every_method_beats_the_prior_on_clips_that_can_be_told_apart() -> None:
     found = held_out_word_figures(symbols, statistics, words, groups)
     assert (found.clips, found.words, found.folds) == (24, 7, 5)
     figures = {one.method: one for one in found.figures}
-    assert list(figures) == ["prior", "default", "cca", "cca-distance"]
+    cca = ["cca", "cca-distance", "cca-pinv", "cca-symbol"]
+    assert list(figures) == ["prior", "default", *cca]
     assert figures["default"].word_f > figures["prior"].word_f
     assert figures["default"].top_3_recognition > 0.9
     assert figures["default"].set_map > figures["prior"].set_map + 0.1
@@ -46,3 +47,29 @@ def test_too_few_clips_are_refused(count: int) -> None:
     symbols, statistics, words = word_clips(1)
     with pytest.raises(NotEnoughLabels):
         held_out_word_figures(symbols[:count], statistics[:count], words[:count], ["a"] * count)
+
+
+def test_words_are_judged_one_by_one_and_too_few_recordings_are_told() -> None:
+    symbols, statistics, words = word_clips(6)
+    groups = [str(row // 2) for row in range(len(words))]
+    found = held_out_word_figures(symbols, statistics, words, groups)
+    wave = found.by_word[0]
+    assert (wave.word, wave.clips, wave.too_rare) == ("wave", 6, False)
+    assert wave.area_under_curve > 0.9
+    stroll = next(one for one in found.by_word if one.word == "stroll")
+    assert (stroll.clips, stroll.recordings, stroll.too_rare) == (3, 3, True)
+
+
+def test_curves_correlations_and_reliability_are_told() -> None:
+    symbols, statistics, words = word_clips(6)
+    found = held_out_word_figures(symbols, statistics, words, [str(i) for i in range(len(words))])
+    for one in (*found.figures, *found.in_sample):
+        assert len(one.precision) == len(word_figures.RECALLS)
+        assert one.precision[-1] > 0.0
+    held, seen = ({f.method: f for f in part} for part in (found.figures, found.in_sample))
+    assert seen["default"].set_map >= held["default"].set_map
+    assert found.reliability.word_brier < found.reliability.prior_brier
+    assert 0.0 <= found.reliability.word_error < 0.2
+    printed, ridged = (found.correlations[kind] for kind in ("pseudo_inverse", "ridge"))
+    assert list(printed) == sorted(printed, reverse=True)
+    assert all(one <= other + 1e-9 for one, other in zip(ridged, printed, strict=True))
