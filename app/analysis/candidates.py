@@ -17,6 +17,9 @@ from app.numerics.arrays import FloatArray
 REACH = 0.35
 """How far from its beat a rest may be, in beats."""
 
+ALMOST = 0.4
+"""Of that reach: a rest that begins so little after a beat was reached on it all the same."""
+
 LONGEST_INTERVAL = 1.5
 """Median intervals: between beats further apart than that some are missing."""
 
@@ -64,7 +67,9 @@ class Candidate:
 def at_beats(rests: tuple[Rest, ...], beats: FloatArray, scope: Scope) -> tuple[Candidate, ...]:
     """For each of `beats` (b,), in frames, rising, at most one rest: the lowest around it.
 
-    A rest belongs to the beat it is nearest to; its frame is the one nearest to the beat.
+    A rest belongs to the beat it is nearest to; of several that it lasts for to the first, on
+    which it was reached, or for the first rest of a clip to the last, on which it is left. Its
+    frame is the one nearest to the beat.
     """
     if not len(beats):
         return ()
@@ -73,7 +78,9 @@ def at_beats(rests: tuple[Rest, ...], beats: FloatArray, scope: Scope) -> tuple[
     for rest in rests:
         early = np.maximum(beats - rest.last, 0.0) / before
         late = np.maximum(rest.first - beats, 0.0) / after
-        nearest = int(np.lexsort((np.abs(rest.lowest - beats), early + late))[0])
+        aside = float((early + late).min())
+        lasting = np.flatnonzero(early + late <= aside + ALMOST)
+        nearest = int(lasting[-1] if rest.at_start else lasting[0])
         aside = float((early + late)[nearest])
         if aside <= 1.0:
             around.setdefault(nearest, []).append((rest.energy + ASIDE * aside, rest))

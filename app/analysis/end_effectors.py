@@ -15,7 +15,7 @@ import numpy as np
 from app.analysis.beats import Beats
 from app.analysis.candidates import Candidate, Scope, at_beats, at_rests
 from app.analysis.energy import SMOOTHING, EnergyCurve, velocities
-from app.analysis.keyposes import LEAST_APART, T1, T2, passes
+from app.analysis.keyposes import LEAST_APART, T1, T2, are_law, passes
 from app.analysis.rests import Rest, find_rests
 from app.motion.body_frame import BodyTrack
 from app.motion.joint_roles import SUN_ROLES, JointRole
@@ -55,7 +55,7 @@ def end_effector_candidates(track: BodyTrack, beats: Beats | None) -> EndEffecto
     """What the method selects from. beats: where they are known; else rests alone count."""
     hands, feet = end_effector_speeds(track)
     times = np.zeros(0) if beats is None else beats.times * track.rate
-    look = at_beats if len(times) else at_rests
+    look = at_beats if beats is not None and are_law(beats) else at_rests
     moments = look(find_rests(hands), times, Scope.LOCAL)
     return EndEffectorCandidates(track.rate, moments, find_rests(feet))
 

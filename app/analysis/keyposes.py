@@ -117,7 +117,7 @@ class Candidates:
             between = [c for c in local if left < c.frame < right]
             long = right - left >= GOES_ON * self.rate or not chosen
             found += between if long and len(between) >= REPEATED else []
-        return found
+        return _not_there_yet(found, chosen)
 
 
 def find_keyposes(
@@ -162,7 +162,7 @@ def find_candidates(
     """What `find_keyposes` selects from."""
     curves = energies(track, method, weights)
     used = _used(beats) or find_beats(_plain(track, curves, method, weights), track.rate)
-    look = at_beats if used.source in KNOWN and len(used.times) else at_rests
+    look = at_beats if are_law(used) else at_rests
     found = (
         candidate
         for curve, scope in ((curves.whole, Scope.GLOBAL), (curves.own, Scope.LOCAL))
@@ -183,6 +183,11 @@ def _used(beats: Beats | FloatArray | None) -> Beats | None:
     if beats is None or isinstance(beats, Beats):
         return beats
     return given_beats(np.unique(np.asarray(beats, dtype=np.float64)))
+
+
+def are_law(beats: Beats) -> bool:
+    """Whether keyposes are sought on these beats alone."""
+    return beats.source in KNOWN and len(beats.times) > 0
 
 
 def passes(rest: Rest, t1: float, t2: float) -> bool:

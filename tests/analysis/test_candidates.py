@@ -35,8 +35,10 @@ def test_of_two_rests_at_a_beat_the_lower_one_stays_unless_it_is_far_aside() -> 
     assert frames([rest(34, 34, 0.1), rest(40, 42, 0.2)], [20.0, 40.0, 60.0]) == [(40, 1)]
 
 
-def test_a_freeze_over_several_beats_is_one_keypose() -> None:
-    assert len(frames([rest(19, 62)], [20.0, 40.0, 60.0, 80.0])) == 1
+def test_a_freeze_over_several_beats_is_one_keypose_where_it_is_reached() -> None:
+    beats = [20.0, 40.0, 60.0, 80.0]
+    assert frames([rest(19, 62)], beats) == [(20, 0)]
+    assert frames([rest(0, 62, at_start=True)], beats) == [(60, 2)]
 
 
 def test_one_beat_is_enough_and_none_gives_none() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.analysis.beats import Beats
+from app.analysis.beats import given_beats
 from app.analysis.end_effectors import end_effector_candidates, end_effector_speeds
 from app.analysis.keyposes import find_keyposes
 from app.motion.body_frame import body_track
@@ -21,7 +21,7 @@ def stops_of(body: FloatArray) -> FloatArray:
 def test_stops_of_hands_and_feet_are_found_on_beats_and_without() -> None:
     made = dance(2, 100, beats=20)
     track = body_track(motion_of(made.positions, made.rate))
-    for beats in (Beats(made.beats, made.tempo, 1.0), None):
+    for beats in (given_beats(made.beats), None):
         found = end_effector_candidates(track, beats).times()
         assert min(precision_and_recall(found, made.stops)) > 0.9
 
@@ -57,7 +57,7 @@ def test_the_trunk_tells_it_nothing() -> None:
 def test_it_suffers_more_from_noise_than_the_energy_does() -> None:
     made = dance(7, 90, beats=24, noise=0.025)
     track = body_track(motion_of(made.positions, made.rate))
-    theirs = end_effector_candidates(track, Beats(made.beats, made.tempo, 1.0)).times()
+    theirs = end_effector_candidates(track, given_beats(made.beats)).times()
     ours = find_keyposes(track, beats=made.beats).times
     assert sum(precision_and_recall(ours, made.stops)) > sum(
         precision_and_recall(theirs, made.stops)
