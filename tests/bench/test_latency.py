@@ -1,0 +1,85 @@
+"""How long a search takes over HTTP: p50, p95, p99 with one client and with eight.
+
+Run: pytest -m bench -s tests/bench/test_latency.py
+Real clips with their vectors disturbed, in a store of their own; the real API process. Each
+request asks for another stored clip, so that shortlists come from the disk as they would.
+Reported, not asserted (issue 4 hopes for a p95 of 50 ms at 100,000 clips with one client).
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.config import Settings
+from app.store import schema
+from app.store.store import Store
+from tests.bench.large_library import fill
+from tests.live import Live, serve
+
+pytestmark = pytest.mark.bench
+
+COUNTS = [int(n) for n in os.environ.get("KINEDEX_BENCH_CLIPS", "500,10000,100000").split(",")]
+REQUESTS = 100
+NAMES = ("features_10hz", "msv_rho", "msv_epsilon", "pose_cover", "role_positions")
+"""Arrays of the clips: those that the searches here read."""
+SEARCHES: dict[str, dict[str, Any]] = {
+    "vector": {"method": "vector"},
+    "fused": {"method": "fused"},
+    "fused, filtered": {"method": "fused", "filter": {"person": "person 7"}},
+    "fused, 1000 hits": {"method": "fused", "limit": 1000},
+    "pose": {"time": 0.5},
+}
+
+
+@pytest.fixture(scope="module", params=COUNTS)
+def service(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[tuple[Live, int]]:
+    settings = Settings(data_dir=tmp_path_factory.mktemp("latency") / "data")
+    schema.prepare(settings.database)
+    store = Store.open(settings.database, settings.files_dir)
+    fill(store, request.param, names=NAMES)
+    store.close()
+    with serve(settings.data_dir) as live:
+        yield live, request.param
+    for file in Path(settings.data_dir).glob("kinedex.sqlite3*"):
+        file.unlink()
+
+
+def test_latency(service: tuple[Live, int]) -> None:
+    live, count = service
+    rng = np.random.default_rng(1)
+    print(f"\n{count} clips, ms{'':8}one client: p50   p95   p99    eight: p50   p95   p99")
+    for name, asked in SEARCHES.items():
+        told = []
+        for clients in (1, 8):
+            bodies = [
+                {"clip_id": f"clip_{rng.integers(count):020x}", **asked} for _ in range(REQUESTS)
+            ]
+            seconds = _ask(live, "pose" if "time" in asked else "motion", bodies, clients)
+            told.append("".join(f"{1e3 * s:8.1f}" for s in np.percentile(seconds, [50, 95, 99])))
+        print(f"  {name:20}{'   '.join(told)}")
+
+
+def _ask(live: Live, kind: str, bodies: list[dict[str, Any]], clients: int) -> list[float]:
+    def one_client(own: list[dict[str, Any]]) -> list[float]:
+        found = []
+        with live.client() as client:
+            for body in own:
+                started = time.perf_counter()
+                answer = client.post(f"/v1/search/{kind}", json=body)
+                found.append(time.perf_counter() - started)
+                assert answer.status_code == 200, answer.text
+        return found
+
+    with ThreadPoolExecutor(clients) as pool:
+        shares = [bodies[i::clients] for i in range(clients)]
+        return [seconds for own in pool.map(one_client, shares) for seconds in own]
