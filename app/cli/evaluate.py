@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import Any
 
 import typer
@@ -11,6 +10,7 @@ from app.cli.evaluate_keyposes import keyposes
 from app.cli.evaluate_low_dimensional import low_dimensional
 from app.cli.evaluate_retrieval import retrieval
 from app.cli.evaluate_symbols import symbols
+from app.cli.evaluate_words import words
 from app.cli.find import filter_of
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table
@@ -23,15 +23,7 @@ program.command("retrieval")(retrieval)
 program.command("keyposes")(keyposes)
 program.command("low-dimensional")(low_dimensional)
 program.command("symbols")(symbols)
-
-
-@program.command("words")
-def words(context: typer.Context, filter_json: FilterJson = None, as_json: AsJson = False) -> None:
-    """Words for clips and clips for words, held out, beside the words' frequency."""
-    wanted = parse_filter(filter_of(filter_json))
-    with open_library(context) as lib:
-        found = evaluate.judge_words(lib, wanted)
-    _show([asdict(figures) for figures in found.figures], as_json)
+program.command("words")(words)
 
 
 @program.command("recognition")

@@ -27,7 +27,7 @@ from app.services.evaluate.retrieval import (
 )
 from app.services.evaluate.symbols import draw_symbols, judge_symbols
 from app.services.evaluate.volumes import VolumeEvaluation, judge_volumes
-from app.services.evaluate.words import judge_words
+from app.services.evaluate.words import WordExample, draw_words, judge_words, word_examples
 
 __all__ = [
     "JUDGED",
@@ -42,7 +42,9 @@ __all__ = [
     "RetrievalEvaluation",
     "RetrievalFigures",
     "VolumeEvaluation",
+    "WordExample",
     "draw_symbols",
+    "draw_words",
     "judge_keyposes",
     "judge_low_dimensional",
     "judge_recognition",
@@ -50,4 +52,5 @@ __all__ = [
     "judge_symbols",
     "judge_volumes",
     "judge_words",
+    "word_examples",
 ]

@@ -1,0 +1,146 @@
+"""`kinedex evaluate words`: the tables and figures of Takano for one's own library."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from app.cli.find import filter_of
+from app.cli.options import FilterJson
+from app.cli.output import AsJson, print_json, print_table
+from app.cli.settings import open_library
+from app.models.word_figures import (
+    LEAST_RECORDINGS,
+    RECALLS,
+    JudgedWord,
+    WordEvaluation,
+    WordFigures,
+)
+from app.search.filters import parse_filter
+from app.services import evaluate, pictures
+from app.services.evaluate import WordExample
+
+Queries = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--query",
+        help="Words of an example for table 2, as 'high kick'; may be repeated. "
+        "Default: the most frequent words.",
+    ),
+]
+Picture = Annotated[
+    Path | None, typer.Option(help="Draw recall against precision: a .svg, .png or .pdf file.")
+]
+MOST_SHOWN = 40
+"""Words in the printed table; --json has all."""
+
+
+def words(
+    context: typer.Context,
+    query: Queries = None,
+    filter_json: FilterJson = None,
+    picture: Picture = None,
+    as_json: AsJson = False,
+) -> None:
+    """Words for clips and clips for words, held out and in-sample, beside their frequency."""
+    wanted = parse_filter(filter_of(filter_json))
+    form = None if picture is None else pictures.format_of(picture)
+    if picture is not None:
+        pictures.need_plots()
+        picture.parent.mkdir(parents=True, exist_ok=True)
+    with open_library(context) as lib:
+        found = evaluate.judge_words(lib, wanted)
+        examples = evaluate.word_examples(lib, query, wanted)
+    if picture is not None and form is not None:
+        picture.write_bytes(evaluate.draw_words(found, form))
+    if as_json:
+        print_json(_document(found, examples))
+    else:
+        _print(found, examples)
+
+
+def _document(found: WordEvaluation, examples: Sequence[WordExample]) -> dict[str, Any]:
+    document = asdict(found)
+    return document | {
+        "recalls": RECALLS.tolist(),
+        "least_recordings": LEAST_RECORDINGS,
+        "examples": [asdict(example) for example in examples],
+    }
+
+
+def _print(found: WordEvaluation, examples: Sequence[WordExample]) -> None:
+    typer.echo(
+        f"{found.clips} clips, {found.words} words. Held out, {found.folds} folds by recording:\n"
+    )
+    _print_figures(found.figures)
+    typer.echo("\nIn-sample, as the paper judged retrieval (section 3):\n")
+    _print_figures(found.in_sample)
+    typer.echo("\nPrecision of single words at a recall, held out (figure 7):\n")
+    _print_curves(found.figures)
+    reliability = found.reliability
+    typer.echo(
+        "\nScores as probabilities, held out: expected calibration error "
+        f"{reliability.word_error:.4f} and Brier score {reliability.word_brier:.4f} of single "
+        f"words (by frequency {reliability.prior_brier:.4f}); {reliability.set_error:.4f} and "
+        f"{reliability.set_brier:.4f} of whole label sets."
+    )
+    for kind, correlations in found.correlations.items():
+        told = " ".join(f"{one:.3f}" for one in correlations)
+        typer.echo(f"Canonical correlations ({kind.replace('_', '-')}): {told}")
+    typer.echo("\nWord by word, held out:\n")
+    _print_words(found.by_word)
+    for example in examples:
+        _print_example(example)
+
+
+def _print_figures(figures: Sequence[WordFigures]) -> None:
+    print_table(
+        ["method", "top-3 words", "word F", "word MAP", "set F", "set MAP"],
+        [
+            [f.method, f.top_3_recognition, f.word_f, f.word_map, f.set_f, f.set_map]
+            for f in figures
+        ],
+    )
+
+
+def _print_curves(figures: Sequence[WordFigures]) -> None:
+    places = range(2, len(RECALLS), 2)
+    print_table(
+        ["method", *(f"{RECALLS[place]:.1f}" for place in places)],
+        [[one.method, *(one.precision[place] for place in places)] for one in figures],
+    )
+
+
+def _print_words(by_word: Sequence[JudgedWord]) -> None:
+    judged = [one for one in by_word if not one.too_rare]
+    print_table(
+        ["word", "clips", "recordings", "AP", "F", "AUC"],
+        [
+            [o.word, o.clips, o.recordings, o.average_precision, o.f, o.area_under_curve]
+            for o in judged[:MOST_SHOWN]
+        ],
+    )
+    if len(judged) > MOST_SHOWN:
+        typer.echo(f"... and {len(judged) - MOST_SHOWN} words more: --json tells all.")
+    rare = [one.word for one in by_word if one.too_rare]
+    if rare:
+        more = "" if len(rare) <= MOST_SHOWN else f" and {len(rare) - MOST_SHOWN} more"
+        typer.echo(
+            f"Too rare to judge one by one, in fewer than {LEAST_RECORDINGS} recordings: "
+            f"{', '.join(rare[:MOST_SHOWN])}{more}."
+        )
+
+
+def _print_example(example: WordExample) -> None:
+    typer.echo(f"\nNearest to {', '.join(example.words)} in the correlated space (table 2):\n")
+    print_table(
+        ["clip", "distance / shortest", "carries", "words"],
+        [
+            [near.name, near.ratio, "yes" if near.carries else "", " ".join(near.words)]
+            for near in example.nearest
+        ],
+    )

@@ -1,0 +1,48 @@
+"""`kinedex evaluate words`: tables, JSON, a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.cli.conftest import Kinedex
+
+METHODS = ["prior", "default", "cca", "cca-distance", "cca-pinv", "cca-symbol"]
+
+
+def test_tables_for_people(kinedex: Kinedex, tmp_path: Path) -> None:
+    picture = tmp_path / "new" / "figure_7.svg"
+    ended = kinedex("evaluate", "words", "--query", "wave", "--picture", str(picture))
+    assert ended.code == 0, ended.err
+    lines = ended.out.splitlines()
+    assert lines[0].startswith("12 clips, ")
+    assert lines[2].split() == [
+        "method",
+        *["top-3", "words", "word", "F", "word", "MAP", "set", "F", "set", "MAP"],
+    ]
+    assert [line.split()[0] for line in lines[3:9]] == METHODS
+    assert "Canonical correlations (pseudo-inverse): " in ended.out
+    assert "Too rare to judge one by one, in fewer than 5 recordings: " in ended.out
+    assert "Nearest to wave in the correlated space (table 2):" in ended.out
+    assert picture.read_bytes().startswith(b"<?xml")
+
+
+def test_json_for_programs(kinedex: Kinedex) -> None:
+    told = kinedex("evaluate", "words", "--json").json()
+    assert [row["method"] for row in told["figures"]] == METHODS
+    assert [row["method"] for row in told["in_sample"]] == METHODS
+    assert all(len(row["precision"]) == len(told["recalls"]) for row in told["figures"])
+    assert told["words"] == len(told["by_word"])
+    assert {"word_error", "word_brier", "set_error"} <= told["reliability"].keys()
+    ratios = [near["ratio"] for near in told["examples"][0]["nearest"]]
+    assert ratios == sorted(ratios)
+
+
+def test_what_cannot_be_done_is_said(kinedex: Kinedex) -> None:
+    for words, told in (
+        (("--query", "zebra"), "no clip carries a word of 'zebra'"),
+        (("--picture", "figure.gif"), ".svg, .png, .pdf"),
+        (("--filter", '{"task": "nothing"}'), "too few"),
+    ):
+        ended = kinedex("evaluate", "words", *words)
+        assert ended.code == 1
+        assert told in ended.err
