@@ -11,9 +11,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
 from scipy.ndimage import maximum_filter1d
 
+from app.analysis.beat_tracking import (
+    LEAST_BEATS,
+    MULTIPLES,
+    autocorrelation,
+    likely_periods,
+    track,
+)
 from app.analysis.beats import Beats, BeatSource, no_beats
 from app.analysis.onsets import RATE, Onsets
 from app.numerics.arrays import FloatArray, IntArray
@@ -21,21 +27,11 @@ from app.numerics.arrays import FloatArray, IntArray
 SLOWEST, FASTEST = 40.0, 220.0
 """Beats per minute."""
 
-LEAST_BEATS = 4
 TIGHTNESS = 100.0
-"""Weight of the squared logarithm of an interval over the beat against onset strengths."""
+"""See `track`; onset strength is in units of its standard deviation."""
 
 CANDIDATES = 4
 """Strongest periods of the onsets from which tempi are derived."""
-
-RATIOS = (1 / 3, 1 / 2, 2 / 3, 1.0, 3 / 2, 2.0, 3.0)
-"""Tempi that share most of their beats."""
-
-STEP = 0.005
-"""Relative step of the grid of periods."""
-
-MULTIPLES = 4
-"""Periods whose autocorrelation counts for one beat."""
 
 USUAL = 112.0
 """Beats per minute that most music is near (McKinney & Moelants 2006: 100 to 140)."""
@@ -76,7 +72,7 @@ def find_audio_beats(onsets: Onsets, tempo: float | None = None) -> Beats:
     period, confidence = (60.0 * RATE / tempo, 1.0) if tempo else _choose(onsets)
     if confidence < LEAST_CONFIDENCE:
         return no_beats(confidence)
-    beats = track(onsets.strength, period)
+    beats = _tracked(onsets.strength, period)
     if len(beats) < LEAST_BEATS:
         return no_beats()
     found = 60.0 * RATE / float(np.median(np.diff(beats)))
@@ -88,8 +84,9 @@ def _choose(onsets: Onsets) -> tuple[float, float]:
     part = _middle(onsets)
     hearing = _Hearing.of(part.strength)
     best, found = (0.0, 0.0), -np.inf
-    for period in _periods(part.strength):
-        beats = track(part.strength, period)
+    shortest, longest = 60.0 * RATE / FASTEST, 60.0 * RATE / SLOWEST
+    for period in likely_periods(part.strength, shortest, longest, CANDIDATES):
+        beats = _tracked(part.strength, period)
         if len(beats) < LEAST_BEATS:
             continue
         pulse = hearing.pulse(beats)
@@ -143,68 +140,8 @@ def _repetition(correlation: FloatArray, period: float) -> float:
     return float(np.mean(peaks))
 
 
-def _periods(strength: FloatArray) -> list[float]:
-    """Frames a beat may last: the strongest periods and their simple ratios, each once."""
-    longest = min(60.0 * RATE / SLOWEST, len(strength) / LEAST_BEATS)
-    shortest = 60.0 * RATE / FASTEST
-    if longest <= shortest:
-        return []
-    grid = np.exp(np.arange(np.log(shortest / 1.5), np.log(longest), STEP))
-    salience = _salience(autocorrelation(strength), grid)
-    inner = (salience[1:-1] > salience[:-2]) & (salience[1:-1] >= salience[2:])
-    peaks = np.flatnonzero(inner) + 1
-    best = grid[peaks[np.argsort(-salience[peaks], kind="stable")][:CANDIDATES]]
-    found: list[float] = []
-    for period in (float(p / ratio) for p in best for ratio in RATIOS):
-        new = all(abs(np.log(period / other)) > 0.04 for other in found)
-        if new and shortest <= period <= longest:
-            found.append(period)
-    return found
-
-
-def autocorrelation(strength: FloatArray) -> FloatArray:
-    """(n,) by lag in frames, 1 at lag 0, not falling with the overlap; zeros if constant."""
-    count = len(strength)
-    length = next_fast_len(2 * count, real=True)
-    spectrum = rfft(strength - strength.mean(), length)
-    raw = irfft(np.square(np.abs(spectrum)), length)[:count]
-    if not raw[0] > 0:
-        return np.zeros(count)
-    overlap = np.maximum(count - np.arange(count), count / 4) / count
-    return np.asarray(raw / raw[0] / overlap)
-
-
-def _salience(correlation: FloatArray, periods: FloatArray) -> FloatArray:
-    lags = np.arange(len(correlation))
-    at = [np.interp(m * periods, lags, correlation, right=0.0) for m in range(1, MULTIPLES + 1)]
-    return np.asarray(np.mean(at, axis=0))
-
-
-def track(strength: FloatArray, period: float) -> IntArray:
-    """Frames of the beats of about `period` frames that gather most strength (Ellis 2007).
-
-    Whole blocks of half a period are filled at once: a beat's predecessor lies in an
-    earlier block.
-    """
-    nearest, furthest = max(1, round(0.5 * period)), round(2.0 * period)
-    gaps = np.arange(nearest, furthest + 1)
-    cost = -TIGHTNESS * np.square(np.log(gaps / period))
-    count = len(strength)
-    total = np.concatenate([np.full(furthest, -np.inf), strength])
-    before = np.full(count, -1)
-    for first in range(nearest, count, nearest):
-        frames = np.arange(first, min(first + nearest, count))
-        reached = total[furthest + frames[:, None] - gaps] + cost
-        best = reached.argmax(axis=1)
-        gain = reached[np.arange(len(frames)), best]
-        joined = gain > 0
-        total[furthest + frames[joined]] += gain[joined]
-        before[frames[joined]] = frames[joined] - gaps[best[joined]]
-    last = max(0, count - round(period))
-    beats = [last + int(total[furthest + last :].argmax())] if count else []
-    while beats and before[beats[-1]] >= 0:
-        beats.append(int(before[beats[-1]]))
-    return _trimmed(np.array(beats[::-1], dtype=np.int64), strength)
+def _tracked(strength: FloatArray, period: float) -> IntArray:
+    return _trimmed(track(strength, period, TIGHTNESS), strength)
 
 
 def _trimmed(beats: IntArray, strength: FloatArray) -> IntArray:
