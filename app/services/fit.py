@@ -175,6 +175,8 @@ def _fit_metric(factor: Factor, training: TrainingSet, _: Before) -> Fit:
     labels = tasks if factor is Factor.TASK else persons
     model = LearnedMetric(fit_axes(described, labels, factor), judged.calibration)
     arrays, meta = model.to_arrays()
+    ids = [clip.id for clip in training.clips]
+    arrays |= known_arrays(ids, None, model.axes.project(described))
     return Fit(arrays, meta, judged.figures)
 
 

@@ -1,4 +1,4 @@
-"""What a fit of the word models made of the clips it saw, stored with the model.
+"""What a fit of words or of a learned metric made of the clips it saw, stored with the model.
 
 So the first search after a fit or a start reads it, instead of computing it for all clips.
 """
@@ -23,16 +23,19 @@ MOST_VALUES = 50_000_000
 
 
 def known_arrays(
-    ids: Sequence[str], outputs: FloatArray, points: FloatArray
+    ids: Sequence[str], outputs: FloatArray | None, points: FloatArray
 ) -> dict[str, NDArray[Any]]:
-    """Arrays to store with the model: word scores (N, V) and coordinates (N, d) of N clips."""
+    """Arrays to store with the model: word scores (N, V) and coordinates (N, d) of N clips.
+
+    Learned metrics have no word scores.
+    """
     if not ids:
         return {}
     kept: dict[str, NDArray[Any]] = {
         _IDS: np.array([list(name) for name in _padded(ids)], dtype=np.uint8),
         POINTS: points.astype(np.float32),
     }
-    if outputs.size <= MOST_VALUES:
+    if outputs is not None and outputs.size <= MOST_VALUES:
         kept[OUTPUTS] = outputs.astype(np.float32)
     return kept
 

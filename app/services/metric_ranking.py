@@ -14,6 +14,7 @@ from app.models.learned_metric import INPUTS, Described, LearnedMetric
 from app.numerics.arrays import FloatArray
 from app.search.methods import Method
 from app.search.near import Near
+from app.services.known_clips import POINTS, read_known
 from app.services.library import Library
 from app.services.model_shelf import Fitted, ModelKind
 from app.services.models import list_unfitted
@@ -56,7 +57,12 @@ def rank_by_metric(
     model = fitted.model
     query = model.axes.project(Described(*(asked[name][None] for name in INPUTS)))[0]
     found = lib.metrics[kind].nearest(
-        fitted.id, partial(_project, lib, model), query, wanted, exclude
+        fitted.id,
+        partial(_project, lib, model),
+        query,
+        wanted,
+        exclude,
+        partial(read_known, lib, fitted.id, POINTS),
     )
     content = hashlib.sha256(b"".join(asked[name].tobytes() for name in INPUTS)).hexdigest()
     return MetricRanking(found, fitted.id, content, model.calibration.probability)

@@ -149,6 +149,32 @@ def test_it_goes_on_when_the_index_drops_its_dead_rows(
     np.testing.assert_allclose(found.distances, sorted(obvious.values()), rtol=1e-6)
 
 
+def test_what_a_fit_computed_is_taken_over_but_of_clips_that_changed_later(
+    store: Store, add: Add
+) -> None:
+    first, second, third = add("first"), add("second"), add("third")
+    index, model = VectorIndex(), Model(store)
+    index.catch_up(store)
+    beside, told = ProjectedIndex(index), np.full((2, K), 9.0)
+
+    def search() -> dict[str, float]:
+        found = beside.nearest(
+            "model", model.project, np.ones(K), ClipFilter(), known=lambda: ([first, second], told)
+        )
+        return dict(zip(found.ids, found.distances.tolist(), strict=True))
+
+    there = search()
+    assert model.asked == [third]
+    assert there[first] == there[second] == pytest.approx(8 * np.sqrt(K))
+    with store.write() as tx:
+        clips.patch(tx, first, {"task": "run"})
+    index.catch_up(store)
+    after = search()
+    assert model.asked == [third, first]
+    assert after[first] != there[first]
+    assert after[second] == there[second]
+
+
 def test_an_empty_library_has_no_nearest(store: Store) -> None:
     index, model = VectorIndex(), Model(store)
     index.catch_up(store)
