@@ -3,12 +3,11 @@
 Run: pytest -m bench -s tests/bench/test_windows.py
 Clips are halved by their place in the manifest. What `fused` weighs is chosen with pieces of
 one half, in streams of that half; the report hides pieces of the other half in an hour of
-motion made of all clips that no piece was cut from. Each piece is hidden five times, at
-another speed (up to 10 % longer or shorter, swaying by 10 %), heading, place, body size and
-frame rate, with marker noise. Relevant is what first overlaps one of these five places (their
-intersection at least half of their union); whatever else is found counts as wrong, other takes
-of the same task too. The second figure asks for those: the query is a whole take where it
-stands in a stream, relevant are the other takes of the same task by the same person.
+motion made of all clips that no piece was cut from (`hidden_pieces`). Relevant is what first
+overlaps one of a piece's five places (their intersection at least half of their union);
+whatever else is found counts as wrong, other takes of the same task too. The second figure
+asks for those: the query is a whole take where it stands in a stream, relevant are the other
+takes of the same task by the same person.
 """
 
 from __future__ import annotations
@@ -34,75 +33,40 @@ from app.analysis.windows import (
     window_frames,
 )
 from app.config import Settings
-from app.errors import BadContent
 from app.motion.body_frame import body_track
 from app.numerics.arrays import FloatArray, IntArray
 from app.search import in_windows
 from app.search.places import Candidates, places
-from app.services import clips, find
-from app.services.clips import NewClip
+from app.services import find
 from app.services.find import MotionQuery
 from app.services.hits import Hit
 from app.services.library import Library
-from tests.bodies import motion_of, turned_about_y
-from tests.real_clips import manifest, real_clips
-from tests.services.conftest import work
-from tests.streams import Stream, at_rate, body_of, joined, npz_of, of_size, warped
+from tests.bench.hidden_pieces import (
+    COPIES,
+    LENGTHS,
+    PIECES,
+    RATE,
+    Hidden,
+    Span,
+    Take,
+    hide,
+    real_takes,
+)
+from tests.bodies import motion_of
+from tests.streams import npz_of
 
 pytestmark = pytest.mark.bench
 
-RATE = 30.0
-LENGTHS = (0.6, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 10.0)
-"""Seconds, of pieces."""
-PIECES, COPIES = 40, 5
-STREAM_RATES = (30.0, 60.0, 24.0, 120.0, 50.0, 100.0)
-NOISE = 0.003
-"""Metres, of each marker in each frame."""
-LEAST_MOVING = 0.03
-"""Of a piece, rms of its velocities: stillness is everywhere."""
 METHODS = ("fused", "dtw", "vector")
 WEIGHTS = (0.0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4)
 FLOORS = {"fused": 0.95, "dtw": 0.95, "vector": 0.65}
 FEW, FLOOR_OF_FEW = 25, 0.85
 """Places that `fused` warps a query onto, as a 20th of those that it may."""
 
-Span = tuple[str, float, float]
-"""Clip id, start and end in seconds."""
-
-
-@dataclass(frozen=True)
-class Take:
-    """A real clip: who does what, and how, (frames, 13, 3) at RATE."""
-
-    person: str
-    task: str
-    source: str
-    body: FloatArray
-
-
-@dataclass
-class Hidden:
-    """A library of long motions; the pieces, where each is hidden, and where whole takes are."""
-
-    lib: Library
-    seconds: float
-    pieces: list[FloatArray]
-    places: list[list[Span]]
-    takes: dict[tuple[str, str, str], list[Span]]
-    streams: dict[str, FloatArray]
-
 
 @pytest.fixture(scope="module")
 def real() -> list[Take]:
-    found = []
-    for row in manifest():
-        content = (real_clips() / row["path"]).read_bytes()
-        try:
-            body = body_of(content, float(row["fps"]))
-        except BadContent:
-            continue  # AMC without its ASF
-        found.append(Take(row["person"], row["task"], row["source"], body))
-    return found
+    return real_takes()
 
 
 @pytest.fixture(scope="module")
@@ -118,68 +82,8 @@ def reported(real: list[Take], tmp_path_factory: pytest.TempPathFactory) -> Iter
 
 def _opened(folder: Path, sources: list[Take], filling: list[Take], seed: int) -> Iterator[Hidden]:
     lib = Library.open(Settings(data_dir=folder / "data", refit_growth=1e9))
-    yield _hide(lib, sources, filling, np.random.default_rng(seed))
+    yield hide(lib, sources, filling, np.random.default_rng(seed))
     lib.close()
-
-
-def _hide(
-    lib: Library, sources: list[Take], filling: list[Take], rng: np.random.Generator
-) -> Hidden:
-    pieces, used = _cut(sources, rng)
-    parts: list[tuple[FloatArray, object]] = [
-        (take.body, (take.task, take.person, take.source))
-        for take in filling
-        if not any(take is one for one in used)
-    ]
-    for number, piece in enumerate(pieces):
-        for _ in range(COPIES):
-            copy = warped(piece, rng.uniform(0.9, 1.1), rng.uniform(-0.1, 0.1))
-            parts.append((turned_about_y(copy, rng.uniform(-3, 3)), number))
-    order = rng.permutation(len(parts))
-    found = Hidden(lib, 0.0, pieces, [[] for _ in pieces], {}, {})
-    for number, rate in enumerate(STREAM_RATES):
-        mine = [parts[i] for i in order[number :: len(STREAM_RATES)]]
-        stream = joined([body for body, _ in mine], RATE)
-        clip_id, seconds = _store(lib, stream, rate, f"stream {number}", rng)
-        found.seconds += len(stream.body) / RATE
-        found.streams[clip_id] = stream.body
-        for (start, end), (_, what) in zip(stream.spans, mine, strict=True):
-            span = clip_id, start, min(end, seconds)
-            if isinstance(what, int):
-                found.places[what].append(span)
-            elif isinstance(what, tuple):
-                found.takes.setdefault(what, []).append(span)
-    work(lib.settings)
-    return found
-
-
-def _cut(sources: list[Take], rng: np.random.Generator) -> tuple[list[FloatArray], list[Take]]:
-    """Moving pieces of all lengths, each from a take of its own."""
-    pieces: list[FloatArray] = []
-    used: list[Take] = []
-    for index in rng.permutation(len(sources)):
-        take = sources[index]
-        frames = round(LENGTHS[len(pieces) % len(LENGTHS)] * RATE)
-        if len(pieces) == PIECES or len(take.body) < frames + 2:
-            continue
-        first = int(rng.integers(0, len(take.body) - frames + 1))
-        piece = take.body[first : first + frames]
-        moving = frame_features(body_track(motion_of(piece)))[:, 39:78]
-        if np.sqrt(np.mean(moving**2)) >= LEAST_MOVING:
-            pieces.append(piece)
-            used.append(take)
-    return pieces, used
-
-
-def _store(
-    lib: Library, stream: Stream, rate: float, name: str, rng: np.random.Generator
-) -> tuple[str, float]:
-    """The id and the seconds of the clip that the stream becomes."""
-    body = at_rate(of_size(stream.body, rng.uniform(0.9, 1.3)), RATE, rate)
-    noisy = body + rng.normal(scale=NOISE, size=body.shape)
-    content = io.BytesIO(npz_of(noisy, rate))
-    clip = clips.create_clip(lib, content, NewClip(f"{name}.npz")).clip
-    return clip.id, len(body) / rate
 
 
 @dataclass(frozen=True)
