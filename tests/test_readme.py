@@ -16,7 +16,7 @@ from tests.live import Live
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text()
 BEGIN, END = "<!-- settings -->", "<!-- /settings -->"
-_CURL_PATH = re.compile(r"\$B(/[\w/.$]*)")
+_CURL_PATH = re.compile(r"\$B(/[\w/.$-]*)")
 _METHOD = re.compile(r"-X (\w+)")
 
 
