@@ -33,7 +33,7 @@ T2 = 0.8
 LEAST_APART = 0.2
 """Seconds between keyposes."""
 
-GOES_ON = 3.0
+GOES_ON = 2.0
 """Seconds without a keypose after which a motion is one that does not rest."""
 
 SLOWEST = 2.4

@@ -57,7 +57,10 @@ def keyposes(
         pictures.need_plots()
     with open_library(context) as lib:
         if pictures_dir is not None:
-            _draw_clips(lib, wanted, pictures_dir, form_in_folder)
+            drawn = _draw_clips(lib, wanted, pictures_dir, form_in_folder)
+            typer.echo(f"{drawn} pictures are in {pictures_dir}.\n", err=as_json)
+            if not evaluate.is_any_annotated(lib, wanted):
+                return  # the pictures were all that could be had
         found = evaluate.judge_keyposes(lib, wanted, tolerance)
     if picture is not None and form is not None:
         picture.write_bytes(keypose_pictures.threshold_figure(found, form))
@@ -67,14 +70,15 @@ def keyposes(
         _print(found)
 
 
-def _draw_clips(lib: Library, wanted: ClipFilter, folder: Path, form: pictures.Format) -> None:
-    """A picture of each clip, by its id: names are others', and not fit for files."""
+def _draw_clips(lib: Library, wanted: ClipFilter, folder: Path, form: pictures.Format) -> int:
+    """A picture of each clip, by its id: names are others', and not fit for files. How many."""
     folder.mkdir(parents=True, exist_ok=True)
     clips = keypose_pictures.clips_to_draw(lib, wanted)
     with progress_bar() as bar:
         for clip in bar.track(clips, description="drawing"):
             content = keypose_pictures.clip_figure(lib, clip, form)
             (folder / f"{clip.id}.{form}").write_bytes(content)
+    return len(clips)
 
 
 def _document(found: KeyposeEvaluation) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from app.services.training import ready_only, recording_of_clip
 from app.store import clip_listing, clips, keypose_annotations
 from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord
+from app.store.engine import Tx
 from app.store.store import Store
 
 
@@ -27,11 +28,16 @@ class AnnotatedClip:
     true: FloatArray
 
 
+def annotated_ids(store: Store, wanted: ClipFilter | None = None) -> tuple[str, ...]:
+    """The ready clips that carry an annotation and pass a filter."""
+    with store.read() as tx:
+        return _annotated_ids(tx, wanted)
+
+
 def read_annotated(store: Store, wanted: ClipFilter | None = None) -> tuple[AnnotatedClip, ...]:
     """The ready clips that carry an annotation and pass a filter, by name and id."""
     with store.read() as tx:
-        ready = set(clip_listing.list_ids(tx, ready_only(wanted)))
-        ids = [clip_id for clip_id in keypose_annotations.annotated(tx) if clip_id in ready]
+        ids = _annotated_ids(tx, wanted)
         found = clips.get_many(tx, ids)
         named = keypose_annotations.get_many(tx, ids)
         tracks = {clip.id: body_track(read_motion(tx, clip)) for clip in found.values()}
@@ -44,3 +50,8 @@ def read_annotated(store: Store, wanted: ClipFilter | None = None) -> tuple[Anno
         )
         for clip in sorted(found.values(), key=lambda each: (each.name, each.id))
     )
+
+
+def _annotated_ids(tx: Tx, wanted: ClipFilter | None) -> tuple[str, ...]:
+    ready = set(clip_listing.list_ids(tx, ready_only(wanted)))
+    return tuple(clip_id for clip_id in keypose_annotations.annotated(tx) if clip_id in ready)

@@ -61,6 +61,15 @@ def test_pictures_go_where_they_are_wanted(kinedex: Kinedex, danced: Path, tmp_p
     assert len(list(folder.glob("clip_*.png"))) == len(TEMPI) + 1
 
 
+@pytest.mark.slow
+def test_pictures_need_no_annotation(kinedex: Kinedex, tmp_path: Path) -> None:
+    walks = ("--filter", '{"task": "walk"}')
+    ended = kinedex(*COMMAND, *walks, "--pictures", str(tmp_path / "walks"))
+    assert ended.code == 0, ended.err
+    assert "4 pictures are in" in ended.out
+    assert len(list((tmp_path / "walks").glob("*.svg"))) == 4
+
+
 def test_what_cannot_be_done_is_said(kinedex: Kinedex) -> None:
     ended = kinedex(*COMMAND)
     assert ended.code != 0

@@ -9,6 +9,7 @@ from app.services.evaluate.keyposes import (
     JudgedClip,
     JudgedKeyposes,
     KeyposeEvaluation,
+    is_any_annotated,
     judge_keyposes,
 )
 from app.services.evaluate.low_dimensional import (
@@ -45,6 +46,7 @@ __all__ = [
     "WordExample",
     "draw_symbols",
     "draw_words",
+    "is_any_annotated",
     "judge_keyposes",
     "judge_low_dimensional",
     "judge_recognition",

@@ -24,7 +24,7 @@ from app.models.keypose_thresholds import (
     lesson,
 )
 from app.services import fields
-from app.services.annotated import AnnotatedClip, read_annotated
+from app.services.annotated import AnnotatedClip, annotated_ids, read_annotated
 from app.services.keypose_learning import NOBODY, examples_of
 from app.services.library import Library
 from app.store.clip_filter import ClipFilter
@@ -75,6 +75,11 @@ class KeyposeEvaluation:
     recordings: int
     clips: tuple[JudgedClip, ...]
     methods: tuple[JudgedKeyposes, ...]
+
+
+def is_any_annotated(lib: Library, wanted: ClipFilter | None = None) -> bool:
+    """Whether there is anything to judge."""
+    return bool(annotated_ids(lib.store, wanted))
 
 
 def judge_keyposes(
