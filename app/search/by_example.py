@@ -9,22 +9,12 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 from app.search.cursor import Anchor
 from app.search.distances import Loader, QueryArrays, distances_to
-from app.search.index import VectorIndex
+from app.search.fusion import SHORTLIST, fused_distances
+from app.search.index import VECTOR, VectorIndex
 from app.search.methods import Method
 from app.search.rank import IdArray, Page, Ranked, Ranking
 from app.search.reranked import ReRanked
 from app.store.clip_filter import ClipFilter
-
-SHORTLIST = 200
-"""Clips that `fused` re-ranks."""
-DTW_WEIGHT = 0.25
-"""Weight of the DTW distance beside the vector's in `fused`.
-
-Chosen on three sets (97 clips of dataset 1, 49 of CMU's, the demo): MAP as one library .708,
-with the vector alone .704, with weight 1 .687; bands and scaling by each query's median
-distance gained nothing. On dataset 2, left out of the choice: P@4 .993 (vector .991, dtw
-.988), MAP .649 (.625, .700). `tests/bench/test_retrieval.py` measures both.
-"""
 
 SCALES = {
     Method.FUSED: 1.25,
@@ -59,14 +49,15 @@ def rank_by_example(
 
 
 def _fused(query: QueryArrays, load: Loader, shortlist: Page) -> Ranking:
-    """The shortlist by both distances."""
+    """The shortlist by vectors, warping and the graph between them."""
     warped = distances_to(query, list(shortlist.ids), Method.DTW, load)
-    return _known(shortlist.ids, fuse(shortlist.distances, warped))
-
-
-def fuse(vector: FloatArray, warped: FloatArray) -> FloatArray:
-    """The distance of `fused` from those of its two stages, each (n,)."""
-    return vector + DTW_WEIGHT * warped
+    loaded = load(list(shortlist.ids), VECTOR)
+    there = np.array([c in loaded for c in shortlist.ids], dtype=bool) & np.isfinite(warped)
+    ids = shortlist.ids[there]
+    if not len(ids):
+        return Ranking(ids, np.zeros(0))
+    vectors = np.stack([loaded[clip_id] for clip_id in ids])
+    return Ranking(ids, fused_distances(query.vector, vectors, warped[there]))
 
 
 def _known(ids: IdArray, distances: FloatArray) -> Ranking:

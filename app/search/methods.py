@@ -9,7 +9,7 @@ class Method(StrEnum):
     """A way to rank clips against a query clip."""
 
     FUSED = "fused"
-    """Shortlist by motion vector, re-rank by DTW, both distances summed; the default."""
+    """Shortlist by motion vector, re-rank by DTW and the graph between its clips; the default."""
     VECTOR = "vector"
     """Euclidean distance of the 128-float motion vectors."""
     DTW = "dtw"

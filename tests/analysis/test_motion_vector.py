@@ -22,7 +22,7 @@ from app.motion.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, standing, turned_about_y, walking, waving
 
-PROJECTION_SHA256 = "5053cf6e0e3cc247a44dcf9574c0261aa13232a301c1df3f1680c9915ed2334c"
+PROJECTION_SHA256 = "b0d178b49a7db1d9a942665857243e94f9d94aeb57ac6d00ac212d001a61b291"
 
 
 def vector_of(body: FloatArray, rate: float = 30.0) -> FloatArray:

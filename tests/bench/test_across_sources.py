@@ -22,8 +22,8 @@ import pytest
 
 from app.models.learned_metric import Factor, fit_axes
 from app.models.ranking_figures import average_precision
-from app.search.by_example import fuse
 from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to
+from app.search.fusion import fused_distances
 from app.search.methods import Method
 from tests.bench.described_clips import RealClips, described_clips
 
@@ -92,7 +92,9 @@ def by_methods(clips: RealClips, asks: np.ndarray) -> dict[str, dict[int, np.nda
                 asked, names, method, lambda ids, name: {i: clips.arrays[int(i)][name] for i in ids}
             )
         found[Method.VECTOR][query] = np.linalg.norm(vectors - vectors[query], axis=1)
-        found[Method.FUSED][query] = fuse(found[Method.VECTOR][query], found[Method.DTW][query])
+        found[Method.FUSED][query] = fused_distances(
+            own["motion_vector"], vectors, found[Method.DTW][query]
+        )
     return found
 
 

@@ -11,8 +11,8 @@ from app.analysis.analyse import describe_for_search
 from app.models.learned_metric import INPUTS, Described, Factor, MetricAxes, fit_axes
 from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
-from app.search.by_example import fuse
 from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to
+from app.search.fusion import fused_distances
 from app.search.index import VECTOR
 from app.search.methods import Method
 
@@ -38,7 +38,7 @@ class Gallery:
         found = {method: distances_to(asked, names, method, load) for method in RERANKED}
         vectors = np.stack([arrays[VECTOR] for arrays in self.arrays]).astype(float)
         found[Method.VECTOR] = np.linalg.norm(vectors - query[VECTOR], axis=1)
-        found[Method.FUSED] = fuse(found[Method.VECTOR], found[Method.DTW])
+        found[Method.FUSED] = fused_distances(query[VECTOR], vectors, found[Method.DTW])
         for method, axes in self.metrics.items():
             points = axes.project(described(self.arrays))
             found[method] = np.linalg.norm(points - axes.project(described([query])), axis=1)
