@@ -29,7 +29,7 @@ DETOUR = 1.0
 LEAST_CLOSENESS = 1e-3
 """What is less close on the graph is as far as if there were no way."""
 
-MOST_DETOUR = 10.0
+MOST_DETOUR = 5.0
 """The graph adds at most so many times the distance itself: the same motion stays at 0."""
 
 
