@@ -5,7 +5,8 @@ role_positions (n, 13, 3) metres, world; features_10hz (m, 82); motion_vector (1
 msv_lambda (1,), msv_rho (13,), msv_epsilon (n,), msv_convergence (i, 2), the error and the
 change of lambda after each of i iterations; motion_sample (1250,); symbol_statistics
 (131,); window_vectors_* (w, 125) float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s;
-keypose_frames (k,) int32, among the n; pose_cover (p, 38), the frame, radius and vector of
+beat_times (b,) float64 seconds, beat_facts (3,) float64 (see `rhythm`); keypose_frames (k,)
+int32, among the n; pose_cover (p, 38), the frame, radius and vector of
 poses that stand for all; segment_spans (s, 2) seconds, segment_vectors (s, 185)
 float16, segment_cycles (c, 3) int32; and of the motion symbol with K states
 symbol_means (K, 26), symbol_variances (K, 26), symbol_transitions (K, K).
@@ -26,36 +27,57 @@ from app.analysis.motion_sample import motion_sample
 from app.analysis.motion_symbol import describe_symbol
 from app.analysis.motion_vector import motion_vector
 from app.analysis.motion_volume import decompose
+from app.analysis.onsets import Onsets
 from app.analysis.pose_cover import pose_cover
+from app.analysis.rhythm import NOTHING, Told, find_rhythm, rhythm_arrays
 from app.analysis.symbol_features import symbol_features, symbol_statistics
 from app.analysis.windows import window_arrays
 from app.motion.body_frame import BodyTrack, body_track
 from app.motion.motion import Motion
+from app.motion.recording import Caution
 from app.numerics.arrays import FloatArray
 
-ANALYSIS_VERSION = 1
+ANALYSIS_VERSION = 2
 """Raise it with every change of what an array holds; older clips are then analysed again."""
 
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
-    """A motion and its arrays by name (see the module)."""
+    """A motion and its arrays by name (see the module).
+
+    audio_offset: time of the motion, s, at which its recording begins; None where there is no
+    recording or that is not known; cautions: doubts about the recording.
+    """
 
     motion: Motion
     arrays: dict[str, NDArray[Any]]
+    audio_offset: float | None = None
+    cautions: tuple[Caution, ...] = ()
 
 
-def analyse(motion: Motion, *, t1: float = T1, t2: float = T2) -> Analysis:
+def analyse(
+    motion: Motion,
+    *,
+    t1: float = T1,
+    t2: float = T2,
+    told: Told = NOTHING,
+    onsets: Onsets | None = None,
+) -> Analysis:
     """All arrays of `motion`; t1, t2: thresholds of its keyposes.
+
+    told: what a client says of its beats; onsets: of its recording.
 
     Deterministic; raises TooShort or NotHuman.
     """
     track = body_track(motion)
     arrays: dict[str, NDArray[Any]] = {**_for_search(track), **describe_symbol(track)}
-    keyposes = find_keyposes(track, t1=t1, t2=t2).frames
+    rhythm = find_rhythm(track, told, onsets)
+    arrays |= rhythm_arrays(rhythm)
+    keyposes = find_keyposes(track, t1=t1, t2=t2, beats=rhythm.beats).frames
     arrays["pose_cover"] = pose_cover(arrays["role_positions"], keyposes)
     arrays |= keypose_arrays(keyposes, arrays["features_10hz"])
-    return Analysis(motion, arrays)
+    offset = None if rhythm.offset is None else rhythm.offset.seconds
+    return Analysis(motion, arrays, offset, rhythm.cautions)
 
 
 def describe_for_search(motion: Motion) -> Analysis:

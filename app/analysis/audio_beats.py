@@ -76,7 +76,8 @@ def find_audio_beats(onsets: Onsets, tempo: float | None = None) -> Beats:
     if len(beats) < LEAST_BEATS:
         return no_beats()
     found = 60.0 * RATE / float(np.median(np.diff(beats)))
-    return Beats(beats / RATE, tempo or found, confidence, BeatSource.AUDIO)
+    source = BeatSource.TEMPO if tempo else BeatSource.AUDIO
+    return Beats(beats / RATE, tempo or found, confidence, source)
 
 
 def _choose(onsets: Onsets) -> tuple[float, float]:

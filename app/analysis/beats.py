@@ -124,7 +124,7 @@ def given_beats(times: FloatArray) -> Beats:
 
 def find_beats(energy: FloatArray, rate: float) -> Beats:
     """The beats of an energy curve (n,) of `rate` Hz; none where its rests keep no beat."""
-    rests = _find_rests(energy, rate)
+    rests = find_stops(energy, rate)
     shortest, longest = 60.0 * FINE / FASTEST, 60.0 * FINE / SLOWEST
     best, found = None, -np.inf
     for period in likely_periods(rests.curve, shortest, longest, CANDIDATES):
@@ -133,25 +133,28 @@ def find_beats(energy: FloatArray, rate: float) -> Beats:
             best, found = followed, followed.plausibility
     if best is None or best.confidence < LEAST_CONFIDENCE:
         return no_beats(0.0 if best is None else best.confidence)
-    times = _through(best.beats, rests.duration)
+    times = through(best.beats, rests.duration)
     return Beats(times, best.tempo, best.confidence, BeatSource.MOTION)
 
 
 def beats_of_tempo(energy: FloatArray, rate: float, tempo: float) -> Beats:
     """Beats of a `tempo` that is told, placed where the motion rests, from its first frame if
     it does not; confidence: that of their places."""
-    rests = _find_rests(energy, rate)
+    rests = find_stops(energy, rate)
     followed = _follow(rests, 60.0 * FINE / tempo)
     if followed is None:
         times = np.arange(0.0, max(rests.duration, 1e-9), 60.0 / tempo)
         return Beats(times, tempo, 0.0, BeatSource.TEMPO)
-    times = _through(followed.beats, rests.duration)
+    times = through(followed.beats, rests.duration)
     return Beats(times, tempo, followed.confidence, BeatSource.TEMPO)
 
 
 @dataclass(frozen=True, slots=True)
-class _Rests:
-    """times: (r,) s; weights: (r,) 0..1; curve: (m,) at FINE Hz, a hump at each; duration: s."""
+class Stops:
+    """The stops of a motion, for its beats.
+
+    times: (r,) s; weights: (r,) 0..1; curve: (m,) at FINE Hz, a hump at each; duration: s.
+    """
 
     times: FloatArray
     weights: FloatArray
@@ -159,13 +162,14 @@ class _Rests:
     duration: float
 
 
-def _find_rests(energy: FloatArray, rate: float) -> _Rests:
+def find_stops(energy: FloatArray, rate: float) -> Stops:
+    """Where an energy curve (n,) of `rate` Hz falls to a deep minimum."""
     level = _log_energy(energy, rate)
     spread = float(level.std()) if len(level) else 0.0
     duration = max(len(energy) - 1, 0) / rate
     grid = np.arange(int(duration * FINE) + 1) / FINE
     if not spread > 0:
-        return _Rests(np.zeros(0), np.zeros(0), np.zeros(len(grid)), duration)
+        return Stops(np.zeros(0), np.zeros(0), np.zeros(len(grid)), duration)
     minima, found = find_peaks(-level, prominence=DEEP * spread, plateau_size=1)
     depths = found["prominences"]
     middles = [_middle(level, m, d) for m, d in zip(minima, depths, strict=True)]
@@ -174,7 +178,7 @@ def _find_rests(energy: FloatArray, rate: float) -> _Rests:
     for time, weight in zip(times, weights, strict=True):
         hump = weight * np.exp(-0.5 * np.square((grid - time) / WIDTH))
         curve = np.maximum(curve, hump)
-    return _Rests(times, weights, curve, duration)
+    return Stops(times, weights, curve, duration)
 
 
 def _log_energy(energy: FloatArray, rate: float) -> FloatArray:
@@ -210,7 +214,7 @@ class _Followed:
         return 60.0 / float(np.median(np.diff(self.beats)))
 
 
-def _follow(rests: _Rests, period: float) -> _Followed | None:
+def _follow(rests: Stops, period: float) -> _Followed | None:
     """The beats of about `period` frames of `rests.curve`; None where there are too few."""
     tracked = track(HEIGHT * rests.curve, period, TIGHTNESS) / FINE
     if len(rests.times) < LEAST_BEATS or len(tracked) < LEAST_BEATS:
@@ -234,7 +238,7 @@ def _follow(rests: _Rests, period: float) -> _Followed | None:
     )
 
 
-def _evened(beats: FloatArray, rests: _Rests) -> FloatArray:
+def _evened(beats: FloatArray, rests: Stops) -> FloatArray:
     """Beats (b,) on a smooth course through the rests near them: musicians drift, they do not
     jump. A polynomial of few degrees over the beats' numbers, by least squares."""
     nearest = np.abs(rests.times[:, None] - beats).argmin(axis=1)
@@ -251,7 +255,7 @@ def _evened(beats: FloatArray, rests: _Rests) -> FloatArray:
     return np.asarray(legvander(numbers, degree) @ np.linalg.solve(left, right))
 
 
-def _through(beats: FloatArray, duration: float) -> FloatArray:
+def through(beats: FloatArray, duration: float) -> FloatArray:
     """The beats, gone on with evenly to both ends of a clip of `duration` s."""
     first, last = float(beats[1] - beats[0]), float(beats[-1] - beats[-2])
     before = np.arange(beats[0] - first, -1e-9, -first)[::-1]

@@ -11,7 +11,7 @@ import logging
 import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -20,6 +20,8 @@ import pebble
 from app.errors import (
     AnalysisCrashed,
     AnalysisTimedOut,
+    BadContent,
+    ExtraNeeded,
     KinedexError,
     Place,
     StorageError,
@@ -29,7 +31,8 @@ from app.services.child_processes import child_context, die_with_parent, limit_m
 
 if TYPE_CHECKING:
     from app.analysis.analyse import Analysis
-    from app.motion.recording import Recording
+    from app.analysis.onsets import Onsets
+    from app.motion.recording import Caution, Recording
 
 _log = logging.getLogger(__name__)
 _Found = TypeVar("_Found")
@@ -48,7 +51,9 @@ class Order:
 
     skeleton, skeleton_path: the ASF file of an AMC file, in the same way; stack: the animation
     stack of an FBX file; thresholds: T1 and T2 of keyposes, the usual ones where None; roles:
-    joint names by role name; for_search: leave out what only stored clips need.
+    joint names by role name; audio_path: a recording; beats, tempo, audio_offset: what the client
+    says of the rhythm (seconds, beats a minute, seconds); for_search: leave out what only
+    stored clips need.
     """
 
     content: bytes | None = None
@@ -60,6 +65,10 @@ class Order:
     frame_rate: float | None = None
     metres_per_unit: float | None = None
     roles: Mapping[str, str] | None = None
+    audio_path: str | None = None
+    beats: tuple[float, ...] | None = None
+    tempo: float | None = None
+    audio_offset: float | None = None
     for_search: bool = False
 
 
@@ -156,6 +165,7 @@ def analyse_order(order: Order, limits: Limits) -> Analysis:
     """
     from app.analysis import analyse
     from app.analysis.keyposes import T1, T2
+    from app.analysis.rhythm import Told
     from app.motion.canonical import canonicalise
     from app.motion.joint_roles import JointRole
 
@@ -170,7 +180,28 @@ def analyse_order(order: Order, limits: Limits) -> Analysis:
     if order.for_search:
         return analyse.describe_for_search(motion)
     t1, t2 = order.thresholds or (T1, T2)
-    return analyse.analyse(motion, t1=t1, t2=t2)
+    told = Told(order.beats, order.tempo, order.audio_offset)
+    onsets, doubts = (None, ()) if order.audio_path is None else _listen(Path(order.audio_path))
+    found = analyse.analyse(motion, t1=t1, t2=t2, told=told, onsets=onsets)
+    return replace(found, cautions=(*doubts, *found.cautions))
+
+
+def _listen(path: Path) -> tuple[Onsets | None, tuple[Caution, ...]]:
+    """The onsets of a recording; none and why where it cannot be read, which stops no clip."""
+    from app.analysis.onsets import find_onsets
+    from app.formats.audio import read_audio
+    from app.motion.recording import Caution
+
+    content = path.read_bytes()
+    try:
+        sound = read_audio(content)
+        return find_onsets(sound.samples, sound.rate), ()
+    except ExtraNeeded as missing:
+        return None, (Caution("audio_not_read", missing.detail),)
+    except (BadContent, TooLarge) as problem:
+        return None, (Caution("audio_unreadable", problem.detail),)
+    except MemoryError:
+        return None, (Caution("audio_unreadable", "The recording needs too much memory."),)
 
 
 def read_order(order: Order, limits: Limits) -> Recording:

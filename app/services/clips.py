@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, BinaryIO, cast
 
-from app.errors import BadContent, EmptyFile
+from app.errors import BadContent, EmptyFile, NotFound
 from app.formats.read import check_stack_belongs
 from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
 from app.services import fields
 from app.services.library import Library
+from app.services.recordings import NewRecording, described, stage
 from app.store import clip_listing, jobs, outcomes
 from app.store import clips as stored
 from app.store.clip_filter import ClipFilter
@@ -30,7 +31,16 @@ BULK_PRIORITY = 20
 WORKER_DEATHS = 30
 """A clip whose worker dies is tried again so often. It is seldom the clip's doing: content is
 parsed in a child process, whose death is counted by `job_max_attempts`."""
-PATCHABLE = ("name", "person", "task", "words", "license", "source", "frame_rate", "stack")
+PATCHABLE = (
+    *("name", "person", "task", "words", "license", "source", "frame_rate", "stack"),
+    *("audio_offset", "tempo", "beats"),
+)
+
+RHYTHM: Mapping[str, Callable[[Any], Any]] = {
+    "audio_offset": fields.audio_offset,
+    "tempo": fields.tempo,
+    "beats": fields.beats,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +48,9 @@ class NewClip:
     """What a client says of a file that it hands in; `frame_rate` in Hz.
 
     unit: metres per unit, or m, cm, mm, in, ...; roles: joint names by role; stack: the
-    animation stack of an FBX file, by default its longest; words: tidied here. Strings may be
-    empty, which is nothing said.
+    animation stack of an FBX file, by default its longest; words: tidied here; audio_offset:
+    seconds of the motion at which its recording begins; tempo: beats a minute; beats: seconds.
+    Strings may be empty, which is nothing said.
     """
 
     filename: str
@@ -53,6 +64,9 @@ class NewClip:
     unit: float | str | None = None
     roles: Mapping[str, str] | None = None
     stack: str | None = None
+    audio_offset: float | str | None = None
+    tempo: float | str | None = None
+    beats: Iterable[float] | str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +76,8 @@ class Created:
     clip: ClipRecord
     job: JobRecord | None
     is_new: bool
+    replaced_audio: str | None = None
+    """SHA-256 of a recording that may be dropped once the transaction is committed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,13 +90,18 @@ class StoredFile:
 
 
 def create_clip(
-    lib: Library, content: Readable, given: NewClip, skeleton: Readable | None = None
+    lib: Library,
+    content: Readable,
+    given: NewClip,
+    skeleton: Readable | None = None,
+    recording: NewRecording | None = None,
 ) -> Created:
     """Store a file durably and queue its analysis; on return both survive kill -9.
 
-    skeleton: the ASF file of an AMC file. The same bytes again (of both) give the clip that
-    exists, queued again if it had failed. Raises BadField, EmptyFile, UnknownFormat,
-    TooLarge, DiskFull; then nothing is kept.
+    skeleton: the ASF file of an AMC file; recording: of the sound. The same bytes again (of
+    motion and skeleton) give the clip that exists, queued again if it had failed, or if it
+    comes with another recording, which then replaces the one it had. Raises BadField,
+    EmptyFile, UnknownFormat, TooLarge, DiskFull; then nothing is kept.
     """
     row = _described(given)
     limit = lib.settings.max_upload_bytes
@@ -92,11 +113,29 @@ def create_clip(
         if skeleton is not None:
             companion = files.enter_context(lib.store.files.stage(skeleton, max_bytes=limit))
             _check_pair(format, companion)
+        sound: StagedFile | None = None
+        heard: dict[str, Any] = {}
+        if recording is not None:
+            sound = files.enter_context(stage(lib, recording))
+            heard = described(sound, recording.filename)
         with lib.store.write() as tx:
-            staged.keep()
-            if companion is not None:
-                companion.keep()
-            return add(tx, row(staged, companion))
+            keep(staged, companion, sound)
+            created = add(tx, replace(row(staged, companion), **heard))
+    drop_replaced(lib, created)
+    return created
+
+
+def keep(*files: StagedFile | None) -> None:
+    """Keep those that there are, in the transaction that refers to them."""
+    for file in files:
+        if file is not None:
+            file.keep()
+
+
+def drop_replaced(lib: Library, created: Created) -> None:
+    """Remove a recording that the clip no longer has, after the transaction."""
+    if created.replaced_audio is not None:
+        lib.store.drop_unreferenced([created.replaced_audio])
 
 
 def add(tx: Tx, row: NewRow, priority: int = UPLOAD_PRIORITY) -> Created:
@@ -105,7 +144,7 @@ def add(tx: Tx, row: NewRow, priority: int = UPLOAD_PRIORITY) -> Created:
     if not added.needs_analysis:
         return Created(added.clip, None, is_new=False)
     job = enqueue_ingest(tx, added.clip.id, priority)
-    return Created(added.clip, job, is_new=True)
+    return Created(added.clip, job, is_new=True, replaced_audio=added.replaced_audio)
 
 
 def check_content(staged: StagedFile) -> str:
@@ -177,7 +216,8 @@ def get_clip(lib: Library, clip_id: str) -> ClipRecord:
 
 
 def update_clip(lib: Library, clip_id: str, changes: Mapping[str, Any]) -> ClipRecord:
-    """Change labels; or frame rate or stack: the clip is analysed again under the same id.
+    """Change labels; or frame rate, stack, or what is said of the beats: then the clip is
+    analysed again under the same id.
 
     A key that is absent stays; None takes a value away. Raises BadField, ClipNotFound.
     """
@@ -198,14 +238,43 @@ def delete_clip(lib: Library, clip_id: str) -> None:
     """Remove a clip with all that was derived from it, and its file. Raises ClipNotFound."""
     with lib.store.write() as tx:
         gone = outcomes.remove_clip(tx, clip_id)
-    companions = (gone.skeleton_sha256,) if gone.skeleton_sha256 else ()
-    lib.store.drop_unreferenced([gone.sha256, *companions])
+    files = (gone.sha256, gone.skeleton_sha256, gone.audio_sha256)
+    lib.store.drop_unreferenced([sha256 for sha256 in files if sha256 is not None])
 
 
 def open_file(lib: Library, clip_id: str) -> StoredFile:
     """The original bytes of a clip, whatever its state. Raises ClipNotFound."""
     clip = get_clip(lib, clip_id)
     return StoredFile(lib.store.files.path(clip.sha256), clip.file_name, clip.file_size)
+
+
+def open_recording(lib: Library, clip_id: str) -> StoredFile:
+    """The bytes of a clip's recording. Raises ClipNotFound, NotFound where it has none."""
+    clip = get_clip(lib, clip_id)
+    sha256 = _recording_of(clip)
+    return StoredFile(
+        lib.store.files.path(sha256), clip.audio_name or "audio", clip.audio_size or 0
+    )
+
+
+def remove_recording(lib: Library, clip_id: str) -> ClipRecord:
+    """Take a clip's recording away; the clip is analysed again. Raises as `open_recording`."""
+    nothing = ClipChanges(
+        audio_sha256=None, audio_name=None, audio_size=None, audio_offset_override=None
+    )
+    with lib.store.write() as tx:
+        sha256 = _recording_of(stored.get(tx, clip_id))
+        stored.patch(tx, clip_id, nothing)
+        enqueue_ingest(tx, clip_id, BULK_PRIORITY)
+        after = stored.requeue(tx, clip_id)
+    lib.store.drop_unreferenced([sha256])
+    return after
+
+
+def _recording_of(clip: ClipRecord) -> str:
+    if clip.audio_sha256 is None:
+        raise NotFound(f"The clip {clip.id} has no recording.")
+    return clip.audio_sha256
 
 
 def _described(given: NewClip) -> Callable[[StagedFile, StagedFile | None], NewRow]:
@@ -222,6 +291,9 @@ def _described(given: NewClip) -> Callable[[StagedFile, StagedFile | None], NewR
         "metres_per_unit_override": fields.metres_per_unit(given.unit),
         "roles_override": fields.roles(given.roles),
         "stack_override": fields.text("stack", given.stack),
+        "audio_offset_override": fields.audio_offset(given.audio_offset),
+        "tempo_override": fields.tempo(given.tempo),
+        "beats_override": fields.beats(given.beats),
     }
 
     def row(staged: StagedFile, skeleton: StagedFile | None) -> NewRow:
@@ -244,6 +316,8 @@ def _tidied(changes: Mapping[str, Any]) -> ClipChanges:
             tidy["frame_rate_override"] = fields.frame_rate(value)
         elif key == "stack":
             tidy["stack_override"] = fields.text(key, value)
+        elif key in RHYTHM:
+            tidy[f"{key}_override"] = RHYTHM[key](value)
         else:
             tidy[key] = fields.text(key, value)
     if "name" in tidy and tidy["name"] is None:

@@ -23,6 +23,10 @@ MAX_LIMIT = 1000
 """Hits of one page."""
 MAX_KEYPOSES = 10_000
 """Keyposes that a person names in one clip: three hours of dancing."""
+TEMPI = (20.0, 400.0)
+"""Beats a minute."""
+MAX_OFFSET = 36_000.0
+"""Seconds."""
 MAX_FRAME_RATE = 2000.0
 """Hz; above any motion capture."""
 
@@ -117,6 +121,27 @@ def keyposes(
     if times and times[0] < 0:
         raise bad_field(field, "must not lie before the clip's beginning")
     return tuple(times)
+
+
+def tempo(value: float | str | None) -> float | None:
+    """Beats a minute, from 20 to 400; an empty string is None."""
+    number = _number("tempo", value)
+    if number is not None and not TEMPI[0] <= number <= TEMPI[1]:
+        raise bad_field("tempo", f"must be from {TEMPI[0]:g} to {TEMPI[1]:g} beats a minute")
+    return number
+
+
+def audio_offset(value: float | str | None) -> float | None:
+    """Seconds of the motion at which its recording begins, negative if before it."""
+    number = _number("audio_offset", value)
+    if number is not None and abs(number) > MAX_OFFSET:
+        raise bad_field("audio_offset", f"must be within {MAX_OFFSET:g} s of the motion's start")
+    return number
+
+
+def beats(value: str | Iterable[float] | None) -> tuple[float, ...] | None:
+    """Seconds from the clip's beginning, rising, each once; a string is cut at spaces."""
+    return keyposes(value, "beats") or None
 
 
 def _number(field: str, value: float | str | None) -> float | None:

@@ -20,15 +20,21 @@ from app.errors import (
     KinedexError,
     LeaseLost,
     NotFound,
-    Place,
     StorageError,
     UnknownFormat,
-    Unreadable,
 )
 from app.formats.sniff import HEAD_BYTES, is_zip
 from app.services import fields
-from app.services.clips import BULK_PRIORITY, WORKER_DEATHS, add, check_content
+from app.services.clips import (
+    BULK_PRIORITY,
+    WORKER_DEATHS,
+    add,
+    check_content,
+    drop_replaced,
+    keep,
+)
 from app.services.companions import pair_skeletons
+from app.services.import_plan import Item, plan_import
 from app.services.import_sources import (
     ArchiveLimits,
     SourceFile,
@@ -38,7 +44,8 @@ from app.services.import_sources import (
     single_file,
 )
 from app.services.library import Library
-from app.services.manifest import MANIFEST_NAME, ManifestRow, read_manifest
+from app.services.manifest import ManifestRow
+from app.services.recordings import described
 from app.store import imports as stored
 from app.store import jobs, keypose_annotations, leases
 from app.store.clip_record import ClipState
@@ -181,65 +188,66 @@ def _register_all(
     progress: Progress,
     should_stop: Callable[[], bool],
 ) -> None:
-    listed = _each_once(files)
-    manifest = _manifest_rows(listed)
-    skeletons = _skeletons(listed)
-    taken = {skeleton.path for skeleton in skeletons.values()}
-    clips = [file for file in listed if not _is_manifest(file) and file.path not in taken]
-    absent = sorted(manifest.keys() - {file.path for file in listed})
+    plan = plan_import(files)
     with doing.lib.store.read() as tx:
         recorded = stored.recorded_paths(tx, doing.lease.job_id)
-    total = len(clips) + len(absent)
-    for done, file in enumerate(clips, 1):
+    total = len(plan.items) + len(plan.absent)
+    for done, item in enumerate(plan.items, 1):
         if should_stop():
             raise Canceled("The import was stopped.")
-        if file.path not in recorded:
-            row = manifest.get(file.path, _NOTHING)
-            _register(doing, file, row, skeletons.get(file.path))
-        progress(done, total, file.path)
-    for path in absent:
+        if item.file.path not in recorded:
+            _register(doing, item)
+        progress(done, total, item.file.path)
+    for path, problem in plan.absent.items():
         if path not in recorded:
-            doing.record_problem(path, _absent(path, manifest[path]))
+            doing.record_problem(path, problem)
 
 
-def _register(
-    doing: _Doing, file: SourceFile, row: ManifestRow, skeleton: SourceFile | None
-) -> None:
+def _register(doing: _Doing, item: Item) -> None:
     """Store one file as a clip, or record why not; failures of the store are raised."""
     try:
-        if problem := file.problem or row.problem:
+        if problem := item.file.problem or item.row.problem:
             raise problem
-        with file.open() as content:
-            _store_file(doing, file.path, content, row, skeleton)
+        with item.file.open() as content:
+            _store_file(doing, content, item)
     except (StorageError, LeaseLost, Canceled):
         raise
     except KinedexError as problem:
-        doing.record_problem(file.path, problem)
+        doing.record_problem(item.file.path, problem)
 
 
-def _store_file(
-    doing: _Doing, path: str, content: Readable, row: ManifestRow, skeleton: SourceFile | None
-) -> None:
-    lib = doing.lib
+def _store_file(doing: _Doing, content: Readable, item: Item) -> None:
+    lib, row, path = doing.lib, item.row, item.file.path
     with ExitStack() as files:
-        limit = lib.settings.max_upload_bytes
-        staged = files.enter_context(lib.store.files.stage(content, max_bytes=limit))
-        companion = None
-        if check_content(staged) == "amc" and skeleton is not None:
-            if skeleton.problem is not None:
-                raise skeleton.problem
-            opened = files.enter_context(skeleton.open())
-            companion = files.enter_context(lib.store.files.stage(opened, max_bytes=limit))
+        staged = _stage(lib, files, content)
+        is_amc = check_content(staged) == "amc"
+        companion = _staged(lib, files, item.skeleton if is_amc else None)
+        recording = _staged(lib, files, item.sound)
+        heard = {} if recording is None else described(recording, row.audio or "")
+        new = replace(_new_row(path, row, staged, companion), **heard)
         with lib.store.write() as tx:
-            staged.keep()
-            if companion is not None:
-                companion.keep()
-            created = add(tx, _new_row(path, row, staged, companion), BULK_PRIORITY)
+            keep(staged, companion, recording)
+            created = add(tx, new, BULK_PRIORITY)
             if created.is_new and row.keyposes is not None:
                 keypose_annotations.put(tx, created.clip.id, row.keyposes)
             is_done = not created.is_new and created.clip.state is ClipState.READY
             outcome = ImportOutcome.EXISTS if is_done else ImportOutcome.QUEUED
             doing.record(tx, path, outcome, clip_id=created.clip.id)
+    drop_replaced(lib, created)
+
+
+def _staged(lib: Library, files: ExitStack, source: SourceFile | None) -> StagedFile | None:
+    """A file that goes with a motion, if there is one, for as long as `files` are open."""
+    if source is None:
+        return None
+    if source.problem is not None:
+        raise source.problem
+    return _stage(lib, files, files.enter_context(source.open()))
+
+
+def _stage(lib: Library, files: ExitStack, content: Readable) -> StagedFile:
+    limit = lib.settings.max_upload_bytes
+    return files.enter_context(lib.store.files.stage(content, max_bytes=limit))
 
 
 def _new_row(
@@ -259,59 +267,15 @@ def _new_row(
         skeleton_sha256=None if skeleton is None else skeleton.sha256,
         frame_rate_override=row.frame_rate,
         metres_per_unit_override=row.metres_per_unit,
+        audio_offset_override=row.audio_offset,
+        tempo_override=row.tempo,
+        beats_override=row.beats,
     )
 
 
 def _leave_to_clips(lib: Library, lease: Lease) -> JobRecord:
     with lib.store.write() as tx:
         return stored.wait_for_clips(tx, lease, "waiting for the clips' analyses")
-
-
-def _manifest_rows(files: Iterable[SourceFile]) -> dict[str, ManifestRow]:
-    """What every manifest among the files says, by path; a bad one fails the whole import."""
-    rows: dict[str, ManifestRow] = {}
-    for file in files:
-        if _is_manifest(file):
-            rows |= read_manifest(_content(file), file.path.rpartition("/")[0])
-    return rows
-
-
-def _content(manifest: SourceFile) -> bytes:
-    # One that is encrypted or damaged must not be passed over: its labels would be lost.
-    if manifest.problem is not None:
-        raise manifest.problem
-    try:
-        with manifest.open() as content:
-            return content.read()
-    except Unreadable as problem:
-        raise Unreadable(f"{manifest.path}: {problem.detail}") from problem
-
-
-def _skeletons(files: Iterable[SourceFile]) -> dict[str, SourceFile]:
-    """The file of the skeleton that each AMC file moves, by the AMC's path."""
-    by_path = {file.path: file for file in files}
-    return {motion: by_path[path] for motion, path in pair_skeletons(by_path).items()}
-
-
-def _is_manifest(file: SourceFile) -> bool:
-    return file.path.rpartition("/")[2] == MANIFEST_NAME
-
-
-def _each_once(files: Iterable[SourceFile]) -> list[SourceFile]:
-    """The files with paths that are storable, and different where an archive repeats one."""
-    seen: dict[str, int] = {}
-    listed = []
-    for file in files:
-        path = file.path.encode("utf-8", "replace").decode()
-        seen[path] = seen.get(path, 0) + 1
-        name = path if seen[path] == 1 else f"{path} ({seen[path]})"
-        listed.append(replace(file, path=name))
-    return listed
-
-
-def _absent(path: str, row: ManifestRow) -> KinedexError:
-    place = Place(f"{MANIFEST_NAME} line {row.line}", f"{path} is not there")
-    return BadContent("The manifest names a file that is not there.", places=[place])
 
 
 def _limits(lib: Library) -> ArchiveLimits:

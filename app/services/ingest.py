@@ -9,7 +9,6 @@ from __future__ import annotations
 from app.analysis.analyse import ANALYSIS_VERSION, Analysis
 from app.analysis.energy import EnergyMethod
 from app.errors import KinedexError, ModelNotFitted, StorageError
-from app.motion.motion import Motion
 from app.services.analysis_pool import ChildDied, Order
 from app.services.keypose_frames import named_keyposes
 from app.services.library import Library
@@ -26,7 +25,7 @@ RETRY_DELAY_S = 5.0
 
 def order_for(lib: Library, clip: ClipRecord) -> Order:
     """What to analyse for a clip. Raises NotFound where its file is gone."""
-    skeleton = clip.skeleton_sha256
+    skeleton, audio = clip.skeleton_sha256, clip.audio_sha256
     return Order(
         path=str(lib.store.files.path(clip.sha256)),
         skeleton_path=None if skeleton is None else str(lib.store.files.path(skeleton)),
@@ -35,6 +34,10 @@ def order_for(lib: Library, clip: ClipRecord) -> Order:
         metres_per_unit=clip.metres_per_unit_override,
         roles=clip.roles_override,
         thresholds=_thresholds(lib),
+        audio_path=None if audio is None else str(lib.store.files.path(audio)),
+        beats=clip.beats_override,
+        tempo=clip.tempo_override,
+        audio_offset=clip.audio_offset_override,
     )
 
 
@@ -56,9 +59,7 @@ def finish(tx: Tx, claimed: ClaimedJob, clip: ClipRecord, found: Analysis) -> No
         _leave(tx, claimed, clip)
         return
     arrays = {**found.arrays, **motion_arrays(found.motion), **named_keyposes(tx, clip, found)}
-    outcomes.finish_ingest(
-        tx, claimed.lease, clip.id, facts(found.motion), arrays, settles_imports=False
-    )
+    outcomes.finish_ingest(tx, claimed.lease, clip.id, facts(found), arrays, settles_imports=False)
 
 
 def fail(
@@ -73,8 +74,10 @@ def fail(
         outcomes.fail_job(tx, claimed, problem.as_problem())
 
 
-def facts(motion: Motion) -> ClipFacts:
+def facts(found: Analysis) -> ClipFacts:
     """What a clip's row tells of its motion."""
+    motion = found.motion
+    doubts = (*motion.cautions, *found.cautions)
     return ClipFacts(
         format=motion.format,
         frames=motion.frames,
@@ -85,8 +88,9 @@ def facts(motion: Motion) -> ClipFacts:
         metres_per_unit=motion.metres_per_unit,
         roles={role.value: motion.names[joint] for role, joint in motion.roles.items()},
         missing_roles=tuple(role.value for role in motion.missing_roles),
-        warnings=tuple(ClipWarning(c.code, c.detail, c.likely) for c in motion.cautions),
+        warnings=tuple(ClipWarning(c.code, c.detail, c.likely) for c in doubts),
         analysis_version=ANALYSIS_VERSION,
+        audio_offset=found.audio_offset,
     )
 
 

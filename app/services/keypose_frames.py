@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.analysis.analyse import Analysis
+from app.analysis.beats import Beats
 from app.analysis.keypose_arrays import frames_at, keypose_arrays
 from app.analysis.keyposes import find_keyposes
+from app.analysis.rhythm import BEAT_ARRAYS, beats_of
 from app.errors import NotFound
 from app.motion.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray, IntArray
@@ -35,8 +37,22 @@ def keypose_frames(lib: Library, clip_id: str, track: BodyTrack) -> IntArray:
         with lib.store.read() as tx:
             stored = arrays.get_one(tx, clip_id, KEYPOSE_FRAMES)
     except NotFound:
-        stored = find_keyposes(track).frames
+        stored = find_keyposes(track, beats=stored_beats(lib, clip_id)).frames
     return np.asarray(stored[(stored >= 0) & (stored < track.frames)], dtype=np.int64)
+
+
+def stored_beats(lib: Library, clip_id: str) -> Beats | None:
+    """The beats of a ready clip; None where it was analysed before they were stored."""
+    with lib.store.read() as tx:
+        return read_beats(tx, clip_id)
+
+
+def read_beats(tx: Tx, clip_id: str) -> Beats | None:
+    """As `stored_beats`, in the caller's transaction."""
+    try:
+        return beats_of({name: arrays.get_one(tx, clip_id, name) for name in BEAT_ARRAYS})
+    except NotFound:
+        return None
 
 
 def named_keyposes(tx: Tx, clip: ClipRecord, found: Analysis) -> dict[str, NDArray[Any]]:

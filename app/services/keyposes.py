@@ -16,7 +16,7 @@ from app.models.keypose_thresholds import USUAL, Thresholds
 from app.motion.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from app.services import fields
-from app.services.keypose_frames import store_keyposes
+from app.services.keypose_frames import store_keyposes, stored_beats
 from app.services.library import Library
 from app.services.query import ready_clip
 from app.services.stored_motion import load_motion
@@ -86,7 +86,12 @@ def view(
     clip = ready_clip(lib, clip_id)
     track = body_track(load_motion(lib, clip))
     found = find_keyposes(
-        track, method=method, weights=weights, t1=used.values.t1, t2=used.values.t2
+        track,
+        method=method,
+        weights=weights,
+        t1=used.values.t1,
+        t2=used.values.t2,
+        beats=stored_beats(lib, clip_id),
     )
     with lib.store.read() as tx:
         named = keypose_annotations.get(tx, clip_id)
@@ -156,4 +161,4 @@ def _found_anew(lib: Library, clip: ClipRecord) -> FloatArray | None:
         return None
     track = body_track(load_motion(lib, clip))
     used = thresholds(lib).values
-    return find_keyposes(track, t1=used.t1, t2=used.t2).times
+    return find_keyposes(track, t1=used.t1, t2=used.t2, beats=stored_beats(lib, clip.id)).times

@@ -1,9 +1,10 @@
 """manifest.csv: what a library's owner says about the files beside it.
 
 Columns: `path` (relative to the manifest), and any of `name person task words license source
-fps unit keyposes`; words are separated by spaces, a phrase has underscores; keyposes are
-seconds, separated by spaces. Other columns are left alone. Rows that cannot be used are kept
-with their problem, to be told with their file.
+fps unit keyposes audio audio_offset tempo beats`; words are separated by spaces, a phrase has
+underscores; keyposes and beats are seconds, separated by spaces; audio is a path like `path`.
+Other columns are left alone. Rows that cannot be used are kept with their problem, to be told
+with their file.
 """
 
 from __future__ import annotations
@@ -23,7 +24,10 @@ MAX_MANIFEST_BYTES = 64 * 2**20
 
 @dataclass(frozen=True, slots=True)
 class ManifestRow:
-    """What a manifest says about one file; `problem` where the row cannot be used."""
+    """What a manifest says about one file; `problem` where the row cannot be used.
+
+    audio: path of a recording, seen from where `path` is.
+    """
 
     line: int
     name: str | None = None
@@ -35,6 +39,10 @@ class ManifestRow:
     frame_rate: float | None = None
     metres_per_unit: float | None = None
     keyposes: tuple[float, ...] | None = None
+    audio: str | None = None
+    audio_offset: float | None = None
+    tempo: float | None = None
+    beats: tuple[float, ...] | None = None
     problem: KinedexError | None = None
 
 
@@ -52,8 +60,8 @@ def read_manifest(content: bytes, folder: str = "") -> dict[str, ManifestRow]:
         raise _unreadable(line, "not UTF-8 text") from problem
     rows: dict[str, ManifestRow] = {}
     for line, record in _records(text):
-        path = posixpath.normpath(posixpath.join(folder, record["path"].replace("\\", "/")))
-        rows[path] = _repeated(line) if path in rows else _row(line, record)
+        path = _path(folder, record["path"])
+        rows[path] = _repeated(line) if path in rows else _row(line, record, folder)
     return rows
 
 
@@ -79,7 +87,11 @@ def _records(text: str) -> Iterator[tuple[int, dict[str, str]]]:
         raise _unreadable(reader.reader.line_num, str(problem)) from problem
 
 
-def _row(line: int, record: dict[str, str]) -> ManifestRow:
+def _path(folder: str, written: str) -> str:
+    return posixpath.normpath(posixpath.join(folder, written.replace("\\", "/")))
+
+
+def _row(line: int, record: dict[str, str], folder: str) -> ManifestRow:
     try:
         return ManifestRow(
             line=line,
@@ -92,6 +104,10 @@ def _row(line: int, record: dict[str, str]) -> ManifestRow:
             frame_rate=fields.frame_rate(record.get("fps") or record.get("frame_rate")),
             metres_per_unit=fields.metres_per_unit(record.get("unit")),
             keyposes=fields.keyposes(record.get("keyposes")) or None,
+            audio=_path(folder, record["audio"]) if record.get("audio") else None,
+            audio_offset=fields.audio_offset(record.get("audio_offset")),
+            tempo=fields.tempo(record.get("tempo")),
+            beats=fields.beats(record.get("beats")),
         )
     except BadField as problem:
         places = [

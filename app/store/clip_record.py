@@ -32,6 +32,19 @@ class ClipWarning:
     likely: float | None = None
 
 
+OVERRIDES = (
+    "frame_rate_override",
+    "metres_per_unit_override",
+    "roles_override",
+    "stack_override",
+    "audio_sha256",
+    "audio_offset_override",
+    "tempo_override",
+    "beats_override",
+)
+"""Fields of a clip on which its analysis depends beside its file."""
+
+
 @dataclass(frozen=True, slots=True)
 class ClipRecord:
     """A clip's row. What the analysis finds is None (or empty) until the clip is ready.
@@ -39,7 +52,9 @@ class ClipRecord:
     sha256: of the file's own bytes; content_key: what makes the clip one of a kind (the same,
     or with a skeleton companion a hash of both); roles: joint name by role; durations in
     seconds, rates in Hz; error: an RFC 9457 problem; *_override: what the client said, which
-    wins over what the file says; changed_version: library version of the last change that
+    wins over what the file says; audio_*: the recording that goes with the motion, its bytes,
+    their name and number, audio_offset the time of the motion (s) at which it begins, if known;
+    changed_version: library version of the last change that
     searches see, 0 while it was never searchable.
     """
 
@@ -72,18 +87,20 @@ class ClipRecord:
     metres_per_unit_override: float | None
     roles_override: dict[str, str] | None
     stack_override: str | None
+    audio_sha256: str | None
+    audio_name: str | None
+    audio_size: int | None
+    audio_offset_override: float | None
+    tempo_override: float | None
+    beats_override: tuple[float, ...] | None
+    audio_offset: float | None
     analysis_version: int | None
     changed_version: int
 
     @property
     def overrides(self) -> tuple[Any, ...]:
-        """What the client said of the file: frame rate, metres per unit, roles, stack."""
-        return (
-            self.frame_rate_override,
-            self.metres_per_unit_override,
-            self.roles_override,
-            self.stack_override,
-        )
+        """What the client said of the file, as named in OVERRIDES: an analysis depends on it."""
+        return tuple(getattr(self, name) for name in OVERRIDES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +122,12 @@ class NewClip:
     metres_per_unit_override: float | None = None
     roles_override: dict[str, str] | None = None
     stack_override: str | None = None
+    audio_sha256: str | None = None
+    audio_name: str | None = None
+    audio_size: int | None = None
+    audio_offset_override: float | None = None
+    tempo_override: float | None = None
+    beats_override: tuple[float, ...] | None = None
 
     @property
     def content_key(self) -> str:
@@ -129,6 +152,7 @@ class ClipFacts:
     missing_roles: tuple[str, ...]
     warnings: tuple[ClipWarning, ...]
     analysis_version: int
+    audio_offset: float | None = None
 
 
 class ClipChanges(TypedDict, total=False):
@@ -144,6 +168,12 @@ class ClipChanges(TypedDict, total=False):
     metres_per_unit_override: float | None
     roles_override: dict[str, str] | None
     stack_override: str | None
+    audio_sha256: str | None
+    audio_name: str | None
+    audio_size: int | None
+    audio_offset_override: float | None
+    tempo_override: float | None
+    beats_override: tuple[float, ...] | None
 
 
 class AddOutcome(StrEnum):
@@ -154,7 +184,8 @@ class AddOutcome(StrEnum):
     EXISTS = "exists"
     """The same content is there already; nothing was changed."""
     REQUEUED = "requeued"
-    """The same content had failed; it is queued again and needs an ingest job."""
+    """The same content had failed, or comes with another recording; it is queued again and
+    needs an ingest job."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,6 +194,8 @@ class Added:
 
     clip: ClipRecord
     outcome: AddOutcome
+    replaced_audio: str | None = None
+    """SHA-256 of a recording that the clip no longer refers to."""
 
     @property
     def needs_analysis(self) -> bool:

@@ -24,6 +24,16 @@ from app.store.engine import Tx
 from app.store.ids import new_id, utc_now
 from app.store.tables import clip_words, clips
 
+AUDIO_FIELDS = (
+    "audio_sha256",
+    "audio_name",
+    "audio_size",
+    "audio_offset_override",
+    "tempo_override",
+    "beats_override",
+)
+"""What comes with a recording."""
+
 IDS_PER_QUERY = 500
 """Databases limit the parameters of one statement."""
 
@@ -43,15 +53,19 @@ _WORDS = (
 def add_or_get(tx: Tx, new: NewClip) -> Added:
     """Adds a clip in state queued, or finds the one with the same content.
 
-    A failed one is queued again, with those labels and overrides that are given now. Safe
+    A failed one is queued again, with those labels and overrides that are given now; any other
+    with another recording, and what is told of its beats. Safe
     between processes: writers take turns, so the look-up cannot be overtaken.
     """
     library.lock(tx)
     found = find_by_content(tx, new.content_key)
     if found is None:
         return Added(_insert(tx, new), AddOutcome.ADDED)
-    if found.state is ClipState.FAILED:
-        return Added(_requeue_with(tx, found, new), AddOutcome.REQUEUED)
+    is_failed = found.state is ClipState.FAILED
+    if is_failed or new.audio_sha256 not in (None, found.audio_sha256):
+        again = _requeue_with(tx, found, new, None if is_failed else AUDIO_FIELDS)
+        replaced = found.audio_sha256 if again.audio_sha256 != found.audio_sha256 else None
+        return Added(again, AddOutcome.REQUEUED, replaced)
     return Added(found, AddOutcome.EXISTS)
 
 
@@ -164,11 +178,14 @@ def _insert(tx: Tx, new: NewClip) -> ClipRecord:
     return get(tx, clip_id)
 
 
-def _requeue_with(tx: Tx, failed: ClipRecord, new: NewClip) -> ClipRecord:
+def _requeue_with(
+    tx: Tx, found: ClipRecord, new: NewClip, only: Collection[str] | None
+) -> ClipRecord:
+    """Queue again with what is given now, of the fields `only` where they are named."""
     given = {key: value for key, value in asdict(new).items() if value not in (None, ())}
-    names = ClipChanges.__annotations__.keys() & given.keys()
-    patch(tx, failed.id, ClipChanges(**{name: given[name] for name in names}))  # type: ignore[typeddict-item]
-    return requeue(tx, failed.id)
+    names = ClipChanges.__annotations__.keys() & given.keys() & set(only or given)
+    patch(tx, found.id, ClipChanges(**{name: given[name] for name in names}))  # type: ignore[typeddict-item]
+    return requeue(tx, found.id)
 
 
 def _set_words(tx: Tx, clip_id: str, words: Sequence[str]) -> None:
@@ -187,16 +204,7 @@ def _add_words(tx: Tx, clip_id: str, words: Sequence[str]) -> None:
 
 def overrides(tx: Tx, clip_id: str) -> tuple[Any, ...]:
     """As `ClipRecord.overrides`, of a clip as it is now. Raises ClipNotFound."""
-    said = (
-        clips.c.frame_rate_override,
-        clips.c.metres_per_unit_override,
-        clips.c.roles_override,
-        clips.c.stack_override,
-    )
-    row = tx.execute(select(*said).where(clips.c.id == clip_id)).one_or_none()
-    if row is None:
-        raise ClipNotFound(f"There is no clip with the id {clip_id!r}")
-    return tuple(row)
+    return get(tx, clip_id).overrides
 
 
 def _enter(tx: Tx, clip_id: str, state: ClipState, **values: Any) -> None:
@@ -261,6 +269,13 @@ def to_record(row: RowMapping, words: tuple[str, ...]) -> ClipRecord:
         metres_per_unit_override=row["metres_per_unit_override"],
         roles_override=row["roles_override"],
         stack_override=row["stack_override"],
+        audio_sha256=row["audio_sha256"],
+        audio_name=row["audio_name"],
+        audio_size=row["audio_size"],
+        audio_offset_override=row["audio_offset_override"],
+        tempo_override=row["tempo_override"],
+        beats_override=None if row["beats_override"] is None else tuple(row["beats_override"]),
+        audio_offset=row["audio_offset"],
         analysis_version=row["analysis_version"],
         changed_version=row["changed_version"],
     )

@@ -27,6 +27,7 @@ def _needed(tx: Tx, batch: list[str]) -> set[str]:
     every = union(
         select(clips.c.sha256).where(clips.c.sha256.in_(batch)),
         select(clips.c.skeleton_sha256).where(clips.c.skeleton_sha256.in_(batch)),
+        select(clips.c.audio_sha256).where(clips.c.audio_sha256.in_(batch)),
         select(jobs.c.file_sha256).where(jobs.c.file_sha256.in_(batch), of_open_jobs),
     )
     return set(tx.execute(every).scalars())

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from app.analysis.analyse import analyse, describe_for_search
+from app.analysis.rhythm import BEAT_ARRAYS
 from app.analysis.windows import WINDOW_SCALES, window_frames
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, standing, walking, waving
@@ -22,6 +23,7 @@ SEGMENT_TYPES = {
 def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray) -> None:
     arrays = dict(analyse(motion_of(body)).arrays)
     keyposes = arrays.pop("keypose_frames")
+    beats = {name: arrays.pop(name) for name in BEAT_ARRAYS}
     windows = {scale: arrays.pop(scale.vectors) for scale in WINDOW_SCALES}
     spans = {scale: arrays.pop(scale.spans) for scale in WINDOW_SCALES}
     segments = {name: arrays.pop(name) for name in SEGMENT_TYPES}
@@ -37,6 +39,8 @@ def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray
     assert {name: array.shape for name, array in arrays.items()} == shapes
     assert all(array.dtype == np.float32 for array in arrays.values())
     assert all(np.isfinite(array).all() for array in arrays.values())
+    assert all(a.dtype == np.float64 and np.isfinite(a).all() for a in beats.values())
+    assert (beats["beat_times"].ndim, beats["beat_facts"].shape) == (1, (3,))
     assert (keyposes.dtype, keyposes.ndim) == (np.int32, 1)
     assert (np.diff(keyposes, prepend=-1, append=n) > 0).all()
     assert set(keyposes.tolist()) <= set(arrays["pose_cover"][:, 0].astype(int).tolist())
@@ -58,6 +62,6 @@ def test_a_query_is_described_as_a_stored_clip_is() -> None:
     query = describe_for_search(motion_of(BODIES["walk"])).arrays
     assert set(stored) - set(query) == {
         "keypose_frames", "pose_cover", "symbol_means", "symbol_variances", "symbol_transitions",
-        *SEGMENT_TYPES,
+        *SEGMENT_TYPES, *BEAT_ARRAYS,
     }  # fmt: skip
     assert all(stored[name].tobytes() == query[name].tobytes() for name in query)

@@ -29,6 +29,12 @@ def test_a_new_clip_comes_back_as_it_was_given(store: Store) -> None:
         metres_per_unit_override=0.01,
         roles_override={"hips": "Root"},
         stack_override="Take 001",
+        audio_sha256="c" * 64,
+        audio_name="song.mp3",
+        audio_size=7,
+        audio_offset_override=-1.5,
+        tempo_override=98.0,
+        beats_override=(0.5, 1.1),
     )
     with store.write() as tx:
         added = clips.add_or_get(tx, new)
@@ -39,7 +45,9 @@ def test_a_new_clip_comes_back_as_it_was_given(store: Store) -> None:
     assert (clip.name, clip.person, clip.task, clip.license) == ("Größe", "anna", "walk", "CC0-1.0")
     assert clip.words == ("walk", "left_leg")
     assert clip.state is ClipState.QUEUED
-    assert clip.overrides == (60.0, 0.01, {"hips": "Root"}, "Take 001")
+    told = ("c" * 64, -1.5, 98.0, (0.5, 1.1))
+    assert clip.overrides == (60.0, 0.01, {"hips": "Root"}, "Take 001", *told)
+    assert (clip.audio_name, clip.audio_size, clip.audio_offset) == ("song.mp3", 7, None)
     assert clip.created_at.tzinfo is UTC
     assert (clip.frames, clip.roles, clip.warnings, clip.error) == (None, {}, (), None)
 

@@ -18,14 +18,15 @@ from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPat
 from app.api.schemas.jobs import Job
 from app.errors import ClipNotFound
 from app.services import clips
-from app.services.clips import NewClip
+from app.services.clips import NewClip, StoredFile
+from app.services.recordings import NewRecording
 
 router = APIRouter(prefix="/v1/clips", tags=["clips"])
 
 FILES = {
     "file": "The motion: BVH, AMC, C3D, FBX, NPZ or NPY.",
     "skeleton": "The ASF file that an AMC file needs.",
-    "audio": "Recording that the motion goes with; this version does not use it.",
+    "audio": "The recording that goes with the motion: WAV, FLAC, OGG or MP3.",
 }
 
 
@@ -52,7 +53,11 @@ def create_clip(
     form, uploads = sent
     upload = required(uploads, "file")
     created = clips.create_clip(
-        lib, upload.file, _new_clip(form, upload.filename), file_of(uploads, "skeleton")
+        lib,
+        upload.file,
+        _new_clip(form, upload.filename),
+        file_of(uploads, "skeleton"),
+        _recording(uploads),
     )
     if created.job is None:
         response.status_code = 200
@@ -73,7 +78,15 @@ def _new_clip(form: ClipForm, filename: str | None) -> NewClip:
         unit=form.unit,
         roles=form.roles,
         stack=form.stack,
+        audio_offset=form.audio_offset,
+        tempo=form.tempo,
+        beats=form.beats,
     )
+
+
+def _recording(uploads: dict[str, UploadFile]) -> NewRecording | None:
+    sent = uploads.get("audio")
+    return None if sent is None else NewRecording(sent.file, sent.filename or "audio")
 
 
 @router.get("", dependencies=[reads], responses=refusals())
@@ -116,7 +129,30 @@ def delete_clip(lib: Lib, clip_id: ClipId) -> None:
 )
 def get_file(lib: Lib, clip_id: ClipId) -> FileResponse:
     """The original file, as an attachment: it is foreign content and never shown as a page."""
-    file = clips.open_file(lib, clip_id)
+    return _attachment(clips.open_file(lib, clip_id), clip_id)
+
+
+@router.get(
+    "/{clip_id}/audio",
+    dependencies=[reads],
+    response_class=FileResponse,
+    responses={
+        200: {"content": {"application/octet-stream": {}}, "description": "The original bytes."},
+        **refusals(404),
+    },
+)
+def get_audio(lib: Lib, clip_id: ClipId) -> FileResponse:
+    """The recording that goes with a clip, as an attachment."""
+    return _attachment(clips.open_recording(lib, clip_id), clip_id)
+
+
+@router.delete("/{clip_id}/audio", dependencies=[writes], responses=refusals(404))
+def delete_audio(lib: Lib, clip_id: ClipId) -> Clip:
+    """Forget the recording that goes with a clip; the clip is analysed again."""
+    return Clip.of(clips.remove_recording(lib, clip_id))
+
+
+def _attachment(file: StoredFile, clip_id: str) -> FileResponse:
     try:
         held = file.path.open("rb")
     except FileNotFoundError as error:

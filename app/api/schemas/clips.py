@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, Json
+from pydantic import BeforeValidator, ConfigDict, Field, Json
 
 from app.api.schemas.base import AnyOf, Cursor, FormWords, Incoming, Limit, Outgoing, Seconds
 from app.api.schemas.jobs import Job
 from app.api.schemas.problem import Problem
 from app.search.filters import as_kept
+from app.services.fields import MAX_KEYPOSES, MAX_OFFSET, TEMPI
 from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord, ClipState
 
@@ -36,6 +37,14 @@ Stack = Annotated[
     ),
 ]
 FrameRate = Annotated[float, Field(gt=0, le=2000, description="Frames a second.")]
+
+Offset = Annotated[float, Field(ge=-MAX_OFFSET, le=MAX_OFFSET)]
+Tempo = Annotated[float, Field(ge=TEMPI[0], le=TEMPI[1])]
+_OFFSET = "Seconds of the motion at which the recording begins, negative if before it."
+
+
+def _split(value: Any) -> Any:
+    return value.split() if isinstance(value, str) else value
 
 
 class ClipWarning(Outgoing):
@@ -68,6 +77,10 @@ class Clip(Outgoing):
     missing_roles: list[str]
     warnings: list[ClipWarning]
     created_at: datetime
+    has_audio: bool = Field(description="Whether a recording goes with it: GET .../audio.")
+    audio_offset: float | None = Field(
+        description="Seconds of the motion at which the recording begins, as told or estimated."
+    )
     error: Problem | None = Field(description="Why the clip is `failed`, else null.")
 
     @classmethod
@@ -96,8 +109,18 @@ class Clip(Outgoing):
                 for doubt in record.warnings
             ],
             created_at=record.created_at,
+            has_audio=record.audio_sha256 is not None,
+            audio_offset=_offset(record),
             error=Problem.of(record.error),
         )
+
+
+def _offset(record: ClipRecord) -> float | None:
+    """What was told, at once; what was estimated, once it was."""
+    if record.audio_sha256 is None:
+        return None
+    told = record.audio_offset_override
+    return record.audio_offset if told is None else told
 
 
 class ClipCreated(Outgoing):
@@ -135,6 +158,13 @@ class ClipForm(Incoming):
         None, description='JSON: joint name by role, as {"hips": "Pelvis"}.'
     )
     stack: Stack | None = None
+    audio_offset: Offset | None = Field(None, description=f"{_OFFSET} Default: estimated.")
+    tempo: Tempo | None = Field(None, description="Beats a minute, where it is known.")
+    beats: Annotated[list[Seconds], BeforeValidator(_split), Field(max_length=MAX_KEYPOSES)] | (
+        None
+    ) = Field(
+        None, description="Seconds, separated by spaces; they go before all.", examples=["0.5 1.1"]
+    )
 
 
 class ClipPatch(Incoming):
@@ -153,6 +183,18 @@ class ClipPatch(Incoming):
         None,
         description="Of an FBX file, the animation stack: the clip is analysed again; null"
         " returns to the longest.",
+    )
+    audio_offset: Offset | None = Field(
+        None, description=f"{_OFFSET} The clip is analysed again; null has it estimated."
+    )
+    tempo: Tempo | None = Field(
+        None, description="Beats a minute: the clip is analysed again; null forgets it."
+    )
+    beats: list[Seconds] | None = Field(
+        None,
+        max_length=MAX_KEYPOSES,
+        description="Seconds, before all other beats: the clip is analysed again; null or none"
+        " forgets them.",
     )
 
     model_config = ConfigDict(

@@ -11,8 +11,8 @@ class DemoClip:
 
     path: relative, with forward slashes; content: BVH, or NPZ where it is noisy; words: two
     to four; frame_rate: Hz. Of dances only: keyposes, where poses are struck; holds, from
-    when to when each is held; beats, of the music; audio: WAV, what was danced to, empty
-    where there is none; audio_offset: when in the motion it begins, negative if before.
+    when to when each is held; beats, of the music; audio, audio_path: WAV, what was danced
+    to, empty where there is none; audio_offset: when in the motion it begins, negative if before.
     """
 
     path: str
@@ -25,4 +25,5 @@ class DemoClip:
     beats: tuple[float, ...] = ()
     holds: tuple[tuple[float, float], ...] = ()
     audio: bytes = b""
+    audio_path: str = ""
     audio_offset: float | None = None

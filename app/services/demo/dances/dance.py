@@ -32,6 +32,7 @@ from app.services.demo.dances.poses import (
     loosened,
     weights,
 )
+from app.services.demo.dances.sound import Sound, record
 from app.services.demo.dances.steps import footwork, stepped
 from app.services.demo.posing import local_rotations, within_reach
 from app.services.demo.rig import SIDES, build_rig, skeleton_of
@@ -57,13 +58,16 @@ def dance(
     freezes: float = 0.04,
     ornaments: float = 1.0,
     actor: Actor | None = None,
+    sound: Sound | None = None,
+    audio_offset: float | None = None,
 ) -> DemoClip:
     """A dance of about `seconds`, the same for the same arguments.
 
     noise_mm: standard deviation of white noise on every coordinate of every joint; then the
     clip is an NPZ file of positions, else BVH. drift: greatest relative departure of the
     tempo from `bpm`; passes, freezes: share of beats without a stop, or with a long one;
-    ornaments: factor on what is danced beside the poses.
+    ornaments: factor on what is danced beside the poses. sound: what is recorded with it,
+    from `audio_offset` s of the motion on (drawn where None); it changes nothing else.
     """
     draw = np.random.RandomState(seed)
     dancer = actor or _dancer(draw)
@@ -76,8 +80,12 @@ def dance(
     controls = ornamented(controls, times, counts, draw, ornaments)
     controls = within_reach(enlivened(controls, take, times), take.rig, times)
     controls = bent(controls, take.heading, 0.0)
+    stem = f"{dancer.name}/choreography_{seed:02d}"
+    audio, start = b"", None
+    if sound is not None:
+        audio, start = record(seed, sound, counts, float(times[-1]), audio_offset)
     return DemoClip(
-        path=f"{dancer.name}/choreography_{seed:02d}.{'npz' if noise_mm else 'bvh'}",
+        path=f"{stem}.{'npz' if noise_mm else 'bvh'}",
         content=_content(draw, take, controls, noise_mm),
         person=dancer.name,
         task="dance",
@@ -86,6 +94,9 @@ def dance(
         keyposes=tuple(moment.time for moment in counts.held),
         beats=tuple(float(beat) for beat in counts.beats),
         holds=tuple((moment.arrive, moment.leave) for moment in counts.held),
+        audio=audio,
+        audio_path=f"{stem}.wav" if audio else "",
+        audio_offset=start,
     )
 
 

@@ -1,0 +1,131 @@
+"""The beats of a clip from all that is known: what a client says, a recording, the motion.
+
+Beats that are listed go before a tempo that is told, that before what is heard, that before
+what the motion shows. A recording's beats become the clip's by the offset between the two.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.analysis.audio_beats import find_audio_beats
+from app.analysis.audio_offset import Offset, estimate_offset
+from app.analysis.beats import (
+    Beats,
+    BeatSource,
+    beats_of_tempo,
+    find_beats,
+    find_stops,
+    given_beats,
+    no_beats,
+    through,
+)
+from app.analysis.energy import energies
+from app.analysis.onsets import Onsets
+from app.motion.body_frame import BodyTrack
+from app.motion.recording import Caution
+from app.numerics.arrays import FloatArray
+
+SOURCES = tuple(BeatSource)
+"""Their order is stored (`beat_facts`): append only."""
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What a client says: beats, seconds of the motion; tempo, beats a minute; audio_offset,
+    the time of the motion at which the recording begins."""
+
+    beats: tuple[float, ...] | None = None
+    tempo: float | None = None
+    audio_offset: float | None = None
+
+
+NOTHING = Told()
+
+BEAT_ARRAYS = ("beat_times", "beat_facts")
+
+
+@dataclass(frozen=True, slots=True)
+class Rhythm:
+    """A clip's beats; the offset of its recording, None without one or where it is not known."""
+
+    beats: Beats
+    offset: Offset | None = None
+    cautions: tuple[Caution, ...] = ()
+
+
+def find_rhythm(track: BodyTrack, told: Told = NOTHING, onsets: Onsets | None = None) -> Rhythm:
+    """The beats of `track`; onsets: of its recording."""
+    energy = energies(track).global_energy
+    heard, offset = no_beats(), None
+    if onsets is not None:
+        heard = find_audio_beats(onsets, told.tempo)
+        offset = _offset(told, energy, track.rate, heard, onsets.duration)
+    shifted = None if offset is None else _shifted(heard, offset, (len(energy) - 1) / track.rate)
+    cautions = () if onsets is None else tuple(_doubts(told, heard, offset))
+    return Rhythm(_first(told, energy, track.rate, shifted), offset, cautions)
+
+
+def _first(told: Told, energy: FloatArray, rate: float, shifted: Beats | None) -> Beats:
+    if told.beats:
+        return given_beats(np.array(told.beats))
+    if shifted is not None:
+        return shifted
+    if told.tempo:
+        return beats_of_tempo(energy, rate, told.tempo)
+    return find_beats(energy, rate)
+
+
+def _offset(
+    told: Told, energy: FloatArray, rate: float, heard: Beats, duration: float
+) -> Offset | None:
+    if told.audio_offset is not None:
+        return Offset(told.audio_offset, 1.0, True)
+    return estimate_offset(find_stops(energy, rate), heard.times, duration)
+
+
+def _shifted(heard: Beats, offset: Offset, duration: float) -> Beats | None:
+    """What is heard, in the motion's time, gone on with evenly; None where they do not meet."""
+    times = heard.times + offset.seconds
+    if len(times) < 2 or not ((times >= 0.0) & (times <= duration)).any():
+        return None
+    told_tempo = heard.source is BeatSource.TEMPO
+    return Beats(
+        through(times, duration),
+        heard.tempo,
+        min(heard.confidence, offset.confidence),
+        BeatSource.TEMPO if told_tempo else BeatSource.AUDIO,
+    )
+
+
+def _doubts(told: Told, heard: Beats, offset: Offset | None) -> list[Caution]:
+    if not len(heard.times):
+        return [Caution("audio_without_beats", "No beat was heard in the recording.")]
+    if offset is None:
+        detail = "The motion does not tell when the recording begins: send audio_offset."
+        return [Caution("audio_offset_unknown", detail)]
+    if not offset.is_told and told.beats is None:
+        detail = (
+            "The recording's beginning was estimated; it may be wrong by whole beats, which its"
+            " beats do not mind."
+        )
+        return [Caution("audio_offset_estimated", detail, offset.seconds)]
+    return []
+
+
+def rhythm_arrays(rhythm: Rhythm) -> dict[str, NDArray[Any]]:
+    """What is stored: beat_times (b,) s; beat_facts (3,): index of the source in SOURCES, tempo
+    (0 for none), confidence."""
+    beats = rhythm.beats
+    facts = [SOURCES.index(beats.source), beats.tempo or 0.0, beats.confidence]
+    return {"beat_times": beats.times, "beat_facts": np.array(facts, dtype=np.float64)}
+
+
+def beats_of(arrays: dict[str, NDArray[Any]]) -> Beats:
+    """The beats that `rhythm_arrays` stored."""
+    source, tempo, confidence = (float(fact) for fact in arrays["beat_facts"])
+    return Beats(arrays["beat_times"], tempo or None, confidence, SOURCES[int(source)])
