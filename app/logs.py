@@ -36,7 +36,7 @@ class JsonFormatter(logging.Formatter):
         line |= getattr(record, "fields", {})
         if record.exc_info:
             line["exception"] = self.formatException(record.exc_info)
-        return json.dumps(line, default=str, ensure_ascii=False)
+        return json.dumps(line, default=str)  # ASCII: some readers end lines at U+0085 too
 
 
 def configure_logging(level: str = "INFO", stream: TextIO | None = None) -> None:

