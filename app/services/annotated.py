@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.analysis.beats import Beats
 from app.motion.body_frame import BodyTrack, body_track
 from app.numerics.arrays import FloatArray
+from app.services.keypose_frames import read_beats
 from app.services.stored_motion import read_motion
 from app.services.training import ready_only, recording_of_clip
 from app.store import clip_listing, clips, keypose_annotations
@@ -19,12 +21,14 @@ from app.store.store import Store
 
 @dataclass(frozen=True, slots=True)
 class AnnotatedClip:
-    """A ready clip; true: (k,) seconds, its keyposes as a person named them; group: what
-    files of one recording share."""
+    """A ready clip; true: (k,) seconds, its keyposes as a person named them; beats: of the
+    clip, None where it was analysed before they were kept; group: what files of one recording
+    share."""
 
     clip: ClipRecord
     group: str
     track: BodyTrack
+    beats: Beats | None
     true: FloatArray
 
 
@@ -41,11 +45,13 @@ def read_annotated(store: Store, wanted: ClipFilter | None = None) -> tuple[Anno
         found = clips.get_many(tx, ids)
         named = keypose_annotations.get_many(tx, ids)
         tracks = {clip.id: body_track(read_motion(tx, clip)) for clip in found.values()}
+        beats = {clip_id: read_beats(tx, clip_id) for clip_id in found}
     return tuple(
         AnnotatedClip(
             clip=clip,
             group=recording_of_clip(clip),
             track=tracks[clip.id],
+            beats=beats[clip.id],
             true=np.array([time for time in named[clip.id] if time <= tracks[clip.id].duration]),
         )
         for clip in sorted(found.values(), key=lambda each: (each.name, each.id))

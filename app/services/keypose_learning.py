@@ -38,7 +38,10 @@ def learn_keyposes(
 
 def examples_of(annotated: Sequence[AnnotatedClip], method: EnergyMethod) -> list[Example]:
     """The candidates of each clip by that energy, with what is true."""
-    return [Example(find_candidates(clip.track, method=method), clip.true) for clip in annotated]
+    return [
+        Example(find_candidates(clip.track, method=method, beats=clip.beats), clip.true)
+        for clip in annotated
+    ]
 
 
 def told(counts: Counts) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.analysis.energy import EnergyMethod
 from app.errors import BadField, ClipNotFound
 from app.models.keypose_thresholds import KeyposeThresholds, Thresholds
 from app.services import clips, keyposes
@@ -17,7 +18,7 @@ from app.services.clips import NewClip
 from app.services.demo import DemoClip
 from app.services.demo.dances import dance
 from app.services.imports import import_path
-from app.services.keypose_learning import learn_keyposes
+from app.services.keypose_learning import examples_of, learn_keyposes
 from app.services.keyposes import ThresholdSource, name_keyposes, view
 from app.services.library import Library
 from app.store import arrays, keypose_annotations, models
@@ -175,6 +176,25 @@ def test_figures_are_held_out_by_recording(
     _, both = learn_keyposes(read_annotated(danced.store))
     assert both["methods"]["rms"]["learned"]["f"] > 0.85
     assert both["methods"]["rms"]["learned"]["true"] == sum(len(d.keyposes) for d in dances)
+
+
+def test_known_beats_count_in_what_is_found_learned_and_judged(
+    danced: Library, ids: list[str], dances: list[DemoClip]
+) -> None:
+    name_keyposes(danced, ids[0], dances[0].keyposes)
+    (before,) = read_annotated(danced.store)
+    clips.update_clip(danced, ids[0], {"beats": dances[0].beats})
+    work(danced.settings)
+    (annotated,) = read_annotated(danced.store)
+    assert before.beats is not None
+    assert annotated.beats is not None
+    assert (before.beats.source in ("motion", "none"), annotated.beats.source) == (True, "given")
+    (example,) = examples_of([annotated], EnergyMethod.RMS)
+    found = view(danced, ids[0]).found
+    assert found.beats.source == "given"
+    assert example.candidates.times(found.t1, found.t2).tolist() == found.times.tolist()
+    clips.update_clip(danced, ids[0], {"beats": None})
+    work(danced.settings)
 
 
 def test_a_manifest_names_keyposes(lib: Library, tmp_path: Path, dances: list[DemoClip]) -> None:

@@ -121,7 +121,9 @@ def judge_keyposes(
 def _examples(annotated: Sequence[AnnotatedClip], method: str) -> list[Example]:
     if method != END_EFFECTORS:
         return examples_of(annotated, EnergyMethod(method))
-    return [Example(end_effector_candidates(clip.track, None), clip.true) for clip in annotated]
+    return [
+        Example(end_effector_candidates(clip.track, clip.beats), clip.true) for clip in annotated
+    ]
 
 
 def _judged(

@@ -58,7 +58,7 @@ def test_the_table_counts_what_was_meant_and_found(
 
 def test_the_usual_thresholds_are_judged_on_what_the_analysis_finds(annotated: Library) -> None:
     counts = [
-        match(find_keyposes(clip.track).times, clip.true)
+        match(find_keyposes(clip.track, beats=clip.beats).times, clip.true)
         for clip in read_annotated(annotated.store)
     ]
     usual = judge_keyposes(annotated).methods[0].usual
