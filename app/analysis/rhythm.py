@@ -64,7 +64,9 @@ def find_rhythm(track: BodyTrack, told: Told = NOTHING, onsets: Onsets | None = 
     heard, offset = no_beats(), None
     if onsets is not None:
         heard = find_audio_beats(onsets, told.tempo)
-        offset = _offset(told, energy, track.rate, heard, onsets.duration)
+        # By the beats that are heard freely: stops are on every beat, a told tempo may be half.
+        free = find_audio_beats(onsets) if told.tempo and told.audio_offset is None else heard
+        offset = _offset(told, energy, track.rate, free, onsets.duration)
     shifted = None if offset is None else _shifted(heard, offset, (len(energy) - 1) / track.rate)
     cautions = () if onsets is None else tuple(_doubts(told, heard, offset))
     return Rhythm(_first(told, energy, track.rate, shifted), offset, cautions)

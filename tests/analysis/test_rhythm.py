@@ -89,6 +89,9 @@ def test_what_is_told_goes_first() -> None:
     assert find_rhythm(track, told, onsets).beats.source is BeatSource.GIVEN
     both = find_rhythm(track, Told(tempo=47.5, audio_offset=0.0), onsets).beats
     assert (both.source, both.tempo) == (BeatSource.TEMPO, 47.5)
+    halved = find_rhythm(track, Told(tempo=47.5), onsets)
+    assert halved.beats.source is BeatSource.TEMPO
+    assert halved.offset is not None
     alone = find_rhythm(track, Told(tempo=95.0)).beats
     assert alone.source is BeatSource.TEMPO
     beats = np.array(clip.beats)

@@ -1,4 +1,6 @@
-"""The demo library: every actor's takes of every task, as BVH files with a manifest.
+"""The demo library: every actor's takes of every task, and a dance to recorded music.
+
+BVH files with a manifest, and WAV files.
 
 Deterministic: the same bytes at every run. Files are in centimetres, Y up.
 """
@@ -7,12 +9,14 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Collection, Iterator
+from itertools import chain
 from pathlib import Path
 
 from app.errors import NotFound
 from app.formats.bvh_writer import write_bvh
 from app.services.demo.actors import ACTORS, Actor
 from app.services.demo.clip import DemoClip
+from app.services.demo.dances import Sound, dance
 from app.services.demo.performance import Performance
 from app.services.demo.posing import local_rotations
 from app.services.demo.rig import build_rig, skeleton_of
@@ -24,7 +28,11 @@ LICENSE = "CC0-1.0"
 SOURCE = "Kinedex demo"
 UNITS_PER_METRE = 100.0
 MANIFEST = "manifest.csv"
-COLUMNS: tuple[str, ...] = ("path", "source", "license", "person", "task", "words", "fps")
+COLUMNS: tuple[str, ...] = (
+    *("path", "source", "license", "person", "task", "words", "fps"),
+    *("keyposes", "audio", "audio_offset"),
+)
+CHOREOGRAPHY_SECONDS, CHOREOGRAPHY_DRIFT = 24.0, 0.02
 
 
 def demo_clips(
@@ -82,6 +90,19 @@ def _clip(actor: Actor, task: str, number: int) -> DemoClip:
     )
 
 
+def danced_clips() -> Iterator[DemoClip]:
+    """A longer dance of each actor, to music or, for one in three, to a metronome."""
+    for number, actor in enumerate(ACTORS, 1):
+        yield dance(
+            number,
+            bpm=actor.beats_per_minute,
+            seconds=CHOREOGRAPHY_SECONDS,
+            drift=CHOREOGRAPHY_DRIFT,
+            actor=actor,
+            sound=Sound.MUSIC if number % 3 else Sound.CLICKS,
+        )
+
+
 def write_demo(directory: Path) -> int:
     """Write all clips and their manifest.csv under `directory`; how many clips there are.
 
@@ -92,11 +113,22 @@ def write_demo(directory: Path) -> int:
     with (directory / MANIFEST).open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(COLUMNS)
-        for clip in demo_clips():
-            target = directory / clip.path
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(clip.content)
-            words, fps = " ".join(clip.words), f"{clip.frame_rate:g}"
-            rows.writerow([clip.path, SOURCE, LICENSE, clip.person, clip.task, words, fps])
+        for clip in chain(demo_clips(), danced_clips()):
+            _write(directory / clip.path, clip.content)
+            if clip.audio:
+                _write(directory / clip.audio_path, clip.audio)
+            rows.writerow(_row(clip))
             clips += 1
     return clips
+
+
+def _write(target: Path, content: bytes) -> None:
+    target.parent.mkdir(parents=True, exist_ok=True)
+    target.write_bytes(content)
+
+
+def _row(clip: DemoClip) -> list[str]:
+    keyposes = " ".join(f"{time:.3f}" for time in clip.keyposes)
+    offset = "" if clip.audio_offset is None else f"{clip.audio_offset:g}"
+    told = [clip.person, clip.task, " ".join(clip.words), f"{clip.frame_rate:g}", keyposes]
+    return [clip.path, SOURCE, LICENSE, *told, clip.audio_path, offset]

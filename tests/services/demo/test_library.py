@@ -82,13 +82,17 @@ def test_an_unknown_name_is_refused(wrong: dict[str, list[str]]) -> None:
 
 def test_files_and_manifest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.services.demo.library.ACTORS", ACTORS[:1])
-    assert write_demo(tmp_path / "demo") == 24
+    assert write_demo(tmp_path / "demo") == 25
     with (tmp_path / "demo" / "manifest.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
-    assert len(rows) == 24
+    assert len(rows) == 25
     for row in rows:
         assert (tmp_path / "demo" / row["path"]).read_bytes().startswith(b"HIERARCHY")
         assert row["license"] == "CC0-1.0"
         assert row["source"] == "Kinedex demo"
         assert row["task"] in row["words"].split()
         assert float(row["fps"]) == ACTORS[0].frame_rate
+        assert bool(row["keyposes"]) == (row["task"] == "dance")
+    (recorded,) = (row for row in rows if row["audio"])
+    assert (tmp_path / "demo" / recorded["audio"]).read_bytes().startswith(b"RIFF")
+    assert -5.0 <= float(recorded["audio_offset"]) <= 1.0
