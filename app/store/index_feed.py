@@ -51,6 +51,8 @@ _CLIPS = (
     .where(clips.c.changed_version > bindparam("since"))
     .order_by(clips.c.changed_version)
 )
+
+
 @dataclass(frozen=True, slots=True)
 class IndexedClip:
     """What a search looks at of a clip, without what it shows of it.
