@@ -6,21 +6,26 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import Kinedex, end, start
+from app.services.imports import import_path
+from app.services.library import Library
+from tests.cli.conftest import Kinedex
 from tests.named_dances import TEMPI, write_dances
+from tests.services.conftest import settings_for, work
 
 COMMAND = ("evaluate", "keyposes")
 
 
 @pytest.fixture(scope="module")
 def danced(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The data directory of a library of annotated dances, imported by the command."""
+    """The data directory of a library of annotated dances, without models."""
     folder = tmp_path_factory.mktemp("dances")
     write_dances(folder, seconds=8.0)
-    data = tmp_path_factory.mktemp("danced") / "data"
-    ended = end(start("import", str(folder), data_dir=data))
-    assert ended.code == 0, ended.err
-    return data
+    settings = settings_for(tmp_path_factory.mktemp("danced"))
+    lib = Library.open(settings)
+    import_path(lib, folder)
+    work(settings)
+    lib.close()
+    return settings.data_dir
 
 
 def test_tables_for_people_fit_a_terminal(kinedex: Kinedex, danced: Path) -> None:
@@ -42,7 +47,7 @@ def test_json_for_programs(kinedex: Kinedex, danced: Path) -> None:
     assert len(rms["over_t1"]["values"]) == len(rms["over_t1"]["recall"])
 
 
-def test_the_import_has_learned_thresholds_from_the_manifest(
+def test_a_fit_learns_thresholds_from_what_the_manifest_names(
     kinedex: Kinedex, danced: Path
 ) -> None:
     fitted = kinedex("fit", "--json", data_dir=danced).json()

@@ -83,9 +83,13 @@ def test_without_annotated_clips_it_is_said_how_to_make_some(
         judge_keyposes(annotated, ClipFilter(task=("walk",)))
 
 
-def test_pictures_show_curves_and_clips(annotated: Library) -> None:
+def test_the_curves_are_drawn(annotated: Library) -> None:
     curves = threshold_figure(judge_keyposes(annotated), "svg")
     assert ElementTree.fromstring(curves).tag == f"{SVG}svg"
+
+
+@pytest.mark.slow
+def test_clips_are_drawn_named_or_not(annotated: Library) -> None:
     drawn = {clip.name: clip for clip in clips_to_draw(annotated, None)}
     assert sorted(drawn) == ["dance0", "dance1", "dance2", "unnamed"]
     named, unnamed = (clip_figure(annotated, drawn[n], "svg") for n in ("dance0", "unnamed"))
