@@ -14,18 +14,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.euclidean import distances, squared_lengths
 
 CELLS_AT_ONCE = 1_000_000
 """Cost cells of one batch (4 bytes each): bounds memory, and keeps it near the caches."""
 
 MAX_BATCH = 256
-
-TOO_CLOSE = 1e-4
-"""Squared distances below this share of the squared lengths are taken again, exactly:
-as |a|^2 + |b|^2 - 2ab they have lost their digits, and equal frames would be apart."""
-
-
-RETAKEN_AT_ONCE = 10_000
 
 
 def dtw_distance(
@@ -59,10 +53,11 @@ def dtw_distances(
     totals = np.empty(len(lengths))
     centre = query.mean(axis=0)  # differences of small numbers keep more digits
     for chosen in _batches(lengths, len(query)):
-        cost = _costs(query - centre, _stacked([candidates[i] for i in chosen], centre))
-        if band is not None:
-            _forbid_outside(cost, lengths[chosen], band)
-        totals[chosen] = _accumulate(cost, lengths[chosen])
+        frames = np.concatenate([_as_table(candidates[i]) for i in chosen])
+        frames -= centre  # in place: these rows are wide, and new memory is dear
+        cost = _side_by_side(_costs(query - centre, frames), lengths[chosen])
+        rows = None if band is None else _rows_within(band, len(query), lengths[chosen])
+        totals[chosen] = _accumulate(cost, lengths[chosen], rows)
     return totals / (len(query) + lengths) if per_step else totals
 
 
@@ -84,57 +79,49 @@ def _batches(lengths: IntArray, frames: int) -> list[IntArray]:
     return batches
 
 
-def _stacked(candidates: list[FloatArray], centre: FloatArray) -> FloatArray:
-    """(m, c, d): candidates side by side, less `centre` (d,), zeros after their ends."""
-    longest = max(len(candidate) for candidate in candidates)
-    stacked = np.zeros((longest, len(candidates), len(centre)), dtype=np.float32)
-    for index, candidate in enumerate(candidates):
-        np.subtract(_as_table(candidate), centre, out=stacked[: len(candidate), index])
-    return stacked
-
-
-def _costs(query: FloatArray, stacked: FloatArray) -> FloatArray:
-    """(n, m, c) float32 Euclidean distances between frames; (n, d) and (m, c, d) in."""
+def _costs(query: FloatArray, frames: FloatArray) -> FloatArray:
+    """(n, k) float32 Euclidean distances of the rows of (n, d) and (k, d)."""
     if query.shape[1] == 1:
-        differences = query[:, :, None] - stacked[None, :, :, 0]
-        return np.asarray(np.abs(differences, out=differences))
-    frames, count, dimensions = stacked.shape
-    columns = stacked.reshape(-1, dimensions)
-    lengths = np.einsum("kd,kd->k", columns, columns)
-    squares = (-2.0 * query) @ columns.T
-    squares += np.einsum("nd,nd->n", query, query)[:, None]
-    squares += lengths
-    _retake_close(squares, query, columns, TOO_CLOSE * lengths)
-    return np.asarray(np.sqrt(squares, out=squares).reshape(len(query), frames, count))
+        apart = query - frames[:, 0]
+        return np.asarray(np.abs(apart, out=apart))
+    return distances(query, frames, squared_lengths(frames))
 
 
-def _retake_close(
-    squares: FloatArray, rows: FloatArray, columns: FloatArray, least: FloatArray
-) -> None:
-    """Compute anew, in place, the (n, k) `squares` that are not above `least` (k,)."""
-    # flat: numpy's two-dimensional nonzero is many times slower
-    row, column = np.divmod(np.flatnonzero(squares <= least), squares.shape[1])
-    for first in range(0, len(row), RETAKEN_AT_ONCE):
-        some = slice(first, first + RETAKEN_AT_ONCE)
-        apart = rows[row[some]] - columns[column[some]]
-        squares[row[some], column[some]] = np.einsum("ki,ki->k", apart, apart)
+def _side_by_side(table: FloatArray, lengths: IntArray) -> FloatArray:
+    """(n, m, c) C-contiguous from (n, k), candidates of `lengths` (c,) one after the other.
+
+    Costs are moved, not frames, which are wider. What is behind a candidate's end repeats
+    its last frame.
+    """
+    starts = np.cumsum(lengths) - lengths
+    inside = np.minimum(np.arange(lengths.max())[:, None], lengths - 1)
+    moved: FloatArray = np.take(table, (starts + inside).ravel(), axis=1)
+    return moved.reshape(len(table), int(lengths.max()), len(lengths))
 
 
-def _forbid_outside(cost: FloatArray, lengths: IntArray, band: float) -> None:
-    """Make cells of (n, m, c) `cost` outside the band infinitely dear, in place."""
-    rows, columns, _ = cost.shape
-    short = np.minimum(rows, lengths)
-    passed = np.arange(rows)[:, None, None] / max(rows - 1, 1)
-    other = np.arange(columns)[None, :, None] / np.maximum(lengths - 1, 1)
-    width = np.maximum(band, 1.0 / np.maximum(short - 1, 1))
-    cost[np.abs(passed - other) > width + 1e-12] = np.inf
+def _rows_within(band: float, rows: int, lengths: IntArray) -> tuple[IntArray, IntArray]:
+    """First and last row, (k, c) each, within the band on anti-diagonal k of each candidate.
+
+    Row i of diagonal k meets column k - i: their shares differ by i (1/(n-1) + 1/(m-1)) less
+    k / (m-1). Both move by no more than one row from a diagonal to the next, and as the band
+    is at least a step wide, no diagonal is without a cell.
+    """
+    row, column = 1.0 / max(rows - 1, 1), 1.0 / np.maximum(lengths - 1, 1)
+    width = np.maximum(band, 1.0 / np.maximum(np.minimum(rows, lengths) - 1, 1)) + 1e-12
+    middle = np.arange(rows + int(lengths.max()) - 1)[:, None] * column
+    first = np.ceil((middle - width) / (row + column))
+    last = np.floor((middle + width) / (row + column))
+    return first.astype(np.int64), last.astype(np.int64)
 
 
-def _accumulate(cost: FloatArray, lengths: IntArray) -> FloatArray:
+def _accumulate(
+    cost: FloatArray, lengths: IntArray, within: tuple[IntArray, IntArray] | None
+) -> FloatArray:
     """(c,) totals at each candidate's last frame; cost (n, m, c) C-contiguous.
 
     Anti-diagonal k holds D[i, k - i] at row i + 1, between two rows of infinity: the walls
     outside the table, of which the next two diagonals read no more than one row.
+    within: as from `_rows_within`; cells outside of it are walls as well.
     """
     rows, columns, count = cost.shape
     totals = np.empty(count, dtype=cost.dtype)
@@ -144,16 +131,32 @@ def _accumulate(cost: FloatArray, lengths: IntArray) -> FloatArray:
     flat = cost.reshape(rows * columns, count)
     step = max(columns - 1, 1)
     first_end = int(ends.min())
-    for k in range(rows + columns - 1):
-        low, high = max(0, k - columns + 1), min(rows - 1, k)
+    lows, highs = _ends_of_diagonals(rows, columns, within)
+    for k, (low, high) in enumerate(zip(lows.tolist(), highs.tolist(), strict=True)):
         inside = new[low + 1 : high + 2]
         np.minimum(old[low + 1 : high + 2], old[low : high + 1], out=inside)
         np.minimum(inside, older[low : high + 1], out=inside)
         start, last = low * columns + k - low, high * columns + k - high
         inside += flat[start : last + 1 : step]
+        if within is not None:
+            row = np.arange(low, high + 1)[:, None]
+            inside[(row < within[0][k]) | (row > within[1][k])] = np.inf
         new[low] = np.inf
         new[high + 2] = np.inf
         if k >= first_end:
             np.copyto(totals, new[rows], where=ends == k)
         older, old, new = old, new, older
     return totals
+
+
+def _ends_of_diagonals(
+    rows: int, columns: int, within: tuple[IntArray, IntArray] | None
+) -> tuple[IntArray, IntArray]:
+    """The first and the last row, (rows + columns - 1,) each, that any candidate needs."""
+    diagonals = np.arange(rows + columns - 1)
+    lows, highs = np.maximum(diagonals - columns + 1, 0), np.minimum(diagonals, rows - 1)
+    if within is None:
+        return lows, highs
+    first, last = within[0].min(axis=1), within[1].max(axis=1)
+    # behind its end a shorter candidate's band may leave the table: one cell is kept
+    return np.minimum(np.maximum(lows, first), highs), np.maximum(np.minimum(highs, last), lows)

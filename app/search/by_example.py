@@ -17,8 +17,8 @@ from app.search.reranked import ReRanked
 from app.store.clip_filter import ClipFilter
 
 SCALES = {
-    Method.FUSED: 1.25,
-    Method.VECTOR: 1.0,
+    Method.FUSED: 5.0,
+    Method.VECTOR: 1.5,
     Method.DTW: 1.0,
     Method.MSV_DTW: 1.0,
     Method.MSV_XCORR: 0.1,
