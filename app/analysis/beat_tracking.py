@@ -66,13 +66,14 @@ def _salience(correlation: FloatArray, periods: FloatArray) -> FloatArray:
     return np.asarray(np.mean(at, axis=0))
 
 
-def track(strength: FloatArray, period: float, tightness: float) -> IntArray:
+def track(strength: FloatArray, period: float, tightness: float, reach: float = 2.0) -> IntArray:
     """Frames of the beats of about `period` frames that gather most `strength` (n,).
 
-    tightness: weight of the squared logarithm of an interval over the period. Whole blocks
-    of half a period are filled at once: a beat's predecessor lies in an earlier block.
+    tightness: weight of the squared logarithm of an interval over the period; reach: factor
+    by which an interval may differ from it. Whole blocks of the shortest interval are filled
+    at once: a beat's predecessor lies in an earlier block.
     """
-    nearest, furthest = max(1, round(0.5 * period)), max(2, round(2.0 * period))
+    nearest, furthest = max(1, round(period / reach)), max(2, round(reach * period))
     gaps = np.arange(nearest, furthest + 1)
     cost = -tightness * np.square(np.log(gaps / period))
     count = len(strength)

@@ -50,6 +50,9 @@ WIDTH = 0.05
 HEIGHT, TIGHTNESS = 4.0, 300.0
 """Of a full rest in that curve; see `beat_tracking.track`."""
 
+REACH = 1.25
+"""Factor on the beat that any interval keeps within: further off costs more than a rest gains."""
+
 BEATS_PER_BEND, MOST_BENDS = 12, 5
 """A tempo may change its course once in so many beats, and so often in all."""
 
@@ -216,7 +219,7 @@ class _Followed:
 
 def _follow(rests: Stops, period: float) -> _Followed | None:
     """The beats of about `period` frames of `rests.curve`; None where there are too few."""
-    tracked = track(HEIGHT * rests.curve, period, TIGHTNESS) / FINE
+    tracked = track(HEIGHT * rests.curve, period, TIGHTNESS, REACH) / FINE
     if len(rests.times) < LEAST_BEATS or len(tracked) < LEAST_BEATS:
         return None
     beats = _evened(tracked, rests)
