@@ -1,10 +1,25 @@
 """Query by example on real clips: relevant is the query's task, the query left out.
 
 Run: pytest -m bench -s tests/bench/test_retrieval.py
-The motion vector's parts and the graph of `fused` were chosen on dataset 1, CMU's clips, the
-demo library and, of dataset 2, the queries of four styles (CHOICE); the other three styles'
-queries were looked at when all was chosen, and are told apart. DESIGN 5's floors are those of
-840 clips, which are not these.
+Everything was chosen on the clips of dataset 1, CMU's, the demo library and the styles active,
+exhausted, masculine and youthful of dataset 2, these among themselves. The report half, the
+styles elderly, feminine and normal of dataset 2, was asked for the first time when all was
+chosen; its clips ask all of dataset 2, as the targets of issue 4 are put. (Figures of all of
+dataset 2 under the former method had been seen before the split: P@20 .679, MAP .649.)
+
+The curve prints what single changes of the chosen method give on the choice sets. Tried before
+on the same sets, MAP of the four alone, mean, then as one library; not kept (from .788, .679):
+DTW symmetric (diagonals count double) .717 .598 for .751 .643; squared cost .721 .618, square
+root .754 .631; ends free by a tenth .757 .655, by a quarter .714 .610; band .1 .741 .631, .2
+.748 .642; no velocities .755 .648; positions less the clip's mean .735 .612; joints by group
+(trunk, arms, legs, hands, feet x .5 to 2) within .005; yaw slowed by 1 s, x 4 .804 .726; with
+the movement about slow places .829 .770: there the cause was found, that waving and raising,
+walking and turning are told apart by no single frame, while manner is in each. The same as
+means over the clip, in the motion vector, is .848 .794 alone, and DTW on such features added
+nothing to it. Re-ranking of that vector: averages with the query's neighbours (alpha-QE) .850
+.795 at best and worse with more; each clip averaged with its own .862 .807; distances less
+half the neighbours' radius .860 .800; k-reciprocal Jaccard gained .02 on the former vector and
+lost where classes are large; diffusion alone .850 .792, with the distance .868 .817.
 """
 
 from __future__ import annotations
@@ -13,20 +28,23 @@ import csv
 import os
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import product
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
 
-from app.analysis.analyse import describe_for_search
+from app.analysis import motion_vector
+from app.analysis.frame_features import features_at_10hz, frame_features
 from app.config import Settings
 from app.formats.read import read_recording
 from app.models.ranking_figures import average_precision
+from app.motion.body_frame import body_track
 from app.motion.canonical import canonicalise
+from app.numerics import diffusion
 from app.numerics.dtw import dtw_distances
 from app.search import fusion
 from app.search.methods import LEARNED, Method
@@ -40,12 +58,28 @@ from tests.real_clips import manifest, real_clips
 
 pytestmark = pytest.mark.bench
 
-FLOORS = {"vector": (0.99, 0.69), "dtw": (0.99, 0.58), "fused": (0.99, 0.70)}
-"""(1-NN, MAP) of the queries that chose nothing."""
-CHOICE = frozenset({"active", "exhausted", "masculine", "youthful"})
-"""Styles of dataset 2 whose queries the choices saw."""
-WEIGHTS = (0.0, 0.1, 0.25, 0.5, 1.0)
-DETOURS = (0.0, 0.5, 1.0, 2.0)
+REPORT_STYLES = ("elderly", "feminine", "normal")
+TARGETS = {"nearest": 0.995, "at_20": 0.90, "mean_average_precision": 0.75}
+"""Of issue 4, for the default method on the report half."""
+SETS = ("dataset 2", "dataset 1", "cmu", "demo")
+TOLERANCE = 0.01
+"""How much better than what was chosen any single change may be."""
+
+CHANGES: tuple[tuple[ModuleType, str, tuple[Any, ...]], ...] = (
+    (fusion, "DTW_WEIGHT", (0.0, 0.5, 1.0)),
+    (fusion, "DETOUR", (0.0, 0.5, 2.0)),
+    (fusion, "NEIGHBOURS", (0.5, 1.0)),
+    (fusion, "SHORTLIST", (100, 200)),
+    (diffusion, "REACH", (1.0, 3.0)),
+    (motion_vector, "SLOW", (0.5, 2.0)),
+    (motion_vector, "PLACE_WEIGHT", (0.5, 1.0)),
+    (motion_vector, "MOVEMENT_WEIGHT", (0.0, 2.0)),
+    (motion_vector, "WANDERING_WEIGHT", (0.0, 1.25)),
+    (motion_vector, "TRAVEL_WEIGHTS", ((1.0, 1.0, 1.0), (3.0, 1.0, 1.0))),
+    (motion_vector, "SWAY_WEIGHT", (0.0,)),
+    (motion_vector, "TURNING", (0.1, 1.0)),
+    (motion_vector, "COVARIANCE_SCALE", (0.0, 0.1)),
+)
 
 
 @dataclass(frozen=True)
@@ -60,7 +94,95 @@ class Figures:
         return "".join(f"{share:8.3f}" for share in shares)
 
 
-HEAD = f"{'':14}{'1-NN':>8}{'P@4':>8}{'P@20':>8}{'MAP':>8}"
+HEAD = "".join(f"{name:>8}" for name in ("1-NN", "P@4", "P@20", "MAP"))
+
+
+@dataclass(frozen=True)
+class Choice:
+    """n clips that things are chosen on: sets, tasks (n,), features at 30 Hz, warped (n, n)."""
+
+    sets: np.ndarray
+    tasks: np.ndarray
+    features: list[np.ndarray]
+    warped: np.ndarray
+
+    def vectors(self) -> np.ndarray:
+        """By the constants as they are now."""
+        return np.stack([motion_vector.motion_vector(one) for one in self.features]).astype(float)
+
+    def judge(self, vectors: np.ndarray, rank: Callable[..., np.ndarray]) -> list[Figures]:
+        """Of each set alone, then of all as one library."""
+        parts = [np.flatnonzero(self.sets == name) for name in SETS]
+        return [
+            _figures([self._relevant(vectors, q, part, rank) for q in part])
+            for part in (*parts, np.arange(len(self.tasks)))
+        ]
+
+    def _relevant(
+        self, vectors: np.ndarray, query: int, part: np.ndarray, rank: Callable[..., np.ndarray]
+    ) -> np.ndarray:
+        others = part[part != query]
+        near = np.linalg.norm(vectors[others] - vectors[query], axis=1)
+        others = others[np.argsort(near, kind="stable")]
+        head = others[: fusion.SHORTLIST]
+        distances = rank(vectors[query], vectors[head], self.warped[query, head])
+        order = np.concatenate([head[np.argsort(distances, kind="stable")], others[len(head) :]])
+        return np.asarray(self.tasks[order] == self.tasks[query])
+
+
+@pytest.fixture(scope="module")
+def choice() -> Choice:
+    found = list(_choice_clips())
+    features = [one[2] for one in found]
+    slow = [features_at_10hz(one, 30.0) for one in features]
+    return Choice(
+        np.array([one[0] for one in found]),
+        np.array([one[1] for one in found]),
+        features,
+        np.stack([dtw_distances(query, slow) for query in slow]),
+    )
+
+
+def _choice_clips() -> Iterator[tuple[str, str, np.ndarray]]:
+    """(set, task, frame features)."""
+    for row in manifest():
+        folder = row["path"].partition("/")[0]
+        is_reported = folder == "bandai-namco-2" and row["person"] in REPORT_STYLES
+        if is_reported or not row["path"].endswith(".bvh"):
+            continue
+        recording = read_recording((real_clips() / row["path"]).read_bytes())
+        motion = canonicalise(recording, frame_rate=float(row["fps"]))
+        name = "cmu" if folder.startswith("cmu") else f"dataset {folder[-1]}"
+        yield name, row["task"], frame_features(body_track(motion))
+    for clip in demo_clips():
+        motion = canonicalise(read_recording(clip.content))
+        yield "demo", clip.task, frame_features(body_track(motion))
+
+
+def test_no_single_change_is_better_on_the_choice_sets(
+    choice: Choice, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """MAP of each set alone and as one library; what counts is the mean of both views."""
+    print("\n" + " " * 38 + "".join(f"{name:>11}" for name in SETS) + f"{'as one':>11}{'mean':>9}")
+    vectors = choice.vectors()
+
+    def told(name: str, vectors: np.ndarray, rank: Callable[..., np.ndarray]) -> float:
+        shares = [one.mean_average_precision for one in choice.judge(vectors, rank)]
+        mean = float((np.mean(shares[:-1]) + shares[-1]) / 2)
+        print(f"{name:38}" + "".join(f"{s:11.3f}" for s in shares) + f"{mean:9.4f}")
+        return mean
+
+    told("vector", vectors, lambda query, those, _: np.linalg.norm(those - query, axis=1))
+    told("dtw", vectors, lambda _query, _those, warped: warped)
+    chosen = told("fused, as chosen", vectors, fusion.fused_distances)
+    best = chosen
+    for module, name, values in CHANGES:
+        for value in values:
+            with monkeypatch.context() as changed:
+                changed.setattr(module, name, value)
+                other = choice.vectors() if module is motion_vector else vectors
+                best = max(best, told(f"  {name} {value}", other, fusion.fused_distances))
+    assert chosen > best - TOLERANCE
 
 
 @pytest.fixture(scope="module")
@@ -92,66 +214,34 @@ def _link(rows: list[dict[str, str]], folder: Path) -> None:
         table.writerows(rows)
 
 
-def test_every_method_on_dataset_2(dataset_2: Library) -> None:
+def test_the_default_reaches_the_targets_on_clips_that_chose_nothing(dataset_2: Library) -> None:
     stored = _all_clips(dataset_2)
-    found: dict[str, Figures] = {}
-    print(f"\n{len(stored)} clips of dataset 2, load {os.getloadavg()[0]:.1f}\n{HEAD}{'ms':>8}")
-    for method in Method:
-        if method in LEARNED:  # judged in test_learned_metrics, on clips that taught nothing
-            continue
-        rows: dict[bool, list[np.ndarray]] = {True: [], False: []}
-        took = []
-        for clip in stored:
-            asked = MotionQuery(clip_id=clip.id, method=method, limit=find.MAX_LIMIT)
-            began = time.process_time()
-            hits = find.find_motion(dataset_2, asked)
-            took.append(time.process_time() - began)
-            assert len(hits.items) == len(stored) - 1
-            is_relevant = np.array([hit.clip.task == clip.task for hit in hits.items])
-            rows[clip.person in CHOICE].append(is_relevant)
-        found[method.value] = _figures(rows[False])
-        whole = _figures(rows[True] + rows[False])
-        print(f"{method.value:14}{found[method.value].told()}{1e3 * np.median(took):8.1f}", end="")
-        print(f"   all styles:{whole.told()}")
-    for method_name, (nearest, average) in FLOORS.items():
-        assert found[method_name].nearest >= nearest
-        assert found[method_name].mean_average_precision >= average
-    # What lies between is worth its time.
-    assert found["fused"].mean_average_precision > found["vector"].mean_average_precision
+    reported = [clip for clip in stored if clip.person in REPORT_STYLES]
+    others = [clip for clip in stored if clip.person not in REPORT_STYLES]
+    found: dict[Method, Figures] = {}
+    print(f"\nall {len(stored)} clips of dataset 2 are asked, load {os.getloadavg()[0]:.1f}")
+    print(f"{'':12}{f'report half, {len(reported)}':>32}{'':4}{f'choice half, {len(others)}':>32}")
+    print(f"{'':12}{HEAD}{'':4}{HEAD}{'ms':>8}")
+    for method in [method for method in Method if method not in LEARNED]:
+        took: list[float] = []
+        half = [_ask(dataset_2, clip, method, len(stored), took) for clip in reported]
+        rest = [_ask(dataset_2, clip, method, len(stored), took) for clip in others]
+        found[method] = _figures(half)
+        both = f"{found[method].told()}{'':4}{_figures(rest).told()}"
+        print(f"{method:12}{both}{1e3 * np.median(took):8.1f}")
+    for name, target in TARGETS.items():
+        assert getattr(found[Method.FUSED], name) >= target, name
 
 
-def test_what_was_tried_of_fused_on_the_clips_that_chose(monkeypatch: pytest.MonkeyPatch) -> None:
-    """MAP by weights of DTW and of the graph, on each set and on all as one library."""
-    described = _described()
-    sets = np.array([name for name, _, _ in described])
-    tasks = np.array([task for _, task, _ in described])
-    vectors = np.stack([arrays["motion_vector"] for _, _, arrays in described]).astype(float)
-    features = [arrays["features_10hz"] for _, _, arrays in described]
-    warped = np.stack([dtw_distances(query, features) for query in features])
-    names = sorted(set(sets.tolist()))
-    print(f"\n{'dtw graph':14}" + "".join(f"{name:>16}" for name in (*names, "as one")))
-    best = {}
-    for weight, detour in product(WEIGHTS, DETOURS):
-        monkeypatch.setattr(fusion, "DTW_WEIGHT", weight)
-        monkeypatch.setattr(fusion, "DETOUR", detour)
-        members = [*(np.flatnonzero(sets == name) for name in names), np.arange(len(tasks))]
-        found = [_fused_map(vectors, warped, tasks, one) for one in members]
-        best[weight, detour] = float(np.mean(found))
-        print(f"{weight:<6}{detour:<8}" + "".join(f"{share:16.4f}" for share in found))
-    assert best[0.25, 1.0] > max(best.values()) - 0.02
-
-
-def _fused_map(
-    vectors: np.ndarray, warped: np.ndarray, tasks: np.ndarray, members: np.ndarray
-) -> float:
-    """MAP of `fused` in the library of `members`, its shortlist all of them."""
-    rows = []
-    for query in members:
-        others = members[members != query]
-        distances = fusion.fused_distances(vectors[query], vectors[others], warped[query, others])
-        order = others[np.argsort(distances, kind="stable")]
-        rows.append(tasks[order] == tasks[query])
-    return _figures(rows).mean_average_precision
+def _ask(
+    lib: Library, clip: ClipRecord, method: Method, count: int, took: list[float]
+) -> np.ndarray:
+    """Of each answer, in order, whether it is relevant."""
+    began = time.process_time()
+    hits = find.find_motion(lib, MotionQuery(clip_id=clip.id, method=method, limit=find.MAX_LIMIT))
+    took.append(time.process_time() - began)
+    assert len(hits.items) == count - 1
+    return np.array([hit.clip.task == clip.task for hit in hits.items])
 
 
 def _all_clips(lib: Library) -> list[ClipRecord]:
@@ -162,7 +252,7 @@ def _all_clips(lib: Library) -> list[ClipRecord]:
 
 
 def _figures(rows: list[np.ndarray]) -> Figures:
-    """From each query's answers in order, whether each is relevant; all have a relevant one."""
+    """From each query's answers in order, whether each is relevant; those without one are out."""
     judged = [
         (
             row[0],
@@ -174,20 +264,3 @@ def _figures(rows: list[np.ndarray]) -> Figures:
         if row.any()
     ]
     return Figures(*np.mean(judged, axis=0).tolist())
-
-
-def _described() -> list[tuple[str, str, dict[str, Any]]]:
-    """(set, task, arrays) of the clips that the weight is chosen on."""
-    found = []
-    for row in manifest():
-        folder = row["path"].partition("/")[0]
-        if folder == "bandai-namco-2" or not row["path"].endswith(".bvh"):
-            continue
-        recording = read_recording((real_clips() / row["path"]).read_bytes())
-        motion = canonicalise(recording, frame_rate=float(row["fps"]))
-        name = "cmu" if folder.startswith("cmu") else folder
-        found.append((name, row["task"], describe_for_search(motion).arrays))
-    for clip in demo_clips():
-        motion = canonicalise(read_recording(clip.content))
-        found.append(("demo", clip.task, describe_for_search(motion).arrays))
-    return found
