@@ -29,8 +29,8 @@ def test_the_same_task_comes_first_and_the_same_person_comes_first(
     for clip in ready_clips:
         tasks = find.find_motion(ready_library, MotionQuery(clip.id, method=TASK, limit=2))
         assert [hit.clip.task for hit in tasks.items] == [clip.task] * 2
-        people = find.find_motion(ready_library, MotionQuery(clip.id, method=PERSON, limit=3))
-        assert [hit.clip.person for hit in people.items] == [clip.person] * 3
+        people = find.find_motion(ready_library, MotionQuery(clip.id, method=PERSON, limit=2))
+        assert [hit.clip.person for hit in people.items] == [clip.person] * 2
 
 
 def test_same_style_other_task_and_same_task_other_style(

@@ -72,7 +72,9 @@ def _words_of(text: str, is_word: Callable[[str], bool]) -> Iterator[tuple[str, 
         return
     tokens = [token.replace("’", "'") for token in _TOKEN.findall(text)]
     if len(tokens) == 1:  # asked for by itself: no word is too small
-        yield from ((word, tokens[0].startswith("-")) for word in [normalise_word(tokens[0])])
+        word = normalise_word(tokens[0])
+        if word:
+            yield word, tokens[0].startswith("-")
         return
     place, is_negated = 0, False
     while place < len(tokens):
