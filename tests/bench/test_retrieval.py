@@ -50,6 +50,7 @@ from app.search import fusion
 from app.search.methods import LEARNED, Method
 from app.services import clips, find, imports, jobs
 from app.services.demo import demo_clips
+from app.services.fields import MAX_LIMIT
 from app.services.find import MotionQuery
 from app.services.library import Library
 from app.store.clip_record import ClipRecord
@@ -238,7 +239,7 @@ def _ask(
 ) -> np.ndarray:
     """Of each answer, in order, whether it is relevant."""
     began = time.process_time()
-    hits = find.find_motion(lib, MotionQuery(clip_id=clip.id, method=method, limit=find.MAX_LIMIT))
+    hits = find.find_motion(lib, MotionQuery(clip_id=clip.id, method=method, limit=MAX_LIMIT))
     took.append(time.process_time() - began)
     assert len(hits.items) == count - 1
     return np.array([hit.clip.task == clip.task for hit in hits.items])
