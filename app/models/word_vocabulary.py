@@ -15,7 +15,7 @@ import numpy as np
 
 from app.models.language.inflection import base_form, base_forms
 from app.models.language.lexicon import is_known
-from app.numerics.arrays import FloatArray
+from app.numerics.arrays import FloatArray, IntArray
 
 _JOINERS = re.compile(r"[\s\-_]+")
 
@@ -57,14 +57,14 @@ class WordVocabulary:
 
         Both ways: *jumps* finds *jump*, and *jump* finds *jumping* where only that is carried.
         """
-        found = base_form(word, self._columns().__contains__)
+        found = base_form(word, self._column_of().__contains__)
         if found is not None:
             return found
         return next((ours for ours in self.words if word in base_forms(ours)), None)
 
     def label_matrix(self, label_sets: Sequence[Iterable[str]]) -> FloatArray:
         """(N, V) float64 of ones and zeros; words outside the vocabulary are ignored."""
-        columns = self._columns()
+        columns = self._column_of()
         matrix = np.zeros((len(label_sets), len(self.words)))
         found: dict[str, str | None] = {}
         for row, labels in enumerate(label_sets):
@@ -77,13 +77,17 @@ class WordVocabulary:
 
     def vector(self, weights: Mapping[str, float]) -> FloatArray:
         """(V,) `weights` by word of the vocabulary, 0 elsewhere."""
-        columns = self._columns()
+        columns = self._column_of()
         made = np.zeros(len(self.words))
         for word, weight in weights.items():
             made[columns[word]] = weight
         return made
 
-    def _columns(self) -> dict[str, int]:
+    def columns(self, words: Iterable[str]) -> IntArray:
+        """(c,) where these words of the vocabulary stand in it."""
+        return np.array([self.words.index(word) for word in words], dtype=np.int64)
+
+    def _column_of(self) -> dict[str, int]:
         return {word: column for column, word in enumerate(self.words)}
 
 

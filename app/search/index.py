@@ -93,10 +93,6 @@ class VectorIndex:
         version, rows = self._state
         return Near(version, rows, rows.labels.passing(wanted, exclude), query)
 
-    def labels(self, clip_id: str) -> frozenset[str]:
-        """The words of a clip; none where it is not in the index."""
-        return self._state[1].labels.words(clip_id)
-
     def _follow(self, tx: Tx, now: int) -> None:
         """Take what changed up to version `now`; what searches see changes at once, at the end."""
         since = self.version

@@ -103,6 +103,11 @@ class CodedWords:
         """The codes of the sets that hold any of `words`."""
         return [code for word in set(words) for code in tuple(self._with_word.get(word, ()))]
 
+    @property
+    def sets(self) -> tuple[frozenset[str], ...]:
+        """All sets that some clip carried, by code."""
+        return tuple(self._sets)
+
     def at(self, number: int) -> frozenset[str]:
         """The set of an entry."""
         return self._sets[int(self.column.view()[number])]
@@ -150,10 +155,9 @@ class LabelView:
             mask[self._numbers_of(clip_id)] = False
         return mask
 
-    def words(self, clip_id: str) -> frozenset[str]:
-        """The words of a clip; none where it is not here."""
-        numbers = self._numbers_of(clip_id)
-        return self.labels.words.at(numbers[-1]) if numbers else frozenset()
+    def word_sets(self) -> tuple[IntArray, tuple[frozenset[str], ...]]:
+        """(n,) which set of words each clip carries, and the sets."""
+        return self.coded["word"], self.labels.words.sets
 
     def _numbers_of(self, clip_id: str) -> list[int]:
         number = self.labels.number_of.get(clip_id)

@@ -1,34 +1,19 @@
-"""Exact search among the coordinates that a fitted model gives to the clips of an index.
-
-Coordinates stand row beside row with those of the index, so that its labels filter both. They
-are computed when a search first asks, then only for clips that came or changed since: this is
-the out-of-sample extension, and the reason why searches need no refit. What the fit itself
-computed is taken over when the model is first asked for.
-"""
+"""Exact search among the coordinates that a fitted model gives to the clips of an index."""
 
 from __future__ import annotations
 
 import threading
-from collections import ChainMap
-from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from app.numerics.arrays import FloatArray
 from app.numerics.nearest import Block, squared_lengths
+from app.search.beside import Beside, Compute, Known, RowsBeside, nothing_known
 from app.search.index import VectorIndex
-from app.search.labels import Column, Labels
+from app.search.labels import Column
 from app.search.near import Near
-from app.search.projections import Known, nothing_known
-from app.search.rows import RowsView
 from app.store.clip_filter import ClipFilter
-
-BATCH = 2000
-"""Clips whose coordinates are computed at a time; bounds what is read for them."""
-
-Project = Callable[[Sequence[str]], Mapping[str, FloatArray]]
-"""Coordinates (k,) by clip id; ids of clips that are gone are left out."""
 
 
 class ProjectedIndex:
@@ -36,16 +21,15 @@ class ProjectedIndex:
 
     def __init__(self, index: VectorIndex) -> None:
         self._index = index
-        self._model = ""
-        self._labels: Labels | None = None
-        self._coordinates = Column(np.float32)
+        self._coordinates = RowsBeside()
         self._squares = Column(np.float32)
+        self._series: object = None
         self._lock = threading.Lock()
 
     def nearest(
         self,
         model: str,
-        project: Project,
+        project: Compute,
         query: FloatArray,
         wanted: ClipFilter,
         exclude: frozenset[str] = frozenset(),
@@ -57,31 +41,15 @@ class ProjectedIndex:
         caught up.
         """
         version, rows = self._index.state
-        block = self._beside(rows, model, project, known, len(query))
-        passing = rows.labels.passing(wanted, exclude)
-        return Near(version, replace(rows, blocks=(block,)), passing, query)
+        beside = self._coordinates.of(rows.labels, model, len(query), project, known)
+        rows = replace(rows, blocks=(self._block(beside),))
+        return Near(version, rows, rows.labels.passing(wanted, exclude), query)
 
-    def _beside(
-        self, rows: RowsView, model: str, project: Project, known: Known, width: int
-    ) -> Block:
+    def _block(self, beside: Beside) -> Block:
         """Coordinates of all rows; 0 for those of clips that are gone."""
-        ids, alive = rows.labels.ids, rows.labels.alive
-        kept: dict[str, FloatArray] = {}
+        count = len(beside.values)
         with self._lock:
-            if (self._model, self._labels) != (model, rows.labels.labels):
-                self._model, self._labels = model, rows.labels.labels
-                self._coordinates = Column(np.float32, (width,))
-                self._squares = Column(np.float32)
-                # Only now: what is known was so before any of these clips could change.
-                kept = dict(zip(*known(), strict=True))
-            for start in range(len(self._squares), len(ids), BATCH):
-                batch = slice(start, start + BATCH)
-                missing = [i for i in ids[batch][alive[batch]] if i not in kept]
-                found = project(missing) if missing else {}
-                rest = ChainMap(kept, dict(found))
-                nothing = np.zeros(width)
-                points = np.stack([rest.get(i, nothing) for i in ids[batch]]).astype(np.float32)
-                self._coordinates.extend(points)
-                self._squares.extend(squared_lengths(points))
-            count = len(ids)
-            return Block(self._coordinates.view()[:count], self._squares.view()[:count])
+            if self._series is not beside.series:
+                self._series, self._squares = beside.series, Column(np.float32)
+            self._squares.extend(squared_lengths(beside.values[len(self._squares) :]))
+            return Block(beside.values, self._squares.view()[:count])

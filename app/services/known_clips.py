@@ -15,9 +15,9 @@ from app.numerics.arrays import FloatArray
 from app.services.library import Library
 from app.store import library, models
 
-OUTPUTS = "clips.outputs"
-POINTS = "clips.points"
-_IDS = "clips.ids"
+OUTPUTS = f"{models.OF_CLIPS}outputs"
+POINTS = f"{models.OF_CLIPS}points"
+_IDS = f"{models.OF_CLIPS}ids"
 MOST_VALUES = 50_000_000
 """Outputs beyond so many (200 MB) are not stored: searches compute what they need."""
 
@@ -43,7 +43,7 @@ def known_arrays(
 def read_known(lib: Library, model_id: str, name: str) -> tuple[Sequence[str], FloatArray]:
     """Ids (n) and rows (n, width) of OUTPUTS or POINTS, of clips that did not change since."""
     with lib.store.read() as tx:
-        stored = models.load_arrays(tx, model_id)
+        stored = models.load_arrays(tx, model_id, (_IDS, name))
         fitted_at = models.get(tx, model_id).library_version
         changes = library.changed_since(tx, fitted_at)
     if name not in stored:

@@ -10,10 +10,10 @@ from app.analysis.segments import SEGMENT_SPANS, SEGMENT_VECTORS, SEGMENT_WIDTH
 from app.analysis.windows import WIDTH, WINDOW_SCALES
 from app.config import Settings
 from app.search.array_cache import ArrayCache
+from app.search.beside import RowsBeside
 from app.search.by_pose import POSES
 from app.search.index import VectorIndex
 from app.search.projected_index import ProjectedIndex
-from app.search.projections import Projections
 from app.search.span_index import SpanIndex
 from app.services.analysis_pool import AnalysisPool, Limits
 from app.services.model_shelf import METRICS, ModelKind, ModelShelf
@@ -28,6 +28,7 @@ ARRAY_CACHE_BYTES = 128 * 2**20
 class Library:
     """What every service call gets; one for each process, safe to share between threads.
 
+    word_scores, symbol_points: what the word models make of the clips in the index.
     pool analyses uploaded queries; a worker has a pool of its own. segments: what lies between
     the keyposes of all clips, loaded by the first search that asks. windows: the windows of all
     clips by the name of their scale, and poses: the pose covers of all clips, both loaded by
@@ -39,8 +40,8 @@ class Library:
     index: VectorIndex
     arrays: ArrayCache
     models: ModelShelf
-    word_outputs: Projections
-    symbol_points: Projections
+    word_scores: RowsBeside
+    symbol_points: RowsBeside
     pool: AnalysisPool
     windows: Mapping[str, SpanIndex]
     segments: SpanIndex
@@ -55,21 +56,15 @@ class Library:
         """
         (schema.prepare if prepare else schema.check)(settings.database)
         kept = ArrayCache(ARRAY_CACHE_BYTES)
-        word_outputs, symbol_points = Projections(), Projections()
-
-        def forget(clip_ids: tuple[str, ...]) -> None:
-            for cache in (kept, word_outputs, symbol_points):
-                cache.forget(clip_ids)
-
-        index = VectorIndex(on_change=forget)
+        index = VectorIndex(on_change=kept.forget)
         return cls(
             settings=settings,
             store=Store.open(settings.database, settings.files_dir),
             index=index,
             arrays=kept,
             models=ModelShelf(),
-            word_outputs=word_outputs,
-            symbol_points=symbol_points,
+            word_scores=RowsBeside(),
+            symbol_points=RowsBeside(),
             pool=AnalysisPool(query_limits(settings)),
             windows={s.name: SpanIndex(s.vectors, s.spans, WIDTH) for s in WINDOW_SCALES},
             segments=SpanIndex(SEGMENT_VECTORS, SEGMENT_SPANS, SEGMENT_WIDTH),

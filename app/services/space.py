@@ -12,9 +12,10 @@ from typing import Literal
 
 import numpy as np
 
-from app.numerics.arrays import FloatArray
+from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
 from app.search.index import VECTOR
+from app.search.labels import LabelView
 from app.services import fields
 from app.services.library import Library
 from app.services.word_ranking import clip_points
@@ -61,9 +62,11 @@ def draw_map(
     if not 1 <= limit <= MOST_POINTS:
         raise fields.bad_field("limit", f"must be from 1 to {MOST_POINTS}")
     version = lib.index.catch_up(lib.store)
-    every = sorted(str(clip_id) for clip_id in lib.index.candidates(wanted or ClipFilter()).ids)
-    picked = [every[row] for row in _evenly(len(every), limit)]
-    ids, points, axes, model = _placed(lib, space, picked, dimensions)
+    every = lib.index.state[1].labels
+    passing = np.flatnonzero(every.passing(wanted or ClipFilter()))
+    by_id = passing[np.argsort(every.ids[passing].astype(str), kind="stable")]
+    picked = by_id[_evenly(len(by_id), limit)]
+    ids, points, axes, model = _placed(lib, space, every, picked, dimensions)
     seen = axes.project(points) if len(ids) else np.zeros((0, dimensions))
     with lib.store.read() as tx:
         records = clips.get_many(tx, ids)
@@ -72,21 +75,24 @@ def draw_map(
         clips=tuple(records[ids[row]] for row in rows),
         points=_padded(seen[rows], dimensions),
         kept=_share(points - axes.centre, seen) if len(ids) else 0.0,
-        total=len(every),
+        total=len(passing),
         library_version=version,
         model=model,
     )
 
 
 def _placed(
-    lib: Library, space: str, ids: list[str], dimensions: int
+    lib: Library, space: str, every: LabelView, picked: IntArray, dimensions: int
 ) -> tuple[list[str], FloatArray, PrincipalAxes, str | None]:
-    """The ids that are there still, their points (n, d), the axes to see them along."""
+    """The ids of the picked clips that are there still, their points (n, d), the axes to see
+    them along."""
     if space == "symbols":
         fitted = lib.models.words(lib.store)
         axes = principal_axes(fitted.model.space.points, dimensions)
-        there, points = clip_points(lib, fitted.id, fitted.model, ids)
-        return there, points, axes, fitted.id
+        beside = clip_points(lib, fitted, every)
+        known = picked[beside.there[picked]]
+        return [str(i) for i in every.ids[known]], beside.values[known], axes, fitted.id
+    ids = [str(i) for i in every.ids[picked]]
     with lib.store.read() as tx:
         found = arrays.get_many(tx, ids, VECTOR)
     there = [clip_id for clip_id in ids if clip_id in found]
@@ -96,9 +102,8 @@ def _placed(
     return there, points, principal_axes(points, dimensions), None
 
 
-def _evenly(count: int, limit: int) -> list[int]:
-    rows = np.linspace(0, count - 1, min(count, limit)).round()
-    return [int(row) for row in rows]
+def _evenly(count: int, limit: int) -> IntArray:
+    return np.linspace(0, count - 1, min(count, limit)).round().astype(np.int64)
 
 
 def _share(centred: FloatArray, seen: FloatArray) -> float:

@@ -12,15 +12,20 @@ import numpy as np
 from app.analysis.motion_symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.library_words import LibraryWords
 from app.models.word_query import WordsAsked
-from app.numerics.arrays import FloatArray
-from app.search.rank import Ranking, ranking
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.search.beside import Beside
+from app.search.labels import LabelView
+from app.search.rank import Ranking
 from app.services.known_clips import OUTPUTS, POINTS, read_known
 from app.services.library import Library
+from app.services.model_shelf import Fitted
 from app.store import arrays
 from app.store.clip_filter import ClipFilter
 
 STATISTICS = "symbol_statistics"
 LIKELIER_THAN_NOT = 0.5
+
+Words = Fitted[LibraryWords]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +41,8 @@ class WordRanking:
 
 
 def rank_by_words(lib: Library, texts: Sequence[str], mode: str, wanted: ClipFilter) -> WordRanking:
-    """All clips that pass the filter and are not excluded; none where no word is known.
+    """All clips that pass the filter and are not excluded; none where no word is known. The
+    index has caught up.
 
     texts: words, phrases or sentences; a word with a minus leaves out what carries it, and of
     the clips without words what the model finds likelier to carry it than not. The default
@@ -46,31 +52,38 @@ def rank_by_words(lib: Library, texts: Sequence[str], mode: str, wanted: ClipFil
     """
     fitted = lib.models.words(lib.store)
     asked = fitted.model.ask(texts)
-    rank, to_score = (_by_angle, _complement) if mode == "cca" else (_by_surprise, _probability)
+    clips = lib.index.state[1].labels
+    measure, to_score = (_by_angle, _complement) if mode == "cca" else (_by_surprise, _probability)
     if not asked.weights:
-        nothing = ranking(np.empty(0, dtype=object), np.zeros(0))
+        nothing = Ranking(np.empty(0, dtype=object), np.zeros(0))
         return WordRanking(nothing, fitted.id, asked, to_score)
-    candidates = _not_excluded(lib, fitted.id, fitted.model, wanted, asked.excluded)
-    ids, distances = rank(lib, fitted.id, fitted.model, candidates, asked)
-    return WordRanking(_ranked(ids, distances), fitted.id, asked, to_score)
+    passing = clips.passing(wanted)
+    if asked.excluded:
+        passing &= ~_believed_to_carry(lib, fitted, clips, asked.excluded)
+    rows, distances = measure(lib, fitted, clips, passing, asked)
+    return WordRanking(Ranking(clips.ids[rows], distances), fitted.id, asked, to_score)
 
 
-def clip_points(
-    lib: Library, model_id: str, model: LibraryWords, clip_ids: Sequence[str]
-) -> tuple[list[str], FloatArray]:
-    """The ids that exist, and their coordinates (n, d) in the model's symbol space."""
-    place = partial(place_symbols, lib, model)
-    known = partial(read_known, lib, model_id, POINTS)
-    return lib.symbol_points.of(model_id, clip_ids, place, known)
+def clip_points(lib: Library, fitted: Words, clips: LabelView) -> Beside:
+    """(n, d) coordinates of an index's clips in the model's symbol space."""
+    return lib.symbol_points.of(
+        clips,
+        fitted.id,
+        fitted.model.space.points.shape[1],
+        partial(_place, lib, fitted.model),
+        partial(read_known, lib, fitted.id, POINTS),
+    )
 
 
-def _clip_outputs(
-    lib: Library, model_id: str, model: LibraryWords, clip_ids: list[str], words: Sequence[str]
-) -> tuple[list[str], FloatArray]:
-    """The ids that exist, and (n, words) probabilities that they carry these words."""
-    predict, known = partial(_predict, lib, model), partial(read_known, lib, model_id, OUTPUTS)
-    columns = [model.vocabulary.words.index(word) for word in words]
-    return lib.word_outputs.of(model_id, clip_ids, predict, known, columns)
+def _word_scores(lib: Library, fitted: Words, clips: LabelView) -> Beside:
+    """(n, V) probabilities that an index's clips carry the words of the vocabulary."""
+    return lib.word_scores.of(
+        clips,
+        fitted.id,
+        len(fitted.model.vocabulary),
+        partial(_predict, lib, fitted.model),
+        partial(read_known, lib, fitted.id, OUTPUTS),
+    )
 
 
 def _probability(surprise: float) -> float:
@@ -81,38 +94,43 @@ def _complement(distance: float) -> float:
     return 1.0 - distance
 
 
-def _not_excluded(
-    lib: Library, model_id: str, model: LibraryWords, wanted: ClipFilter, excluded: Sequence[str]
-) -> list[str]:
-    ids = [str(clip_id) for clip_id in lib.index.candidates(wanted).ids]
-    if not excluded:
-        return ids
-    ids, outputs = _clip_outputs(lib, model_id, model, ids, excluded)
-    carried = model.vocabulary.label_matrix([lib.index.labels(clip_id) for clip_id in ids])
-    columns = [model.vocabulary.words.index(word) for word in excluded]
-    is_labelled = carried.any(axis=1, keepdims=True)
-    believed = np.where(is_labelled, carried[:, columns], outputs)
-    is_in = np.flatnonzero((believed < LIKELIER_THAN_NOT).all(axis=1))
-    return [ids[row] for row in is_in]
+def _believed_to_carry(
+    lib: Library, fitted: Words, clips: LabelView, words: Sequence[str]
+) -> BoolArray:
+    """(n,) whether a clip carries any of `words`, or has none at all and likely would."""
+    vocabulary = fitted.model.vocabulary
+    columns = vocabulary.columns(words)
+    codes, sets = clips.word_sets()
+    carried: BoolArray = vocabulary.label_matrix(sets) > 0.0
+    scores = _word_scores(lib, fitted, clips).values[:, columns]
+    is_likely = (scores >= LIKELIER_THAN_NOT).any(axis=1)
+    is_labelled = np.asarray(carried.any(axis=1))[codes]
+    is_excluded = np.asarray(carried[:, columns].any(axis=1))[codes]
+    return np.where(is_labelled, is_excluded, is_likely)
 
 
 def _by_surprise(
-    lib: Library, model_id: str, model: LibraryWords, clip_ids: list[str], asked: WordsAsked
-) -> tuple[list[str], FloatArray]:
+    lib: Library, fitted: Words, clips: LabelView, passing: BoolArray, asked: WordsAsked
+) -> tuple[IntArray, FloatArray]:
+    """Of the clips that pass and are known: their rows and distances."""
     words = tuple(asked.weights)
-    ids, outputs = _clip_outputs(lib, model_id, model, clip_ids, words)
-    return ids, model.clip_surprises(outputs, words, asked.meant) if ids else np.zeros(0)
+    beside = _word_scores(lib, fitted, clips)
+    rows = np.flatnonzero(passing & beside.there)
+    scores = beside.values[rows[:, None], fitted.model.vocabulary.columns(words)]
+    return rows, fitted.model.clip_surprises(scores, words, asked.meant)
 
 
 def _by_angle(
-    lib: Library, model_id: str, model: LibraryWords, clip_ids: list[str], asked: WordsAsked
-) -> tuple[list[str], FloatArray]:
-    query = model.vocabulary.vector(asked.weights)
-    ids, points = clip_points(lib, model_id, model, clip_ids)
-    return ids, 1.0 - model.clip_scores_cca(points, query) if ids else np.zeros(0)
+    lib: Library, fitted: Words, clips: LabelView, passing: BoolArray, asked: WordsAsked
+) -> tuple[IntArray, FloatArray]:
+    """Of the clips that pass and are known: their rows and distances."""
+    beside = clip_points(lib, fitted, clips)
+    rows = np.flatnonzero(passing & beside.there)
+    query = fitted.model.vocabulary.vector(asked.weights)
+    return rows, 1.0 - fitted.model.clip_scores_cca(beside.values[rows], query)
 
 
-def _predict(lib: Library, model: LibraryWords, clip_ids: list[str]) -> dict[str, FloatArray]:
+def _predict(lib: Library, model: LibraryWords, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
     """(V,) scores of the vocabulary's words by clip id."""
     with lib.store.read() as tx:
         statistics = arrays.get_many(tx, clip_ids, STATISTICS)
@@ -122,7 +140,7 @@ def _predict(lib: Library, model: LibraryWords, clip_ids: list[str]) -> dict[str
     return dict(zip(statistics, predicted, strict=True))
 
 
-def place_symbols(lib: Library, model: LibraryWords, clip_ids: list[str]) -> dict[str, FloatArray]:
+def _place(lib: Library, model: LibraryWords, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
     """(d,) coordinates in the symbol space by clip id."""
     with lib.store.read() as tx:
         parts = {name: arrays.get_many(tx, clip_ids, name) for name in SYMBOL_ARRAYS}
@@ -132,9 +150,3 @@ def place_symbols(lib: Library, model: LibraryWords, clip_ids: list[str]) -> dic
         for clip_id in there
     ]
     return dict(zip(there, model.space.place(symbols), strict=True))
-
-
-def _ranked(ids: list[str], distances: FloatArray) -> Ranking:
-    named = np.empty(len(ids), dtype=object)
-    named[:] = ids
-    return ranking(named, distances)

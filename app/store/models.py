@@ -17,6 +17,9 @@ from app.store.engine import Tx
 from app.store.ids import new_id, utc_now
 from app.store.tables import model_arrays, models
 
+OF_CLIPS = "clips."
+"""How the names of those arrays begin that hold what a model made of the clips it was fitted on."""
+
 KEPT_VERSIONS = 2
 """Of each kind: the one in force, and the one that searches may still be reading."""
 
@@ -115,12 +118,18 @@ def remove(tx: Tx, kinds: Collection[str]) -> int:
     return tx.execute(delete(models).where(models.c.kind.in_(kinds))).rowcount
 
 
-def load_arrays(tx: Tx, model_id: str) -> dict[str, NDArray[Any]]:
-    """A model's arrays by name, read-only."""
+def load_arrays(
+    tx: Tx, model_id: str, names: Collection[str] | None = None
+) -> dict[str, NDArray[Any]]:
+    """A model's arrays by name, read-only: those of these names that it has, by default all that
+    make the model itself, without what it made of clips."""
     query = select(
         model_arrays.c.name, model_arrays.c.dtype, model_arrays.c.shape, model_arrays.c.data
     ).where(model_arrays.c.model_id == model_id)
-    return {name: from_blob(dtype, shape, data) for name, dtype, shape, data in tx.execute(query)}
+    name = model_arrays.c.name
+    wanted = name.not_like(f"{OF_CLIPS}%") if names is None else name.in_(names)
+    found = tx.execute(query.where(wanted))
+    return {name: from_blob(dtype, shape, data) for name, dtype, shape, data in found}
 
 
 def _in_force(query: Select[Any]) -> Select[Any]:

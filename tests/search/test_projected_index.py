@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.search import projected_index, rows
+from app.search import beside as beside_module
+from app.search import rows
 from app.search.index import VECTOR, WIDTH, VectorIndex
 from app.search.near import Near
 from app.search.projected_index import ProjectedIndex
@@ -131,7 +132,7 @@ def test_it_goes_on_when_the_index_drops_its_dead_rows(
     store: Store, add: Add, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(rows, "FEW_DEAD", 2)
-    monkeypatch.setattr(projected_index, "BATCH", 3)
+    monkeypatch.setattr(beside_module, "BATCH", 3)
     ids = [add(f"c{i}") for i in range(10)]
     index, model = VectorIndex(), Model(store)
     beside = ProjectedIndex(index)
