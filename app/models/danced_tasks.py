@@ -1,0 +1,86 @@
+"""The segments of a library's dances, arranged for Perera's tensor: person, task, cycle.
+
+Each step of a repeated sequence is a task ("salsa 1", "salsa 2", ...), each time through it a
+cycle. Where a sequence begins is anybody's choice: the cycles of all clips of a task are
+shifted to begin alike.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.analysis.danced_cycles import DancedCycles
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+
+
+@dataclass(frozen=True, slots=True)
+class DancedTasks:
+    """n segments. poses: (n, POSES, 13, 3) body frame, body lengths; persons, tasks: (n,);
+    cycle: (n,) from 0, which time it is that this person does this task."""
+
+    poses: FloatArray
+    persons: tuple[str, ...]
+    tasks: tuple[str, ...]
+    cycle: IntArray
+
+    def __len__(self) -> int:
+        return len(self.cycle)
+
+    def part(self, chosen: BoolArray) -> DancedTasks:
+        """The segments of which `chosen` (n,) says so."""
+        index = np.flatnonzero(chosen)
+        who, what = (tuple(names[i] for i in index) for names in (self.persons, self.tasks))
+        return DancedTasks(self.poses[index], who, what, self.cycle[index])
+
+
+def arrange(
+    clips: Sequence[DancedCycles], persons: Sequence[str | None], tasks: Sequence[str | None]
+) -> DancedTasks:
+    """All segments of the clips that have both labels, (clips,) each.
+
+    A clip whose cycles have another number of segments than most of its task have is left out.
+    """
+    poses: list[FloatArray] = []
+    labels: list[tuple[str, str, int]] = []
+    done: Counter[tuple[str, str]] = Counter()
+    for task in sorted({what for what in tasks if what}):
+        of_task = [i for i, what in enumerate(tasks) if what == task and persons[i]]
+        if not of_task:
+            continue
+        for index, cycles in _in_phase(of_task, clips):
+            person = str(persons[index])
+            for cycle in cycles:
+                names = (
+                    [task] if len(cycle) == 1 else [f"{task} {n + 1}" for n in range(len(cycle))]
+                )
+                labels += [(person, name, done[person, task]) for name in names]
+                poses += list(cycle)
+                done[person, task] += 1
+    who, what, cycle = zip(*labels, strict=True) if labels else ((), (), ())
+    stacked = np.stack(poses) if poses else np.zeros((0, 0, 13, 3))
+    return DancedTasks(stacked, who, what, np.array(cycle, dtype=np.int64))
+
+
+def _steps(task: str, count: int) -> list[str]:
+    return [f"{task} {number + 1}" for number in range(count)]
+
+
+def _in_phase(of_task: list[int], clips: Sequence[DancedCycles]) -> list[tuple[int, FloatArray]]:
+    """Each clip of a task with its cycles (c, m, ...), shifted to the first clip's."""
+    counts = Counter(clips[i].length for i in of_task)
+    usual = max(counts, key=lambda length: (counts[length], -length))
+    alike = [i for i in of_task if clips[i].length == usual]
+    reference = clips[alike[0]].cycles().mean(axis=0)
+    return [(i, _shifted(clips[i], reference)) for i in alike]
+
+
+def _shifted(clip: DancedCycles, reference: FloatArray) -> FloatArray:
+    """(c, m, ...) the cycles of `clip` from the segment that most resembles the first of the
+    `reference` (m, ...)."""
+    ways = [clip.cycles(shift) for shift in range(clip.length)]
+    far = [np.square(way.mean(axis=0) - reference).sum() if len(way) else np.inf for way in ways]
+    return ways[int(np.argmin(far))]

@@ -1,0 +1,154 @@
+"""Perera's task model (2009, section 5): who and what by weighted distances of joints.
+
+P (positions, people, tasks) = Q x_1 S_position x_2 S_people x_3 S_task (eq. 12), of motions
+brought to one body and one length. What is probed is brought to the span of S_position, where
+each joint is held against the same joint of every training motion (eq. 13). A category is
+told by its joints' least distances, weighted and summed (eq. 14).
+
+Read as printed, eq. 14 maximises a sum of distances. With each joint counted for the category
+in which it is nearest that is a vote by joints (Reading.PRINTED), in which a far joint weighs
+more than a near one. Read as meant, the smallest sum over all joints wins (Reading.LEAST).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from app.errors import NotEnoughLabels
+from app.models.cells import cell_means, find_cells
+from app.models.multilinear import MOST_CELLS, complete_tensor
+from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.nmode_svd import NModeSVD, nmode_svd
+from app.numerics.principal_axes import PrincipalAxes, principal_axes
+
+JOINTS = len(SUN_ROLES)
+
+LINKS: dict[JointRole, int] = {
+    JointRole.HIPS: 1,
+    JointRole.NECK: 2,
+    JointRole.HEAD: 3,
+    **dict.fromkeys((JointRole.LEFT_SHOULDER, JointRole.RIGHT_SHOULDER), 3),
+    **dict.fromkeys((JointRole.LEFT_ELBOW, JointRole.RIGHT_ELBOW), 4),
+    **dict.fromkeys((JointRole.LEFT_HAND, JointRole.RIGHT_HAND), 5),
+    **dict.fromkeys((JointRole.LEFT_KNEE, JointRole.RIGHT_KNEE), 2),
+    **dict.fromkeys((JointRole.LEFT_FOOT, JointRole.RIGHT_FOOT), 3),
+}
+"""Links from the body's centre: the paper gives the waist one."""
+
+MOST_AXES = 200
+"""Columns of S_position; the motions of a paper's library span fewer."""
+
+
+class Reading(StrEnum):
+    """How eq. 14 is read."""
+
+    LEAST = "least"
+    """The category with the smallest weighted sum of its joints' distances."""
+    PRINTED = "printed"
+    """The category with the largest weighted sum over the joints that are nearest to it."""
+
+
+def link_weights() -> FloatArray:
+    """(13,) W of eq. 14 in SUN_ROLES order: by number of links to the body's centre; sum 1."""
+    links = np.array([LINKS[role] for role in SUN_ROLES], dtype=np.float64)
+    return np.asarray(links / links.sum())
+
+
+@dataclass(frozen=True, slots=True)
+class TaskModel:
+    """persons (P,), tasks (T,): sorted labels; axes: what the motions span, uncentred, (d, r);
+    svd: of the tensor (r, P, T) in these coordinates; person, task: (c,) of the c cells that
+    were recorded; weights: (13,) of the joints."""
+
+    persons: tuple[str, ...]
+    tasks: tuple[str, ...]
+    axes: PrincipalAxes
+    svd: NModeSVD
+    person: IntArray
+    task: IntArray
+    weights: FloatArray
+
+    def joint_distances(self, poses: FloatArray) -> FloatArray:
+        """(n, c, 13) squared distances of the joints of `poses` (n, samples, 13, 3) from those
+        of each recorded cell, in the tensor's subdomain (eq. 13)."""
+        probes = self._in_subdomain(poses)
+        cells = _by_joint(self._cells() @ self.axes.axes.T)
+        out = np.empty((len(probes), len(self.person), JOINTS))
+        for joint in range(JOINTS):
+            one, other = probes[:, joint], cells[:, joint]
+            squares = (one**2).sum(1)[:, None] - 2 * one @ other.T + (other**2).sum(1)
+            out[:, :, joint] = np.maximum(squares, 0.0)
+        return out
+
+    def _cells(self) -> FloatArray:
+        """(c, r) the recorded cells as the factorised tensor has them."""
+        tensor = self.svd.reconstruct()
+        return np.asarray(tensor[:, self.person, self.task].T)
+
+    def _in_subdomain(self, poses: FloatArray) -> FloatArray:
+        """(n, 13, samples x 3) of `poses`, what S_position spans of them."""
+        position = self.svd.factors[0]
+        points = self.axes.project(np.asarray(poses).reshape(len(poses), -1))
+        return _by_joint(points @ position @ position.T @ self.axes.axes.T)
+
+
+def fit_task_model(
+    poses: FloatArray,
+    persons: Sequence[str | None],
+    tasks: Sequence[str | None],
+    ranks: tuple[int | None, int | None, int | None] = (None, None, None),
+) -> TaskModel:
+    """Fit on motions (n, samples, 13, 3) in the body frame; those without both labels are left
+    out, takes of one cell are averaged.
+
+    Cells that nobody recorded are completed for the factorisation (app.models.cells) and never
+    held against a probe. ranks: columns kept of S_position, S_people and S_task, None for all.
+    Raises NotEnoughLabels without a cell, or with too many.
+    """
+    use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
+    cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
+    if not len(cells):
+        raise NotEnoughLabels("The task model needs motions with a person and a task.")
+    if len(cells.persons) * len(cells.tasks) > MOST_CELLS:
+        raise NotEnoughLabels(f"The task model holds {MOST_CELLS} persons x tasks.")
+    flat = np.asarray(poses, dtype=np.float64)[use].reshape(len(use), -1)
+    means = cell_means(flat, cells)
+    axes = principal_axes(means, MOST_AXES, centred=False)
+    tensor = np.moveaxis(complete_tensor(axes.project(means), cells), 2, 0)
+    return TaskModel(
+        cells.persons,
+        cells.tasks,
+        axes,
+        nmode_svd(tensor, ranks),
+        cells.person,
+        cells.task,
+        link_weights(),
+    )
+
+
+def objective(
+    distances: FloatArray, label: IntArray, labels: int, weights: FloatArray, reading: Reading
+) -> FloatArray:
+    """(n, labels) how far each category is: eq. 14, its sign turned where it is maximised.
+
+    distances: (n, c, 13) of `TaskModel.joint_distances`; label: (c,) the category of each cell,
+    each of `labels` at least once; weights: (13,).
+    """
+    order = np.argsort(label, kind="stable")
+    starts = np.searchsorted(label[order], np.arange(labels))
+    least = np.minimum.reduceat(distances[:, order], starts, axis=1)
+    if reading is Reading.LEAST:
+        return np.asarray(least @ weights)
+    nearest = least == least.min(axis=1, keepdims=True)
+    return np.asarray(-np.where(nearest, least, 0.0) @ weights)
+
+
+def _by_joint(flat: FloatArray) -> FloatArray:
+    """(n, 13, samples x 3) of (n, samples x 13 x 3)."""
+    whole = flat.reshape(len(flat), -1, JOINTS, 3)
+    return np.ascontiguousarray(whole.transpose(0, 2, 1, 3)).reshape(len(flat), JOINTS, -1)
