@@ -8,6 +8,7 @@ followed by their onsets, motions by their stops.
 from __future__ import annotations
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy.fft import irfft, next_fast_len, rfft
 
 from app.numerics.arrays import FloatArray, IntArray
@@ -74,21 +75,24 @@ def track(strength: FloatArray, period: float, tightness: float, reach: float = 
     at once: a beat's predecessor lies in an earlier block.
     """
     nearest, furthest = max(1, round(period / reach)), max(2, round(reach * period))
-    gaps = np.arange(nearest, furthest + 1)
+    gaps = np.arange(furthest, nearest - 1, -1)
     cost = -tightness * np.square(np.log(gaps / period))
     count = len(strength)
+    if not count:
+        return np.zeros(0, dtype=np.int64)
+    # Row f of `behind` sees `total` of frames f - furthest .. f - nearest.
     total = np.concatenate([np.full(furthest, -np.inf), strength])
-    before = np.full(count, -1)
+    behind = sliding_window_view(total, len(gaps))
     for first in range(nearest, count, nearest):
-        frames = np.arange(first, min(first + nearest, count))
-        reached = total[furthest + frames[:, None] - gaps] + cost
-        best = reached.argmax(axis=1)
-        gain = reached[np.arange(len(frames)), best]
-        joined = gain > 0
-        total[furthest + frames[joined]] += gain[joined]
-        before[frames[joined]] = frames[joined] - gaps[best[joined]]
+        reached = (behind[first : min(first + nearest, count)] + cost).max(axis=1)
+        here = total[furthest + first : furthest + first + len(reached)]
+        here += np.maximum(reached, 0.0)
     last = max(0, count - round(period))
-    beats = [last + int(total[furthest + last :].argmax())] if count else []
-    while beats and before[beats[-1]] >= 0:
-        beats.append(int(before[beats[-1]]))
+    beats = [last + int(total[furthest + last :].argmax())]
+    while beats[-1] >= nearest:
+        reached = (behind[beats[-1]] + cost)[::-1]
+        best = int(reached.argmax())
+        if not reached[best] > 0:
+            break
+        beats.append(beats[-1] - nearest - best)
     return np.array(beats[::-1], dtype=np.int64)

@@ -47,6 +47,9 @@ FINE = 60.0
 WIDTH = 0.05
 """Seconds (standard deviation) of one rest in that curve."""
 
+HUMP = 39 * WIDTH
+"""Seconds beyond which a rest adds nothing to it: exp(-39^2 / 2) is 0 in floating point."""
+
 HEIGHT, TIGHTNESS = 4.0, 300.0
 """Of a full rest in that curve; see `beat_tracking.track`."""
 
@@ -179,8 +182,9 @@ def find_stops(energy: FloatArray, rate: float) -> Stops:
     times, weights = np.array(middles) / rate, np.minimum(depths / (DEEPEST * spread), 1.0)
     curve = np.zeros(len(grid))
     for time, weight in zip(times, weights, strict=True):
-        hump = weight * np.exp(-0.5 * np.square((grid - time) / WIDTH))
-        curve = np.maximum(curve, hump)
+        near = slice(max(0, int((time - HUMP) * FINE)), int((time + HUMP) * FINE) + 2)
+        hump = weight * np.exp(-0.5 * np.square((grid[near] - time) / WIDTH))
+        curve[near] = np.maximum(curve[near], hump)
     return Stops(times, weights, curve, duration)
 
 

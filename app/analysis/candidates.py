@@ -121,18 +121,19 @@ def _agree(rests: tuple[Rest, ...], beats: FloatArray) -> bool:
 
 
 def _within(rest: Rest, beats: FloatArray) -> FloatArray:
-    return beats[(beats >= rest.first - 1) & (beats <= rest.last + 1)]
+    first, stop = beats.searchsorted(rest.first - 1), beats.searchsorted(rest.last + 1, "right")
+    return beats[first:stop]
 
 
 def _moment(rest: Rest, usual: float, beats: FloatArray) -> float:
     middle = _middle(rest, usual)
-    within = _within(rest, beats)
-    if not len(within):
+    within = _within(rest, beats).tolist()
+    if not within:
         return middle
-    nearest = float(within[np.argmin(np.abs(within - middle))])
+    nearest = min(within, key=lambda beat: abs(beat - middle))
     if not rest.at_start:
-        nearest = float(np.clip(nearest, middle - NUDGE, middle + NUDGE))
-    return float(np.clip(nearest, rest.first, rest.last))
+        nearest = min(max(nearest, middle - NUDGE), middle + NUDGE)
+    return float(min(max(nearest, rest.first), rest.last))
 
 
 def _middle(rest: Rest, usual: float) -> float:

@@ -128,15 +128,17 @@ def find_keyposes(
     t1: float = T1,
     t2: float = T2,
     beats: Beats | FloatArray | None = None,
+    plain: Energies | None = None,
 ) -> Keyposes:
     """The keyposes of `track`.
 
     beats: as they are known, or (b,) seconds, none if there are none; None: estimated from the
     motion. t1, t2: thresholds in units of the median local maximum of each energy curve.
-    Raises ValueError for another method or other weights.
+    plain: `energies(track)`, where they are at hand. Raises ValueError for another method or
+    other weights.
     """
     method, weights = EnergyMethod(method), Weights(weights)
-    candidates = find_candidates(track, method=method, weights=weights, beats=beats)
+    candidates = find_candidates(track, method=method, weights=weights, beats=beats, plain=plain)
     chosen = candidates.select(t1, t2)
     frames = np.array([candidate.frame for candidate in chosen], dtype=np.int64)
     return Keyposes(
@@ -158,10 +160,15 @@ def find_candidates(
     method: EnergyMethod = EnergyMethod.RMS,
     weights: Weights = Weights.UNIFORM,
     beats: Beats | FloatArray | None = None,
+    plain: Energies | None = None,
 ) -> Candidates:
     """What `find_keyposes` selects from."""
-    curves = energies(track, method, weights)
-    used = _used(beats) or find_beats(_plain(track, curves, method, weights), track.rate)
+    if (method, weights) == (EnergyMethod.RMS, Weights.UNIFORM):
+        curves = plain = plain or energies(track)
+    else:
+        curves = energies(track, method, weights)
+    # Beats are sought in the plain energy, whatever keyposes are sought in.
+    used = _used(beats) or find_beats((plain or energies(track)).global_energy, track.rate)
     look = at_beats if are_law(used) else at_rests
     found = (
         candidate
@@ -169,14 +176,6 @@ def find_candidates(
         for candidate in look(find_rests(curve), used.times * track.rate, scope)
     )
     return Candidates(track.rate, curves, used, tuple(found))
-
-
-def _plain(
-    track: BodyTrack, curves: Energies, method: EnergyMethod, weights: Weights
-) -> FloatArray:
-    """The energy in which beats are sought, whatever keyposes are sought in."""
-    is_plain = (method, weights) == (EnergyMethod.RMS, Weights.UNIFORM)
-    return (curves if is_plain else energies(track)).global_energy
 
 
 def _used(beats: Beats | FloatArray | None) -> Beats | None:

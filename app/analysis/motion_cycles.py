@@ -106,18 +106,23 @@ class _Parts:
         share = (at - left).astype(np.float32)[..., None]
         self.poses = poses[left] * (1 - share) + poses[left + 1] * share
         self.durations = ends - starts
-        self.variances = self.poses.var(axis=1).sum(axis=-1)
+        self.variances = _mean_squares(self.poses - self.poses.mean(axis=1, keepdims=True))
 
     def concordance(self, other: _Parts) -> FloatArray:
         """(c,) of each part with the part of `other` behind it; -1 where durations differ, or
         nothing moves."""
         count = max(len(other.poses) - self.length, 0)
         one, two = slice(0, count), slice(self.length, self.length + count)
-        apart = np.square(self.poses[one] - other.poses[two]).sum(axis=-1).mean(axis=1)
+        apart = _mean_squares(self.poses[one] - other.poses[two])
         both = self.variances[one] + other.variances[two]
         stretch = other.durations[two] / self.durations[one]
         near = (stretch <= MOST_STRETCH) & (stretch >= 1 / MOST_STRETCH) & (both > _SMALLEST)
         return np.where(near, 1 - apart / np.maximum(both, _SMALLEST), -1.0)
+
+
+def _mean_squares(lines: FloatArray) -> FloatArray:
+    """(c,) of lines (c, SAMPLES, d): the mean over samples of their squared lengths."""
+    return np.asarray(np.einsum("csd,csd->c", lines, lines)) / SAMPLES
 
 
 def _runs(links: dict[_Part, _Link], bounds: FloatArray) -> list[list[int]]:

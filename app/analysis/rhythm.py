@@ -24,7 +24,7 @@ from app.analysis.beats import (
     no_beats,
     through,
 )
-from app.analysis.energy import energies
+from app.analysis.energy import Energies, energies
 from app.analysis.onsets import Onsets
 from app.motion.body_frame import BodyTrack
 from app.motion.recording import Caution
@@ -58,9 +58,14 @@ class Rhythm:
     cautions: tuple[Caution, ...] = ()
 
 
-def find_rhythm(track: BodyTrack, told: Told = NOTHING, onsets: Onsets | None = None) -> Rhythm:
-    """The beats of `track`; onsets: of its recording."""
-    energy = energies(track).global_energy
+def find_rhythm(
+    track: BodyTrack,
+    told: Told = NOTHING,
+    onsets: Onsets | None = None,
+    plain: Energies | None = None,
+) -> Rhythm:
+    """The beats of `track`; onsets: of its recording; plain: `energies(track)`, if at hand."""
+    energy = (plain or energies(track)).global_energy
     heard, offset = no_beats(), None
     if onsets is not None:
         heard = find_audio_beats(onsets, told.tempo)

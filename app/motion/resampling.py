@@ -17,6 +17,9 @@ from app.numerics.arrays import FloatArray
 LOW_PASS_REACH = 4.0
 """Half-length of the low-pass, in periods of the lower rate."""
 
+FAR_APART = 8.0
+"""Frames between moments from which on only what they read is filtered."""
+
 _ROUNDING = 1e-6
 
 
@@ -40,7 +43,10 @@ def resample_to(samples: FloatArray, count: int) -> FloatArray:
     if len(samples) < 2:
         return np.repeat(samples, count, axis=0)
     step = (len(samples) - 1) / max(count - 1, 1)
-    return sample_at(low_pass(samples, step), np.arange(count) * step)
+    times = np.arange(count) * step
+    if step < FAR_APART:
+        return sample_at(low_pass(samples, step), times)
+    return _few_of_low_pass(samples, step, times)
 
 
 def sample_at(samples: FloatArray, times: FloatArray) -> FloatArray:
@@ -69,11 +75,33 @@ def low_pass(samples: FloatArray, ratio: float) -> FloatArray:
     """
     if ratio <= 1 or len(samples) < 2:
         return samples
+    kernel = _sinc(ratio)
+    reach = len(kernel) // 2
+    return np.asarray(convolve1d(_continued(samples, reach), kernel, axis=0)[reach:-reach])
+
+
+def _few_of_low_pass(samples: FloatArray, ratio: float, times: FloatArray) -> FloatArray:
+    """`sample_at(low_pass(samples, ratio), times)`, at a cost that the moments set.
+
+    A whole clip through a filter that grows with it would cost the square of its length.
+    """
+    kernel, last = _sinc(ratio), len(samples) - 1
+    continued = _continued(samples, len(kernel) // 2)
+    read = np.empty((len(times), *samples.shape[1:]), dtype=samples.dtype)
+    for number, time in enumerate(np.clip(times, 0, last)):
+        # Four frames: those around the moment, and what their tangents look at.
+        first = min(max(int(time) - 1, 0), last - 3)
+        around = (continued[f : f + len(kernel)] for f in range(first, first + 4))
+        smooth = np.array([np.tensordot(kernel, part, axes=1) for part in around])
+        read[number] = sample_at(smooth, np.array([time - first]))[0]
+    return read
+
+
+def _sinc(ratio: float) -> FloatArray:
     reach = int(np.ceil(LOW_PASS_REACH * ratio))
     offsets = np.arange(-reach, reach + 1)
     kernel = np.sinc(offsets / ratio) * np.cos(0.5 * np.pi * offsets / (reach + 1)) ** 2
-    kernel /= kernel.sum()
-    return np.asarray(convolve1d(_continued(samples, reach), kernel, axis=0)[reach:-reach])
+    return np.asarray(kernel / kernel.sum())
 
 
 def _continued(samples: FloatArray, reach: int) -> FloatArray:

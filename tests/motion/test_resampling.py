@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.motion.resampling import resample, resample_to, sample_at
+from app.motion.resampling import low_pass, resample, resample_to, sample_at
 
 
 @given(frames=st.integers(1, 400), source=st.floats(5, 240), target=st.floats(5, 240))
@@ -70,3 +70,17 @@ def test_reading_outside_the_clip_holds_its_ends() -> None:
 def test_a_rate_must_be_positive() -> None:
     with pytest.raises(ValueError, match="positive"):
         resample(np.ones((3, 1)), 0.0, 30.0)
+
+
+@given(frames=st.integers(9, 700), count=st.integers(1, 40), single=st.booleans())
+@settings(max_examples=40, deadline=None)
+def test_few_moments_of_many_frames_are_read_as_from_the_whole(
+    frames: int, count: int, single: bool
+) -> None:
+    kind = np.float32 if single else np.float64
+    samples = np.random.default_rng(frames).normal(size=(frames, 2, 3)).astype(kind)
+    step = (frames - 1) / max(count - 1, 1)
+    whole = sample_at(low_pass(samples, step), np.arange(count) * step)
+    found = resample_to(samples, count)
+    assert found.dtype == kind
+    np.testing.assert_allclose(found, whole, atol=1e-5 if single else 1e-12)
