@@ -15,8 +15,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.numerics.arrays import FloatArray
+from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.hmm import GaussianHMM, log_likelihood, sample
+
+BLOCK = 1000
+"""Targets scored at once: bounds memory to BLOCK K^2 floats."""
 
 _NEVER = np.float32(-1e30)
 """Log probability of what cannot be; finite, so that differences are never NaN."""
@@ -24,7 +27,7 @@ _NEVER = np.float32(-1e30)
 
 @dataclass(frozen=True, slots=True)
 class _Targets:
-    """Models stacked for scoring: weights (2 D + 1, K * M) give expected log densities;
+    """Models stacked for scoring: weights (2 D + 1, K, M) give expected log densities;
     log_stay (K, M), log_move (K, M) into each state; states beyond a model's own are
     never entered.
     """
@@ -38,12 +41,18 @@ def expected_path_divergences(
     sources: Sequence[GaussianHMM], targets: Sequence[GaussianHMM]
 ) -> FloatArray:
     """(S, M) float64 d(source || target) per frame, nats, never negative (eq. 1)."""
+    found = np.zeros((len(sources), len(targets)))
     if not sources or not targets:
-        return np.zeros((len(sources), len(targets)))
-    stack = _stack(targets)
-    rows = [_scores(source, stack) for source in sources]
-    own = np.array([_scores(source, _stack([source]))[0] for source in sources])
-    return np.asarray(np.maximum(own[:, None] - np.array(rows), 0.0))
+        return found
+    states = max(model.states for model in (*sources, *targets))
+    for first in range(0, len(targets), BLOCK):
+        block = targets[first : first + BLOCK]
+        stack = _stack(block, states)
+        for row, source in enumerate(sources):
+            _put(stack, len(block), source)
+            scores = _scores(source, stack)
+            found[row, first : first + len(block)] = scores[-1] - scores[:-1]
+    return np.maximum(found, 0.0)
 
 
 def symmetric_divergences(left: Sequence[GaussianHMM], right: Sequence[GaussianHMM]) -> FloatArray:
@@ -66,23 +75,31 @@ def monte_carlo_divergence(
     return total / (draws * frames)
 
 
-def _stack(models: Sequence[GaussianHMM]) -> _Targets:
-    states = max(model.states for model in models)
-    count, channels = len(models), models[0].means.shape[1]
-    weights = np.zeros((2 * channels + 1, states, count), dtype=np.float32)
-    log_stay = np.zeros((states, count), dtype=np.float32)
-    log_move = np.full((states, count), _NEVER, dtype=np.float32)
+def _stack(models: Sequence[GaussianHMM], states: int) -> _Targets:
+    """All models, and behind them room for one more."""
+    count, channels = len(models) + 1, models[0].means.shape[1]
+    stack = _Targets(
+        np.zeros((2 * channels + 1, states, count), dtype=np.float32),
+        np.zeros((states, count), dtype=np.float32),
+        np.full((states, count), _NEVER, dtype=np.float32),
+    )
     for column, model in enumerate(models):
-        own = model.states
-        precision = 1.0 / np.asarray(model.variances, dtype=np.float64)
-        means = np.asarray(model.means, dtype=np.float64)
-        weights[:channels, :own, column] = -0.5 * precision.T
-        weights[channels:-1, :own, column] = (means * precision).T
-        constant = np.log(2.0 * np.pi / precision) + means**2 * precision
-        weights[-1, :own, column] = -0.5 * constant.sum(axis=1)
-        log_stay[:own, column] = model.log_stay()
-        log_move[1:own, column] = model.log_move()
-    return _Targets(weights.reshape(2 * channels + 1, -1), log_stay, log_move)
+        _put(stack, column, model)
+    return stack
+
+
+def _put(stack: _Targets, column: int, model: GaussianHMM) -> None:
+    """Write a model into a column, over what was there."""
+    own = model.states
+    precision = 1.0 / np.asarray(model.variances, dtype=np.float64)
+    means = np.asarray(model.means, dtype=np.float64)
+    constant = np.log(2.0 * np.pi / precision) + means**2 * precision
+    weights = np.hstack([-0.5 * precision, means * precision])
+    stack.weights[:-1, :own, column] = weights.T
+    stack.weights[-1, :own, column] = -0.5 * constant.sum(axis=1)
+    stack.weights[:, own:, column] = 0.0
+    stack.log_stay[:own, column], stack.log_stay[own:, column] = model.log_stay(), 0.0
+    stack.log_move[1:own, column], stack.log_move[own:, column] = model.log_move(), _NEVER
 
 
 def _scores(source: GaussianHMM, targets: _Targets) -> FloatArray:
@@ -92,23 +109,28 @@ def _scores(source: GaussianHMM, targets: _Targets) -> FloatArray:
     moments = np.hstack([seconds, means, np.ones((source.states, 1))]).astype(np.float32)
     states, count = targets.log_stay.shape
     # (K, 2 D + 1) @ (2 D + 1, K' * M) -> E over the source's state of log density
-    expected = (moments @ targets.weights).reshape(source.states, states, count)
+    weights = targets.weights.reshape(len(targets.weights), -1)
+    expected = (moments @ weights).reshape(source.states, states, count)
     path = source.expected_path()
     alpha = np.full((states, count), _NEVER, dtype=np.float32)
     alpha[0] = expected[path[0], 0]
-    for state in path[1:]:
-        alpha = _step(alpha, targets)
-        alpha += expected[state]
+    arrived = expected[:, 1:] + targets.log_move[1:]
+    stayed = np.add(expected, targets.log_stay, out=expected)
+    _run(alpha, stayed, arrived, path[1:])
     totals = np.logaddexp.reduce(alpha.astype(np.float64), axis=0)
     return np.asarray(totals / len(path))
 
 
-def _step(alpha: FloatArray, targets: _Targets) -> FloatArray:
-    """(K, M) log probability of staying here or coming from the state before.
+def _run(alpha: FloatArray, stayed: FloatArray, arrived: FloatArray, path: IntArray) -> None:
+    """Lead log probabilities `alpha` (K, M) along a source's path, in place.
 
-    The better of the two, not their sum: ranks against Monte Carlo agree as well
-    (Spearman .9986 for both on the real clips) in a third of the time.
+    stayed (S, K, M), arrived (S, K - 1, M): what a frame in each state of the source adds, by
+    whether the target stayed in its state or came from the one before. The better of the two,
+    not their sum: ranks against Monte Carlo agree as well (Spearman .9986 for both on the real
+    clips) in a third of the time.
     """
-    stay = alpha + targets.log_stay
-    np.maximum(stay[1:], alpha[:-1] + targets.log_move[1:], out=stay[1:])
-    return stay
+    moved = np.empty_like(alpha[1:])
+    for state in path:
+        np.add(alpha[:-1], arrived[state], out=moved)
+        alpha += stayed[state]
+        np.maximum(alpha[1:], moved, out=alpha[1:])
