@@ -3,7 +3,8 @@
 Arrays (float32 unless told otherwise; n frames at 30 Hz, m at 10 Hz):
 role_positions (n, 13, 3) metres, world; features_10hz (m, 82); motion_vector (128,);
 msv_lambda (1,), msv_rho (13,), msv_epsilon (n,), msv_convergence (i, 2), the error and the
-change of lambda after each of i iterations; motion_sample (1250,); symbol_statistics
+change of lambda after each of i iterations; motion_sample (1250,);
+angle_sample (642,); symbol_statistics
 (131,); window_vectors_* (w, 125) float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s;
 beat_times (b,) float64 seconds, beat_facts (3,) float64 (see `rhythm`); keypose_frames (k,)
 int32, among the n; pose_cover (p, 38), the frame, radius and vector of
@@ -20,6 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from app.analysis.angle_sample import angle_sample
 from app.analysis.frame_features import features_at_10hz, frame_features
 from app.analysis.keypose_arrays import keypose_arrays
 from app.analysis.keyposes import T1, T2, find_keyposes
@@ -70,7 +72,7 @@ def analyse(
     Deterministic; raises TooShort or NotHuman.
     """
     track = body_track(motion)
-    arrays: dict[str, NDArray[Any]] = {**_for_search(track), **describe_symbol(track)}
+    arrays: dict[str, NDArray[Any]] = {**_for_search(motion, track), **describe_symbol(track)}
     rhythm = find_rhythm(track, told, onsets)
     arrays |= rhythm_arrays(rhythm)
     keyposes = find_keyposes(track, t1=t1, t2=t2, beats=rhythm.beats).frames
@@ -85,10 +87,10 @@ def describe_for_search(motion: Motion) -> Analysis:
 
     Some 10 ms for 5 s of motion; each array is the same as from `analyse`.
     """
-    return Analysis(motion, {**_for_search(body_track(motion))})
+    return Analysis(motion, {**_for_search(motion, body_track(motion))})
 
 
-def _for_search(track: BodyTrack) -> dict[str, FloatArray]:
+def _for_search(motion: Motion, track: BodyTrack) -> dict[str, FloatArray]:
     features = frame_features(track)
     features_10hz = features_at_10hz(features, track.rate)
     volume = decompose(track)
@@ -101,6 +103,7 @@ def _for_search(track: BodyTrack) -> dict[str, FloatArray]:
         "msv_epsilon": volume.secondary,
         "msv_convergence": np.column_stack([volume.errors, volume.changes]),
         "motion_sample": motion_sample(track),
+        "angle_sample": angle_sample(motion, track),
         "symbol_statistics": symbol_statistics(symbol_features(track), track.rate),
     }
     described = {name: array.astype(np.float32) for name, array in arrays.items()}

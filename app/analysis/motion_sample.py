@@ -33,24 +33,40 @@ def motion_sample(track: BodyTrack) -> FloatArray:
     """
     cycles = gait_cycles(track)
     poses = mean_cycle(track, cycles) if cycles else resample_to(track.local, SAMPLES)
+    return np.concatenate([poses.ravel(), turn_and_speed(track)]).astype(np.float32)
+
+
+def turn_and_speed(track: BodyTrack) -> FloatArray:
+    """(2,) asinh of the net turn in radians, mean horizontal speed in body lengths per second."""
     turn = np.arcsinh(track.heading[-1] - track.heading[0])
-    speed = np.hypot(*track.velocity()[:, [0, 2]].T).mean()
-    return np.concatenate([poses.ravel(), [turn, speed]]).astype(np.float32)
+    return np.array([turn, np.hypot(*track.velocity()[:, [0, 2]].T).mean()])
 
 
 def mean_cycle(track: BodyTrack, cycles: list[tuple[int, int]]) -> FloatArray:
     """(32, 13, 3) mean over `cycles` of the body-frame positions at 32 phases of each."""
+    return mean_over_cycles(track.local, track, cycles)[:-1]
+
+
+def mean_over_cycles(
+    values: FloatArray, track: BodyTrack, cycles: list[tuple[int, int]]
+) -> FloatArray:
+    """(33, ...) mean over `cycles` of `values` (n, ...) at 32 phases of each and at its end."""
+    ends = exact_cycles(track, cycles)
+    return np.asarray(np.mean([_phases(values, *cycle) for cycle in ends], axis=0))
+
+
+def exact_cycles(track: BodyTrack, cycles: list[tuple[int, int]]) -> list[tuple[float, float]]:
+    """When `cycles` start and end, in frames, between frames too."""
     split = foot_split(track)
-    ends = [(_crossing(split, first), _crossing(split, stop)) for first, stop in cycles]
-    return np.asarray(np.mean([_phases(track, *cycle) for cycle in ends], axis=0))
+    return [(_crossing(split, first), _crossing(split, stop)) for first, stop in cycles]
 
 
-def _phases(track: BodyTrack, start: float, end: float) -> FloatArray:
-    """(32, 13, 3) positions at 32 phases of the cycle between two times, in frames."""
+def _phases(values: FloatArray, start: float, end: float) -> FloatArray:
+    """(33, ...) `values` (n, ...) at 33 phases from `start` to `end`, in frames."""
     # filtering the whole clip for each of its cycles would cost their product
     first = max(0, int(start) - AROUND)
-    smooth = low_pass(track.local[first : int(end) + AROUND + 1], (end - start) / SAMPLES)
-    return sample_at(smooth, start - first + (end - start) * np.arange(SAMPLES) / SAMPLES)
+    smooth = low_pass(values[first : int(end) + AROUND + 1], (end - start) / SAMPLES)
+    return sample_at(smooth, start - first + (end - start) * np.arange(SAMPLES + 1) / SAMPLES)
 
 
 def _crossing(split: FloatArray, frame: int) -> float:
