@@ -55,7 +55,7 @@ def dtw_distances(
     for chosen in _batches(lengths, len(query)):
         frames = np.concatenate([_as_table(candidates[i]) for i in chosen])
         frames -= centre  # in place: these rows are wide, and new memory is dear
-        cost = _side_by_side(_costs(query - centre, frames), lengths[chosen])
+        cost = _side_by_side(_costs(query - centre, frames, lengths[chosen]), lengths[chosen])
         rows = None if band is None else _rows_within(band, len(query), lengths[chosen])
         totals[chosen] = _accumulate(cost, lengths[chosen], rows)
     return totals / (len(query) + lengths) if per_step else totals
@@ -79,12 +79,18 @@ def _batches(lengths: IntArray, frames: int) -> list[IntArray]:
     return batches
 
 
-def _costs(query: FloatArray, frames: FloatArray) -> FloatArray:
-    """(n, k) float32 Euclidean distances of the rows of (n, d) and (k, d)."""
+def _costs(query: FloatArray, frames: FloatArray, lengths: IntArray) -> FloatArray:
+    """(n, k) float32 Euclidean distances of the rows of (n, d) and (k, d).
+
+    Each candidate's on its own: what a pair costs must not depend on what stands beside it, as
+    a ranking that is computed piece by piece has to agree with itself to the last bit.
+    """
     if query.shape[1] == 1:
         apart = query - frames[:, 0]
         return np.asarray(np.abs(apart, out=apart))
-    return distances(query, frames, squared_lengths(frames))
+    ends = np.cumsum(lengths).tolist()
+    parts = [slice(first, stop) for first, stop in zip([0, *ends], ends, strict=False)]
+    return distances(query, frames, squared_lengths(frames), parts)
 
 
 def _side_by_side(table: FloatArray, lengths: IntArray) -> FloatArray:

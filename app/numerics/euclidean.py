@@ -6,6 +6,8 @@ be apart. Those few pairs are subtracted and squared instead.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from app.numerics.arrays import FloatArray
@@ -22,18 +24,33 @@ def squared_lengths(rows: FloatArray) -> FloatArray:
     return np.asarray(np.einsum("kd,kd->k", rows, rows))
 
 
-def distances(rows: FloatArray, others: FloatArray, squares: FloatArray) -> FloatArray:
+def distances(
+    rows: FloatArray,
+    others: FloatArray,
+    squares: FloatArray,
+    parts: Sequence[slice] = (slice(None),),
+) -> FloatArray:
     """(n, k) float32 Euclidean distances of `rows` (n, d) to `others` (k, d), both float32.
 
-    squares: (k,) `squared_lengths(others)`, which a caller has use for more than once.
+    squares: (k,) `squared_lengths(others)`, which a caller has use for more than once; parts:
+    of the k that are multiplied by themselves. The last bits of a product may depend on how
+    large it is, those of a part's distances so only on the part.
     """
-    apart = squared_distances(rows, others, squares)
+    apart = squared_distances(rows, others, squares, parts)
     return np.asarray(np.sqrt(apart, out=apart))
 
 
-def squared_distances(rows: FloatArray, others: FloatArray, squares: FloatArray) -> FloatArray:
+def squared_distances(
+    rows: FloatArray,
+    others: FloatArray,
+    squares: FloatArray,
+    parts: Sequence[slice] = (slice(None),),
+) -> FloatArray:
     """(n, k) float32 squares of `distances`."""
-    apart = (-2.0 * rows) @ others.T
+    twice = -2.0 * rows
+    apart = np.empty((len(rows), len(others)), dtype=twice.dtype)
+    for part in parts:
+        np.matmul(twice, others[part].T, out=apart[:, part])
     apart += squared_lengths(rows)[:, None]
     apart += squares
     _retake_close(apart, rows, others, TOO_CLOSE * squares)

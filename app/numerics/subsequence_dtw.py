@@ -86,7 +86,7 @@ def subsequence_dtw(query: FloatArray, streams: Sequence[FloatArray]) -> Matches
     # differences of small numbers keep more digits
     centre = np.asarray(query.mean(axis=0, dtype=np.float64), dtype=np.float32)
     wanted = np.asarray(query, dtype=np.float32) - centre
-    at_once = max(min(MOST_FRAMES_AT_ONCE, CELLS_AT_ONCE // len(query)), 4 * len(query))
+    at_once = max(min(MOST_FRAMES_AT_ONCE, CELLS_AT_ONCE // len(query)), 4 * len(query) + 8)
     found = [_in_pieces(wanted, some, centre) for some in _batches(streams, len(query), at_once)]
     if not found:
         nothing = np.zeros(0, dtype=np.int64)
@@ -115,13 +115,17 @@ def _batches(
 
 
 def _pieces(stream: int, whole: FloatArray, query_frames: int, at_once: int) -> Iterator[_Piece]:
-    """A long stream in pieces that overlap by more than a match is long: nothing is lost."""
-    overlap = LONGEST_MATCH * query_frames + 1
+    """A long stream in pieces that overlap by more than a match is long: nothing is lost.
+
+    A piece's first and last frames stand for less than they do in the stream, as they lack the
+    line to the frame beside them: no match that counts touches them.
+    """
+    overlap = LONGEST_MATCH * query_frames + 3
     first, valid = 0, 0
     while len(whole) - first > at_once:
         yield _Piece(stream, first, whole[first : first + at_once], valid, is_last=False)
-        # the last end of a piece has no neighbour there; it is the first of the next piece
-        first, valid = first + at_once - 1 - overlap, overlap
+        # the last two ends of a piece are not sure there; they are the first of the next piece
+        first, valid = first + at_once - 2 - overlap, overlap
     if len(whole) > first:
         yield _Piece(stream, first, whole[first:], valid, is_last=True)
 
@@ -223,7 +227,7 @@ def _ends(costs: FloatArray, piece: _Piece, first: int) -> IntArray:
     least = (own[1:-1] <= own[:-2]) & (own[1:-1] < own[2:]) & np.isfinite(own[1:-1])
     least[: piece.valid] = False
     if not piece.is_last:
-        least[-1] = False
+        least[-2:] = False
     return np.flatnonzero(least) + first
 
 

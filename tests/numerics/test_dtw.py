@@ -56,6 +56,18 @@ def test_many_batches_give_what_one_gives(monkeypatch: pytest.MonkeyPatch) -> No
     np.testing.assert_allclose(dtw_distances(query, candidates), at_once, rtol=1e-5)
 
 
+def test_what_a_pair_costs_does_not_depend_on_what_it_is_computed_beside() -> None:
+    rng = np.random.default_rng(3)
+    query = rng.normal(size=(41, 82)).astype(np.float32)
+    lengths = rng.integers(1, 90, size=60)
+    candidates = [rng.normal(size=(m, 82)).astype(np.float32) for m in lengths]
+    together = dtw_distances(query, candidates)
+    alone = [dtw_distance(query, one) for one in candidates]
+    some = dtw_distances(query, candidates[20:31])
+    assert together.tolist() == alone
+    assert together[20:31].tolist() == some.tolist()
+
+
 def test_a_sequence_is_at_no_distance_from_itself_and_distance_is_symmetric() -> None:
     rng = np.random.default_rng(2)
     a, b = rng.normal(size=(20, 82)).astype(np.float32), rng.normal(size=(31, 82))
