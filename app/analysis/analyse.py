@@ -4,9 +4,9 @@ Arrays (float32 unless told otherwise; n frames at 30 Hz, m at 10 Hz):
 role_positions (n, 13, 3) metres, world; features_10hz (m, 82); motion_vector (128,);
 msv_lambda (1,), msv_rho (13,), msv_epsilon (n,), msv_convergence (i, 2), the error and the
 change of lambda after each of i iterations; motion_sample (1250,);
-angle_sample (642,); symbol_statistics
-(131,); window_vectors_* (w, 125) float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s;
-beat_times (b,) float64 seconds, beat_facts (3,) float64 (see `rhythm`); keypose_frames (k,)
+angle_sample (642,); motion_shape (1378,); symbol_statistics (131,); window_vectors_* (w, 125)
+float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s; beat_times (b,) float64
+seconds, beat_facts (3,) float64 (see `rhythm`); keypose_frames (k,)
 int32, among the n; pose_cover (p, 38), the frame, radius and vector of
 poses that stand for all; segment_spans (s, 2) seconds, segment_vectors (s, 185)
 float16, segment_cycles (c, 3) int32; and of the motion symbol with K states
@@ -22,10 +22,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.analysis.angle_sample import angle_sample
+from app.analysis.energy import energies
 from app.analysis.frame_features import features_at_10hz, frame_features
 from app.analysis.keypose_arrays import keypose_arrays
 from app.analysis.keyposes import T1, T2, find_keyposes
 from app.analysis.motion_sample import motion_sample
+from app.analysis.motion_shape import motion_shape
 from app.analysis.motion_symbol import describe_symbol
 from app.analysis.motion_vector import motion_vector
 from app.analysis.motion_volume import decompose
@@ -73,9 +75,10 @@ def analyse(
     """
     track = body_track(motion)
     arrays: dict[str, NDArray[Any]] = {**_for_search(motion, track), **describe_symbol(track)}
-    rhythm = find_rhythm(track, told, onsets)
+    plain = energies(track)
+    rhythm = find_rhythm(track, told, onsets, plain)
     arrays |= rhythm_arrays(rhythm)
-    keyposes = find_keyposes(track, t1=t1, t2=t2, beats=rhythm.beats).frames
+    keyposes = find_keyposes(track, t1=t1, t2=t2, beats=rhythm.beats, plain=plain).frames
     arrays["pose_cover"] = pose_cover(arrays["role_positions"], keyposes)
     arrays |= keypose_arrays(keyposes, arrays["features_10hz"])
     offset = None if rhythm.offset is None else rhythm.offset.seconds
@@ -104,6 +107,7 @@ def _for_search(motion: Motion, track: BodyTrack) -> dict[str, FloatArray]:
         "msv_convergence": np.column_stack([volume.errors, volume.changes]),
         "motion_sample": motion_sample(track),
         "angle_sample": angle_sample(motion, track),
+        "motion_shape": motion_shape(track),
         "symbol_statistics": symbol_statistics(symbol_features(track), track.rate),
     }
     described = {name: array.astype(np.float32) for name, array in arrays.items()}

@@ -33,8 +33,8 @@ def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray
         "motion_vector": (128,), "msv_lambda": (1,), "msv_rho": (13,), "msv_epsilon": (n,),
         "msv_convergence": (len(arrays["msv_convergence"]), 2),
         "pose_cover": (len(arrays["pose_cover"]), 38),
-        "motion_sample": (1250,), "angle_sample": (642,), "symbol_statistics": (131,),
-        "symbol_means": (states, 26),
+        "motion_sample": (1250,), "angle_sample": (642,), "motion_shape": (1378,),
+        "symbol_statistics": (131,), "symbol_means": (states, 26),
         "symbol_variances": (states, 26), "symbol_transitions": (states, states),
     }  # fmt: skip
     assert {name: array.shape for name, array in arrays.items()} == shapes
