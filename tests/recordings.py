@@ -6,8 +6,9 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray
 from app.services.demo.dances import sounds
-from app.services.demo.dances.music import clicks, music
+from app.services.demo.dances.music import STYLES, clicks, music
 from app.services.demo.dances.sounds import SAMPLE_RATE
+from tests.unheard_music import UNHEARD
 
 CLICKS = "clicks"
 
@@ -20,7 +21,7 @@ def piece(
     beats = beats_at(draw, bpm, seconds, drift)
     if style == CLICKS:
         return clicks(draw, beats, seconds), beats
-    return music(draw, beats, seconds, style), beats
+    return music(draw, beats, seconds, (STYLES | UNHEARD)[style]), beats
 
 
 def beats_at(draw: np.random.RandomState, bpm: float, seconds: float, drift: float) -> FloatArray:

@@ -22,11 +22,11 @@ def loudness(samples: np.ndarray, start: float, stop: float) -> float:
 
 @pytest.mark.parametrize("style", STYLES)
 def test_music_has_its_length_and_its_level(style: str) -> None:
-    samples = music(np.random.RandomState(1), BEATS, 9.0, style)
+    samples = music(np.random.RandomState(1), BEATS, 9.0, STYLES[style])
     assert len(samples) == 9 * SAMPLE_RATE
     assert 0.3 < np.abs(samples).max() <= 1.0
     assert loudness(samples, 0.0, 0.4) < 0.2 * loudness(samples, 0.5, 7.0)
-    again = music(np.random.RandomState(1), BEATS, 9.0, style)
+    again = music(np.random.RandomState(1), BEATS, 9.0, STYLES[style])
     np.testing.assert_array_equal(samples, again)
 
 
@@ -39,7 +39,7 @@ def test_clicks_are_on_beats_only() -> None:
 def test_levels_silence_parts() -> None:
     levels = np.ones(len(BEATS))
     levels[6:] = 0.0
-    samples = music(np.random.RandomState(2), BEATS, 9.0, "rock", levels)
+    samples = music(np.random.RandomState(2), BEATS, 9.0, STYLES["rock"], levels)
     assert loudness(samples, BEATS[8], BEATS[11]) < 0.1 * loudness(samples, BEATS[0], BEATS[5])
 
 

@@ -21,7 +21,8 @@ Pattern = tuple[tuple[float, float], ...]
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """bar: beats; when drums, bass and chords sound; swing: lateness of the second half beat."""
+    """bar: beats; when drums, bass and chords sound; swing: lateness of the second half beat, in
+    beats; attack: seconds in which chords swell."""
 
     bar: int
     kicks: Pattern
@@ -30,9 +31,11 @@ class Style:
     bass: Pattern
     chords: Pattern
     swing: float = 0.0
+    attack: float = 0.02
 
 
-def _every(step: float, bar: int = 4, gain: float = 1.0, start: float = 0.0) -> Pattern:
+def every(step: float, bar: int = 4, gain: float = 1.0, start: float = 0.0) -> Pattern:
+    """A note each `step` beats of a bar, from `start` on."""
     return tuple((float(at), gain) for at in np.arange(start, bar, step))
 
 
@@ -40,18 +43,18 @@ _BACKBEAT: Pattern = ((1, 1.0), (3, 1.0))
 
 STYLES: dict[str, Style] = {
     "rock": Style(
-        4, ((0, 1.0), (2, 0.9), (2.5, 0.5)), _BACKBEAT, _every(0.5), _every(0.5), _every(2)
+        4, ((0, 1.0), (2, 0.9), (2.5, 0.5)), _BACKBEAT, every(0.5), every(0.5), every(2)
     ),
     "disco": Style(
-        4, _every(1), _BACKBEAT, _every(1, start=0.5), _every(0.5, gain=0.8), ((0, 1), (1.5, 0.6))
+        4, every(1), _BACKBEAT, every(1, start=0.5), every(0.5, gain=0.8), ((0, 1), (1.5, 0.6))
     ),
     "swing": Style(
-        4, _every(1, gain=0.5), ((1, 0.5), (3, 0.5)), (*_every(1), (1.5, 0.7), (3.5, 0.7)),
-        _every(1), ((0, 1.0), (1.5, 0.7)), swing=1 / 6,
+        4, every(1, gain=0.5), ((1, 0.5), (3, 0.5)), (*every(1), (1.5, 0.7), (3.5, 0.7)),
+        every(1), ((0, 1.0), (1.5, 0.7)), swing=1 / 6,
     ),
     "latin": Style(
         4, ((0, 1.0), (1.5, 0.6), (2, 0.7), (3.5, 0.6)),
-        ((0, 0.5), (0.75, 0.6), (1.5, 0.6), (2.5, 0.6), (3, 0.5)), _every(0.5, gain=0.7),
+        ((0, 0.5), (0.75, 0.6), (1.5, 0.6), (2.5, 0.6), (3, 0.5)), every(0.5, gain=0.7),
         ((0, 1.0), (1.5, 0.9), (3, 0.9)), ((0, 0.8), (1, 0.5), (1.5, 0.5), (3, 0.6)),
     ),
     "waltz": Style(
@@ -59,10 +62,10 @@ STYLES: dict[str, Style] = {
         ((0, 0.5), (1, 0.9), (2, 0.9)),
     ),
     "march": Style(
-        4, ((0, 1.0), (2, 1.0)), ((1, 0.9), (3, 0.9), (3.5, 0.5)), (), _every(1), _every(1)
+        4, ((0, 1.0), (2, 1.0)), ((1, 0.9), (3, 0.9), (3.5, 0.5)), (), every(1), every(1)
     ),
     "ballad": Style(
-        4, (), (), (), ((0, 1.0), (2, 0.8)), (*_every(1, gain=0.8), (2.5, 0.4))
+        4, (), (), (), ((0, 1.0), (2, 0.8)), (*every(1, gain=0.8), (2.5, 0.4))
     ),
 }  # fmt: skip
 
@@ -91,18 +94,18 @@ def music(
     draw: np.random.RandomState,
     beats: FloatArray,
     seconds: float,
-    style: str,
+    style: Style,
     levels: FloatArray | None = None,
 ) -> FloatArray:
-    """(samples,) a piece on `beats` (b,) s, in one of STYLES.
+    """(samples,) a piece on `beats` (b,) s.
 
     levels: (b,) 0..1, how full the band is from each beat on: 0 is silence, below a half there
     are no drums.
     """
     track = np.zeros(round(seconds * SAMPLE_RATE))
     full = np.ones(len(beats)) if levels is None else levels
-    _drums(draw, track, beats, full, STYLES[style])
-    _tones(draw, track, beats, full, STYLES[style])
+    _drums(draw, track, beats, full, style)
+    _tones(draw, track, beats, full, style)
     return _mastered(draw, track)
 
 
@@ -143,7 +146,8 @@ def _tones(
     for number, at, gain in _played(style.chords, style, len(beats)):
         root = key + 12 + roots[number // style.bar % len(roots)]
         for step in (0, third, 7):
-            sound = sounds.tone(note(root + step), 1.1 * beat, attack=0.02, decay=0.5, bright=4)
+            pitch, held = note(root + step), 1.1 * beat
+            sound = sounds.tone(pitch, held, attack=style.attack, decay=0.5, bright=4)
             put(track, sound, _time(beats, at, style.swing), 0.16 * gain * full[number])
     for half in range(2 * len(beats)):
         if draw.rand() < 0.35:

@@ -49,7 +49,7 @@ def record(
         samples = clicks(draw, beats - start, seconds)
     else:
         style = str(draw.choice(sorted(STYLES)))
-        samples = music(draw, beats - start, seconds, style, _levels(counts, beats))
+        samples = music(draw, beats - start, seconds, STYLES[style], _levels(counts, beats))
     return write_wav(samples, SAMPLE_RATE), start
 
 
