@@ -51,6 +51,10 @@ class CorrelatedSpace:
         """(N,) cosine in -1..1 between each clip's f and C'g of a query's label vector (V,)."""
         return _cosines(self.motions(points), self._wanted(query))[:, 0]
 
+    def single_word_cosines(self, points: FloatArray) -> FloatArray:
+        """(N, V) cosine in -1..1 between each clip's f and the C'g of each single word."""
+        return _cosines(self.motions(points), self._single_words() @ self.words_to_motions)
+
     def clip_distances(self, points: FloatArray, query: FloatArray) -> FloatArray:
         """(N,) distance of each clip's f to C'g of a query's label vector (V,), as printed."""
         return np.asarray(np.linalg.norm(self.motions(points) - self._wanted(query), axis=1))

@@ -14,6 +14,7 @@ import numpy as np
 
 from app.errors import NotEnoughLabels
 from app.models.correlated_space import LEAST_CLIPS, CorrelatedSpace, fit_correlated_space
+from app.models.cosine_calibration import CosineCalibration, calibrate_cosines
 from app.models.language.wordnet import Meanings
 from app.models.symbol_space import SymbolSpace, fit_symbol_space
 from app.models.word_calibration import WordCalibration, calibrate
@@ -24,13 +25,15 @@ from app.numerics.arrays import FloatArray
 from app.numerics.hmm import GaussianHMM
 
 Arrays = dict[str, np.ndarray[Any, Any]]
+_Part = WordModel | WordCalibration | SymbolSpace | CorrelatedSpace | CosineCalibration
 
 
 @dataclass(frozen=True, slots=True)
 class LibraryWords:
     """vocabulary: V words; model: the default; calibration: of its outputs; space: of all
-    symbols; correlated: None where too few clips have words; meanings: what WordNet knows
-    of its words (models.language.wordnet), put in by whoever fits.
+    symbols; correlated and cosines, the calibration of its angles: None where too few clips
+    have words; meanings: what WordNet knows of its words (models.language.wordnet), put in by
+    whoever fits.
     """
 
     vocabulary: WordVocabulary
@@ -38,6 +41,7 @@ class LibraryWords:
     calibration: WordCalibration
     space: SymbolSpace
     correlated: CorrelatedSpace | None
+    cosines: CosineCalibration | None
     meanings: Meanings = field(default_factory=Meanings)
 
     def ask(self, texts: Iterable[str]) -> WordsAsked:
@@ -47,13 +51,6 @@ class LibraryWords:
     def word_scores(self, statistics: FloatArray) -> FloatArray:
         """(N, V) probability that each word is said of each clip, by its statistics (N, p)."""
         return self.calibration.probabilities(self.model.outputs(statistics))
-
-    def word_scores_cca(self, points: FloatArray) -> FloatArray:
-        """(N, V) the same in the correlated space, by symbol coordinates (N, d), 0..1.
-
-        Raises NotEnoughLabels where there is no correlated space.
-        """
-        return (self._correlated().word_cosines(points) + 1.0) / 2.0
 
     def clip_surprises(
         self, scores: FloatArray, columns: Sequence[str], meant: Sequence[Mapping[str, float]]
@@ -70,26 +67,46 @@ class LibraryWords:
         ]
         return self.calibration.joint_surprise(np.stack(asked, axis=1))
 
-    def clip_scores_cca(self, points: FloatArray, query: FloatArray) -> FloatArray:
-        """(N,) the same in the correlated space, by symbol coordinates (N, d).
+    def word_scores_cca(self, points: FloatArray) -> FloatArray:
+        """(N, V) probability that each word is said of each clip, by where its symbol (N, d)
+        lies in the correlated space (section 2.4).
 
         Raises NotEnoughLabels where there is no correlated space.
         """
-        return (self._correlated().clip_cosines(points, query) + 1.0) / 2.0
+        space, calibration = self._correlated()
+        return calibration.of_words(space.single_word_cosines(points))
 
-    def _correlated(self) -> CorrelatedSpace:
-        if self.correlated is None:
+    def clip_angles(self, points: FloatArray, asked: WordsAsked) -> FloatArray:
+        """(N,) 1 - cosine, 0..2, between clips at symbol coordinates (N, d) and a query.
+
+        Raises NotEnoughLabels where there is no correlated space.
+        """
+        space, _ = self._correlated()
+        return 1.0 - space.clip_cosines(points, self.vocabulary.vector(asked.weights))
+
+    def angle_scores(self, angles: FloatArray, asked: WordsAsked) -> FloatArray:
+        """(N,) probability that clips at `clip_angles` (N,) carry all that was asked for.
+
+        Raises NotEnoughLabels where there is no correlated space.
+        """
+        _, calibration = self._correlated()
+        words = self.vocabulary.words
+        common = self.clip_surprises(calibration.shares[None], words, asked.meant)
+        return calibration.probabilities(1.0 - angles, np.exp(-common))
+
+    def _correlated(self) -> tuple[CorrelatedSpace, CosineCalibration]:
+        if self.correlated is None or self.cosines is None:
             raise NotEnoughLabels(f"The mode cca needs {LEAST_CLIPS} clips that have words.")
-        return self.correlated
+        return self.correlated, self.cosines
 
     def to_arrays(self) -> tuple[Arrays, dict[str, Any]]:
         """Arrays and JSON-able meta from which from_arrays makes the same record."""
-        parts: dict[str, WordModel | WordCalibration | SymbolSpace | CorrelatedSpace | None]
-        parts = {
+        parts: dict[str, _Part | None] = {
             "model": self.model,
             "calibration": self.calibration,
             "space": self.space,
             "correlated": self.correlated,
+            "cosines": self.cosines,
         }
         arrays: Arrays = {}
         meta: dict[str, Any] = {
@@ -107,18 +124,28 @@ class LibraryWords:
         cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
     ) -> LibraryWords:
         """The record that to_arrays took apart. Raises ModelNotFitted on another version."""
-        correlated = None
+        correlated, cosines = None, None
         if "correlated" in meta:
             own = _part(arrays, "correlated")
             correlated = CorrelatedSpace.from_arrays(own, meta["correlated"])
+            cosines = CosineCalibration.from_arrays(_part(arrays, "cosines"), meta["cosines"])
         return cls(
             WordVocabulary(tuple(meta["words"])),
             WordModel.from_arrays(_part(arrays, "model"), meta["model"]),
             WordCalibration.from_arrays(_part(arrays, "calibration"), meta["calibration"]),
             SymbolSpace.from_arrays(_part(arrays, "space"), meta["space"]),
             correlated,
+            cosines,
             Meanings.from_meta(meta["meanings"]),
         )
+
+
+@dataclass(frozen=True, slots=True)
+class FittedWords:
+    """words: what was learned; points: (N, d) where the clips' symbols lie in its space."""
+
+    words: LibraryWords
+    points: FloatArray
 
 
 def fit_library_words(
@@ -128,7 +155,7 @@ def fit_library_words(
     groups: Sequence[str] | None = None,
     *,
     seed: int = 0,
-) -> LibraryWords:
+) -> FittedWords:
     """Fit on all clips: symbols N, statistics (N, p), label sets N (empty: not labelled).
 
     groups: N, equal for files of one recording, that scores are not calibrated on copies.
@@ -143,11 +170,13 @@ def fit_library_words(
     own = [str(row) if groups is None else groups[row] for row in labelled]
     calibration = calibrate(model, rows, truth, own, seed=seed)
     space = fit_symbol_space(symbols, seed=seed)
-    correlated = None
+    points = space.place(symbols)
+    correlated, cosines = None, None
     if len(labelled) >= LEAST_CLIPS:
-        points = space.place([symbols[int(row)] for row in labelled])
-        correlated = fit_correlated_space(points, truth)
-    return LibraryWords(vocabulary, model, calibration, space, correlated)
+        correlated = fit_correlated_space(points[labelled], truth)
+        cosines = calibrate_cosines(points[labelled], truth, own, seed=seed)
+    words = LibraryWords(vocabulary, model, calibration, space, correlated, cosines)
+    return FittedWords(words, points)
 
 
 def _part(arrays: Mapping[str, np.ndarray[Any, Any]], part: str) -> Arrays:

@@ -109,16 +109,15 @@ def _before(store: Store, kind: ModelKind, wordnet: bool) -> Before:
 
 
 def _fit_words(training: TrainingSet, before: Before) -> Fit:
-    model = fit_library_words(
+    fitted = fit_library_words(
         training.symbols, training.statistics, training.label_sets, training.groups
     )
     known = Meanings.from_meta(before.meta.get("meanings", {}))
-    meanings = known.of(model.vocabulary.words, look_up=before.wordnet)
-    model = replace(model, meanings=meanings)
+    meanings = known.of(fitted.words.vocabulary.words, look_up=before.wordnet)
+    model = replace(fitted.words, meanings=meanings)
     arrays, meta = model.to_arrays()
     ids = [clip.id for clip in training.clips]
-    outputs, points = model.word_scores(training.statistics), model.space.place(training.symbols)
-    arrays |= known_arrays(ids, outputs, points)
+    arrays |= known_arrays(ids, model.word_scores(training.statistics), fitted.points)
     return Fit(arrays, meta, word_figures(training))
 
 

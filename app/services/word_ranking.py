@@ -47,13 +47,15 @@ def rank_by_words(lib: Library, texts: Sequence[str], mode: str, wanted: ClipFil
     texts: words, phrases or sentences; a word with a minus leaves out what carries it, and of
     the clips without words what the model finds likelier to carry it than not. The default
     score is the probability that the clip carries what was asked for, its distance -ln of that;
-    of "cca" it is (1 + cosine) / 2, its distance 1 - score. Raises ModelNotFitted, and
+    of "cca" too it is a probability, its distance 1 - cosine. Raises ModelNotFitted, and
     NotEnoughLabels where mode "cca" could not be fitted.
     """
     fitted = lib.models.words(lib.store)
     asked = fitted.model.ask(texts)
     clips = lib.index.state[1].labels
-    measure, to_score = (_by_angle, _complement) if mode == "cca" else (_by_surprise, _probability)
+    measure, to_score = _by_surprise, _probability
+    if mode == "cca":
+        measure, to_score = _by_angle, partial(_angle_score, fitted.model, asked)
     if not asked.weights:
         nothing = Ranking(np.empty(0, dtype=object), np.zeros(0))
         return WordRanking(nothing, fitted.id, asked, to_score)
@@ -90,8 +92,8 @@ def _probability(surprise: float) -> float:
     return math.exp(-surprise)
 
 
-def _complement(distance: float) -> float:
-    return 1.0 - distance
+def _angle_score(model: LibraryWords, asked: WordsAsked, angle: float) -> float:
+    return float(model.angle_scores(np.array([angle]), asked)[0])
 
 
 def _believed_to_carry(
@@ -126,8 +128,7 @@ def _by_angle(
     """Of the clips that pass and are known: their rows and distances."""
     beside = clip_points(lib, fitted, clips)
     rows = np.flatnonzero(passing & beside.there)
-    query = fitted.model.vocabulary.vector(asked.weights)
-    return rows, 1.0 - fitted.model.clip_scores_cca(beside.values[rows], query)
+    return rows, fitted.model.clip_angles(beside.values[rows], asked)
 
 
 def _predict(lib: Library, model: LibraryWords, clip_ids: Sequence[str]) -> dict[str, FloatArray]:

@@ -20,13 +20,13 @@ def clips():  # type: ignore[no-untyped-def]
 
 def test_both_modes_find_clips_for_a_word_and_words_for_a_clip(clips) -> None:  # type: ignore[no-untyped-def]
     symbols, statistics, words = clips
-    model = fit_library_words(symbols, statistics, words)
+    model = fit_library_words(symbols, statistics, words).words
     asked = model.ask(["waving"])
-    query = model.vocabulary.vector(asked.weights)
     points = model.space.place(symbols)
     default, cca = model.word_scores(statistics), model.word_scores_cca(points)
     surprises = model.clip_surprises(default, model.vocabulary.words, asked.meant)
-    for scores in (np.exp(-surprises), model.clip_scores_cca(points, query)):
+    angles = model.angle_scores(model.clip_angles(points, asked), asked)
+    for scores in (np.exp(-surprises), angles):
         assert ((scores >= 0) & (scores <= 1)).all()
         assert scores.argmax() % 4 == 2
     for scores in (default, cca):
@@ -36,7 +36,7 @@ def test_both_modes_find_clips_for_a_word_and_words_for_a_clip(clips) -> None:  
 
 def test_survives_being_stored(clips) -> None:  # type: ignore[no-untyped-def]
     symbols, statistics, words = clips
-    model = fit_library_words(symbols, statistics, words)
+    model = fit_library_words(symbols, statistics, words).words
     arrays, meta = model.to_arrays()
     again = LibraryWords.from_arrays(arrays, json.loads(json.dumps(meta)))
     assert again.vocabulary == model.vocabulary
@@ -47,7 +47,7 @@ def test_survives_being_stored(clips) -> None:  # type: ignore[no-untyped-def]
 
 def test_too_few_labelled_clips_leave_the_default_mode_alone(clips) -> None:  # type: ignore[no-untyped-def]
     symbols, statistics, words = clips
-    model = fit_library_words(symbols[:4], statistics[:4], [words[1], words[2], (), ()])
+    model = fit_library_words(symbols[:4], statistics[:4], [words[1], words[2], (), ()]).words
     assert model.word_scores(statistics).shape == (24, len(model.vocabulary))
     with pytest.raises(NotEnoughLabels):
         model.word_scores_cca(model.space.place(symbols))
