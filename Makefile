@@ -31,9 +31,10 @@ lint: install
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-cache
 
-# The test runner comes last: its summary is the run's closing line.
+# The test runner comes last: its summary is the run's closing line. A module's tests stay
+# together, since they share its fixtures.
 test: lint
-	$(BIN)/pytest
+	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --numprocesses=logical --maxprocesses=4 --dist=loadscope
 
 test-all: lint
 	$(BIN)/pytest -m "not bench"

@@ -54,7 +54,7 @@ SAMPLES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "content"), SAMPLES)
+@pytest.mark.parametrize(("name", "content"), SAMPLES, ids=lambda _: "")
 def test_known_formats(name: str, content: bytes) -> None:
     assert sniff(content) == name
 
