@@ -113,6 +113,21 @@ def distances_to(blocks: Sequence[Block], rows: IntArray, query: FloatArray) -> 
     return np.asarray(np.round(distances, DECIMALS, out=distances))
 
 
+def gather(blocks: Sequence[Block], rows: IntArray) -> FloatArray:
+    """(m, d) float32 vectors of `rows` (m,), in any order."""
+    order = np.argsort(rows, kind="stable")
+    ends = np.cumsum([len(block) for block in blocks])
+    parts = np.split(rows[order], np.searchsorted(rows[order], ends[:-1]))
+    firsts = [0, *ends[:-1].tolist()]
+    found = [
+        block.vectors.take(part - first, axis=0)
+        for block, part, first in zip(blocks, parts, firsts, strict=True)
+    ]
+    back = np.empty_like(order)
+    back[order] = np.arange(len(order))
+    return np.asarray(np.concatenate(found)[back])
+
+
 def _longest(blocks: Sequence[Block]) -> float:
     return float(np.sqrt(max((float(b.squares.max()) for b in blocks if len(b)), default=0.0)))
 

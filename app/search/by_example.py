@@ -6,12 +6,14 @@ from functools import partial
 
 import numpy as np
 
-from app.numerics.arrays import FloatArray
+from app.numerics.arrays import FloatArray, IntArray
+from app.search.bounded import Bounds
 from app.search.cursor import Anchor
 from app.search.distances import Loader, QueryArrays, distances_to
-from app.search.fusion import SHORTLIST, fused_distances
-from app.search.index import VECTOR, VectorIndex
+from app.search.fusion import SHORTLIST, Surroundings
+from app.search.index import VectorIndex
 from app.search.methods import Method
+from app.search.near import Near
 from app.search.rank import IdArray, Page, Ranked, Ranking
 from app.search.reranked import ReRanked
 from app.store.clip_filter import ClipFilter
@@ -43,21 +45,22 @@ def rank_by_example(
         near = index.nearest(query.vector, wanted, exclude)
         if method is Method.VECTOR:
             return near
-        return ReRanked(near, partial(_fused, query, load), SHORTLIST, anchor)
+        return ReRanked(near, partial(_fused, query, near, load), SHORTLIST, anchor)
     ids = index.candidates(wanted, exclude).ids
     return _known(ids, distances_to(query, list(ids), method, load))
 
 
-def _fused(query: QueryArrays, load: Loader, shortlist: Page) -> Ranking:
-    """The shortlist by vectors, warping and the graph between them."""
-    warped = distances_to(query, list(shortlist.ids), Method.DTW, load)
-    loaded = load(list(shortlist.ids), VECTOR)
-    there = np.array([c in loaded for c in shortlist.ids], dtype=bool) & np.isfinite(warped)
-    ids = shortlist.ids[there]
-    if not len(ids):
-        return Ranking(ids, np.zeros(0))
-    vectors = np.stack([loaded[clip_id] for clip_id in ids])
-    return Ranking(ids, fused_distances(query.vector, vectors, warped[there]))
+def _fused(query: QueryArrays, near: Near, load: Loader, shortlist: Page) -> Bounds:
+    """The shortlist by vectors, the graph between them, and warping, which is the dearest."""
+    ids = shortlist.ids
+    known = Surroundings.of(query.vector, near.vectors(ids))
+
+    def measure(rows: IntArray) -> FloatArray:
+        warped = distances_to(query, ids[rows].tolist(), Method.DTW, load)
+        return known.distances(rows, warped)
+
+    every = np.arange(len(ids))
+    return Bounds(ids, known.distances(every, np.zeros(len(ids))), measure)
 
 
 def _known(ids: IdArray, distances: FloatArray) -> Ranking:

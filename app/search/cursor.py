@@ -23,12 +23,13 @@ class Anchor:
     """Where a shortlist ended, so that the next page has the same shortlist.
 
     distance, clip_id: of its farthest clip before it was ranked again; end: the largest
-    distance in it afterwards, behind which all other clips follow.
+    distance in it afterwards, behind which all other clips follow; None while pages are within
+    the shortlist and not all of it was measured.
     """
 
     distance: float
     clip_id: str
-    end: float
+    end: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +71,7 @@ def decode(cursor: str, question: str) -> Position:
 
 
 def _anchor(distance: object, clip_id: object, end: object) -> Anchor:
-    return Anchor(_distance(distance), _text(clip_id), _distance(end))
+    return Anchor(_distance(distance), _text(clip_id), None if end is None else _distance(end))
 
 
 def _rank(value: object) -> int:

@@ -9,9 +9,11 @@ that became ready a moment ago is in it.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from app.numerics.arrays import FloatArray
+from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.diffusion import diffused_closeness, neighbour_radii
 
 SHORTLIST = 300
@@ -33,20 +35,42 @@ MOST_DETOUR = 5.0
 """The graph adds at most so many times the distance itself: the same motion stays at 0."""
 
 
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What vectors tell of a shortlist before anything is warped, which is dearer.
+
+    near: (n,) distances of the vectors; far: (n,) what the graph adds, at most.
+    """
+
+    near: FloatArray
+    far: FloatArray
+
+    @classmethod
+    def of(cls, query: FloatArray, vectors: FloatArray) -> Surroundings:
+        """query: (d,) and vectors: (n, d), motion vectors."""
+        if not len(vectors):
+            return cls(np.zeros(0), np.zeros(0))
+        between = _distances(np.vstack([query, vectors]).astype(np.float64))
+        radii = neighbour_radii(between, max(1, round(NEIGHBOURS * len(between) ** 0.5)))
+        closeness = diffused_closeness(between, radii)[1:]
+        far = -np.log((closeness + LEAST_CLOSENESS) / (1.0 + LEAST_CLOSENESS))
+        return cls(between[0, 1:], float(np.median(radii)) * far)
+
+    def distances(self, rows: IntArray, warped: FloatArray) -> FloatArray:
+        """(m,) fused distances of `rows` (m,), given their DTW distances to the query (m,).
+
+        They never fall as those rise, so that with 0 for all of them they are lower bounds.
+        """
+        straight = self.near[rows] + DTW_WEIGHT * warped
+        return np.asarray(straight + DETOUR * np.minimum(self.far[rows], MOST_DETOUR * straight))
+
+
 def fused_distances(query: FloatArray, vectors: FloatArray, warped: FloatArray) -> FloatArray:
     """(n,) distances of clips to a query.
 
     query: (d,) and vectors: (n, d), motion vectors; warped: (n,) DTW distances to the query.
     """
-    if not len(vectors):
-        return np.zeros(0)
-    between = _distances(np.vstack([query, vectors]).astype(np.float64))
-    straight = between[0, 1:] + DTW_WEIGHT * warped
-    radii = neighbour_radii(between, max(1, round(NEIGHBOURS * len(between) ** 0.5)))
-    closeness = diffused_closeness(between, radii)[1:]
-    far = -np.log((closeness + LEAST_CLOSENESS) / (1.0 + LEAST_CLOSENESS))
-    detour = np.minimum(float(np.median(radii)) * far, MOST_DETOUR * straight)
-    return np.asarray(straight + DETOUR * detour)
+    return Surroundings.of(query, vectors).distances(np.arange(len(vectors)), warped)
 
 
 def _distances(points: FloatArray) -> FloatArray:

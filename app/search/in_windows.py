@@ -68,9 +68,12 @@ def by_both(
     head = matched.distances + VECTOR_WEIGHT * proposed.distances_near(matched.owners, centres)
     last = nearest[-1]
     end = float(head.max(initial=0.0))
-    used = anchor or Anchor(last.distance, last.key, end)
-    tail = used.end + np.maximum(rest.distances - used.distance, 0.0)
-    return together([matched.at(head), rest.at(tail)]), used
+    if anchor is None or anchor.end is None:
+        anchor = Anchor(last.distance, last.key, end)
+    else:
+        end = anchor.end
+    tail = end + np.maximum(rest.distances - anchor.distance, 0.0)
+    return together([matched.at(head), rest.at(tail)]), anchor
 
 
 def _nearest(proposed: Candidates, piece: Piece, anchor: Anchor | None) -> list[Place]:

@@ -159,6 +159,10 @@ class LabelView:
         """(n,) which set of words each clip carries, and the sets."""
         return self.coded["word"], self.labels.words.sets
 
+    def numbers(self, ids: IdArray) -> IntArray:
+        """(m,) numbers of clips (m,) that are there."""
+        return np.array([self._numbers_of(clip_id)[-1] for clip_id in ids], dtype=np.int64)
+
     def _numbers_of(self, clip_id: str) -> list[int]:
         number = self.labels.number_of.get(clip_id)
         if number is not None and number < len(self.ids):

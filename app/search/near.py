@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
-from app.numerics.nearest import distances_to, nearest
+from app.numerics.nearest import distances_to, gather, nearest
 from app.search.cursor import Position
 from app.search.rank import IdArray, Page, Ranking
 from app.search.rows import RowsView
@@ -62,6 +62,10 @@ class Near:
             if stop < len(keys) or not page.more:
                 return Page(page.ids[:stop], page.distances[:stop], stop < len(keys))
             limit *= 4
+
+    def vectors(self, ids: IdArray) -> FloatArray:
+        """(m, width) float32 vectors of clips (m,) that a page named."""
+        return gather(self._rows.blocks, self._rows.labels.numbers(ids))
 
     @cached_property
     def _whole(self) -> Ranking:

@@ -13,22 +13,24 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray
 from app.numerics.nearest import DECIMALS
+from app.search.bounded import Bounded, Bounds
 from app.search.cursor import Anchor, Position
 from app.search.near import Near
-from app.search.rank import IdArray, Page, Ranking
+from app.search.rank import IdArray, Page
 
 STEP = 10.0**-DECIMALS
 """Between the last of the shortlist and what follows, so that a distance tells them apart."""
 
-Rerank = Callable[[Page], Ranking]
-"""Ranks a shortlist anew; clips that are gone meanwhile are left out."""
+Rerank = Callable[[Page], Bounds]
+"""How a shortlist is ranked anew."""
 
 
 class ReRanked:
     """A ranking (see `rank.Ranked`): a shortlist in its final order, the rest behind it.
 
     The rest keeps the order and the spacing of the first stage, shifted to begin where the
-    shortlist ends.
+    shortlist ends. Where that is, is known once all of the shortlist is measured; no page goes
+    beyond before.
     """
 
     def __init__(
@@ -39,18 +41,25 @@ class ReRanked:
         self._rerank = rerank
         self._size = size
         self._given = anchor
+        self._seen = 0.0
 
     def __len__(self) -> int:
         return len(self._first)
 
-    @cached_property
+    @property
     def anchor(self) -> Anchor | None:
-        """Where the shortlist ends; None where there is no clip."""
-        if self._given is not None or not len(self._shortlist.ids):
-            return self._given
-        distance, clip_id = self._shortlist.distances[-1], self._shortlist.ids[-1]
-        end = float(np.max(self._head.distances, initial=0.0))
-        return Anchor(float(distance), str(clip_id), end)
+        """Where the shortlist ends, as far as that is known; None where there is no clip."""
+        given, shortlist = self._given, self._shortlist
+        if given is not None and given.end is not None:
+            return given
+        if given is None and not len(shortlist.ids):
+            return None
+        end = self._head.end
+        if end is not None:
+            end = max(end, self._seen)  # what was told must not come after what follows
+        if given is not None:
+            return Anchor(given.distance, given.clip_id, end)
+        return Anchor(float(shortlist.distances[-1]), str(shortlist.ids[-1]), end)
 
     @property
     def ids(self) -> IdArray:
@@ -64,27 +73,37 @@ class ReRanked:
 
     def page(self, after: Position | None, limit: int) -> Page:
         """The first `limit` clips behind a position."""
-        anchor = self.anchor
-        if anchor is None:
+        given = self._given
+        if given is None and not len(self._shortlist.ids):
             return self._first.page(None, limit)
-        if after is not None and after.distance > anchor.end:
-            first_stage = np.round(after.distance - _shift(anchor), DECIMALS)
-            return self._rest(anchor, Position(0, float(first_stage), after.clip_id), limit)
+        if after is not None and given is not None and given.end is not None:
+            shift = _shift(given, given.end)
+            if after.distance > given.end:
+                first_stage = np.round(after.distance - shift, DECIMALS)
+                return self._rest(shift, Position(0, float(first_stage), after.clip_id), limit)
+        self._seen = 0.0 if after is None else after.distance
         page = self._head.page(after, limit)
         if page.more:
             return page
+        return self._going_on(page, limit)
+
+    def _going_on(self, page: Page, limit: int) -> Page:
+        """The last of the shortlist, and as many of the rest as there is room for."""
+        anchor = self.anchor
+        if anchor is None or anchor.end is None:  # never: all of the shortlist was measured
+            return page
         behind = Position(0, anchor.distance, anchor.clip_id)
-        rest = self._rest(anchor, behind, limit - len(page.ids))
+        rest = self._rest(_shift(anchor, anchor.end), behind, limit - len(page.ids))
         return Page(
             np.concatenate([page.ids, rest.ids]),
             np.concatenate([page.distances, rest.distances]),
             rest.more,
         )
 
-    def _rest(self, anchor: Anchor, behind: Position, limit: int) -> Page:
+    def _rest(self, shift: float, behind: Position, limit: int) -> Page:
         """What follows a position of the first stage, with final distances."""
         page = self._first.page(behind, limit)
-        return Page(page.ids, np.round(page.distances + _shift(anchor), DECIMALS), page.more)
+        return Page(page.ids, np.round(page.distances + shift, DECIMALS), page.more)
 
     @cached_property
     def _whole(self) -> Page:
@@ -97,14 +116,14 @@ class ReRanked:
         return self._first.until(self._given.distance, self._given.clip_id)
 
     @cached_property
-    def _head(self) -> Ranking:
-        head = self._rerank(self._shortlist)
-        if self._given is None:
-            return head
+    def _head(self) -> Bounded:
+        clips, given = self._rerank(self._shortlist), self._given
+        if given is None or given.end is None:
+            return Bounded(clips)
         # What came since the first page must not overtake what follows the shortlist.
-        return Ranking(head.ids, np.minimum(head.distances, self._given.end))
+        return Bounded(clips, most=given.end)
 
 
-def _shift(anchor: Anchor) -> float:
-    """From a distance of the first stage to the final one, behind the shortlist."""
-    return anchor.end + STEP - anchor.distance
+def _shift(anchor: Anchor, end: float) -> float:
+    """From a distance of the first stage to the final one, behind a shortlist that ends there."""
+    return end + STEP - anchor.distance

@@ -23,9 +23,9 @@ def naive_matches(
     """
     found = {}
     for number, stream in enumerate(streams):
-        cost = [[_distance(q, stream, j) for j in range(len(stream))] for q in query]
+        table = [[_distance(q, stream, j) for j in range(len(stream))] for q in query]
         known: Known = {}
-        last = [_cell(cost, len(query) - 1, j, known) for j in range(len(stream))]
+        last = [_cell(table, len(query) - 1, j, known) for j in range(len(stream))]
         costs = [np.inf, *(cost for cost, _ in last), np.inf]
         for j, (cost, start) in enumerate(last):
             if np.isfinite(cost) and min(costs[j], costs[j + 2]) > cost + less:

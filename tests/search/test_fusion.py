@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.search.fusion import DTW_WEIGHT, MOST_DETOUR, fused_distances
+from app.search.fusion import DTW_WEIGHT, MOST_DETOUR, Surroundings, fused_distances
 
 
 @given(n=st.integers(1, 40), seed=st.integers(0, 10_000))
@@ -62,3 +62,15 @@ def test_no_clip_has_no_distance_and_one_has_one() -> None:
     assert fused_distances(np.ones(4), np.zeros((0, 4)), np.zeros(0)).shape == (0,)
     alone = fused_distances(np.ones(4), np.zeros((1, 4)), np.zeros(1))
     assert 2.0 <= alone[0] <= 2.0 * (1 + MOST_DETOUR)
+
+
+@given(seed=st.integers(0, 10_000))
+@settings(max_examples=20, deadline=None)
+def test_without_warping_it_is_a_bound_and_rows_are_told_alike_alone(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    query, vectors, warped = rng.normal(size=8), rng.normal(size=(40, 8)), rng.uniform(size=40)
+    known, every = Surroundings.of(query, vectors), np.arange(40)
+    found = known.distances(every, warped)
+    assert (known.distances(every, np.zeros(40)) <= found).all()
+    some = rng.permutation(40)[:7]
+    assert known.distances(some, warped[some]).tolist() == found[some].tolist()

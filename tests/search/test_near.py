@@ -10,8 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.search import rows as rows_module
+from app.search.bounded import Bounds
 from app.search.near import Near
-from app.search.rank import Page, Ranking
+from app.search.rank import Page
 from app.search.reranked import ReRanked
 from app.search.rows import Layout, Rows
 from app.store.clip_filter import ClipFilter
@@ -78,9 +79,16 @@ def test_what_is_excluded_is_neither_ranked_nor_counted() -> None:
     assert (list(near.ids), len(near)) == (["b"], 1)
 
 
-def _backwards(shortlist: Page) -> Ranking:
+def _bounds(ids: np.ndarray, distances: np.ndarray) -> Bounds:
+    """Distances that are known, behind bounds that are sometimes far below them."""
+    shares = np.array([int(str(clip_id)[1:]) % 5 / 4 for clip_id in ids])
+    finite = np.where(np.isfinite(distances), distances, 1.0)
+    return Bounds(ids, finite * shares, lambda rows: distances[rows])
+
+
+def _backwards(shortlist: Page) -> Bounds:
     """Ranks anew by something that has nothing to do with the first stage: the id's digits."""
-    return Ranking(shortlist.ids, np.array([100.0 - int(i[1:]) for i in shortlist.ids]))
+    return _bounds(shortlist.ids, np.array([100.0 - int(i[1:]) for i in shortlist.ids]))
 
 
 @BRIEF
@@ -147,12 +155,15 @@ def test_clips_that_come_and_go_between_pages_make_none_be_missed_or_told_twice(
 def test_a_clip_that_is_gone_from_the_shortlist_is_left_out() -> None:
     vectors: Vectors = {f"c{n:02d}": (float(n), 0.0, 0.0) for n in range(6)}
 
-    def gone(shortlist: Page) -> Ranking:
-        return Ranking(shortlist.ids[1:], shortlist.distances[1:])
+    def gone(shortlist: Page) -> Bounds:
+        away = np.where(shortlist.ids == "c00", np.inf, 0.0)
+        return _bounds(shortlist.ids, shortlist.distances + away)
 
     found = ReRanked(_near(vectors), gone, 3)
     assert list(found.ids) == ["c01", "c02", "c03", "c04", "c05"]
-    everyone_gone = ReRanked(_near(vectors), lambda s: Ranking(s.ids[:0], s.distances[:0]), 3)
+    everyone_gone = ReRanked(
+        _near(vectors), lambda s: _bounds(s.ids, np.full(len(s.ids), np.inf)), 3
+    )
     assert list(everyone_gone.ids) == ["c03", "c04", "c05"]
 
 
