@@ -71,7 +71,7 @@ def find_rhythm(
         heard = find_audio_beats(onsets, told.tempo)
         # By the beats that are heard freely: stops are on every beat, a told tempo may be half.
         free = find_audio_beats(onsets) if told.tempo and told.audio_offset is None else heard
-        offset = _offset(told, energy, track.rate, free, onsets.duration)
+        offset = _offset(told, energy, track.rate, free, onsets)
     shifted = None if offset is None else _shifted(heard, offset, (len(energy) - 1) / track.rate)
     cautions = () if onsets is None else tuple(_doubts(told, heard, offset))
     return Rhythm(_first(told, energy, track.rate, shifted), offset, cautions)
@@ -88,11 +88,11 @@ def _first(told: Told, energy: FloatArray, rate: float, shifted: Beats | None) -
 
 
 def _offset(
-    told: Told, energy: FloatArray, rate: float, heard: Beats, duration: float
+    told: Told, energy: FloatArray, rate: float, heard: Beats, onsets: Onsets
 ) -> Offset | None:
     if told.audio_offset is not None:
-        return Offset(told.audio_offset, 1.0, True)
-    return estimate_offset(find_stops(energy, rate), heard.times, duration)
+        return Offset(told.audio_offset, 1.0, True, 0.0, 1.0)
+    return estimate_offset(find_stops(energy, rate), heard.times, onsets)
 
 
 def _shifted(heard: Beats, offset: Offset, duration: float) -> Beats | None:
@@ -117,8 +117,9 @@ def _doubts(told: Told, heard: Beats, offset: Offset | None) -> list[Caution]:
         return [Caution("audio_offset_unknown", detail)]
     if not offset.is_told and told.beats is None:
         detail = (
-            "The recording's beginning was estimated; it may be wrong by whole beats, which its"
-            " beats do not mind."
+            f"The recording's beginning was estimated as {offset.seconds:.2f} s: right but for"
+            f" whole beats of {offset.beat:.2f} s, and right in those too with probability"
+            f" {offset.beat_confidence:.2f}. Its beats do not mind; send audio_offset to be sure."
         )
         return [Caution("audio_offset_estimated", detail, offset.seconds)]
     return []

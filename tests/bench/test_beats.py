@@ -155,7 +155,7 @@ def test_offsets_of_recordings() -> None:
             heard = read_audio(clip.audio)
             onsets = find_onsets(heard.samples, heard.rate)
             stops = find_stops(_energy(clip), 30.0)
-            found = estimate_offset(stops, find_audio_beats(onsets).times, onsets.duration)
+            found = estimate_offset(stops, find_audio_beats(onsets).times, onsets)
             if found is None or clip.audio_offset is None:
                 unknown += 1
                 continue

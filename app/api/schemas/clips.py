@@ -80,6 +80,8 @@ class Clip(Outgoing):
     has_audio: bool = Field(description="Whether a recording goes with it: GET .../audio.")
     audio_offset: float | None = Field(
         description="Seconds of the motion at which the recording begins, as told or estimated."
+        " An estimate may be wrong by whole beats: the warning `audio_offset_estimated` tells how"
+        " long a beat is, and with what probability it is right."
     )
     error: Problem | None = Field(description="Why the clip is `failed`, else null.")
 
