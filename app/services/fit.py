@@ -22,6 +22,7 @@ from app.services.keypose_learning import learn_keyposes
 from app.services.known_clips import known_arrays
 from app.services.model_shelf import ModelKind, holds_persons
 from app.services.models import enqueue_fit
+from app.services.synthesis_fit import fit_on
 from app.services.training import TrainingSet, read_training_set
 from app.store import labels, models
 from app.store.engine import Tx
@@ -168,6 +169,12 @@ def _fit_keyposes(_: TrainingSet, before: Before) -> Fit:
     return Fit(arrays, meta, figures)
 
 
+def _fit_synthesis(training: TrainingSet, before: Before) -> Fit:
+    model, figures = fit_on(before.store, training)
+    arrays, meta = model.to_arrays()
+    return Fit(arrays, meta, figures)
+
+
 def _fit_metric(factor: Factor, training: TrainingSet, _: Before) -> Fit:
     persons, tasks, described = training.persons, training.tasks, training.described
     judged = held_out_metric(described, persons, tasks, training.groups, factor)
@@ -186,4 +193,5 @@ _FITS: dict[ModelKind, Callable[[TrainingSet, Before], Fit]] = {
     ModelKind.METRIC_TASK: partial(_fit_metric, Factor.TASK),
     ModelKind.METRIC_PERSON: partial(_fit_metric, Factor.PERSON),
     ModelKind.KEYPOSES: _fit_keyposes,
+    ModelKind.SYNTHESIS: _fit_synthesis,
 }

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from app.models.library_words import LibraryWords
     from app.models.multilinear import Multilinear
     from app.models.recogniser import Recogniser
+    from app.models.synthesis import Synthesis
 
 Model = TypeVar("Model")
 
@@ -41,6 +42,8 @@ class ModelKind(StrEnum):
     """How near two clips are in person, or style."""
     KEYPOSES = "keyposes"
     """Thresholds of keyposes, from clips whose keyposes a person named."""
+    SYNTHESIS = "synthesis"
+    """What persons did by task, of which motions that they never recorded are made."""
 
 
 METRICS = (ModelKind.METRIC_TASK, ModelKind.METRIC_PERSON)
@@ -104,6 +107,12 @@ class ModelShelf:
             return KeyposeThresholds.from_arrays(arrays, meta)
 
         return self._get(store, ModelKind.KEYPOSES, build)
+
+    def synthesis(self, store: Store) -> Fitted[Synthesis]:
+        """The synthesis in force; raises ModelNotFitted."""
+        from app.models.synthesis import Synthesis
+
+        return self._get(store, ModelKind.SYNTHESIS, Synthesis.from_arrays)
 
     def metric(self, store: Store, kind: ModelKind) -> Fitted[LearnedMetric]:
         """The learned metric of METRIC_TASK or METRIC_PERSON in force; raises ModelNotFitted."""

@@ -12,6 +12,7 @@ from app.models.folds import recording_of
 from app.models.learned_metric import INPUTS, Described
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm import GaussianHMM
+from app.services.synthesized import is_synthesized
 from app.store import arrays, clip_listing, clips, library
 from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord, ClipState
@@ -69,13 +70,17 @@ def ready_only(wanted: ClipFilter | None) -> ClipFilter:
 
 
 def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
-    """All clips that pass a filter, ready ones by default, in one snapshot."""
+    """All clips that pass a filter, ready ones by default, in one snapshot.
+
+    Synthesised clips are left out: nothing is to be learned from them.
+    """
     with store.read() as tx:
         version = library.version(tx)
         ids = sorted(clip_listing.list_ids(tx, wanted))
         found = {name: arrays.get_many(tx, ids, name) for name in NAMES}
         whole = [clip_id for clip_id in ids if all(clip_id in part for part in found.values())]
         records = clips.get_many(tx, whole)
+    whole = [clip_id for clip_id in whole if not is_synthesized(records[clip_id])]
     return TrainingSet(
         library_version=version,
         clips=tuple(records[clip_id] for clip_id in whole),

@@ -1,0 +1,279 @@
+"""A person's motion for a task that they never recorded (Vasilescu 2002, section 4).
+
+The cells of persons and tasks hold mean motion shapes. The parameters of the wanted task are
+found as in eq. 8, jointly over all persons who did it (least squares, not a mean of inverses):
+the weights w with which the tasks that the asked person did make it of these persons' motions.
+The same w makes it of the person's own. So a new task comes to known persons, and every known
+task to a person of whom there are only some clips; where few tasks are known this was far
+nearer to the truth than solving eq. 7 for a signature among few persons
+(tests/bench/test_synthesis.py). Beyond the paper, each of which raised the held-out hits:
+- what w leaves over of these persons' motions is carried over as their mean ("residual");
+- the parts of the body have weights of their own, drawn towards those of the whole;
+- a mirrored task is a task: raising the left hand tells how one raises the right.
+Missing cells are completed by person and task effects. All is linear and deterministic.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.analysis.motion_shape import SHAPE_LENGTH, mirrored
+from app.errors import NotEnoughLabels
+from app.models.cells import Cells, cell_means, find_cells, fit_effects
+from app.models.synthesis_basis import parts, weights
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.numerics.principal_axes import PrincipalAxes, principal_axes
+
+SYNTHESIS_VERSION = 1
+
+WHOLE_RIDGE = 0.01
+"""Pull of the weights of the whole towards the mean of the tasks, in mean squares of a task."""
+
+PART_RIDGE = 0.02
+"""Pull of a part's weights towards those of the whole, likewise."""
+
+MOST_TASKS = 24
+"""Tasks of which one is made: the most alike; more only cost time."""
+
+DIMENSIONS = 64
+"""Coordinates in which real clips are compared with what was made."""
+
+MOST_CELLS = 20_000
+"""Cells that are kept: some 110 MB."""
+
+
+@dataclass(frozen=True, slots=True)
+class Synthesis:
+    """persons, tasks: sorted labels; means: (cells, 1378) mean motion shapes; person, task:
+    (cells,) index of the label; takes: (cells,) clips of each. axes, points (N, 64), ids (N,):
+    the real clips' weighted shapes, among which the nearest to a made one is looked up."""
+
+    persons: tuple[str, ...]
+    tasks: tuple[str, ...]
+    means: FloatArray
+    person: IntArray
+    task: IntArray
+    takes: IntArray
+    axes: PrincipalAxes
+    points: FloatArray
+    ids: tuple[str, ...]
+
+    def cell(self, person: str, task: str) -> FloatArray | None:
+        """(1378,) the mean of a person's own takes of a task, None where there is none."""
+        found = np.flatnonzero((self._of(person, self.persons) == self.person) & self._did(task))
+        return np.asarray(self.means[found[0]]) if len(found) else None
+
+    def tasks_of(self, person: str) -> dict[str, FloatArray]:
+        """Mean shapes (1378,) of what a person did, by task."""
+        cells = np.flatnonzero(self.person == self._of(person, self.persons))
+        return {self.tasks[self.task[cell]]: self.means[cell] for cell in cells}
+
+    def who_did(self, task: str) -> tuple[str, ...]:
+        """The persons who did a task."""
+        return tuple(self.persons[i] for i in sorted(self.person[self._did(task)]))
+
+    def nearest(self, shape: FloatArray) -> tuple[str, float]:
+        """The id of the real clip whose motion shape is nearest to (1378,), and how far it is."""
+        away = np.linalg.norm(self.points - self.axes.project(shape * weights()), axis=1)
+        first = int(np.argmin(away))
+        return self.ids[first], float(away[first])
+
+    def _did(self, task: str) -> BoolArray:
+        return np.asarray(self.task == self._of(task, self.tasks))
+
+    @staticmethod
+    def _of(name: str, names: tuple[str, ...]) -> int:
+        return names.index(name) if name in names else -2
+
+    def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
+        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        arrays = {
+            "means": self.means.astype(np.float32),
+            "person": self.person,
+            "task": self.task,
+            "takes": self.takes,
+            "centre": self.axes.centre,
+            "axes": self.axes.axes,
+            "points": self.points.astype(np.float32),
+        }
+        meta = {
+            "version": SYNTHESIS_VERSION,
+            "persons": list(self.persons),
+            "tasks": list(self.tasks),
+            "ids": list(self.ids),
+        }
+        return arrays, meta
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> Synthesis:
+        """The record that to_arrays took apart. Raises ValueError on another version."""
+        if meta["version"] != SYNTHESIS_VERSION:
+            raise ValueError(f"synthesis model of version {meta['version']}")
+        return cls(
+            tuple(meta["persons"]),
+            tuple(meta["tasks"]),
+            arrays["means"].astype(np.float64),
+            arrays["person"],
+            arrays["task"],
+            arrays["takes"],
+            PrincipalAxes(arrays["centre"], arrays["axes"]),
+            arrays["points"].astype(np.float64),
+            tuple(meta["ids"]),
+        )
+
+
+def fit_synthesis(
+    shapes: FloatArray,
+    persons: Sequence[str | None],
+    tasks: Sequence[str | None],
+    ids: Sequence[str] | None = None,
+) -> Synthesis:
+    """Fit on motion shapes (clips, 1378) that have both labels; others are left out.
+
+    ids: (clips,) by default their numbers. Of takes of one cell that are partly cyclic the
+    more frequent kind is kept. Raises NotEnoughLabels without two persons and two tasks, where
+    no two persons did the same, and with too many cells.
+    """
+    use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
+    names = [str(i) if ids is None else ids[i] for i in use]
+    rows = np.asarray(shapes, dtype=np.float64)[use].reshape(len(use), SHAPE_LENGTH)
+    cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
+    _check(cells)
+    kept = _of_one_kind(rows, cells)
+    means = cell_means(rows[kept], find_cells(*_labels(cells, kept)))
+    counted = rows * weights()
+    axes = principal_axes(counted, DIMENSIONS)
+    return Synthesis(
+        cells.persons,
+        cells.tasks,
+        means,
+        cells.person,
+        cells.task,
+        cells.takes,
+        axes,
+        axes.project(counted),
+        tuple(names),
+    )
+
+
+def predict(
+    record: Synthesis, given: Mapping[str, FloatArray], task: str, but: Sequence[str] = ()
+) -> FloatArray:
+    """(1378,) the motion shape of `task` for someone whose shapes of other tasks are `given`.
+
+    but: persons who are not to be learned from, as the asked one. Raises NotEnoughLabels where
+    nobody else did the task, or nothing that the asked person did.
+    """
+    told = {name: shape for name, shape in given.items() if name in record.tasks and name != task}
+    others = [name for name in record.who_did(task) if name not in but]
+    if not told:
+        raise NotEnoughLabels(
+            "A clip of another task of the library is needed of the person asked for."
+        )
+    if not others:
+        raise NotEnoughLabels(f"Nobody else did the task {task}: a clip of another person's.")
+    known = _known_tensor(record, others, [*told, task])
+    basis, wanted = known[:, :-1], known[:, -1]
+    own = np.stack(list(told.values())).astype(np.float64)
+    near = _most_alike(basis, wanted)
+    shape = solve(basis[:, near], wanted, own[near])
+    shape[-1] = float(np.mean(wanted[:, -1]) >= 0.5)
+    return shape
+
+
+def solve(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> FloatArray:
+    """(1378,) from what K persons did and the wanted task by each, (K, T, 1378), (K, 1378), and
+    what the asked person did, (T, 1378): eq. 8 jointly, and the residual carried over."""
+    scale, tasks = weights(), basis.shape[1]
+    both = np.concatenate([basis, _mirrored(basis)], axis=1) * scale  # (K, 2T, d)
+    asked = np.concatenate([own, mirrored(own)]) * scale  # (2T, d)
+    target = wanted * scale
+    prior = np.concatenate([np.full(tasks, 1 / tasks), np.zeros(tasks)])
+    by_part = [(part, *_normal(both[:, :, part], target[:, part])) for part in parts()]
+    gram = np.sum([one for _, one, _ in by_part], axis=0)
+    aim = np.sum([one for _, _, one in by_part], axis=0)
+    shared = _ridge(gram, aim, prior, WHOLE_RIDGE)
+    shape = np.empty(SHAPE_LENGTH)
+    for part, gram, aim in by_part:
+        w = _ridge(gram, aim, shared, PART_RIDGE)
+        residual = target[:, part] - np.matmul(w, both[:, :, part])
+        shape[part] = w @ asked[:, part] + residual.mean(axis=0)
+    return shape / scale
+
+
+def effects_only(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> FloatArray:
+    """As `solve`, by person and task effects added up: a baseline."""
+    return np.asarray(own.mean(axis=0) + (wanted - basis.mean(axis=1)).mean(axis=0))
+
+
+def _normal(basis: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(2T, 2T) and (2T,): the normal equations of all persons together."""
+    rows = basis.transpose(1, 0, 2).reshape(basis.shape[1], -1)  # (2T, K d)
+    return rows @ rows.T, rows @ target.ravel()
+
+
+def _ridge(gram: FloatArray, aim: FloatArray, prior: FloatArray, ridge: float) -> FloatArray:
+    """(2T,) weights nearest to the aim, drawn towards `prior`."""
+    size = len(gram)
+    pull = ridge * float(np.trace(gram)) / size + 1e-12
+    return np.asarray(prior + np.linalg.solve(gram + pull * np.eye(size), aim - gram @ prior))
+
+
+def _mirrored(basis: FloatArray) -> FloatArray:
+    return mirrored(basis.reshape(-1, SHAPE_LENGTH)).reshape(basis.shape)
+
+
+def _most_alike(basis: FloatArray, wanted: FloatArray) -> IntArray:
+    """Indices of the tasks (K, T, d) that are most like the wanted one, themselves or mirrored."""
+    scale, means, aim = weights(), basis.mean(axis=0), wanted.mean(axis=0)
+    away = [np.linalg.norm((rows - aim) * scale, axis=1) for rows in (means, mirrored(means))]
+    return np.sort(np.argsort(np.min(away, axis=0), kind="stable")[:MOST_TASKS])
+
+
+def _known_tensor(record: Synthesis, persons: list[str], tasks: list[str]) -> FloatArray:
+    """(persons, tasks, 1378); missing cells by person and task effects."""
+    person = np.array([record.persons.index(name) for name in persons])
+    task = np.array([record.tasks.index(name) for name in tasks])
+    rows, columns = np.repeat(person, len(task)), np.tile(task, len(person))
+    place = np.full((len(record.persons), len(record.tasks)), -1)
+    place[record.person, record.task] = np.arange(len(record.person))
+    cell = place[rows, columns]
+    found = record.means[cell]
+    missing = cell < 0
+    if missing.any():
+        effects = fit_effects(record.means, _as_cells(record))
+        found[missing] = effects.predict(rows[missing], columns[missing])
+    return np.asarray(found.reshape(len(person), len(task), SHAPE_LENGTH))
+
+
+def _as_cells(record: Synthesis) -> Cells:
+    member = np.arange(len(record.person))
+    return Cells(record.persons, record.tasks, member, record.person, record.task, record.takes)
+
+
+def _check(cells: Cells) -> None:
+    if min(len(cells.persons), len(cells.tasks)) < 2:
+        raise NotEnoughLabels("Synthesis needs clips of two persons and of two tasks.")
+    if np.bincount(cells.task).max() < 2:
+        raise NotEnoughLabels("Synthesis needs a task that two persons did.")
+    if len(cells) > MOST_CELLS:
+        raise NotEnoughLabels(f"Synthesis holds {MOST_CELLS} combinations of person and task.")
+
+
+def _of_one_kind(rows: FloatArray, cells: Cells) -> IntArray:
+    """The clips that are cyclic as most of their cell are; a mean of both would be neither."""
+    is_cyclic = rows[:, -1] >= 0.5
+    share = np.bincount(cells.member, weights=is_cyclic, minlength=len(cells)) / cells.takes
+    return np.flatnonzero(is_cyclic == (share >= 0.5)[cells.member])
+
+
+def _labels(cells: Cells, kept: IntArray) -> tuple[list[str], list[str]]:
+    member = cells.member[kept]
+    return (
+        [cells.persons[i] for i in cells.person[member]],
+        [cells.tasks[i] for i in cells.task[member]],
+    )

@@ -1,0 +1,43 @@
+"""What a motion shape is weighed by, and into which parts of the body it falls, for synthesis."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.analysis.motion_sample import SAMPLES
+from app.analysis.motion_shape import CHANNELS
+from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.numerics.arrays import FloatArray, IntArray
+
+VELOCITY_WEIGHT = 0.3
+YAW_WEIGHT = 0.2
+"""Of a body length per second and of a radian per second beside a body length."""
+
+_R = JointRole
+_PARTS = (
+    (_R.LEFT_KNEE, _R.LEFT_FOOT),
+    (_R.RIGHT_KNEE, _R.RIGHT_FOOT),
+    (_R.HIPS, _R.NECK, _R.HEAD, _R.LEFT_SHOULDER, _R.RIGHT_SHOULDER),
+    (_R.LEFT_ELBOW, _R.LEFT_HAND),
+    (_R.RIGHT_ELBOW, _R.RIGHT_HAND),
+)
+
+
+def weights() -> FloatArray:
+    """(1378,) what each number of a motion shape counts."""
+    channel = np.ones(CHANNELS)
+    channel[40:42], channel[42] = VELOCITY_WEIGHT, YAW_WEIGHT
+    return np.concatenate([np.tile(channel, SAMPLES), [1.0, 1.0]])
+
+
+def parts() -> list[IntArray]:
+    """Numbers of a motion shape by part: legs, trunk, arms, and how the whole goes and lasts."""
+    place = np.arange(SAMPLES * CHANNELS).reshape(SAMPLES, CHANNELS)
+    found: list[IntArray] = []
+    for roles in _PARTS:
+        first = 3 * np.array([SUN_ROLES.index(role) for role in roles])
+        columns = (first[:, None] + np.arange(3)).ravel()
+        found.append(place[:, columns].ravel())
+    whole = place[:, 39:].ravel()
+    found.append(np.concatenate([whole, SAMPLES * CHANNELS + np.arange(2)]))
+    return found

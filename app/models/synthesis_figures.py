@@ -1,0 +1,135 @@
+"""How often a motion that was made is taken for the person's own, on cells left out.
+
+Vasilescu's check (section 7): among all real clips, is the one nearest to the made motion by
+that person, and of that task? The made one has seen none of that cell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.models.synthesis import Synthesis, effects_only, predict, solve
+from app.numerics.arrays import FloatArray
+
+GIVEN = (1, 2, 3, 5, 8)
+"""Other persons (tasks) of which takes are given."""
+
+TRIALS = 32
+"""Cells left out for each row, drawn at random where there are more."""
+
+NEW_TASK, NEW_PERSON = "new_task", "new_person"
+
+Labels = Sequence[str | None]
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A cell left out: person and task; given: the other persons, or the other tasks."""
+
+    person: str
+    task: str
+    given: tuple[str, ...]
+
+
+def held_out_synthesis(
+    record: Synthesis, persons: Labels, tasks: Labels, trials: int = TRIALS
+) -> dict[str, list[dict[str, Any]]]:
+    """Rows by number given, for "new_task" (a known person's, from so many others' takes) and
+    "new_person" (from takes of so many of their tasks, all others known).
+
+    persons, tasks: (clips,) labels by `record.ids`. Each row: given, trials, and shares of
+    trials whose nearest real clip is right in person, in task and in both ("hit"); and the hit
+    of the baselines "effects" (person and task effects added) and "task_mean".
+    """
+    truth = dict(zip(record.ids, zip(persons, tasks, strict=True), strict=True))
+    return {
+        kind: [row for given in GIVEN if (row := _row(record, truth, kind, given, trials))]
+        for kind in (NEW_TASK, NEW_PERSON)
+    }
+
+
+def made(record: Synthesis, kind: str, trial: Trial) -> FloatArray:
+    """(1378,) the cell of a trial, made of what it gives."""
+    own = record.tasks_of(trial.person)
+    if kind == NEW_PERSON:
+        own = {task: own[task] for task in trial.given}
+        return predict(record, own, trial.task, but=(trial.person,))
+    strangers = set(record.persons) - set(trial.given)
+    return predict(record, own, trial.task, but=tuple(strangers))
+
+
+def draw_trials(record: Synthesis, kind: str, given: int, trials: int) -> list[Trial]:
+    """At most `trials` cells with `given` others to make them of; the same each time."""
+    rng = np.random.default_rng(given)
+    found = []
+    for person, task in zip(record.person, record.task, strict=True):
+        who, what = record.persons[person], record.tasks[task]
+        pool = _others(record, who, what, kind)
+        if len(pool) >= given:
+            chosen = rng.choice(len(pool), given, replace=False)
+            found.append(Trial(who, what, tuple(pool[i] for i in sorted(chosen))))
+    if len(found) <= trials:
+        return found
+    return [found[i] for i in np.sort(rng.choice(len(found), trials, replace=False))]
+
+
+def _others(record: Synthesis, person: str, task: str, kind: str) -> list[str]:
+    if kind == NEW_TASK:
+        own = set(record.tasks_of(person)) - {task}
+        return [name for name in record.who_did(task) if name != person] if own else []
+    if record.who_did(task) == (person,):
+        return []
+    return [name for name in record.tasks_of(person) if name != task]
+
+
+def _row(
+    record: Synthesis, truth: dict[str, Any], kind: str, given: int, trials: int
+) -> dict[str, Any] | None:
+    drawn = draw_trials(record, kind, given, trials)
+    if not drawn:
+        return None
+    hits = np.array(list(_judged(record, truth, kind, drawn)), dtype=np.float64).mean(axis=0)
+    names = ("person", "task", "hit", "effects", "task_mean")
+    shares = {name: round(float(hit), 4) for name, hit in zip(names, hits, strict=True)}
+    return {"given": given, "trials": len(drawn), **shares}
+
+
+def _judged(
+    record: Synthesis, truth: dict[str, Any], kind: str, drawn: list[Trial]
+) -> Iterator[tuple[bool, ...]]:
+    for trial in drawn:
+        label = (trial.person, trial.task)
+        who, what = truth[record.nearest(made(record, kind, trial))[0]]
+        baselines = (
+            truth[record.nearest(baseline(record, kind, trial, by))[0]] == label
+            for by in (effects_only, task_mean)
+        )
+        yield (who == trial.person, what == trial.task, (who, what) == label, *baselines)
+
+
+Way = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+
+
+def baseline(record: Synthesis, kind: str, trial: Trial, by: Way = solve) -> FloatArray:
+    """(1378,) the cell of a trial made in another way; only cells that are there are used."""
+    own = record.tasks_of(trial.person)
+    own.pop(trial.task)
+    if kind == NEW_PERSON:
+        own = {task: own[task] for task in trial.given}
+    others = trial.given if kind == NEW_TASK else record.who_did(trial.task)
+    cells = {name: record.tasks_of(name) for name in others if name != trial.person}
+    shared = [task for task in own if all(task in did for did in cells.values())]
+    wanted = np.stack([did[trial.task] for did in cells.values()])
+    if not shared:
+        return task_mean(wanted, wanted, wanted)
+    basis = np.stack([[did[task] for task in shared] for did in cells.values()])
+    return by(basis, wanted, np.stack([own[task] for task in shared]))
+
+
+def task_mean(_: FloatArray, wanted: FloatArray, __: FloatArray) -> FloatArray:
+    """The mean of what the others did (K, 1378), whoever is asked for: a baseline."""
+    return np.asarray(wanted.mean(axis=0))
