@@ -26,8 +26,11 @@ _bearer = HTTPBearer(auto_error=False, description="An API key (`kinedex keys cr
 _header = APIKeyHeader(name="X-API-Key", auto_error=False, description="The same key.")
 
 
-def get_library(request: Request) -> Library:
-    """The library that the application opened. Raises NotReadyYet before that."""
+async def get_library(request: Request) -> Library:
+    """The library that the application opened. Raises NotReadyYet before that.
+
+    Not waited for anywhere: async, so that no thread is taken for it.
+    """
     library: Library | None = getattr(request.app.state, "library", None)
     if library is None:
         raise NotReadyYet
@@ -72,7 +75,7 @@ def is_open(lib: Library, tx: Tx) -> bool:
     # A revoked key counts too: revoking the last one must not open the door.
     settings = lib.settings
     local = settings.listens_on_loopback and not settings.require_keys
-    return local and not keys.list_keys(tx)
+    return local and not keys.is_any(tx)
 
 
 def _refuse_other_sites(request: Request) -> None:

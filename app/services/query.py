@@ -19,6 +19,7 @@ from app.services.stored_motion import load_motion
 from app.store import arrays
 from app.store import clips as stored
 from app.store.clip_record import ClipRecord, ClipState
+from app.store.engine import Tx
 from app.store.files import Readable
 
 Arrays = Mapping[str, FloatArray]
@@ -69,7 +70,11 @@ def describe(lib: Library, question: Question, names: tuple[str, ...]) -> Answer
 def ready_clip(lib: Library, clip_id: str) -> ClipRecord:
     """A clip that is ready; raises ClipNotFound, ClipNotReady."""
     with lib.store.read() as tx:
-        clip = stored.get(tx, clip_id)
+        return _ready(tx, clip_id)
+
+
+def _ready(tx: Tx, clip_id: str) -> ClipRecord:
+    clip = stored.get(tx, clip_id)
     if clip.state is not ClipState.READY:
         raise ClipNotReady(f"The clip {clip_id} is {clip.state.value}.")
     return clip
@@ -79,10 +84,10 @@ def _of_clip(lib: Library, question: Question, clip_id: str, names: tuple[str, .
     for name in ("skeleton", "frame_rate", "unit", "roles", "stack"):
         if getattr(question, name) not in (None, ""):
             raise fields.bad_field(name, "goes with an uploaded file, not with a stored clip")
-    clip = ready_clip(lib, clip_id)
-    if question.start is None and question.end is None:
-        with lib.store.read() as tx:
-            return Answered({n: arrays.get_one(tx, clip_id, n) for n in names}, clip)
+    with lib.store.read() as tx:
+        clip = _ready(tx, clip_id)
+        if question.start is None and question.end is None:
+            return Answered(arrays.get_named(tx, clip_id, names), clip)
     motion = cut(load_motion(lib, clip), question.start, question.end)
     return Answered(describe_for_search(motion).arrays, clip)
 

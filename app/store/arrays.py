@@ -15,6 +15,17 @@ from app.store.engine import Tx
 from app.store.tables import clip_arrays
 
 _CONTENT = (clip_arrays.c.dtype, clip_arrays.c.shape, clip_arrays.c.data)
+
+# Made once: making a statement costs more than running it, and every search asks these.
+_NAMED = select(clip_arrays.c.name, *_CONTENT).where(
+    clip_arrays.c.clip_id == bindparam("the_id"),
+    clip_arrays.c.name.in_(bindparam("names", expanding=True)),
+)
+_OF_MANY = select(clip_arrays.c.clip_id, *_CONTENT).where(
+    clip_arrays.c.clip_id.in_(bindparam("ids", expanding=True)),
+    clip_arrays.c.name == bindparam("the_name"),
+)
+_OF_VERSION = _OF_MANY.where(clip_arrays.c.version == bindparam("the_version"))
 _ADD = insert(clip_arrays)
 _DELETE_ALL = delete(clip_arrays).where(clip_arrays.c.clip_id == bindparam("the_id"))
 
@@ -45,10 +56,17 @@ def put_some(tx: Tx, clip_id: str, arrays: Mapping[str, NDArray[Any]], *, versio
 
 def get_one(tx: Tx, clip_id: str, name: str) -> NDArray[Any]:
     """One array, read-only; raises NotFound."""
-    found = get_many(tx, [clip_id], name)
-    if clip_id not in found:
-        raise NotFound(f"The clip {clip_id!r} has no array {name!r}")
-    return found[clip_id]
+    return get_named(tx, clip_id, (name,))[name]
+
+
+def get_named(tx: Tx, clip_id: str, names: Collection[str]) -> dict[str, NDArray[Any]]:
+    """Some arrays of a clip by name, read-only, in the order asked for; raises NotFound."""
+    rows = tx.execute(_NAMED, {"the_id": clip_id, "names": list(names)})
+    found = {name: from_blob(dtype, shape, data) for name, dtype, shape, data in rows}
+    for name in names:
+        if name not in found:
+            raise NotFound(f"The clip {clip_id!r} has no array {name!r}")
+    return {name: found[name] for name in names}
 
 
 def get_all(tx: Tx, clip_id: str) -> dict[str, NDArray[Any]]:
@@ -66,12 +84,12 @@ def get_many(
     """
     found: dict[str, NDArray[Any]] = {}
     for batch in in_batches(clip_ids):
-        query = select(clip_arrays.c.clip_id, *_CONTENT).where(
-            clip_arrays.c.clip_id.in_(batch), clip_arrays.c.name == name
-        )
-        if version is not None:
-            query = query.where(clip_arrays.c.version == version)
-        for clip_id, dtype, shape, data in tx.execute(query).all():
+        asked = {"ids": batch, "the_name": name}
+        if version is None:
+            rows = tx.execute(_OF_MANY, asked)
+        else:
+            rows = tx.execute(_OF_VERSION, asked | {"the_version": version})
+        for clip_id, dtype, shape, data in rows.all():
             found[clip_id] = from_blob(dtype, shape, data)
     return {clip_id: found[clip_id] for clip_id in clip_ids if clip_id in found}
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
-from sqlalchemy import RowMapping, exists, insert, select, update
+from sqlalchemy import RowMapping, bindparam, exists, insert, select, update
 
 from app.errors import NotFound
 from app.store.engine import Tx
@@ -24,6 +24,10 @@ PREFIX = "kx"
 PUBLIC_BYTES = 6
 SECRET_BYTES = 32
 _NO_HASH = "0" * 64
+
+# Made once: every call asks these.
+_IS_ANY = select(exists(select(api_keys.c.id)))
+_BY_ID = select(api_keys).where(api_keys.c.id == bindparam("the_id"))
 
 
 class KeyRole(StrEnum):
@@ -82,12 +86,17 @@ def verify(tx: Tx, secret: str) -> KeyRecord | None:
     """The key that has this secret, unless it is unknown or revoked."""
     parts = secret.split("_", 2)
     key_id = parts[1] if len(parts) == 3 and parts[0] == PREFIX else ""
-    row = tx.execute(select(api_keys).where(api_keys.c.id == key_id)).mappings().one_or_none()
+    row = tx.execute(_BY_ID, {"the_id": key_id}).mappings().one_or_none()
     stored = _NO_HASH if row is None else row["secret_sha256"]
     same = hmac.compare_digest(stored, _hash(secret))
     if row is None or not same or row["revoked_at"] is not None:
         return None
     return _to_record(row)
+
+
+def is_any(tx: Tx) -> bool:
+    """Whether a key was ever made, one that has been revoked too."""
+    return bool(tx.execute(_IS_ANY).scalar_one())
 
 
 def is_any_valid(tx: Tx) -> bool:
@@ -109,7 +118,7 @@ def revoke(tx: Tx, key_id: str) -> KeyRecord:
         .values(revoked_at=utc_now())
     )
     tx.execute(revoked)
-    row = tx.execute(select(api_keys).where(api_keys.c.id == key_id)).mappings().one_or_none()
+    row = tx.execute(_BY_ID, {"the_id": key_id}).mappings().one_or_none()
     if row is None:
         raise NotFound(f"There is no API key with the id {key_id!r}")
     return _to_record(row)

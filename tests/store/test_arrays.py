@@ -57,6 +57,20 @@ def test_arrays_of_a_clip_replace_the_earlier_ones(store: Store, add_clip: AddCl
             arrays.get_one(tx, clip.id, "b")
 
 
+def test_some_arrays_of_a_clip_come_in_the_order_asked_for(store: Store, add_clip: AddClip) -> None:
+    clip = add_clip("walk")
+    with store.write() as tx:
+        arrays.put_many(tx, clip.id, {n: np.full(2, n, "f4") for n in "123"}, version=1)
+    with store.read() as tx:
+        found = arrays.get_named(tx, clip.id, ("3", "1"))
+        assert [(name, array.tolist()) for name, array in found.items()] == [
+            ("3", [3.0, 3.0]),
+            ("1", [1.0, 1.0]),
+        ]
+        with pytest.raises(NotFound, match="'4'"):
+            arrays.get_named(tx, clip.id, ("1", "4"))
+
+
 def test_one_array_of_many_clips(store: Store, add_clip: AddClip) -> None:
     ids = [add_clip(f"clip {number}").id for number in range(5)]
     with store.write() as tx:

@@ -39,10 +39,8 @@ def by_method(lib: Library, method: Method, wanted: ClipFilter | None) -> Way:
 
 def _query(lib: Library, clip: ClipRecord) -> QueryArrays:
     with lib.store.read() as tx:
-        vector, features, rho, epsilon = (
-            arrays.get_one(tx, clip.id, name) for name in (VECTOR, FEATURES, RHO, EPSILON)
-        )
-    return QueryArrays(vector, features, rho, epsilon)
+        found = arrays.get_named(tx, clip.id, (VECTOR, FEATURES, RHO, EPSILON))
+    return QueryArrays(*found.values())
 
 
 @dataclass(frozen=True, slots=True)
