@@ -24,7 +24,7 @@ LEAST_COVERED = 0.6
 AS_GOOD = 0.35
 """Share of the stops by which a lag may meet fewer beats than the best one and still be tried."""
 
-MET, FITTING, COVERED, FULLER, PER_SECOND = 18.0, 0.15, 13.0, 6.8, -0.01
+MET, FITTING, COVERED, FULLER, PER_SECOND = 18.0, 0.15, 13.0, 6.8, -0.05
 """Weights of the share of stops that meet beats, of how closely they do (log likelihood), of the
 share of the motion that is recorded, of how much more begins while the motion lasts than before
 and after, and of each second from 0. A multinomial logit on 108 of the demo's dances with clicks,
@@ -77,7 +77,7 @@ def estimate_offset(stops: Stops, beats: FloatArray, onsets: Onsets) -> Offset |
     likely = np.exp(score - score.max())
     best = int(score.argmax())
     same = np.abs(met.lags - met.lags[best]) < 0.5 * beat * FINE
-    seconds = float(met.lags[best] / FINE)
+    seconds = round(float(met.lags[best] / FINE), 3)
     confidence = _confidence(stops, beats + seconds)
     if confidence < LEAST_CONFIDENCE:
         return None

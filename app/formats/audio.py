@@ -75,7 +75,9 @@ def read_audio(content: bytes) -> Sound:
             _check(file)
             samples, rate = _decode(file)
     except soundfile.SoundFileError as problem:
-        raise _unreadable(f"{format.upper()}: {problem}") from problem
+        # Without what libsndfile was doing, and to which object in memory.
+        told = str(getattr(problem, "error_string", problem)).removeprefix("Error : ")
+        raise _unreadable(f"{format.upper()}: {told.rstrip('.')}") from problem
     if not len(samples):
         raise _unreadable("it holds no sound")
     if not np.isfinite(samples).all():
