@@ -81,16 +81,16 @@ def _print(found: WordEvaluation, examples: Sequence[WordExample]) -> None:
     _print_figures(found.in_sample)
     typer.echo("\nPrecision of single words at a recall, held out (figure 7):\n")
     _print_curves(found.figures)
-    reliability = found.reliability
-    typer.echo(
-        "\nScores as probabilities, held out: expected calibration error "
-        f"{reliability.word_error:.4f} and Brier score {reliability.word_brier:.4f} of single "
-        f"words (by frequency {reliability.prior_brier:.4f}); {reliability.set_error:.4f} and "
-        f"{reliability.set_brier:.4f} of whole label sets."
-    )
+    for mode, told in found.reliability.items():
+        typer.echo(
+            f"\nScores of mode {mode} as probabilities, held out: expected calibration error "
+            f"{told.word_error:.4f} and Brier score {told.word_brier:.4f} of single words (by "
+            f"frequency {told.prior_brier:.4f}); {told.set_error:.4f} and {told.set_brier:.4f} "
+            "of whole label sets."
+        )
     for kind, correlations in found.correlations.items():
-        told = " ".join(f"{one:.3f}" for one in correlations)
-        typer.echo(f"Canonical correlations ({kind.replace('_', '-')}): {told}")
+        shown = " ".join(f"{one:.3f}" for one in correlations)
+        typer.echo(f"Canonical correlations ({kind.replace('_', '-')}): {shown}")
     typer.echo("\nWord by word, held out:\n")
     _print_words(found.by_word)
     for example in examples:

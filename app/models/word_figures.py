@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.errors import NotEnoughLabels
-from app.models.correlated_space import LEAST_CLIPS, RIDGE, CorrelatedSpace, fit_correlated_space
+from app.models.correlated_space import LEAST_CLIPS, RIDGE, fit_correlated_space
 from app.models.folds import grouped_folds
+from app.models.likeliest_symbols import likelihoods_of_symbols
 from app.models.ranking_figures import (
     area_under_curve,
     average_precision,
@@ -26,15 +27,12 @@ from app.models.ranking_figures import (
     precision_at_recalls,
     top_k_rate,
 )
-from app.models.symbol_space import DIMENSIONS, landmark_rows, symbol_distances
-from app.models.word_calibration import WordCalibration, calibrate
-from app.models.word_model import clip_cosines, fit_word_model
+from app.models.symbol_space import symbol_distances
+from app.models.word_methods import CCA, DEFAULT, PRIOR, LabelledClips, score, symbol_points
 from app.models.word_vocabulary import WordVocabulary
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.hmm import GaussianHMM
-from app.numerics.mds import metric_mds, place
 
-PRIOR, DEFAULT = "prior", "default"
 FOLDS = 5
 MOST_CLIPS = 1000
 """Larger libraries are judged on a random part of so many clips."""
@@ -94,7 +92,7 @@ class JudgedWord:
 @dataclass(frozen=True, slots=True)
 class WordEvaluation:
     """figures: held out, one a method; on so many clips, words and folds; in_sample: as the
-    paper's; reliability: of the default's held-out scores as probabilities; correlations:
+    paper's; reliability: of the held-out scores of DEFAULT and CCA as probabilities; correlations:
     canonical ones of all clips by kind of inverse, falling; by_word: the default, held out.
     """
 
@@ -103,30 +101,9 @@ class WordEvaluation:
     words: int
     folds: int
     in_sample: tuple[WordFigures, ...]
-    reliability: Reliability
+    reliability: dict[str, Reliability]
     correlations: dict[str, tuple[float, ...]]
     by_word: tuple[JudgedWord, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class _Clips:
-    """Labelled clips: distances (N, N) of their symbols, statistics (N, p), labels (N, V),
-    groups (N), fold (N,).
-    """
-
-    distances: FloatArray
-    statistics: FloatArray
-    labels: FloatArray
-    groups: tuple[str, ...]
-    fold: IntArray
-
-
-@dataclass(frozen=True, slots=True)
-class _Scores:
-    """words: (n, V) of each held-out clip; clips: label vectors (queries, V) -> (queries, n)."""
-
-    words: FloatArray
-    clips: Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,14 +121,16 @@ def held_out_word_figures(
     label_sets: Sequence[Sequence[str]],
     groups: Sequence[str],
     *,
+    sequence: Callable[[int], FloatArray] | None = None,
     seed: int = 0,
 ) -> WordEvaluation:
     """Figures of the prior (word frequency), the default word model and the cca mode, which
-    stands in four forms: by angle; by distance and with the pseudo-inverse, as printed; through
-    the nearest training symbol (see _score).
+    stands in several forms (see word_methods).
 
     symbols: N; statistics: (N, p); label_sets: N; groups: N, equal for files of one
-    recording (see folds.recording_of). Clips without words are left out.
+    recording (see folds.recording_of); sequence: the channels (T, D) of the motion at a row, of
+    which its symbol was made; without it, recognition through the most likely symbol is left
+    out. Clips without words are left out.
     Raises NotEnoughLabels where there are too few clips to hold some out.
     """
     chosen = _chosen(label_sets, seed)
@@ -160,12 +139,20 @@ def held_out_word_figures(
     own_groups = [groups[row] for row in chosen]
     folds = min(FOLDS, len(set(own_groups)))
     own_symbols = [symbols[row] for row in chosen]
-    clips = _Clips(
-        symbol_distances(own_symbols, own_symbols),
+    distances = symbol_distances(own_symbols, own_symbols)
+    likelihoods = None
+    if sequence is not None:
+        channels = sequence  # of the rows that were chosen
+        likelihoods = likelihoods_of_symbols(
+            own_symbols, distances, lambda row: channels(int(chosen[row]))
+        )
+    clips = LabelledClips(
+        distances,
         np.asarray(statistics)[chosen],
         vocabulary.label_matrix(labels),
         tuple(own_groups),
         grouped_folds(own_groups, folds, seed=seed),
+        likelihoods,
     )
     _check_size(clips, folds)
     parts = [
@@ -180,7 +167,7 @@ def held_out_word_figures(
         words=len(vocabulary),
         folds=folds,
         in_sample=_all_figures(in_sample, clips.labels),
-        reliability=_reliability(held_out, clips.labels),
+        reliability={name: _reliability(held_out, name, clips.labels) for name in (DEFAULT, CCA)},
         correlations=_correlations(clips),
         by_word=_by_word(held_out[DEFAULT].singles, clips, vocabulary.words),
     )
@@ -192,18 +179,18 @@ def _chosen(label_sets: Sequence[Sequence[str]], seed: int) -> IntArray:
     return np.sort(np.random.RandomState(seed).permutation(labelled)[:MOST_CLIPS])
 
 
-def _check_size(clips: _Clips, folds: int) -> None:
+def _check_size(clips: LabelledClips, folds: int) -> None:
     training = len(clips.fold) - int(np.bincount(clips.fold, minlength=1).max(initial=0))
     if folds < 2 or training < LEAST_CLIPS:
         raise NotEnoughLabels(f"{len(clips.fold)} labelled clips are too few to hold some out.")
 
 
-def _tables(clips: _Clips, parts: Sequence[tuple[IntArray, IntArray]]) -> dict[str, _Tables]:
+def _tables(clips: LabelledClips, parts: Sequence[tuple[IntArray, IntArray]]) -> dict[str, _Tables]:
     """By method; parts: rows to fit on and rows to score, which together are all."""
     count, vocabulary = clips.labels.shape
     tables: dict[str, _Tables] = {}
     for training, held in parts:
-        for name, scores in _score(clips, training, held).items():
+        for name, scores in score(clips, training, held).items():
             if name not in tables:
                 shapes = (count, vocabulary), (vocabulary, count), (count, count)
                 tables[name] = _Tables(*(np.zeros(shape) for shape in shapes))
@@ -237,8 +224,8 @@ def _carries_all(labels: FloatArray) -> BoolArray:
     return np.asarray(labels @ labels.T >= labels.sum(axis=1)[:, None])
 
 
-def _reliability(tables: dict[str, _Tables], labels: FloatArray) -> Reliability:
-    own, carries, carries_all = tables[DEFAULT], labels > 0.0, _carries_all(labels)
+def _reliability(tables: dict[str, _Tables], method: str, labels: FloatArray) -> Reliability:
+    own, carries, carries_all = tables[method], labels > 0.0, _carries_all(labels)
     together = np.exp(own.sets)
     return Reliability(
         word_error=calibration_error(own.words, carries),
@@ -249,7 +236,9 @@ def _reliability(tables: dict[str, _Tables], labels: FloatArray) -> Reliability:
     )
 
 
-def _by_word(singles: FloatArray, clips: _Clips, words: Sequence[str]) -> tuple[JudgedWord, ...]:
+def _by_word(
+    singles: FloatArray, clips: LabelledClips, words: Sequence[str]
+) -> tuple[JudgedWord, ...]:
     """The most carried first; singles: (V, N)."""
     found = []
     for word, scores, carries in zip(words, singles, clips.labels.T > 0.0, strict=True):
@@ -267,79 +256,11 @@ def _by_word(singles: FloatArray, clips: _Clips, words: Sequence[str]) -> tuple[
     return tuple(sorted(found, key=lambda one: (-one.clips, one.word)))
 
 
-def _correlations(clips: _Clips) -> dict[str, tuple[float, ...]]:
-    points = _points(clips, np.arange(len(clips.labels)))
+def _correlations(clips: LabelledClips) -> dict[str, tuple[float, ...]]:
+    points = symbol_points(clips, np.arange(len(clips.labels)))
     return {
         name: tuple(
             fit_correlated_space(points, clips.labels, ridge=ridge).pair.correlations.tolist()
         )
         for name, ridge in (("ridge", RIDGE), ("pseudo_inverse", 0.0))
     }
-
-
-def _score(clips: _Clips, training: IntArray, held: IntArray) -> dict[str, _Scores]:
-    """Scores of the held-out rows by each method, fitted on the training rows.
-
-    cca-distance is Takano's retrieval as printed: nearest by Euclidean distance; cca-pinv has
-    the pseudo-inverse for the ridge besides. cca-symbol is his recognition: an observed motion
-    counts as the training symbol that it is likeliest of, here the one of least divergence from
-    its own symbol, since motions are not kept; the others place its own symbol directly.
-    """
-    labels = clips.labels[training]
-    frequency = np.tile(labels.mean(axis=0), (len(held), 1))
-    model = fit_word_model(clips.statistics[training], labels)
-    own_groups = [clips.groups[row] for row in training]
-    curve = calibrate(model, clips.statistics[training], labels, own_groups)
-    every = _points(clips, training)
-    points, likeliest = every[held], every[_likeliest(clips, training, held)]
-    space = fit_correlated_space(every[training], labels)
-    printed = fit_correlated_space(every[training], labels, ridge=0.0)
-    return {
-        PRIOR: _by_cosine(frequency),
-        DEFAULT: _by_surprise(curve, model.outputs(clips.statistics[held])),
-        "cca": _by_angle(space, points),
-        "cca-distance": _by_distance(space, points),
-        "cca-pinv": _by_distance(printed, points),
-        "cca-symbol": _by_angle(space, likeliest),
-    }
-
-
-def _by_surprise(curve: WordCalibration, outputs: FloatArray) -> _Scores:
-    words = curve.probabilities(outputs)
-    return _Scores(words, _each(lambda query: -curve.joint_surprise(words[:, query > 0.0])))
-
-
-def _by_angle(space: CorrelatedSpace, points: FloatArray) -> _Scores:
-    return _Scores(
-        space.word_cosines(points), _each(lambda query: space.clip_cosines(points, query))
-    )
-
-
-def _by_distance(space: CorrelatedSpace, points: FloatArray) -> _Scores:
-    return _Scores(
-        -space.word_distances(points), _each(lambda query: -space.clip_distances(points, query))
-    )
-
-
-def _likeliest(clips: _Clips, training: IntArray, held: IntArray) -> IntArray:
-    """The training row whose symbol is nearest to that of each held-out row."""
-    return np.asarray(training[np.argmin(clips.distances[np.ix_(held, training)], axis=1)])
-
-
-def _by_cosine(words: FloatArray) -> _Scores:
-    return _Scores(words, _each(lambda query: clip_cosines(words, query)))
-
-
-def _each(score: Callable[[FloatArray], FloatArray]) -> Callable[[FloatArray], FloatArray]:
-    """(queries, V) -> (queries, n) by a score for one query."""
-    return lambda queries: np.array([score(query) for query in queries])
-
-
-def _points(clips: _Clips, training: IntArray) -> FloatArray:
-    """(N, d) where all clips lie in the symbol space of the training rows.
-
-    As fit_symbol_space does, but from distances that are computed once for all folds.
-    """
-    rows = training[landmark_rows(len(training))]
-    landmarks = metric_mds(clips.distances[np.ix_(rows, rows)], DIMENSIONS)
-    return place(clips.distances[:, rows], landmarks)

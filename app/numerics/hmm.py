@@ -15,6 +15,9 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
 
+MOST_EMISSIONS = 2_000_000
+"""Log densities (frames x states x models) computed at once; bounds memory to some 50 MB."""
+
 LEAST_PROBABILITY = 1e-10
 """Transitions are floored here before their logarithm is taken, so that none is -inf."""
 
@@ -104,8 +107,34 @@ def log_likelihood(model: GaussianHMM, sequence: FloatArray) -> float:
 
 
 def log_likelihoods(models: Sequence[GaussianHMM], sequence: FloatArray) -> FloatArray:
-    """(M,) log P(sequence | model) of each model: which symbol is this motion (Takano 2.4)?"""
-    return np.array([log_likelihood(model, sequence) for model in models])
+    """(M,) log P(sequence | model) of each model: which symbol is this motion (Takano 2.4)?
+
+    As log_likelihood, for many models at once.
+    """
+    if not models:
+        return np.zeros(0)
+    states = max(model.states for model in models)
+    at_once = max(1, MOST_EMISSIONS // (len(sequence) * states))
+    parts = [
+        _log_likelihoods(models[first : first + at_once], sequence, states)
+        for first in range(0, len(models), at_once)
+    ]
+    return np.concatenate(parts)
+
+
+def _log_likelihoods(
+    models: Sequence[GaussianHMM], sequence: FloatArray, states: int
+) -> FloatArray:
+    """(M,); models with fewer states get ones that are never entered."""
+    emissions = np.zeros((len(sequence), states, len(models)))
+    log_stay = np.zeros((states, len(models)))
+    log_move = np.full((states - 1, len(models)), -np.inf)
+    for column, model in enumerate(models):
+        own = model.states
+        emissions[:, :own, column] = log_emissions(sequence, model.means, model.variances)
+        log_stay[:own, column] = model.log_stay()
+        log_move[: own - 1, column] = model.log_move()
+    return np.asarray(np.logaddexp.reduce(forward(emissions, log_stay, log_move)[-1], axis=0))
 
 
 def occupancy(model: GaussianHMM, sequence: FloatArray) -> FloatArray:
@@ -119,16 +148,16 @@ def occupancy(model: GaussianHMM, sequence: FloatArray) -> FloatArray:
 def forward(emissions: FloatArray, log_stay: FloatArray, log_move: FloatArray) -> FloatArray:
     """(T, K) log probability of the frames so far and of being in each state now.
 
-    emissions: (T, K) log densities; log_stay: (K,); log_move: (K - 1,).
+    emissions: (T, K) log densities; log_stay: (K,); log_move: (K - 1,); each may have a further
+    axis, of models.
     One running sum over time for each state, instead of one step over states for each
     frame: with c_t = sum of (stay + emission) up to t, a state entered at s has
     log alpha_t = c_t + log sum_{s <= t} exp(enter_s - c_s).
     """
-    frames, states = emissions.shape
     stays = np.cumsum(emissions + log_stay, axis=0)
-    alpha = np.full((frames, states), -np.inf)
+    alpha = np.full(emissions.shape, -np.inf)
     alpha[:, 0] = stays[:, 0] - log_stay[0]  # the first frame is not a transition
-    for state in range(1, states):
+    for state in range(1, emissions.shape[1]):
         enter = alpha[:-1, state - 1] + log_move[state - 1] + emissions[1:, state]
         alpha[1:, state] = stays[1:, state] + np.logaddexp.accumulate(enter - stays[1:, state])
     return alpha

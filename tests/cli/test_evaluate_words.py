@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tests.cli.conftest import Kinedex
 
-METHODS = ["prior", "default", "cca", "cca-distance", "cca-pinv", "cca-symbol"]
+METHODS = ["prior", "default", "cca", "cca-angle", "cca-distance", "cca-pinv", "cca-symbol"]
 
 
 def test_tables_for_people(kinedex: Kinedex, tmp_path: Path) -> None:
@@ -19,7 +19,7 @@ def test_tables_for_people(kinedex: Kinedex, tmp_path: Path) -> None:
         "method",
         *["top-3", "words", "word", "F", "word", "MAP", "set", "F", "set", "MAP"],
     ]
-    assert [line.split()[0] for line in lines[3:9]] == METHODS
+    assert [line.split()[0] for line in lines[3:10]] == METHODS
     assert "Canonical correlations (pseudo-inverse): " in ended.out
     assert "Too rare to judge one by one, in fewer than 5 recordings: " in ended.out
     assert "Nearest to wave in the correlated space (table 2):" in ended.out
@@ -32,7 +32,7 @@ def test_json_for_programs(kinedex: Kinedex) -> None:
     assert [row["method"] for row in told["in_sample"]] == METHODS
     assert all(len(row["precision"]) == len(told["recalls"]) for row in told["figures"])
     assert told["words"] == len(told["by_word"])
-    assert {"word_error", "word_brier", "set_error"} <= told["reliability"].keys()
+    assert {"word_error", "word_brier", "set_error"} <= told["reliability"]["default"].keys()
     ratios = [near["ratio"] for near in told["examples"][0]["nearest"]]
     assert ratios == sorted(ratios)
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from app.numerics import hmm
 from app.numerics.hmm import (
     GaussianHMM,
     backward,
@@ -63,6 +64,19 @@ def test_the_symbol_most_likely_to_generate_a_motion_is_its_own() -> None:
     models = [fit_left_to_right(wavy(60, s), states=10, variance_floor=FLOOR) for s in range(5)]
     for seed in range(5):
         assert np.argmax(log_likelihoods(models, wavy(60, seed))) == seed
+
+
+def test_many_models_are_scored_as_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    models = [
+        fit_left_to_right(wavy(60, seed), states=states, variance_floor=FLOOR)
+        for seed, states in enumerate((1, 5, 8, 3))
+    ]
+    motion = wavy(50, 3)
+    one_by_one = [log_likelihood(model, motion) for model in models]
+    np.testing.assert_allclose(log_likelihoods(models, motion), one_by_one, rtol=1e-10)
+    monkeypatch.setattr(hmm, "MOST_EMISSIONS", 900)  # two models at once
+    np.testing.assert_allclose(log_likelihoods(models, motion), one_by_one, rtol=1e-10)
+    assert log_likelihoods([], motion).shape == (0,)
 
 
 def test_expected_path_lasts_about_as_long_as_the_clip(model: GaussianHMM) -> None:

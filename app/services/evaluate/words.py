@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.analysis.symbol_features import symbol_features
 from app.models.correlated_space import fit_correlated_space
 from app.models.symbol_space import fit_symbol_space
 from app.models.word_figures import (
@@ -17,9 +18,12 @@ from app.models.word_figures import (
 )
 from app.models.word_query import understand
 from app.models.word_vocabulary import WordVocabulary
+from app.motion.body_frame import body_track
+from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.library import Library
 from app.services.pictures import Curve, Format, Panel, curves_picture
+from app.services.stored_motion import load_motion
 from app.services.training import TrainingSet, read_training_set, ready_only
 from app.store.clip_filter import ClipFilter
 
@@ -54,8 +58,16 @@ class WordExample:
 def judge_words(lib: Library, wanted: ClipFilter | None = None) -> WordEvaluation:
     """Figures of the word models beside the prior. Raises NotEnoughLabels."""
     training = read_training_set(lib.store, ready_only(wanted))
+
+    def channels(row: int) -> FloatArray:
+        return symbol_features(body_track(load_motion(lib, training.clips[row])))
+
     return held_out_word_figures(
-        training.symbols, training.statistics, training.label_sets, training.groups
+        training.symbols,
+        training.statistics,
+        training.label_sets,
+        training.groups,
+        sequence=channels,
     )
 
 
