@@ -108,7 +108,10 @@ def search_motion(lib: Lib, query: Annotated[MotionQuery, Depends(_motion_query)
     responses=refusals(400, 409, 413, 415),
 )
 def search_words(lib: Lib, query: WordSearch) -> WordHits:
-    """Find motions for words."""
+    """Find motions for words, phrases or sentences, the likeliest to carry them all first.
+
+    A hit's `score` is a probability, in both modes.
+    """
     hits = find.find_words(
         lib,
         WordQuery(

@@ -35,11 +35,17 @@ class WordBeginning(Incoming):
     limit: int = Field(10, ge=1, le=1000, description="Most completions, with `q`.")
 
 
+WORD_SCORE = (
+    "Probability that a clip of such a motion carries the word, learned on clips that were held "
+    "out: comparable between clips and between words."
+)
+
+
 class WordSuggestion(Outgoing):
     """A word that the model would give a clip."""
 
     word: str
-    score: float = Field(ge=0, le=1)
+    score: float = Field(ge=0, le=1, description=WORD_SCORE)
 
 
 class WordSuggestions(Outgoing):

@@ -8,6 +8,7 @@ from pydantic import ConfigDict, Field
 
 from app.api.schemas.base import Incoming, Outgoing
 from app.api.schemas.clips import Label
+from app.api.schemas.labels import WORD_SCORE
 from app.api.schemas.search import ClipId, UploadFields
 from app.models.recognition import Answer as FoundAnswer
 from app.services.recognise import Recognised
@@ -65,7 +66,7 @@ class WordScore(Outgoing):
     """A word that describes the motion."""
 
     word: str
-    score: float = Field(ge=0, le=1)
+    score: float = Field(ge=0, le=1, description=WORD_SCORE)
 
 
 class Recognition(Outgoing):
@@ -77,9 +78,9 @@ class Recognition(Outgoing):
 
     @classmethod
     def of(cls, found: Recognised) -> Recognition:
-        """A recognition as it goes over the wire; a regression may score a word above 1."""
+        """A recognition as it goes over the wire."""
         return cls(
             person=Answer.of(found.person),
             task=Answer.of(found.task),
-            words=[WordScore(word=word, score=min(score, 1.0)) for word, score in found.words],
+            words=[WordScore(word=word, score=score) for word, score in found.words],
         )

@@ -112,7 +112,13 @@ class WordSearch(Incoming):
             "understood; one with a minus before it (-left) is to be left out."
         ),
     )
-    mode: Literal["default", "cca"] = "default"
+    mode: Literal["default", "cca"] = Field(
+        "default",
+        description=(
+            "How clips are ranked: by a kernel regression of words on what is measured of a "
+            "motion, or by angle in Takano's correlated space of motion symbols and words."
+        ),
+    )
     limit: Limit = 10
     filter: Filter | None = None
     cursor: Cursor | None = None
@@ -174,9 +180,31 @@ class MotionHits(Outgoing):
         )
 
 
-class WordHits(MotionHits):
-    """A page of a ranking by words."""
+class WordHit(Hit):
+    """One answer of a search by words."""
 
+    score: float = Field(
+        ge=0,
+        le=1,
+        description=(
+            "Probability that the clip carries all that was asked for, learned on clips that were "
+            "held out: comparable between queries. Of the words that stand for one that no clip "
+            "carries, the likeliest counts, as far as it is near in meaning."
+        ),
+    )
+    distance: float = Field(
+        description="-ln(score) in mode default; 1 - cosine, 0 to 2, in mode cca."
+    )
+
+
+class WordHits(Outgoing):
+    """A page of a ranking by words, the likeliest first."""
+
+    method: str
+    took_ms: float
+    library_version: int
+    items: list[WordHit]
+    next: str | None
     unknown_words: list[str] = Field(description="Words that no clip carries.")
     expanded: dict[str, list[str]] = Field(description="What was used in their place.")
 
@@ -184,7 +212,11 @@ class WordHits(MotionHits):
     def of(cls, hits: services.Hits) -> WordHits:
         """A page as it goes over the wire, with what became of the words."""
         return cls(
-            **dict(MotionHits.of(hits)),
+            method=hits.method,
+            took_ms=hits.took_ms,
+            library_version=hits.library_version,
+            items=[WordHit(**dict(Hit.of(hit))) for hit in hits.items],
+            next=hits.next,
             unknown_words=list(hits.unknown_words),
             expanded={word: list(known) for word, known in (hits.expanded or {}).items()},
         )
