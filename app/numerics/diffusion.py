@@ -44,11 +44,15 @@ def diffused_closeness(
     """
     weights = _edges(distances, radii)
     degrees = np.sqrt(weights.sum(axis=1) + LEAST_DEGREE)
-    system = np.eye(len(weights)) - damping * weights / np.outer(degrees, degrees)
-    factor, _ = lapack.dpotrf(system, lower=True)  # positive definite, as damping < 1
-    kernel, _ = lapack.dpotri(factor, lower=True)  # of which only the lower half is made
-    cosines = kernel[:, 0] / np.sqrt(kernel[0, 0] * np.diag(kernel))
-    return np.asarray(np.clip(cosines, 0.0, 1.0))
+    weights *= -damping / degrees
+    weights /= degrees[:, None]
+    np.fill_diagonal(weights, 1.0)
+    # Symmetric: its transpose is itself, in the order that LAPACK overwrites.
+    factor, _ = lapack.dpotrf(weights.T, lower=True, overwrite_a=True)  # damping < 1: definite
+    # K = M^T M, of which only the first column and the diagonal are asked for.
+    half, _ = lapack.dtrtri(factor, lower=True, overwrite_c=True)
+    first, own = half.T @ half[:, 0], np.einsum("ij,ij->j", half, half)
+    return np.asarray(np.clip(first / np.sqrt(own[0] * own), 0.0, 1.0))
 
 
 def _edges(distances: FloatArray, radii: FloatArray) -> FloatArray:
