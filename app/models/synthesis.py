@@ -39,6 +39,9 @@ PART_RIDGE = 0.02
 MOST_TASKS = 24
 """Tasks of which one is made: the most alike; more only cost time."""
 
+TEMPO_SLACK = 0.15
+"""Of log seconds: nobody is made to be much quicker or slower at a task than all who did it."""
+
 DIMENSIONS = 64
 """Coordinates in which real clips are compared with what was made."""
 
@@ -49,8 +52,9 @@ MOST_CELLS = 20_000
 @dataclass(frozen=True, slots=True)
 class Synthesis:
     """persons, tasks: sorted labels; means: (cells, 1378) mean motion shapes; person, task:
-    (cells,) index of the label; takes: (cells,) clips of each. axes, points (N, 64), ids (N,):
-    the real clips' weighted shapes, among which the nearest to a made one is looked up."""
+    (cells,) index of the label; takes: (cells,) clips of each. axes, points (N, 64), ids (N,),
+    member (N,): the real clips' weighted shapes, among which the nearest to a made one is
+    looked up, and the cell of each."""
 
     persons: tuple[str, ...]
     tasks: tuple[str, ...]
@@ -61,6 +65,7 @@ class Synthesis:
     axes: PrincipalAxes
     points: FloatArray
     ids: tuple[str, ...]
+    member: IntArray
 
     def cell(self, person: str, task: str) -> FloatArray | None:
         """(1378,) the mean of a person's own takes of a task, None where there is none."""
@@ -76,11 +81,25 @@ class Synthesis:
         """The persons who did a task."""
         return tuple(self.persons[i] for i in sorted(self.person[self._did(task)]))
 
-    def nearest(self, shape: FloatArray) -> tuple[str, float]:
-        """The id of the real clip whose motion shape is nearest to (1378,), and how far it is."""
-        away = np.linalg.norm(self.points - self.axes.project(shape * weights()), axis=1)
-        first = int(np.argmin(away))
-        return self.ids[first], float(away[first])
+    def distances(self, shape: FloatArray) -> FloatArray:
+        """(N,) how far the real clips are from a motion shape (1378,)."""
+        return np.asarray(
+            np.linalg.norm(self.points - self.axes.project(shape * weights()), axis=1)
+        )
+
+    def labels_of(self, clip: int) -> tuple[str, str]:
+        """Person and task of the real clip with this index."""
+        cell = self.member[clip]
+        return self.persons[self.person[cell]], self.tasks[self.task[cell]]
+
+    def clips_of(self, person: str | None = None, task: str | None = None) -> IntArray:
+        """Indices of the real clips of a person, of a task, or of both."""
+        cells = np.ones(len(self.person), dtype=bool)
+        if person is not None:
+            cells &= self.person == self._of(person, self.persons)
+        if task is not None:
+            cells &= self._did(task)
+        return np.flatnonzero(cells[self.member])
 
     def _did(self, task: str) -> BoolArray:
         return np.asarray(self.task == self._of(task, self.tasks))
@@ -99,6 +118,7 @@ class Synthesis:
             "centre": self.axes.centre,
             "axes": self.axes.axes,
             "points": self.points.astype(np.float32),
+            "member": self.member,
         }
         meta = {
             "version": SYNTHESIS_VERSION,
@@ -123,6 +143,7 @@ class Synthesis:
             PrincipalAxes(arrays["centre"], arrays["axes"]),
             arrays["points"].astype(np.float64),
             tuple(meta["ids"]),
+            arrays["member"],
         )
 
 
@@ -157,6 +178,7 @@ def fit_synthesis(
         axes,
         axes.project(counted),
         tuple(names),
+        cells.member,
     )
 
 
@@ -182,6 +204,8 @@ def predict(
     near = _most_alike(basis, wanted)
     shape = solve(basis[:, near], wanted, own[near])
     shape[-1] = float(np.mean(wanted[:, -1]) >= 0.5)
+    shortest, longest = wanted[:, -2].min(), wanted[:, -2].max()
+    shape[-2] = np.clip(shape[-2], shortest - TEMPO_SLACK, longest + TEMPO_SLACK)
     return shape
 
 

@@ -6,7 +6,7 @@ that person, and of that task? The made one has seen none of that cell.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,8 +23,6 @@ TRIALS = 32
 
 NEW_TASK, NEW_PERSON = "new_task", "new_person"
 
-Labels = Sequence[str | None]
-
 
 @dataclass(frozen=True, slots=True)
 class Trial:
@@ -35,21 +33,23 @@ class Trial:
     given: tuple[str, ...]
 
 
-def held_out_synthesis(
-    record: Synthesis, persons: Labels, tasks: Labels, trials: int = TRIALS
-) -> dict[str, list[dict[str, Any]]]:
+def held_out_synthesis(record: Synthesis, trials: int = TRIALS) -> dict[str, list[dict[str, Any]]]:
     """Rows by number given, for "new_task" (a known person's, from so many others' takes) and
     "new_person" (from takes of so many of their tasks, all others known).
 
-    persons, tasks: (clips,) labels by `record.ids`. Each row: given, trials, and shares of
+    Each row: given, trials, and shares of
     trials whose nearest real clip is right in person, in task and in both ("hit"); and the hit
     of the baselines "effects" (person and task effects added) and "task_mean".
     """
-    truth = dict(zip(record.ids, zip(persons, tasks, strict=True), strict=True))
     return {
-        kind: [row for given in GIVEN if (row := _row(record, truth, kind, given, trials))]
+        kind: [row for given in GIVEN if (row := _row(record, kind, given, trials))]
         for kind in (NEW_TASK, NEW_PERSON)
     }
+
+
+def nearest_labels(record: Synthesis, shape: FloatArray) -> tuple[str, str]:
+    """Person and task of the real clip nearest to a motion shape (1378,)."""
+    return record.labels_of(int(np.argmin(record.distances(shape))))
 
 
 def made(record: Synthesis, kind: str, trial: Trial) -> FloatArray:
@@ -86,26 +86,22 @@ def _others(record: Synthesis, person: str, task: str, kind: str) -> list[str]:
     return [name for name in record.tasks_of(person) if name != task]
 
 
-def _row(
-    record: Synthesis, truth: dict[str, Any], kind: str, given: int, trials: int
-) -> dict[str, Any] | None:
+def _row(record: Synthesis, kind: str, given: int, trials: int) -> dict[str, Any] | None:
     drawn = draw_trials(record, kind, given, trials)
     if not drawn:
         return None
-    hits = np.array(list(_judged(record, truth, kind, drawn)), dtype=np.float64).mean(axis=0)
+    hits = np.array(list(_judged(record, kind, drawn)), dtype=np.float64).mean(axis=0)
     names = ("person", "task", "hit", "effects", "task_mean")
     shares = {name: round(float(hit), 4) for name, hit in zip(names, hits, strict=True)}
     return {"given": given, "trials": len(drawn), **shares}
 
 
-def _judged(
-    record: Synthesis, truth: dict[str, Any], kind: str, drawn: list[Trial]
-) -> Iterator[tuple[bool, ...]]:
+def _judged(record: Synthesis, kind: str, drawn: list[Trial]) -> Iterator[tuple[bool, ...]]:
     for trial in drawn:
         label = (trial.person, trial.task)
-        who, what = truth[record.nearest(made(record, kind, trial))[0]]
+        who, what = nearest_labels(record, made(record, kind, trial))
         baselines = (
-            truth[record.nearest(baseline(record, kind, trial, by))[0]] == label
+            nearest_labels(record, baseline(record, kind, trial, by)) == label
             for by in (effects_only, task_mean)
         )
         yield (who == trial.person, what == trial.task, (who, what) == label, *baselines)

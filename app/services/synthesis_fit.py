@@ -29,4 +29,4 @@ def fit_on(store: Store, training: TrainingSet) -> tuple[Synthesis, dict[str, An
     shapes = np.array([found[clip_id] for clip_id, _, _ in told]).reshape(-1, SHAPE_LENGTH)
     ids, persons, tasks = ([row[column] for row in told] for column in range(3))
     model = fit_synthesis(shapes, persons, tasks, ids)
-    return model, {"held_out": held_out_synthesis(model, persons, tasks)}
+    return model, {"held_out": held_out_synthesis(model)}

@@ -1,0 +1,138 @@
+"""A course of joint roles on a person's own skeleton.
+
+The turns of its joints start as those of the person's own moments in which the body was held
+most alike (a kernel mean of them), so that what 13 roles do not tell, twists and toes and
+fingers, is as the person does it; then the joints turn until the roles are where they should
+be (`motion.posing`), and once more with the feet held where they stand (`foot_contact`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from app.models.synthetic_motion import Course
+from app.motion.animation import Animation, continuous
+from app.motion.body_frame import ANALYSIS_RATE, BodyTrack, turned
+from app.motion.foot_contact import FEET, planted
+from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.posing import ancestors, pose_to
+from app.motion.rotations import conjugate, identity_quaternions, multiply
+from app.numerics.arrays import FloatArray, IntArray
+
+NEIGHBOURS = 12
+"""Moments of the person's that a pose starts from."""
+
+SMOOTHING = 1.5
+"""Frames (standard deviation): neighbours change from one frame to the next."""
+
+LOWEST_QUANTILE = 0.01
+"""The floor is where the lowest joint goes under in this share of frames."""
+
+_HIPS = SUN_ROLES.index(JointRole.HIPS)
+
+
+@dataclass(frozen=True, slots=True)
+class Donor:
+    """A real clip of the person at ANALYSIS_RATE: turns and places of the joints, the body's
+    track over as many frames, and the joint of each role."""
+
+    animation: Animation
+    track: BodyTrack
+    joints: dict[JointRole, int]
+
+
+def same_body(donors: Sequence[Donor]) -> list[Donor]:
+    """The donors whose skeleton at rest is that of the first, which comes first."""
+    first = donors[0].animation.skeleton
+    return [
+        donor
+        for donor in donors
+        if donor.animation.skeleton.names == first.names
+        and np.allclose(donor.animation.skeleton.offsets, first.offsets, atol=0.02)
+    ]
+
+
+def embody(course: Course, donors: Sequence[Donor]) -> Animation:
+    """The course on the skeleton of the donors, which they share; the floor is at Y = 0."""
+    joints = donors[0].joints
+    posed = pose_to(_start(course, donors), joints, course.positions)
+    wanted = np.array(course.positions)
+    reached = posed.positions()
+    feet = [SUN_ROLES[foot] for foot in FEET]
+    if all(role in joints for role in feet):
+        there = reached[:, [joints[role] for role in feet]]
+        wanted[:, FEET] = planted(there, ANALYSIS_RATE)
+        posed = pose_to(posed, joints, wanted)
+        reached = posed.positions()
+    floor = np.quantile(reached[:, :, 1].min(axis=1), LOWEST_QUANTILE)
+    translations = np.array(posed.translations)
+    translations[:, 0, 1] -= floor
+    return Animation(posed.skeleton, posed.rotations, translations, ANALYSIS_RATE)
+
+
+def _start(course: Course, donors: Sequence[Donor]) -> Animation:
+    """Kernel means of the donors' turns at the moments most like those of the course."""
+    local = np.concatenate([donor.track.local for donor in donors])
+    turns = np.concatenate([_towards_heading(donor) for donor in donors])
+    places = np.concatenate([donor.animation.translations for donor in donors])
+    near, weights = _alike(_poses(course), local)
+    rotations = _mean_turns(turns[near], weights)
+    translations = np.einsum("nk,nkjc->njc", weights, places[near])
+    skeleton, hips = donors[0].animation.skeleton, donors[0].joints[JointRole.HIPS]
+    rotations[:, hips] = multiply(_about_y(course.heading), rotations[:, hips])
+    translations[:, hips] = course.positions[:, _HIPS]
+    above = ancestors(skeleton, hips)
+    if above:  # a root on the floor goes along under the hips
+        rotations[:, above] = identity_quaternions((1, 1))
+        translations[:, above] = 0.0
+        translations[:, 0] = course.positions[:, _HIPS] * [1.0, 0.0, 1.0]
+        translations[:, hips] *= [0.0, 1.0, 0.0]
+    return Animation(skeleton, rotations, translations, ANALYSIS_RATE)
+
+
+def _poses(course: Course) -> FloatArray:
+    """(n, 13, 3) about the hips, in the body's heading, any size."""
+    return turned(course.positions - course.positions[:, [_HIPS]], -course.heading)
+
+
+def _alike(poses: FloatArray, others: FloatArray) -> tuple[IntArray, FloatArray]:
+    """(n, k) which of `others` (m, 13, 3) are most like each of `poses`, and their weights."""
+    rows, table = (values.reshape(len(values), -1) for values in (poses, others))
+    rows = rows * (np.linalg.norm(table) / len(table) ** 0.5)
+    rows /= max(np.linalg.norm(poses) / len(poses) ** 0.5, 1e-9)
+    squares = (rows**2).sum(1)[:, None] - 2 * rows @ table.T + (table**2).sum(1)
+    count = min(NEIGHBOURS, len(table))
+    near = np.argsort(squares, axis=1, kind="stable")[:, :count]
+    away = np.maximum(np.take_along_axis(squares, near, axis=1), 0.0)
+    weights = np.exp(-0.5 * away / np.maximum(away.mean(axis=1, keepdims=True), 1e-9))
+    return near, weights / weights.sum(axis=1, keepdims=True)
+
+
+def _mean_turns(turns: FloatArray, weights: FloatArray) -> FloatArray:
+    """(n, joints, 4) weighted means of turns (n, k, joints, 4), smooth over time."""
+    side = np.sign(np.einsum("nkjc,njc->nkj", turns, turns[:, 0]))
+    mean = np.einsum("nk,nkj,nkjc->njc", weights, np.where(side == 0, 1.0, side), turns)
+    lengths = np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), 1e-9)
+    smooth = gaussian_filter1d(continuous(mean / lengths), SMOOTHING, axis=0, mode="nearest")
+    return np.asarray(smooth / np.maximum(np.linalg.norm(smooth, axis=-1, keepdims=True), 1e-9))
+
+
+def _towards_heading(donor: Donor) -> FloatArray:
+    """(n, joints, 4) the donor's turns, those of the hips seen from the body's heading."""
+    rotations = np.array(donor.animation.rotations, dtype=np.float64)
+    hips = donor.joints[JointRole.HIPS]
+    turn = rotations[:, hips]
+    for joint in ancestors(donor.animation.skeleton, hips):
+        turn = multiply(rotations[:, joint], turn)
+    rotations[:, hips] = multiply(conjugate(_about_y(donor.track.heading)), turn)
+    return rotations
+
+
+def _about_y(angles: FloatArray) -> FloatArray:
+    """(n, 4) turns about Y by angles (n,), radians."""
+    nothing = np.zeros_like(angles)
+    return np.stack([np.cos(angles / 2), nothing, np.sin(angles / 2), nothing], axis=-1)

@@ -1,0 +1,105 @@
+"""From a motion shape to a body in the world.
+
+A cycle goes round and round. What does not go round has more in it than 32 moments can say
+(a hand that waves): there a real take of the task is followed, led to where the shape wants
+it, slowly, so that what is quick stays the take's own. The way over ground is such that feet
+that stand do not slide.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from app.analysis.motion_sample import SAMPLES
+from app.analysis.motion_shape import CHANNELS, Shape, parts_of
+from app.motion.body_frame import ANALYSIS_RATE, turned
+from app.motion.foot_contact import FEET, carried_by_feet
+from app.motion.joint_roles import SUN_ROLES
+from app.motion.resampling import resample_to, sample_at
+from app.numerics.arrays import FloatArray
+
+USUAL_SECONDS = 4.0
+"""A cycle is repeated until about so long, unless told otherwise."""
+
+SLOWLY = 0.4
+"""Seconds (standard deviation): what of a take is quicker is left as it is."""
+
+SHORTEST_SECONDS = 0.2
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """A body at ANALYSIS_RATE: positions (n, 13, 3) metres, Y up, in SUN_ROLES order, and its
+    heading (n,) radians about Y; cycles: how often it goes round, 0 where it does not."""
+
+    positions: FloatArray
+    heading: FloatArray
+    cycles: int
+
+
+def course_of(
+    shape: FloatArray,
+    body_length: float,
+    *,
+    seconds: float | None = None,
+    take: FloatArray | None = None,
+    take_shape: FloatArray | None = None,
+) -> Course:
+    """The motion of a shape (1378,) by a body of `body_length` metres.
+
+    seconds: wished for; a cycle is repeated to about that long, anything else is stretched to
+    it; by default as long as the shape says. take: (n, 43) moments of a real take that is not
+    cyclic and take_shape (1378,) its shape, for its detail.
+    """
+    told = parts_of(shape)
+    if told.is_cyclic:
+        moments, cycles = _repeated(shape, told, seconds)
+    else:
+        moments, cycles = _stretched(shape, seconds or told.seconds, take, take_shape), 0
+    return _in_the_world(moments, body_length, cycles)
+
+
+def _repeated(shape: FloatArray, told: Shape, seconds: float | None) -> tuple[FloatArray, int]:
+    """(n, 43) whole cycles, each of as many frames: the end meets the start."""
+    frames = max(round(told.seconds * ANALYSIS_RATE), 4)
+    wished = USUAL_SECONDS if seconds is None else seconds
+    cycles = max(round(wished * ANALYSIS_RATE / frames), 1)
+    around = _moments(shape)
+    padded = np.concatenate([around[-2:], around, around[:3]])
+    once = sample_at(padded, 2 + SAMPLES * np.arange(frames) / frames)
+    return np.tile(once, (cycles, 1)), cycles
+
+
+def _stretched(
+    shape: FloatArray, seconds: float, take: FloatArray | None, take_shape: FloatArray | None
+) -> FloatArray:
+    frames = max(round(max(seconds, SHORTEST_SECONDS) * ANALYSIS_RATE), 2)
+    wanted = _moments(shape)
+    if take is None or take_shape is None:
+        return resample_to(wanted, frames)
+    away = wanted - _moments(take_shape)
+    slow = gaussian_filter1d(away, SLOWLY / max(seconds, 1e-3) * (SAMPLES - 1), axis=0)
+    return np.asarray(resample_to(take, frames) + resample_to(slow, frames))
+
+
+def _moments(shape: FloatArray) -> FloatArray:
+    return np.asarray(shape[:-2], dtype=np.float64).reshape(SAMPLES, CHANNELS)
+
+
+def _in_the_world(moments: FloatArray, body_length: float, cycles: int) -> Course:
+    """Moments (n, 43) integrated to a way over ground, then carried by the standing feet."""
+    step = 1 / ANALYSIS_RATE
+    heading = np.concatenate([[0.0], np.cumsum(moments[:-1, 42]) * step])
+    velocity = np.zeros((len(moments), 1, 3))
+    velocity[:, 0, 0], velocity[:, 0, 2] = moments[:, 40], moments[:, 41]
+    way = turned(velocity * body_length, heading)[:, 0] * step
+    origin = np.concatenate([np.zeros((1, 3)), np.cumsum(way[:-1], axis=0)])
+    origin[:, 1] = moments[:, 39] * body_length
+    local = moments[:, :39].reshape(-1, len(SUN_ROLES), 3) * body_length
+    around = turned(local, heading)
+    feet = (around + origin[:, None])[:, FEET]
+    origin = carried_by_feet(origin, feet, ANALYSIS_RATE)
+    return Course(around + origin[:, None], heading, cycles)
