@@ -31,9 +31,9 @@ _Part = WordModel | WordCalibration | SymbolSpace | CorrelatedSpace | CosineCali
 @dataclass(frozen=True, slots=True)
 class LibraryWords:
     """vocabulary: V words; model: the default; calibration: of its outputs; space: of all
-    symbols; correlated and cosines, the calibration of its angles: None where too few clips
-    have words; meanings: what WordNet knows of its words (models.language.wordnet), put in by
-    whoever fits.
+    symbols; correlated: None where too few clips have words, and so are cosines and
+    back_cosines, the calibrations of its angles from words to clips and from clips to words;
+    meanings: what WordNet knows of its words (models.language.wordnet), put in by whoever fits.
     """
 
     vocabulary: WordVocabulary
@@ -42,6 +42,7 @@ class LibraryWords:
     space: SymbolSpace
     correlated: CorrelatedSpace | None
     cosines: CosineCalibration | None
+    back_cosines: CosineCalibration | None
     meanings: Meanings = field(default_factory=Meanings)
 
     def ask(self, texts: Iterable[str]) -> WordsAsked:
@@ -73,15 +74,15 @@ class LibraryWords:
 
         Raises NotEnoughLabels where there is no correlated space.
         """
-        space, calibration = self._correlated()
-        return calibration.of_words(space.single_word_cosines(points))
+        space, _, calibration = self._correlated()
+        return calibration.of_words(space.word_cosines(points))
 
     def clip_angles(self, points: FloatArray, asked: WordsAsked) -> FloatArray:
         """(N,) 1 - cosine, 0..2, between clips at symbol coordinates (N, d) and a query.
 
         Raises NotEnoughLabels where there is no correlated space.
         """
-        space, _ = self._correlated()
+        space, *_ = self._correlated()
         return 1.0 - space.clip_cosines(points, self.vocabulary.vector(asked.weights))
 
     def angle_scores(self, angles: FloatArray, asked: WordsAsked) -> FloatArray:
@@ -89,15 +90,15 @@ class LibraryWords:
 
         Raises NotEnoughLabels where there is no correlated space.
         """
-        _, calibration = self._correlated()
+        _, calibration, _ = self._correlated()
         words = self.vocabulary.words
         common = self.clip_surprises(calibration.shares[None], words, asked.meant)
         return calibration.probabilities(1.0 - angles, np.exp(-common))
 
-    def _correlated(self) -> tuple[CorrelatedSpace, CosineCalibration]:
-        if self.correlated is None or self.cosines is None:
+    def _correlated(self) -> tuple[CorrelatedSpace, CosineCalibration, CosineCalibration]:
+        if self.correlated is None or self.cosines is None or self.back_cosines is None:
             raise NotEnoughLabels(f"The mode cca needs {LEAST_CLIPS} clips that have words.")
-        return self.correlated, self.cosines
+        return self.correlated, self.cosines, self.back_cosines
 
     def to_arrays(self) -> tuple[Arrays, dict[str, Any]]:
         """Arrays and JSON-able meta from which from_arrays makes the same record."""
@@ -107,6 +108,7 @@ class LibraryWords:
             "space": self.space,
             "correlated": self.correlated,
             "cosines": self.cosines,
+            "back_cosines": self.back_cosines,
         }
         arrays: Arrays = {}
         meta: dict[str, Any] = {
@@ -124,11 +126,14 @@ class LibraryWords:
         cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
     ) -> LibraryWords:
         """The record that to_arrays took apart. Raises ModelNotFitted on another version."""
-        correlated, cosines = None, None
+        correlated, cosines, back = None, None, None
         if "correlated" in meta:
             own = _part(arrays, "correlated")
             correlated = CorrelatedSpace.from_arrays(own, meta["correlated"])
-            cosines = CosineCalibration.from_arrays(_part(arrays, "cosines"), meta["cosines"])
+            cosines, back = (
+                CosineCalibration.from_arrays(_part(arrays, part), meta[part])
+                for part in ("cosines", "back_cosines")
+            )
         return cls(
             WordVocabulary(tuple(meta["words"])),
             WordModel.from_arrays(_part(arrays, "model"), meta["model"]),
@@ -136,6 +141,7 @@ class LibraryWords:
             SymbolSpace.from_arrays(_part(arrays, "space"), meta["space"]),
             correlated,
             cosines,
+            back,
             Meanings.from_meta(meta["meanings"]),
         )
 
@@ -171,11 +177,13 @@ def fit_library_words(
     calibration = calibrate(model, rows, truth, own, seed=seed)
     space = fit_symbol_space(symbols, seed=seed)
     points = space.place(symbols)
-    correlated, cosines = None, None
+    correlated, cosines, back = None, None, None
     if len(labelled) >= LEAST_CLIPS:
-        correlated = fit_correlated_space(points[labelled], truth)
-        cosines = calibrate_cosines(points[labelled], truth, own, seed=seed)
-    words = LibraryWords(vocabulary, model, calibration, space, correlated, cosines)
+        there = points[labelled]
+        correlated = fit_correlated_space(there, truth)
+        cosines = calibrate_cosines(there, truth, own, seed=seed)
+        back = calibrate_cosines(there, truth, own, CorrelatedSpace.word_cosines, seed=seed)
+    words = LibraryWords(vocabulary, model, calibration, space, correlated, cosines, back)
     return FittedWords(words, points)
 
 

@@ -28,7 +28,7 @@ from app.models.ranking_figures import (
     top_k_rate,
 )
 from app.models.symbol_space import symbol_distances
-from app.models.word_methods import CCA, DEFAULT, PRIOR, LabelledClips, score, symbol_points
+from app.models.word_methods import CCA_SCORE, DEFAULT, PRIOR, LabelledClips, score, symbol_points
 from app.models.word_vocabulary import WordVocabulary
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.hmm import GaussianHMM
@@ -92,8 +92,9 @@ class JudgedWord:
 @dataclass(frozen=True, slots=True)
 class WordEvaluation:
     """figures: held out, one a method; on so many clips, words and folds; in_sample: as the
-    paper's; reliability: of the held-out scores of DEFAULT and CCA as probabilities; correlations:
-    canonical ones of all clips by kind of inverse, falling; by_word: the default, held out.
+    paper's; reliability: of the held-out scores of DEFAULT and CCA_SCORE as probabilities;
+    correlations: canonical ones of all clips by kind of inverse, falling; by_word: the default,
+    held out.
     """
 
     figures: tuple[WordFigures, ...]
@@ -167,7 +168,9 @@ def held_out_word_figures(
         words=len(vocabulary),
         folds=folds,
         in_sample=_all_figures(in_sample, clips.labels),
-        reliability={name: _reliability(held_out, name, clips.labels) for name in (DEFAULT, CCA)},
+        reliability={
+            name: _reliability(held_out, name, clips.labels) for name in (DEFAULT, CCA_SCORE)
+        },
         correlations=_correlations(clips),
         by_word=_by_word(held_out[DEFAULT].singles, clips, vocabulary.words),
     )

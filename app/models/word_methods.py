@@ -15,7 +15,7 @@ from app.models.word_model import clip_cosines, fit_word_model
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.mds import metric_mds, place
 
-PRIOR, DEFAULT, CCA = "prior", "default", "cca"
+PRIOR, DEFAULT, CCA_SCORE = "prior", "default", "cca-score"
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,8 +43,9 @@ class Scores:
 def score(clips: LabelledClips, training: IntArray, held: IntArray) -> dict[str, Scores]:
     """Scores of the held-out rows by each method, fitted on the training rows.
 
-    "cca" is the mode as it is offered, "cca-angle" the same without what makes its scores
-    probabilities. "cca-distance" is Takano's retrieval as printed: nearest by Euclidean
+    "cca" is the mode as it ranks, by angle, "cca-score" by the probabilities that it tells
+    (which puts clips of one fold behind those of another where fewer of its training clips
+    carry the word). "cca-distance" is Takano's retrieval as printed: nearest by Euclidean
     distance; "cca-pinv" has the pseudo-inverse for the ridge besides. "cca-symbol" is his
     recognition: an observed motion counts as the training symbol that it is likeliest of; the
     others place its own symbol directly. It needs likelihoods.
@@ -57,18 +58,21 @@ def score(clips: LabelledClips, training: IntArray, held: IntArray) -> dict[str,
     every = symbol_points(clips, training)
     space = fit_correlated_space(every[training], labels)
     printed = fit_correlated_space(every[training], labels, ridge=0.0)
-    cosines = calibrate_cosines(every[training], labels, own_groups)
+    calibrations = tuple(
+        calibrate_cosines(every[training], labels, own_groups, cosines_of)
+        for cosines_of in (CorrelatedSpace.single_word_cosines, CorrelatedSpace.word_cosines)
+    )
     found = {
         PRIOR: _by_cosine(frequency),
         DEFAULT: _by_surprise(curve, model.outputs(clips.statistics[held])),
-        CCA: _by_chance(space, cosines, curve, every[held]),
-        "cca-angle": _by_angle(space, every[held]),
+        "cca": _by_angle(space, every[held]),
+        CCA_SCORE: _by_chance(space, every[held], calibrations, curve),
         "cca-distance": _by_distance(space, every[held]),
         "cca-pinv": _by_distance(printed, every[held]),
     }
     if clips.likelihoods is not None:
         likeliest = training[np.argmax(clips.likelihoods[np.ix_(held, training)], axis=1)]
-        found["cca-symbol"] = _by_chance(space, cosines, curve, every[likeliest])
+        found["cca-symbol"] = _by_angle(space, every[likeliest])
     return found
 
 
@@ -88,15 +92,20 @@ def _by_surprise(curve: WordCalibration, outputs: FloatArray) -> Scores:
 
 
 def _by_chance(
-    space: CorrelatedSpace, cosines: CosineCalibration, curve: WordCalibration, points: FloatArray
+    space: CorrelatedSpace,
+    points: FloatArray,
+    calibrations: tuple[CosineCalibration, ...],
+    curve: WordCalibration,
 ) -> Scores:
-    """As mode "cca" scores; of clips the logarithm, as of the default."""
+    """As mode "cca" scores; of clips the logarithm, as of the default. calibrations: of clips
+    for words, and of words for clips."""
+    cosines, back = calibrations
 
     def for_query(query: FloatArray) -> FloatArray:
         common = np.exp(-curve.joint_surprise(cosines.shares[None, query > 0.0]))
         return np.asarray(np.log(cosines.probabilities(space.clip_cosines(points, query), common)))
 
-    return Scores(cosines.of_words(space.single_word_cosines(points)), _each(for_query))
+    return Scores(back.of_words(space.word_cosines(points)), _each(for_query))
 
 
 def _by_angle(space: CorrelatedSpace, points: FloatArray) -> Scores:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tests.cli.conftest import Kinedex
 
-METHODS = ["prior", "default", "cca", "cca-angle", "cca-distance", "cca-pinv", "cca-symbol"]
+METHODS = ["prior", "default", "cca", "cca-score", "cca-distance", "cca-pinv", "cca-symbol"]
 
 
 def test_tables_for_people(kinedex: Kinedex, tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ def test_every_method_beats_the_prior_on_clips_that_can_be_told_apart() -> None:
     found = held_out_word_figures(symbols, statistics, words, groups)
     assert (found.clips, found.words, found.folds) == (24, 7, 5)
     figures = {one.method: one for one in found.figures}
-    cca = ["cca", "cca-angle", "cca-distance", "cca-pinv"]
+    cca = ["cca", "cca-score", "cca-distance", "cca-pinv"]
     assert list(figures) == ["prior", "default", *cca]
     assert figures["default"].word_f > figures["prior"].word_f
     assert figures["default"].top_3_recognition > 0.9
@@ -69,7 +69,7 @@ def test_curves_correlations_and_reliability_are_told() -> None:
         assert one.precision[-1] > 0.0
     held, seen = ({f.method: f for f in part} for part in (found.figures, found.in_sample))
     assert seen["default"].set_map >= held["default"].set_map
-    assert list(found.reliability) == ["default", "cca"]
+    assert list(found.reliability) == ["default", "cca-score"]
     for told in found.reliability.values():
         assert told.word_brier < told.prior_brier
         assert 0.0 <= told.word_error < 0.2
