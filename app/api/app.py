@@ -38,9 +38,11 @@ from app.api.routes import (
     studies,
     suggestions,
     symbols,
+    synthesize,
 )
 from app.api.schemas.recognition import Recognize
 from app.api.schemas.search import MotionSearch
+from app.api.schemas.synthesis import Synthesize
 from app.config import Settings
 from app.services.library import Library
 
@@ -64,6 +66,7 @@ _ROUTES = (
     search,
     poses,
     recognize,
+    synthesize,
     models,
     labels,
     symbols,
@@ -97,7 +100,7 @@ def create_app(settings: Settings) -> FastAPI:
     for module in _ROUTES:
         app.include_router(module.router)
     install_docs(app)
-    describe(app, [MotionSearch, Recognize], lambda: example_ids(app.state.library))
+    describe(app, [MotionSearch, Recognize, Synthesize], lambda: example_ids(app.state.library))
     # The last one added is the outermost.
     app.add_middleware(BodyLimit, settings=settings)
     install_metrics(app)

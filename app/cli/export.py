@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -48,7 +49,7 @@ def export(
             lib, clip_id, wanted, fps=fps, skeleton=skeleton, reduction=reduction
         )
         path = output or Path(file.file_name)
-        size = _write(path, file)
+        size = write_whole(path, file.blocks)
     if as_json:
         print_json({"path": str(path), "format": wanted.value, "bytes": size})
     else:
@@ -66,12 +67,15 @@ def _by_ending(output: Path | None) -> ExportFormat:
         raise BadField(f"output: {message}", places=[Place("output", message)]) from None
 
 
-def _write(path: Path, file: exporting.Export) -> int:
-    """Write beside the target, then rename: what was there stays until all is written."""
+def write_whole(path: Path, blocks: Iterable[bytes]) -> int:
+    """Write beside the target, then rename: what was there stays until all is written.
+
+    Returns how many bytes; raises BadField.
+    """
     part = path.with_name(f".{path.name}.part")
     try:
         with part.open("wb") as written:
-            size = sum(written.write(block) for block in file.blocks)
+            size = sum(written.write(block) for block in blocks)
         part.replace(path)
     except OSError as problem:
         message = f"cannot be written: {problem.strerror}"

@@ -21,6 +21,7 @@ from app.cli import (
     library,
     reanalyze,
     serve,
+    synthesize,
 )
 from app.cli.settings import remember
 from app.errors import KinedexError
@@ -42,6 +43,7 @@ program.command("reanalyze")(reanalyze.reanalyze)
 program.command("search")(find.search)
 program.command("search-pose")(find_pose.search_pose)
 program.command("recognize")(find.recognize)
+program.command("synthesize")(synthesize.synthesize)
 program.command("fit")(fit.fit)
 program.command("export")(export.export)
 program.add_typer(evaluate.program, name="evaluate")

@@ -125,7 +125,7 @@ def _towards_heading(donor: Donor) -> FloatArray:
     """(n, joints, 4) the donor's turns, those of the hips seen from the body's heading."""
     rotations = np.array(donor.animation.rotations, dtype=np.float64)
     hips = donor.joints[JointRole.HIPS]
-    turn = rotations[:, hips]
+    turn: FloatArray = rotations[:, hips]
     for joint in ancestors(donor.animation.skeleton, hips):
         turn = multiply(rotations[:, joint], turn)
     rotations[:, hips] = multiply(conjugate(_about_y(donor.track.heading)), turn)

@@ -88,9 +88,8 @@ def _body(skeleton: Skeleton, joints: dict[JointRole, int]) -> _Body:
     for column, joint in enumerate(wanted):
         below[ancestors(skeleton, joint), column] = 1.0
     # what is above the hips is no part of the body: it would turn the world
-    turns = below.any(axis=1)
-    turns[ancestors(skeleton, joints[JointRole.HIPS])] = False
-    turning = np.flatnonzero(turns)
+    below[ancestors(skeleton, joints[JointRole.HIPS])] = 0.0
+    turning = np.flatnonzero(below.sum(axis=1))
     weights = np.array([_WEIGHTS.get(role, 1.0) for role in roles])
     return _Body(turning, wanted, weights, below[turning].T)
 

@@ -117,7 +117,7 @@ def export(
             wanted, _Positions(motion.names, motion.parents, motion.positions, rate)
         )
     elif reduction is None:
-        blocks = _of_animation(wanted, _own_animation(lib, clip, motion, rate), clip)
+        blocks = _of_animation(wanted, own_animation(lib, clip, motion, rate), clip)
     else:
         blocks = _of_animation(wanted, _solved(motion, rate), clip)
     return Export(f"{_safe_stem(clip)}{ending}.{wanted.value}", blocks)
@@ -147,7 +147,9 @@ def _resampled(motion: Motion, rate: float) -> Motion:
     return replace(motion, positions=positions.astype(np.float32), frame_rate=rate)
 
 
-def _own_animation(lib: Library, clip: ClipRecord, motion: Motion, rate: float) -> Animation:
+def own_animation(lib: Library, clip: ClipRecord, motion: Motion, rate: float) -> Animation:
+    """The clip's joints turning at `rate` Hz: as its file says where it does, else as solved from
+    their positions."""
     if clip.format not in POSITION_FORMATS:
         try:
             recording = lib.pool.read(order_for(lib, clip))

@@ -1,0 +1,94 @@
+"""Making motions that nobody recorded."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.api.schemas.synthesis import Synthesis
+from app.cli.export import write_whole
+from app.cli.output import AsJson, print_json, print_table
+from app.cli.settings import open_library
+from app.services import synthesise
+from app.services.synthesis_plan import SynthesisKind
+from app.services.synthesise import Synthesised, SynthesisQuery
+
+
+def synthesize(
+    context: typer.Context,
+    task: Annotated[str, typer.Argument(help="What they are to do.")],
+    person: Annotated[str | None, typer.Option(help="A person of the library.")] = None,
+    clip: Annotated[
+        list[str] | None,
+        typer.Option(help="The id of a clip of the person; may be given several times."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="BVH file to write; default: by its name, here."),
+    ] = None,
+    seconds: Annotated[float | None, typer.Option(help="How long; default: as usual.")] = None,
+    store: Annotated[bool, typer.Option("--store", help="Keep the motion as a clip.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Make a motion that a person never recorded, as a BVH file, and tell what to expect."""
+    if (person is None) == (not clip):
+        raise typer.BadParameter("give either --person or --clip")
+    query = SynthesisQuery(
+        task=task,
+        person=person,
+        clip_ids=tuple(clip) if clip else None,
+        seconds=seconds,
+        store=store,
+    )
+    with open_library(context) as lib:
+        made = synthesise.synthesise(lib, query)
+    path = output or Path(f"{_safe(made.name)}.bvh")
+    write_whole(path, [made.bvh])
+    if as_json:
+        told = Synthesis.of(made, with_bvh=False).model_dump(mode="json", exclude={"motion"})
+        print_json({"path": str(path), "bytes": len(made.bvh)} | told)
+        return
+    _tell(made, path)
+
+
+def _tell(made: Synthesised, path: Path) -> None:
+    quality = made.quality
+    rows: list[tuple[str, object]] = [
+        ("file", f"{path}: {len(made.bvh)} bytes, {made.motion.duration:.2f} s"),
+        ("made of", _made_of(made)),
+        ("nearest real clip", quality.nearest.name if quality.nearest else "gone"),
+        ("which is of", f"{quality.nearest_person}, {quality.nearest_task}"),
+        ("expected hit", _expectation(made)),
+        ("feet slide", f"{quality.skate:.2f} m/s{_beside(quality.real_skate)}"),
+    ]
+    if made.clip is not None:
+        rows.append(("stored as", made.clip.id))
+    print_table(("", ""), rows)
+
+
+def _made_of(made: Synthesised) -> str:
+    quality = made.quality
+    if quality.kind is SynthesisKind.SEEN:
+        return "their own takes: this person did record the task"
+    tasks, persons = len(quality.given_tasks), len(quality.given_persons)
+    return f"{tasks} of their tasks, and {persons} other persons' takes of this one"
+
+
+def _expectation(made: Synthesised) -> str:
+    quality = made.quality
+    if quality.expected_hit is None:
+        return "not measured"
+    return (
+        f"{quality.expected_hit:.0%} of {quality.expected_trials} left out, made of"
+        f" {quality.expected_given}"
+    )
+
+
+def _beside(real: float | None) -> str:
+    return "" if real is None else f", in real takes {real:.2f} m/s"
+
+
+def _safe(name: str) -> str:
+    return "".join(c if c.isalnum() or c in " ._-()+" else "_" for c in name).strip(" .")[:100]

@@ -1,0 +1,112 @@
+"""What a synthesised motion takes from real clips beside its shape: a body, its habits, and
+the quick detail of a take."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.analysis.motion_shape import moments_of
+from app.errors import ClipNotFound, ClipNotReady, NotEnoughLabels
+from app.models.synthesis import Synthesis
+from app.models.synthetic_body import Donor, same_body
+from app.motion.animation import Animation
+from app.motion.body_frame import ANALYSIS_RATE, BodyTrack, body_track
+from app.motion.canonical_body import on_canonical_body
+from app.motion.joint_roles import JointRole
+from app.numerics.arrays import FloatArray
+from app.services.export import own_animation
+from app.services.library import Library
+from app.services.query import ready_clip
+from app.services.stored_motion import load_motion
+from app.services.synthesis_fit import SHAPE
+from app.services.synthesis_plan import Plan
+from app.store import arrays
+from app.store.clip_record import ClipRecord
+
+MOST_DONORS = 5
+"""Clips of the person whose poses are looked at: those most like what is to be made."""
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """donors: of one body; body_length: metres; take: (n, 43) moments of a real take and
+    take_shape (1378,), None where the motion goes round; license, words: what all sources and
+    takes share; roles: joint names by role where a client had to say them."""
+
+    donors: list[Donor]
+    body_length: float
+    take: FloatArray | None
+    take_shape: FloatArray | None
+    license: str | None
+    words: tuple[str, ...]
+    roles: dict[str, str] | None
+
+
+def material_of(lib: Library, model: Synthesis, plan: Plan) -> Material:
+    """What the plan's motion is made of. Raises NotEnoughLabels where the clips are gone."""
+    away = dict(zip(model.ids, model.distances(plan.shape), strict=True))
+    own = _still_there(lib, sorted(plan.own, key=lambda clip: away.get(clip, np.inf)))
+    takes = _still_there(lib, sorted(plan.takes, key=lambda clip: away.get(clip, np.inf)))
+    if not own or not takes:
+        raise NotEnoughLabels("The clips that this would be made of are gone: fit the models.")
+    donors = same_body([_donor(lib, clip) for clip in own[:MOST_DONORS]])
+    take, take_shape = None, None
+    if plan.shape[-1] < 0.5:
+        take, take_shape = _detail(lib, takes)
+    licenses = {clip.license for clip in (*own, *takes)}
+    words = set.intersection(*(set(clip.words) for clip in takes))
+    return Material(
+        donors=donors,
+        body_length=float(np.median([donor.track.body_length for donor in donors])),
+        take=take,
+        take_shape=take_shape,
+        license=licenses.pop() if len(licenses) == 1 else None,
+        words=tuple(sorted(words)),
+        roles=own[0].roles_override,
+    )
+
+
+def _still_there(lib: Library, clip_ids: list[str]) -> list[ClipRecord]:
+    found = []
+    for clip_id in clip_ids:
+        try:
+            found.append(ready_clip(lib, clip_id))
+        except (ClipNotFound, ClipNotReady):
+            continue  # removed, or being analysed again, since the models were fitted
+    return found
+
+
+def _detail(lib: Library, takes: list[ClipRecord]) -> tuple[FloatArray | None, FloatArray | None]:
+    """The take nearest to the wanted motion that does not go round, as moments and as shape."""
+    with lib.store.read() as tx:
+        shapes = arrays.get_many(tx, [clip.id for clip in takes], SHAPE)
+    for clip in takes:
+        shape = shapes.get(clip.id)
+        if shape is not None and shape[-1] < 0.5:
+            return moments_of(body_track(load_motion(lib, clip))), shape
+    return None, None
+
+
+def _donor(lib: Library, clip: ClipRecord) -> Donor:
+    motion = load_motion(lib, clip)
+    track = body_track(motion)
+    animation = own_animation(lib, clip, motion, motion.frame_rate)
+    joints = dict(motion.roles)
+    if np.sum(animation.skeleton.parents < 0) != 1:
+        # markers are no skeleton: a body for all is put in
+        animation = on_canonical_body(motion)
+        joints = {JointRole(name): i for i, name in enumerate(animation.skeleton.names)}
+    return _of_one_length(animation.resampled(ANALYSIS_RATE), track, joints)
+
+
+def _of_one_length(animation: Animation, track: BodyTrack, joints: dict[JointRole, int]) -> Donor:
+    frames = min(len(animation.rotations), track.frames)
+    cut = Animation(
+        animation.skeleton,
+        animation.rotations[:frames],
+        animation.translations[:frames],
+        animation.frame_rate,
+    )
+    return Donor(cut, track.part(0, frames), joints)

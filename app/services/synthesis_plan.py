@@ -1,0 +1,129 @@
+"""Of whose clips a motion is made: what the asked person did, and who did what they did not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from app.errors import ClipNotReady, NotEnoughLabels, NotFound, Place
+from app.models.synthesis import Synthesis, predict
+from app.numerics.arrays import FloatArray
+from app.services import fields
+from app.services.library import Library
+from app.services.query import ready_clip
+from app.services.synthesis_fit import SHAPE
+from app.store import arrays
+from app.store.clip_record import ClipRecord
+
+
+class SynthesisKind(StrEnum):
+    """What was asked for."""
+
+    NEW_TASK = "new_task"
+    """A task that a known person never recorded."""
+    NEW_PERSON = "new_person"
+    """A task by the person of some clips."""
+    SEEN = "seen"
+    """What the person did record: the mean of their takes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """shape: (1378,) what is to be made. person: None of clips without one; own: ids of real
+    clips of the person, for their body; given_tasks: of the person; given_persons: who did the
+    task; takes: ids of real clips of the task by them."""
+
+    kind: SynthesisKind
+    person: str | None
+    task: str
+    shape: FloatArray
+    own: tuple[str, ...]
+    given_tasks: tuple[str, ...]
+    given_persons: tuple[str, ...]
+    takes: tuple[str, ...]
+
+
+def plan_of(
+    lib: Library,
+    model: Synthesis,
+    task: str,
+    person: str | None,
+    clip_ids: tuple[str, ...] | None,
+) -> Plan:
+    """What is made of what. Raises as `synthesise`."""
+    if task not in model.tasks:
+        raise _unknown("task", task, model.tasks)
+    if clip_ids is not None:
+        return _of_clips(lib, model, task, clip_ids)
+    if person not in model.persons:
+        raise _unknown("person", person or "", model.persons)
+    return _of_person(model, task, person)
+
+
+def _of_person(model: Synthesis, task: str, person: str) -> Plan:
+    own = tuple(model.ids[i] for i in model.clips_of(person))
+    given = model.tasks_of(person)
+    seen = model.cell(person, task)
+    if seen is not None:
+        takes = tuple(model.ids[i] for i in model.clips_of(person, task))
+        return Plan(SynthesisKind.SEEN, person, task, seen, own, tuple(given), (person,), takes)
+    shape = predict(model, given, task)
+    others = model.who_did(task)
+    takes = tuple(model.ids[i] for i in model.clips_of(task=task))
+    return Plan(SynthesisKind.NEW_TASK, person, task, shape, own, tuple(given), others, takes)
+
+
+def _of_clips(lib: Library, model: Synthesis, task: str, clip_ids: tuple[str, ...]) -> Plan:
+    """As though the library had no other clip of that person: what comes of these alone."""
+    found = [ready_clip(lib, clip_id) for clip_id in clip_ids]
+    person = _whose(found)
+    given = _by_task(lib, model, found, task)
+    shape = predict(model, given, task, but=(person,) if person else ())
+    others = tuple(name for name in model.who_did(task) if name != person)
+    takes = tuple(
+        model.ids[i] for i in model.clips_of(task=task) if model.labels_of(int(i))[0] != person
+    )
+    return Plan(
+        SynthesisKind.NEW_PERSON, person, task, shape, clip_ids, tuple(given), others, takes
+    )
+
+
+def _whose(found: list[ClipRecord]) -> str | None:
+    persons = sorted({clip.person for clip in found if clip.person})
+    if len(persons) > 1:
+        raise fields.bad_field("clip_ids", f"must be of one person, not of {', '.join(persons)}")
+    return persons[0] if persons else None
+
+
+def _by_task(
+    lib: Library, model: Synthesis, found: list[ClipRecord], task: str
+) -> dict[str, FloatArray]:
+    """Mean shapes of the clips by task, but for the wanted one."""
+    with lib.store.read() as tx:
+        shapes = arrays.get_many(tx, [clip.id for clip in found], SHAPE)
+    by_task: dict[str, list[FloatArray]] = {}
+    for place, clip in enumerate(found):
+        if clip.id not in shapes:
+            raise ClipNotReady(
+                "The clip was analysed by an older Kinedex: run `kinedex reanalyze`.",
+                places=[Place(f"body.clip_ids.{place}", clip.id)],
+            )
+        if clip.task in model.tasks and clip.task != task:
+            by_task.setdefault(clip.task or "", []).append(shapes[clip.id])
+    if not by_task:
+        known = ", ".join(name for name in model.tasks if name != task)
+        message = f"at least one must be labelled with another task of the library: {known}"
+        raise NotEnoughLabels(
+            f"Nothing can be learned from these clips: {message}.",
+            places=[Place("body.clip_ids", message)],
+        )
+    return {name: sum(rows[1:], start=rows[0]) / len(rows) for name, rows in by_task.items()}
+
+
+def _unknown(field: str, name: str, known: tuple[str, ...]) -> NotFound:
+    shown = ", ".join(known[:20]) + (", ..." if len(known) > 20 else "")
+    return NotFound(
+        f"No model knows the {field} {name!r}. Known: {shown}. Clips that were added or labelled"
+        " since count once the models are fitted again.",
+        places=[Place(f"body.{field}", f"must be one of: {shown}")],
+    )

@@ -1,0 +1,104 @@
+"""How far a synthesised motion can be trusted: what it looks like, and what to expect."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.models.synthesis import Synthesis
+from app.motion.foot_contact import FEET, skating
+from app.motion.motion import Motion
+from app.numerics.arrays import FloatArray
+from app.services.library import Library
+from app.services.model_shelf import Fitted
+from app.services.stored_motion import load_motion
+from app.services.synthesis_plan import Plan, SynthesisKind
+from app.store import clips, models
+from app.store.clip_record import ClipRecord, ClipState
+
+MOST_TAKES = 5
+"""Real takes whose feet are looked at."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quality:
+    """kind, given_persons, given_tasks: see Plan.
+
+    nearest: the real clip that is most like the made motion, analysed as any other, None where
+    it is gone; nearest_person, nearest_task: its labels; distance to it; person_is_right,
+    task_is_right: whether the labels are those asked for.
+    expected_hit: share of cells left out when the model was fitted, made of as many takes, whose
+    nearest real clip was right in both; expected_given, expected_trials: how many persons (or
+    tasks) and cells that was; all None for what was seen, or where nothing could be left out.
+    skate, real_skate: mean horizontal speed of feet that are low, m/s, of this motion and of
+    real takes of the task.
+    """
+
+    kind: SynthesisKind
+    given_persons: tuple[str, ...]
+    given_tasks: tuple[str, ...]
+    nearest: ClipRecord | None
+    nearest_person: str
+    nearest_task: str
+    distance: float
+    person_is_right: bool | None
+    task_is_right: bool
+    expected_hit: float | None
+    expected_given: int | None
+    expected_trials: int | None
+    skate: float
+    real_skate: float | None
+
+
+def judge(
+    lib: Library, fitted: Fitted[Synthesis], plan: Plan, motion: Motion, shape: FloatArray
+) -> Quality:
+    """The quality of a made motion; shape: (1378,) as it was analysed."""
+    model = fitted.model
+    away = model.distances(shape)
+    first = int(np.argmin(away))
+    person, task = model.labels_of(first)
+    with lib.store.read() as tx:
+        record = models.get(tx, fitted.id)
+        nearest = clips.get_many(tx, [model.ids[first]]).get(model.ids[first])
+        takes = list(clips.get_many(tx, list(plan.takes)).values())
+    expected = _expected(record.meta.get("figures", {}), plan)
+    return Quality(
+        kind=plan.kind,
+        given_persons=plan.given_persons,
+        given_tasks=plan.given_tasks,
+        nearest=nearest,
+        nearest_person=person,
+        nearest_task=task,
+        distance=float(away[first]),
+        person_is_right=None if plan.person is None else person == plan.person,
+        task_is_right=task == plan.task,
+        expected_hit=expected.get("hit"),
+        expected_given=expected.get("given"),
+        expected_trials=expected.get("trials"),
+        skate=_skate(motion),
+        real_skate=_real_skate(lib, takes),
+    )
+
+
+def _expected(figures: dict[str, Any], plan: Plan) -> dict[str, Any]:
+    """The row of the held-out figures for as many given, or the nearest fewer."""
+    rows = figures.get("held_out", {}).get(plan.kind.value, [])
+    if not rows:
+        return {}
+    is_new_task = plan.kind is SynthesisKind.NEW_TASK
+    given = len(plan.given_persons if is_new_task else plan.given_tasks)
+    fewer = [row for row in rows if row["given"] <= given]
+    return dict(fewer[-1] if fewer else rows[0])
+
+
+def _skate(motion: Motion) -> float:
+    return skating(motion.role_positions()[:, FEET].astype(np.float64), motion.frame_rate)
+
+
+def _real_skate(lib: Library, takes: list[ClipRecord]) -> float | None:
+    ready = [clip for clip in takes if clip.state is ClipState.READY][:MOST_TAKES]
+    found = [_skate(load_motion(lib, clip)) for clip in ready]
+    return float(np.mean(found)) if found else None
