@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -10,6 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
+from app.cli.confusion_table import print_confusion
 from app.cli.find import filter_of
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table, progress_bar
@@ -18,7 +18,6 @@ from app.search.filters import parse_filter
 from app.search.methods import Method
 from app.services import evaluate, pictures
 from app.services.evaluate import (
-    JudgedWay,
     RetrievalEvaluation,
     VolumeEvaluation,
     retrieval_pictures,
@@ -167,18 +166,8 @@ def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
     for way in found.ways:
         if way.figures.method in retrieval_pictures.shown_ways(found):
             typer.echo(f"\nWhat the {found.k} nearest are by {way.figures.method}, % (figure 8):\n")
-            _print_confusion(found.classes, way)
+            print_confusion(found.classes, way.confusion)
     typer.echo("\n" + "\n".join(_remarks(found, volumes)))
-
-
-def _print_confusion(classes: Sequence[str], way: JudgedWay) -> None:
-    """Rows are tasks, columns their numbers; lines are not broken, however many there are."""
-    names = [f"{number:>2} {pictures.shown(name)}" for number, name in enumerate(classes, 1)]
-    width = max(map(len, names))
-    typer.echo(" " * width + "".join(f"{number:>4}" for number in range(1, len(names) + 1)))
-    for name, row in zip(names, way.confusion, strict=True):
-        cells = [f"{100 * share:>4.0f}" if share >= 0.005 else "   ." for share in row]
-        typer.echo(f"{name:<{width}}" + "".join(cells))
 
 
 def _remarks(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> list[str]:

@@ -17,6 +17,8 @@ from app.services.evaluate.low_dimensional import (
     judge_low_dimensional,
 )
 from app.services.evaluate.recognition import judge_recognition
+from app.services.evaluate.recognition_methods import METHODS as RECOGNISERS
+from app.services.evaluate.recognition_results import RecognitionEvaluation
 from app.services.evaluate.retrieval import (
     JUDGED,
     MOST_QUERIES,
@@ -34,12 +36,14 @@ __all__ = [
     "JUDGED",
     "JUDGED_KEYPOSES",
     "MOST_QUERIES",
+    "RECOGNISERS",
     "JudgedClip",
     "JudgedKeyposes",
     "JudgedWay",
     "K",
     "KeyposeEvaluation",
     "LowDimensionalEvaluation",
+    "RecognitionEvaluation",
     "RetrievalEvaluation",
     "RetrievalFigures",
     "VolumeEvaluation",

@@ -1,18 +1,202 @@
-"""Who does what (Vasilescu, Perera 5), held out."""
+"""Who does what (Vasilescu, Perera 5) on one's own library, by models that have not seen it.
+
+What cannot be judged on a library is told with the reason, never guessed.
+"""
 
 from __future__ import annotations
 
-from app.models.recognition_figures import held_out_recognition_figures
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from statistics import median
+from typing import TypeVar
+
+from app.errors import NotEnoughLabels
+from app.services import fields
+from app.services.evaluate.recognition_clips import JudgedClips, read_judged_clips
+from app.services.evaluate.recognition_methods import METHODS, Method, methods_at
+from app.services.evaluate.recognition_perera import judge_perera
+from app.services.evaluate.recognition_results import (
+    HeldOut,
+    Judged,
+    RecognitionEvaluation,
+    Seconds,
+    WhenTold,
+)
+from app.services.evaluate.recognition_rounds import (
+    LeftOut,
+    Round,
+    rounds,
+    rounds_by_recording,
+    rounds_by_takes,
+)
+from app.services.evaluate.recognition_shares import chance, confusion, recognised, unknown
+from app.services.evaluate.recognition_trials import Stopwatch, Trial, run, run_told
 from app.services.library import Library
-from app.services.training import read_training_set, ready_only
 from app.store.clip_filter import ClipFilter
+
+FACTORS = ("person", "task")
+TAKES = (3, 1)
+"""Takes a cell that are learned from."""
+TOLD, PERERA = "told", "perera"
+"""Vasilescu's and Perera's experiments, among what could not be judged."""
+
+Key = TypeVar("Key")
+Progress = Callable[[int, int], None]
+"""Told after each step: done, in all."""
 
 
 def judge_recognition(
-    lib: Library, wanted: ClipFilter | None = None
-) -> dict[str, dict[str, float]]:
-    """Held-out shares recognised by method: person, task, both; beside the prior."""
-    training = read_training_set(lib.store, ready_only(wanted))
-    return held_out_recognition_figures(
-        training.samples, training.persons, training.tasks, training.groups
+    lib: Library,
+    wanted: ClipFilter | None = None,
+    methods: Sequence[str] = tuple(METHODS),
+    *,
+    false_accept_rate: float | None = None,
+    progress: Progress | None = None,
+) -> RecognitionEvaluation:
+    """Of the ready clips that pass the filter, by each method.
+
+    false_accept_rate: 0..1, of the default recogniser; where None its own threshold.
+    Raises BadField for an unknown method or a wrong rate, NotEnoughLabels below two labelled
+    clips.
+    """
+    _check(methods, false_accept_rate)
+    clips = read_judged_clips(lib, wanted)
+    if len(clips) < 2:
+        raise NotEnoughLabels("Two ready clips with a person or a task are needed to judge.")
+    known = methods_at(false_accept_rate)
+    try:
+        perera, reasons = judge_perera(lib, wanted), {}
+    except NotEnoughLabels as reason:
+        perera, reasons = None, {PERERA: reason.detail}
+    found = judge_clips(clips, {name: known[name] for name in methods}, progress)
+    return replace(found, perera=perera, not_judged=reasons | found.not_judged)
+
+
+def judge_clips(
+    clips: JudgedClips, methods: Mapping[str, Method], progress: Progress | None = None
+) -> RecognitionEvaluation:
+    """The same of clips that were read. What cannot be judged is in `not_judged`."""
+    plan = _Plan()
+    held = {way: plan.add(way.value, partial(rounds, clips, way)) for way in LeftOut}
+    takes = {n: plan.add(takes_key(n), partial(rounds_by_takes, clips, n)) for n in TAKES}
+    told = plan.add(TOLD, partial(rounds_by_recording, clips))
+    counted = (*held.values(), *takes.values(), told)
+    asking = _Asking(clips, methods, sum(map(len, counted)) * len(methods), progress, plan.reasons)
+    return RecognitionEvaluation(
+        clips=clips,
+        held_out=_judged_ones({w: asking.held_out(w.value, found) for w, found in held.items()}),
+        takes=_judged_ones({n: asking.held_out(takes_key(n), found) for n, found in takes.items()}),
+        told=asking.told(told),
+        seconds=asking.seconds(),
+        not_judged=asking.reasons,
+    )
+
+
+def _judged_ones(found: Mapping[Key, HeldOut]) -> dict[Key, HeldOut]:
+    return {key: held for key, held in found.items() if held.methods}
+
+
+def takes_key(takes: int) -> str:
+    """What `takes` takes a cell are called among what could not be judged."""
+    return f"{takes}-takes"
+
+
+def _check(methods: Sequence[str], false_accept_rate: float | None) -> None:
+    for name in methods:
+        if name not in METHODS:
+            raise fields.bad_field("method", f"must be one of {', '.join(METHODS)}")
+    if false_accept_rate is not None and not 0 <= false_accept_rate < 1:
+        raise fields.bad_field("false_accept_rate", "must be at least 0 and below 1")
+
+
+@dataclass(slots=True)
+class _Plan:
+    """Why what cannot be held out cannot."""
+
+    reasons: dict[str, str] = field(default_factory=dict)
+
+    def add(self, name: str, found: Callable[[], list[Round]]) -> list[Round]:
+        try:
+            return found()
+        except NotEnoughLabels as reason:
+            self.reasons[name] = reason.detail
+            return []
+
+
+class _Asking:
+    """Asks all methods, and counts the steps."""
+
+    def __init__(
+        self,
+        clips: JudgedClips,
+        methods: Mapping[str, Method],
+        steps: int,
+        progress: Progress | None,
+        reasons: dict[str, str],
+    ) -> None:
+        self._clips, self._methods, self._steps, self._progress = clips, methods, steps, progress
+        self._watches = {name: Stopwatch() for name in methods}
+        self._done = 0
+        self.reasons = reasons
+
+    def held_out(self, name: str, found: Sequence[Round]) -> HeldOut:
+        trials: dict[str, tuple[Trial, ...]] = {}
+        for method, learn in self._methods.items() if found else ():
+            try:
+                trials[method] = run(learn, self._clips, found, self._watches[method], self._step)
+            except NotEnoughLabels as reason:
+                self.reasons[f"{name}, {method}"] = reason.detail
+        every = next(iter(trials.values()), ())
+        judged = tuple(_judged(method, some, name) for method, some in trials.items())
+        return HeldOut(len(found), judged, chance(every))
+
+    def told(self, found: Sequence[Round]) -> tuple[WhenTold, ...]:
+        judged = []
+        for method, learn in self._methods.items() if found else ():
+            try:
+                neither, told = run_told(
+                    learn, self._clips, found, self._watches[method], self._step
+                )
+            except NotEnoughLabels as reason:
+                self.reasons[f"{TOLD}, {method}"] = reason.detail
+            else:
+                judged.append(WhenTold(method, recognised(neither), recognised(told)))
+        return tuple(judged)
+
+    def seconds(self) -> dict[str, Seconds]:
+        return {
+            name: Seconds(median(watch.fits), median(watch.probes))
+            for name, watch in self._watches.items()
+            if watch.probes
+        }
+
+    def _step(self) -> None:
+        self._done += 1
+        if self._progress is not None:
+            self._progress(self._done, self._steps)
+
+
+_NEW: dict[str, str] = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
+"""Of which factor whole labels are left out."""
+
+
+def _judged(method: str, trials: Sequence[Trial], way: str) -> Judged:
+    factor = _NEW.get(way)
+    if factor is not None:
+        # a label that the held-out takes alone carried is new too, but was not left out
+        trials = [t for t in trials if not t.of(factor).new or t.of(factor).truth in t.left_out]
+    judged = FACTORS if way == LeftOut.SOURCE else (factor,)
+    found = {name: unknown(trials, name) for name in judged if name is not None}
+    parties = sorted({trial.left_out for trial in trials if trial.left_out})
+    return Judged(
+        method=method,
+        recognised=recognised(trials),
+        of_new=recognised([t for t in trials if factor is not None and t.of(factor).new]),
+        unknown={name: one for name, one in found.items() if one is not None},
+        confusion={name: confusion(trials, name) for name in FACTORS},
+        by_name={
+            ", ".join(party): recognised([t for t in trials if t.left_out == party])
+            for party in parties
+        },
     )

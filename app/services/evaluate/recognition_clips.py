@@ -1,0 +1,77 @@
+"""The clips that an evaluation of recognition learns from and probes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from app.models.recognition_figures import Clips
+from app.numerics.arrays import FloatArray, IntArray
+from app.services.library import Library
+from app.services.training import TrainingSet, read_training_set, ready_only
+from app.store.clip_filter import ClipFilter
+
+Labels = Sequence[str | None]
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedClips:
+    """N clips that carry a person or a task.
+
+    samples: (N, 1250) motion samples; persons, tasks: (N,) labels, None where there is none;
+    groups: (N,) clips of one recording share a value, and are never on both sides; sources:
+    (N,) where they come from, None where nobody knows; unlabelled: clips that were left out.
+    """
+
+    samples: FloatArray
+    persons: Labels
+    tasks: Labels
+    groups: Sequence[str]
+    sources: Labels
+    unlabelled: int = 0
+
+    def __len__(self) -> int:
+        return len(self.groups)
+
+    def part(self, index: IntArray) -> Clips:
+        """What a model learns from, of the clips at these indices."""
+        chosen = index.tolist()
+        persons, tasks, groups = (
+            [labels[i] for i in chosen] for labels in (self.persons, self.tasks, self.groups)
+        )
+        return Clips(self.samples[index], persons, tasks, groups)
+
+    def labels(self, factor: str) -> Labels:
+        """(N,) of the factor "person" or "task"."""
+        return {"person": self.persons, "task": self.tasks}[factor]
+
+
+def names_of(labels: Labels) -> list[str]:
+    """The labels that are there, each once, sorted."""
+    return sorted({label for label in labels if label})
+
+
+def read_judged_clips(lib: Library, wanted: ClipFilter | None) -> JudgedClips:
+    """The ready clips that pass the filter and carry a label.
+
+    Where persons are not to be recognised (setting `recognize_persons`) they are not read.
+    """
+    training = read_training_set(lib.store, ready_only(wanted))
+    return judged_clips(replace(training, is_anonymous=not lib.settings.recognize_persons))
+
+
+def judged_clips(training: TrainingSet) -> JudgedClips:
+    """Of a training set, what can be judged."""
+    pairs = zip(training.persons, training.tasks, strict=True)
+    use = [i for i, labels in enumerate(pairs) if any(labels)]
+    persons, tasks = training.persons, training.tasks
+    return JudgedClips(
+        samples=training.samples[use] if use else np.zeros((0, 0)),
+        persons=[persons[i] for i in use],
+        tasks=[tasks[i] for i in use],
+        groups=[training.groups[i] for i in use],
+        sources=[training.clips[i].source for i in use],
+        unlabelled=len(training) - len(use),
+    )

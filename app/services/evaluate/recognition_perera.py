@@ -1,0 +1,76 @@
+"""Perera's experiments on a library's own dances: Tables 3, 4 and 5 (2009, section 5.4)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.analysis.danced_cycles import danced_cycles
+from app.analysis.segments import SEGMENT_CYCLES, SEGMENT_SPANS
+from app.errors import NotEnoughLabels
+from app.models.danced_tasks import DancedTasks, arrange
+from app.models.perera_experiment import Row, perera_tables
+from app.models.task_model import Reading
+from app.search.distances import FEATURES
+from app.services.library import Library
+from app.services.training import ready_only
+from app.store import arrays, clip_listing, clips
+from app.store.clip_filter import ClipFilter
+
+_NAMES = (FEATURES, SEGMENT_SPANS, SEGMENT_CYCLES)
+
+
+@dataclass(frozen=True, slots=True)
+class PereraEvaluation:
+    """segments: between keyposes, of `clips` clips by `persons` persons, `tasks` tasks, each
+    segment of a repeated sequence one; tables: rows by how eq. 14 is read."""
+
+    segments: int
+    clips: int
+    persons: int
+    tasks: int
+    tables: Mapping[Reading, tuple[Row, ...]]
+
+
+def judge_perera(lib: Library, wanted: ClipFilter | None = None) -> PereraEvaluation:
+    """The experiments on the ready clips that pass the filter and carry both labels.
+
+    Raises NotEnoughLabels where too few persons do the same tasks twice, or where persons are
+    not to be recognised.
+    """
+    if not lib.settings.recognize_persons:
+        raise NotEnoughLabels("Persons are not to be recognised here (recognize_persons).")
+    danced, used = _read(lib, wanted)
+    return PereraEvaluation(
+        segments=len(danced),
+        clips=used,
+        persons=len(set(danced.persons)),
+        tasks=len(set(danced.tasks)),
+        tables={reading: perera_tables(danced, reading) for reading in Reading},
+    )
+
+
+def _read(lib: Library, wanted: ClipFilter | None) -> tuple[DancedTasks, int]:
+    """The segments, and of how many clips they are."""
+    with lib.store.read() as tx:
+        ids = sorted(clip_listing.list_ids(tx, ready_only(wanted)))
+        records = {
+            id_: clip for id_, clip in clips.get_many(tx, ids).items() if clip.person and clip.task
+        }
+        found = {name: arrays.get_many(tx, sorted(records), name) for name in _NAMES}
+    use = [id_ for id_ in sorted(records) if id_ in found[FEATURES]]
+    danced = arrange(
+        [danced_cycles(_of_clip(found, id_)) for id_ in use],
+        [records[id_].person for id_ in use],
+        [records[id_].task for id_ in use],
+    )
+    return danced, len(use)
+
+
+def _of_clip(found: Mapping[str, Mapping[str, Any]], clip_id: str) -> dict[str, Any]:
+    """A clip that was analysed before segments were stored counts as one that repeats nothing."""
+    none = {SEGMENT_SPANS: np.zeros((0, 2)), SEGMENT_CYCLES: np.zeros((0, 3))}
+    return {name: found[name].get(clip_id, none.get(name)) for name in _NAMES}

@@ -1,0 +1,204 @@
+"""Figures of trials: shares recognised, confusions, and how well the new is told apart."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray
+from app.numerics.binomial import wilson_interval
+from app.services.evaluate.recognition_trials import Told, Trial
+
+CURVE_POINTS = 101
+"""Of the curve of false acceptance against false rejection."""
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """`right` of `of` trials."""
+
+    right: int
+    of: int
+
+    @property
+    def value(self) -> float | None:
+        """0..1, None of no trials."""
+        return self.right / self.of if self.of else None
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Where the share of all such clips lies, with 95 % confidence (Wilson)."""
+        return wilson_interval(self.right, self.of)
+
+    @classmethod
+    def that(cls, hits: Iterable[bool]) -> Share:
+        """Of some yes and no."""
+        every = list(hits)
+        return cls(sum(every), len(every))
+
+
+@dataclass(frozen=True, slots=True)
+class Recognised:
+    """Shares whose best candidate is right, of the clips whose label the method has seen.
+
+    both: of those that have both labels seen.
+    """
+
+    person: Share
+    task: Share
+    both: Share
+
+
+@dataclass(frozen=True, slots=True)
+class Category:
+    """A label that was left out: how many of its clips were called new, how many known clips
+    were called known meanwhile, and what its clips were mostly taken for."""
+
+    label: str
+    refused: Share
+    accepted: Share
+    taken_for: str | None
+
+    @property
+    def balanced_accuracy(self) -> float | None:
+        """Mean of the two shares."""
+        values = self.refused.value, self.accepted.value
+        return None if None in values else sum(filter(None, values)) / 2
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """How well the labels that a method has not seen are told from those it has.
+
+    refused: new ones called new; accepted: known ones called known; area_under_curve: chance
+    that a new one looks newer than a known one, ties counting half; categories: by label that
+    was left out; curve: (P, 2) false acceptance and false rejection at P thresholds.
+    """
+
+    refused: Share
+    accepted: Share
+    area_under_curve: float
+    categories: tuple[Category, ...]
+    curve: FloatArray
+
+    @property
+    def false_acceptance(self) -> float:
+        """Share of new ones called known."""
+        return 1.0 - (self.refused.value or 0.0)
+
+    @property
+    def false_rejection(self) -> float:
+        """Share of known ones called new."""
+        return 1.0 - (self.accepted.value or 0.0)
+
+    @property
+    def balanced_accuracy(self) -> float:
+        """One half is chance."""
+        return 1.0 - (self.false_acceptance + self.false_rejection) / 2
+
+    @property
+    def equal_error_rate(self) -> float:
+        """Where the curve's two errors are the same."""
+        place = int(np.argmin(np.abs(self.curve[:, 0] - self.curve[:, 1])))
+        return float(self.curve[place].mean())
+
+    @property
+    def worst(self) -> Category | None:
+        """The label that was told worst."""
+        judged = [one for one in self.categories if one.balanced_accuracy is not None]
+        return min(judged, key=lambda one: one.balanced_accuracy or 0.0, default=None)
+
+
+def recognised(trials: Iterable[Trial]) -> Recognised:
+    """Closed-set shares of trials."""
+    judged = list(trials)
+    both = [t for t in judged if _is_judged(t.person) and _is_judged(t.task)]
+    return Recognised(
+        person=Share.that(t.person.right for t in judged if _is_judged(t.person)),
+        task=Share.that(t.task.right for t in judged if _is_judged(t.task)),
+        both=Share.that(t.person.right and t.task.right for t in both),
+    )
+
+
+def chance(trials: Iterable[Trial]) -> tuple[float | None, float | None, float | None]:
+    """Of person, task and both: what guessing among the labels would come to."""
+    judged = list(trials)
+    person = [1 / t.person.labels for t in judged if _is_judged(t.person)]
+    task = [1 / t.task.labels for t in judged if _is_judged(t.task)]
+    both = [
+        1 / (t.person.labels * t.task.labels)
+        for t in judged
+        if _is_judged(t.person) and _is_judged(t.task)
+    ]
+    return _mean(person), _mean(task), _mean(both)
+
+
+def unknown(trials: Sequence[Trial], factor: str) -> Unknown | None:
+    """None unless there are new ones and known ones of the factor "person" or "task"."""
+    pairs = [(trial, trial.of(factor)) for trial in trials if trial.of(factor).truth]
+    new = [told for _, told in pairs if told.new]
+    known = [told for _, told in pairs if not told.new]
+    if not new or not known:
+        return None
+    curve, area = _curve(*(np.array([t.guess.novelty for t in some]) for some in (known, new)))
+    return Unknown(_refused(new), _accepted(known), area, _categories(pairs), curve)
+
+
+def confusion(trials: Iterable[Trial], factor: str) -> tuple[tuple[str, ...], FloatArray]:
+    """C labels and (C, C) shares: a row a true label, a column what it was taken for.
+
+    Of the labels that were asked about or answered; only clips whose label had been seen. The
+    row of a label that was never asked about is 0.
+    """
+    judged = [told for told in (trial.of(factor) for trial in trials) if _is_judged(told)]
+    pairs = [(told.truth or "", told.guess.label or "") for told in judged if told.guess.label]
+    names = tuple(sorted({name for pair in pairs for name in pair}))
+    counts = np.zeros((len(names), len(names)))
+    for truth, guess in pairs:
+        counts[names.index(truth), names.index(guess)] += 1
+    return names, counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    return float(np.mean(values)) if values else None
+
+
+def _is_judged(told: Told) -> bool:
+    return told.truth is not None and not told.new
+
+
+def _refused(new: Iterable[Told]) -> Share:
+    return Share.that(not told.guess.known for told in new)
+
+
+def _accepted(known: Iterable[Told]) -> Share:
+    return Share.that(told.guess.known for told in known)
+
+
+def _categories(pairs: Sequence[tuple[Trial, Told]]) -> tuple[Category, ...]:
+    names = sorted({told.truth or "" for _, told in pairs if told.new})
+    found = []
+    for name in names:
+        own = [(trial, told) for trial, told in pairs if told.new and told.truth == name]
+        rounds = {trial.left_out for trial, _ in own}
+        known = [told for trial, told in pairs if not told.new and trial.left_out in rounds]
+        wrong = Counter(sorted(t.guess.label or "" for _, t in own if t.guess.known))
+        taken_for = wrong.most_common(1)[0][0] if wrong else None
+        refused = _refused(told for _, told in own)
+        found.append(Category(name, refused, _accepted(known), taken_for))
+    return tuple(found)
+
+
+def _curve(known: FloatArray, new: FloatArray) -> tuple[FloatArray, float]:
+    """(P, 2) false acceptance and rejection by rising threshold, and the area."""
+    every = np.unique(np.concatenate([known, new]))
+    cuts = np.concatenate([[every[0] - 1.0], every])
+    places = np.unique(np.linspace(0, len(cuts) - 1, CURVE_POINTS).round().astype(int))
+    accepted = np.searchsorted(np.sort(new), cuts[places], side="right") / len(new)
+    rejected = 1 - np.searchsorted(np.sort(known), cuts[places], side="right") / len(known)
+    below, upto = (np.searchsorted(np.sort(known), new, side=side) for side in ("left", "right"))
+    area = float((below + upto).sum() / (2 * len(known) * len(new)))
+    return np.stack([accepted, rejected], axis=1), area

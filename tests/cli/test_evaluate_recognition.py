@@ -1,0 +1,77 @@
+"""`kinedex evaluate recognition`: tables, JSON, pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Kinedex
+
+COMMAND = ("evaluate", "recognition")
+QUICK = (*COMMAND, "--method", "mean-motion", "--method", "prior")
+
+
+def test_tables_for_people(kinedex: Kinedex) -> None:
+    ended = kinedex(*COMMAND)
+    assert ended.code == 0, ended.err
+    lines = [line.split() for line in ended.out.splitlines()]
+    assert " ".join(lines[0][:8]) == "12 clips: 2 persons, 3 tasks, 0 sources."
+    by_take = lines.index(["method", "task", "person", "both", "clips"])
+    named = [line[0] for line in lines[by_take + 1 :]]
+    assert named[:2] == ["default", "multilinear"]
+    assert "chance" in named[:8]
+    chance = lines[by_take + 1 + named.index("chance")]
+    assert chance[1:] == ["0.333", "0.500", "0.167", "12"]
+    assert ["method", "task", "person", "told", "person", "task", "told"] in lines
+    assert ["method", "person", "new", "known", "balanced", "AUC", "EER", "worst"] in lines
+    assert "Not judged, person: 3 persons are needed to leave one out; there are 2." in ended.out
+    assert "Not judged, source: Two sources are needed" in ended.out
+    assert "What tasks are taken for by default, takes left out, %:" in ended.out
+    assert "ms a probe after its features" in ended.out
+
+
+def test_json_for_programs(kinedex: Kinedex) -> None:
+    told = kinedex(*QUICK, "--json").json()
+    assert told["clips"]["persons"] == ["ada", "bruno"]
+    assert told["clips"]["tasks"] == ["kick", "walk", "wave"]
+    by_take = told["left_out"]["take"]
+    assert list(by_take["methods"]) == ["mean-motion", "prior"]
+    task = by_take["methods"]["mean-motion"]["recognised"]["task"]
+    assert task["share"] == pytest.approx(task["right"] / task["of"])
+    assert task["interval_95"][0] <= task["share"] <= task["interval_95"][1]
+    by_task = told["left_out"]["task"]["methods"]["mean-motion"]["unknown"]["task"]
+    assert list(by_task["categories"]) == ["kick", "walk", "wave"]
+    errors = by_task["false_acceptance"] + by_task["false_rejection"]
+    assert by_task["balanced_accuracy"] == pytest.approx(1 - errors / 2)
+    assert by_task["curve"][0] == {"false_acceptance": 0.0, "false_rejection": 1.0}
+    assert set(told["takes_a_cell"]) == {"1"}
+    assert set(told["not_judged"]) >= {"person", "source", "3-takes"}
+
+
+def test_pictures_go_where_they_are_wanted(kinedex: Kinedex, tmp_path: Path) -> None:
+    folder = tmp_path / "new" / "figures"
+    ended = kinedex(*QUICK, "--pictures", str(folder), "--picture-format", "png")
+    assert ended.code == 0, ended.err
+    names = {"confusion-person-mean-motion.png", "confusion-task-mean-motion.png", "unknown.png"}
+    assert {path.name for path in folder.iterdir()} == names
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in folder.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--method", "guess"), "must be one of default"),
+        (("--false-accept-rate", "1.5"), "at least 0 and below 1"),
+        (("--filter", '{"task": "nothing"}'), "Two ready clips with a person or a task"),
+        (("--pictures", "figures", "--picture-format", "bmp"), ".svg, .png, .pdf"),
+    ],
+)
+def test_what_cannot_be_done_is_said_at_once(
+    kinedex: Kinedex, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: list[str], told: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    ended = kinedex(*COMMAND, *words)
+    assert ended.code == 1
+    assert told in ended.err
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,35 @@
+"""Clips of invented persons and tasks, as an evaluation of recognition reads them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.services.evaluate.recognition_clips import JudgedClips
+from tests.models.factor_clips import factor_clips
+
+
+def invented(
+    persons: int = 5, tasks: int = 6, takes: int = 4, sources: int = 1, noise: float = 0.05
+) -> JudgedClips:
+    """Every person does every task; sources divide the persons."""
+    clips = factor_clips(persons, tasks, takes, noise=noise)
+    return JudgedClips(
+        samples=clips.samples,
+        persons=clips.persons,
+        tasks=clips.tasks,
+        groups=[
+            f"{who} {what} {take}"
+            for who, what, take in zip(clips.persons, clips.tasks, clips.takes, strict=True)
+        ],
+        sources=[f"s{int(who[1:]) % sources}" for who in clips.persons],
+    )
+
+
+def some(clips: JudgedClips, index: np.ndarray) -> JudgedClips:
+    """The clips at these indices."""
+    chosen = np.asarray(index).tolist()
+    persons, tasks, groups, sources = (
+        [labels[i] for i in chosen]
+        for labels in (clips.persons, clips.tasks, clips.groups, clips.sources)
+    )
+    return JudgedClips(clips.samples[chosen], persons, tasks, groups, sources)
