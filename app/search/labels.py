@@ -223,7 +223,7 @@ class Labels:
         words = getattr(wanted, before + "word")
         return found | ({"word": self.words.codes(words)} if words else {})
 
-    def clip_at(self, number: int, array: NDArray[Any]) -> IndexedClip:
+    def clip_at(self, number: int, array: NDArray[Any] | None) -> IndexedClip:
         """A clip as it was added, with an array."""
         named = {name: coded.at(number) for name, coded in self._named.items()}
         return IndexedClip(

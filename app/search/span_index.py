@@ -8,22 +8,28 @@ a part. Nothing is loaded before the first search that asks.
 from __future__ import annotations
 
 import threading
-from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.euclidean import squared_lengths
-from app.search.labels import Column
+from app.search.labels import Column, Labels, LabelView
 from app.search.rank import IdArray
-from app.store import arrays, library
-from app.store.clips import in_batches
+from app.store import arrays, index_feed, library
+from app.store.clip_filter import ClipFilter
 from app.store.engine import Tx
+from app.store.index_feed import IndexedClip
 from app.store.store import Store
+
+NO_FILTER = ClipFilter()
 
 LOAD_BATCH = 64
 """Clips that are loaded at a time: an hour of motion has 3 MB of windows."""
+
+FEW = 4
+"""Where less than one row in so many passes, a view holds those alone."""
 
 MOST_DEAD = 0.25
 """Share of rows that may be of clips that changed or went; beyond it the others are copied."""
@@ -55,6 +61,22 @@ class Spans:
         """(k,) rows of the clips that pass, ascending."""
         return np.flatnonzero(self.passing[self.owners])
 
+    def narrowed(self) -> Spans:
+        """The same without the clips that do not pass, copied."""
+        rows, clips = self.rows(), np.flatnonzero(self.passing)
+        counts = self.counts[clips]
+        return Spans(
+            ids=self.ids[clips],
+            passing=np.ones(len(clips), dtype=bool),
+            firsts=np.cumsum(counts) - counts,
+            counts=counts,
+            owners=np.repeat(np.arange(len(clips)), counts),
+            starts=self.starts[rows],
+            ends=self.ends[rows],
+            vectors=self.vectors[rows],
+            squares=self.squares[rows],
+        )
+
     def last_rows(self) -> IntArray:
         """(n,) for each row the last row of the same clip."""
         return np.asarray((self.firsts + self.counts - 1)[self.owners])
@@ -85,26 +107,47 @@ class SpanIndex:
         One cheap query when nothing is new.
         """
         with self._lock, store.read() as tx:
-            changes = library.changed_since(tx, self._version)
-            self._rows.remove((*changes.removed, *changes.changed))
-            for some in in_batches(changes.changed, LOAD_BATCH):
-                self._load(tx, some)
-            if self._rows.dead > MOST_DEAD * len(self):
-                self._rows = self._rows.without_the_dead()
-            self._version = changes.version
+            now = library.version(tx)
+            if now != self._version:
+                self._follow(tx)
+                self._version = now
             return self._version
 
-    def view(self, clip_ids: Collection[str] | None = None) -> Spans:
-        """The parts as they are now, of these clips or of all; nothing changes it later."""
+    def view(self, wanted: ClipFilter = NO_FILTER) -> Spans:
+        """The parts as they are now, those of clips that pass marked; nothing changes it later."""
         with self._lock:
-            return self._rows.view(clip_ids)
+            now = self._rows.view()
+        # not under the lock: a filter looks at every clip
+        passing = now.labels.passing(wanted)
+        spans = replace(now.spans, passing=passing)
+        few = FEW * int(spans.counts[passing].sum()) < len(spans)
+        return spans.narrowed() if few else spans
 
-    def _load(self, tx: Tx, clip_ids: Sequence[str]) -> None:
-        vectors, spans = (arrays.get_many(tx, clip_ids, name) for name in self._names)
+    def _follow(self, tx: Tx) -> None:
+        self._rows.remove(library.buried_since(tx, self._version))
+        for batch in index_feed.changed_since(tx, self._version, array=""):
+            self._rows.remove([clip.id for clip in batch])
+            ready = [clip for clip in batch if clip.is_ready]
+            for first in range(0, len(ready), LOAD_BATCH):
+                self._load(tx, ready[first : first + LOAD_BATCH])
+        if self._rows.dead > MOST_DEAD * len(self):
+            self._rows = self._rows.without_the_dead()
+
+    def _load(self, tx: Tx, clips: Sequence[IndexedClip]) -> None:
+        ids = [clip.id for clip in clips]
+        vectors, spans = (arrays.get_many(tx, ids, name) for name in self._names)
         # a clip of an earlier analysis has none until it is analysed again
-        there = [clip_id for clip_id in clip_ids if clip_id in vectors and clip_id in spans]
+        there = [clip for clip in clips if clip.id in vectors and clip.id in spans]
         if there:
-            self._rows.add(there, [vectors[i] for i in there], [spans[i] for i in there])
+            self._rows.add(there, [vectors[c.id] for c in there], [spans[c.id] for c in there])
+
+
+@dataclass(frozen=True, slots=True)
+class SpanRowsView:
+    """The parts at one moment, of all clips, and the clips' labels."""
+
+    spans: Spans
+    labels: LabelView
 
 
 class SpanRows:
@@ -113,8 +156,7 @@ class SpanRows:
     def __init__(self, width: int) -> None:
         self.width = width
         self.dead = 0
-        self._number_of: dict[str, int] = {}
-        self._ids, self._passing = Column(object), Column(np.bool_)
+        self._labels = Labels()
         self._firsts, self._counts = Column(np.int64), Column(np.int64)
         self.owners, self._squares = Column(np.int32), Column(np.float32)
         self._starts, self._ends = Column(np.float32), Column(np.float32)
@@ -125,16 +167,17 @@ class SpanRows:
         return self.owners, self._starts, self._ends, self._vectors, self._squares
 
     def add(
-        self, clip_ids: Sequence[str], vectors: Sequence[FloatArray], spans: Sequence[FloatArray]
+        self,
+        clips: Sequence[IndexedClip],
+        vectors: Sequence[FloatArray],
+        spans: Sequence[FloatArray],
     ) -> None:
         """Add clips that are not there, and the parts of each: (w, d) and (w, 2)."""
-        numbers = np.arange(len(self._ids), len(self._ids) + len(clip_ids))
-        self._number_of.update(zip(clip_ids, numbers.tolist(), strict=True))
+        numbers = self._labels.used + np.arange(len(clips))
+        self._labels.add(clips)
         counts = np.array([len(one) for one in vectors])
         self._firsts.extend(len(self.owners) + np.cumsum(counts) - counts)
         self._counts.extend(counts)
-        self._ids.extend(list(clip_ids))
-        self._passing.extend(np.ones(len(clip_ids), dtype=bool))
         self.owners.extend(np.repeat(numbers, counts))
         starts, ends = np.concatenate(spans).T
         self._starts.extend(starts)
@@ -143,24 +186,18 @@ class SpanRows:
         self._vectors.extend(rows)
         self._squares.extend(squared_lengths(rows))
 
-    def remove(self, clip_ids: Iterable[str]) -> None:
+    def remove(self, clip_ids: Collection[str]) -> None:
         """Mark as dead those of the clips that are there."""
-        numbers = [self._number_of.pop(i) for i in clip_ids if i in self._number_of]
-        if numbers:
-            self._passing = self._passing.apart()  # views that were taken keep theirs
-            self._passing.view()[numbers] = False
-            self.dead += int(self._counts.view()[numbers].sum())
+        numbers = [self._labels.number_of[i] for i in clip_ids if i in self._labels.number_of]
+        self.dead += int(self._counts.view()[numbers].sum())
+        self._labels.remove(clip_ids)
 
-    def view(self, clip_ids: Collection[str] | None = None) -> Spans:
-        """As they are now, with the clips that are meant marked."""
-        passing = self._passing.view()
-        if clip_ids is not None:
-            meant = [self._number_of[i] for i in clip_ids if i in self._number_of]
-            passing = np.zeros(len(passing), dtype=bool)
-            passing[meant] = True
-        return Spans(
-            ids=self._ids.view(),
-            passing=passing,
+    def view(self) -> SpanRowsView:
+        """As they are now, with all that are alive passing."""
+        labels = self._labels.view()
+        spans = Spans(
+            ids=labels.ids,
+            passing=labels.alive,
             firsts=self._firsts.view(),
             counts=self._counts.view(),
             owners=self.owners.view(),
@@ -169,15 +206,18 @@ class SpanRows:
             vectors=self._vectors.view(),
             squares=self._squares.view(),
         )
+        return SpanRowsView(spans, labels)
 
     def without_the_dead(self) -> SpanRows:
         """The same with the living clips only, in their order."""
-        now, living = self.view(), SpanRows(self.width)
+        now, living = self.view().spans, SpanRows(self.width)
         numbers, spans = np.flatnonzero(now.passing), np.stack([now.starts, now.ends], axis=1)
         for first in range(0, len(numbers), LOAD_BATCH):
-            some = numbers[first : first + LOAD_BATCH]
-            own = [slice(f, f + c) for f, c in zip(now.firsts[some], now.counts[some], strict=True)]
+            some = numbers[first : first + LOAD_BATCH].tolist()
+            own = [slice(now.firsts[n], now.firsts[n] + now.counts[n]) for n in some]
             living.add(
-                now.ids[some].tolist(), [now.vectors[o] for o in own], [spans[o] for o in own]
+                [self._labels.clip_at(n, None) for n in some],
+                [now.vectors[o] for o in own],
+                [spans[o] for o in own],
             )
         return living

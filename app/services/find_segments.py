@@ -89,7 +89,7 @@ def _candidates(
 ) -> Candidates:
     """All segments that are meant, with their distances."""
     lib.segments.catch_up(lib.store)
-    spans = lib.segments.view(None if wanted.is_empty else lib.index.candidates(wanted).ids)
+    spans = lib.segments.view(wanted)
     rows = spans.rows()
     rows = rows[~_touching(spans, barred)[rows]]
     apart = distances(vector[None], spans.vectors[rows], spans.squares[rows])[0]

@@ -97,7 +97,7 @@ def _rank(
 def _view(lib: Library, wanted: ClipFilter, scale: WindowScale) -> Spans:
     index = lib.windows[scale.name]
     index.catch_up(lib.store)
-    return index.view(None if wanted.is_empty else lib.index.candidates(wanted).ids)
+    return index.view(wanted)
 
 
 def _piece(asked: Answered, question: Question) -> Piece:

@@ -17,6 +17,7 @@ from app.search.matches import Region, matches_in, merged
 from app.search.places import Candidates, places
 from app.search.span_index import SpanRows, Spans
 from app.search.window_proposals import MOST_WINDOWS, Barred, Piece, propose, scale_for
+from tests.search.indexed import indexed
 
 SECONDS = (30.0, 1.4, 0.5, 12.0)
 """Of the clips."""
@@ -36,11 +37,11 @@ class Clips:
         rows = SpanRows(WIDTH)
         arrays = [window_arrays(one) for one in self.features.values()]
         rows.add(
-            list(self.features),
+            [indexed(clip_id) for clip_id in self.features],
             [a[scale.vectors] for a in arrays],
             [a[scale.spans] for a in arrays],
         )
-        return rows.view()
+        return rows.view().spans
 
     def load(self, clip_ids: Sequence[str], _: str) -> Mapping[str, FloatArray]:
         return {clip_id: self.features[clip_id] for clip_id in clip_ids}

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from app.numerics.arrays import FloatArray
+from app.search import span_index
 from app.search.span_index import SpanIndex, Spans
 from app.store import arrays, clips, schema
+from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipFacts, NewClip
 from app.store.store import Store
 
@@ -92,11 +94,24 @@ def test_it_holds_every_part_of_every_clip_that_has_parts(
     assert index.bytes_kept == 15 * (4 * WIDTH + 16)
 
 
-def test_only_the_clips_that_are_meant_pass(store: Store, add: Add, index: SpanIndex) -> None:
-    one, other, _ = (add(name, 4) for name in ("one", "other", "third"))
+@pytest.mark.parametrize("few", [0, 1, 1000])
+def test_only_the_clips_that_are_meant_pass(
+    store: Store, add: Add, index: SpanIndex, monkeypatch: pytest.MonkeyPatch, few: int
+) -> None:
+    """Whether they are marked among all, or taken out because they are few."""
+    monkeypatch.setattr(span_index, "FEW", few)
+    one, other, third = (add(name, parts) for name, parts in (("a", 4), ("b", 3), ("c", 5)))
+    with store.write() as tx:
+        clips.patch(tx, one, {"person": "ada"})
+        clips.patch(tx, third, {"person": "ada", "words": ["slow"]})
     index.catch_up(store)
-    assert told(index.view([other, one, "clip_unknown"])) == stored(store, one, other)
-    assert told(index.view([])) == {}
+    assert told(index.view(ClipFilter(person=("ada",)))) == stored(store, one, third)
+    assert told(index.view(ClipFilter(not_word=("slow",)))) == stored(store, one, other)
+    assert told(index.view(ClipFilter(person=("nobody",)))) == {}
+    with store.write() as tx:
+        clips.patch(tx, one, {"person": None})
+    index.catch_up(store)
+    assert told(index.view(ClipFilter(person=("ada",)))) == stored(store, third)
 
 
 def test_it_follows_the_library(store: Store, add: Add, index: SpanIndex) -> None:
