@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.analysis.frame_features import WARPING_RATE
+from app.numerics.arrays import FloatArray
 from app.search.cursor import Anchor
 from app.search.distances import Loader
 from app.search.matches import Region, matches_in, merged, together
@@ -42,10 +43,12 @@ def by_windows(view: View, piece: Piece, barred: Barred | None) -> Candidates:
     return propose(view, piece, barred).candidates()
 
 
-def by_warping(clips: IdArray, piece: Piece, barred: Barred | None, load: Loader) -> Candidates:
-    """Every match of the query in these clips."""
+def by_warping(
+    clips: IdArray, seconds: FloatArray, piece: Piece, barred: Barred | None, load: Loader
+) -> Candidates:
+    """Every match of the query in these clips (c,), which are so long (c,)."""
     whole = [Region(number) for number in range(len(clips))]
-    return matches_in(clips, whole, piece, barred, load)
+    return matches_in(clips, seconds, whole, piece, barred, load)
 
 
 def by_both(
@@ -63,7 +66,7 @@ def by_both(
         return rest, None
     regions = _regions(proposed, [place.index for place in nearest], piece)
     ids = proposed.spans.ids
-    matched = matches_in(ids, regions, piece, barred, load)
+    matched = matches_in(ids, proposed.spans.seconds(), regions, piece, barred, load)
     centres = (matched.starts + matched.ends) / 2
     head = matched.distances + VECTOR_WEIGHT * proposed.distances_near(matched.owners, centres)
     last = nearest[-1]

@@ -27,10 +27,12 @@ MOTION_VECTORS = Layout(VECTOR, WIDTH)
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """Clips that passed a filter, in the index's order: ids (n,), of a library version."""
+    """Clips that passed a filter, in the index's order: ids (n,), durations (n,) in seconds,
+    of a library version."""
 
     version: int
     ids: IdArray
+    seconds: FloatArray
 
 
 class VectorIndex:
@@ -84,7 +86,9 @@ class VectorIndex:
     def candidates(self, wanted: ClipFilter, exclude: frozenset[str] = frozenset()) -> Candidates:
         """The clips that pass a filter, without distances."""
         version, rows = self._state
-        return Candidates(version, rows.labels.ids[rows.labels.passing(wanted, exclude)])
+        labels = rows.labels
+        passing = labels.passing(wanted, exclude)
+        return Candidates(version, labels.ids[passing], labels.durations[passing])
 
     def nearest(
         self, query: FloatArray, wanted: ClipFilter, exclude: frozenset[str] = frozenset()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,8 @@ from app.search.rank import IdArray
 from app.search.window_proposals import Barred, Piece
 
 CLIPS_AT_ONCE = 256
-"""Clips whose features are held at a time."""
+FRAMES_AT_ONCE = 200_000
+"""Clips whose features are held at a time: 66 MB, or those of one clip that is longer."""
 
 EVERYTHING = 2**31 - 1
 """More frames than any clip has."""
@@ -33,6 +34,7 @@ class Region:
 
 def matches_in(
     ids: IdArray,
+    seconds: FloatArray,
     regions: Sequence[Region],
     piece: Piece,
     barred: Barred | None,
@@ -40,17 +42,31 @@ def matches_in(
 ) -> Candidates:
     """The matches of a query in regions of the clips `ids` (c,), which do not overlap.
 
-    Clips that are gone (deleted meanwhile) have none.
+    seconds: (c,) how long the clips are. Clips that are gone (deleted meanwhile) have none.
     """
     allowed = [part for region in regions for part in _without(region, ids, barred)]
     allowed.sort(key=lambda region: (region.clip, region.first))
     found: list[Candidates] = [_none(ids)]
     numbers = list(dict.fromkeys(region.clip for region in allowed))
-    for first in range(0, len(numbers), CLIPS_AT_ONCE):
-        some = set(numbers[first : first + CLIPS_AT_ONCE])
+    for some in _together(numbers, seconds):
         features = load([str(ids[number]) for number in some], FEATURES)
         found.append(_matches(ids, [r for r in allowed if r.clip in some], piece, features))
     return together(found)
+
+
+def _together(numbers: Sequence[int], seconds: FloatArray) -> Iterator[set[int]]:
+    """The clips with these numbers in groups whose features are held at a time."""
+    some: set[int] = set()
+    frames = 0.0
+    for number in numbers:
+        more = float(seconds[number]) * WARPING_RATE
+        if some and (len(some) == CLIPS_AT_ONCE or frames + more > FRAMES_AT_ONCE):
+            yield some
+            some, frames = set(), 0.0
+        some.add(number)
+        frames += more
+    if some:
+        yield some
 
 
 def together(found: Sequence[Candidates]) -> Candidates:

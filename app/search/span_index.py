@@ -77,6 +77,13 @@ class Spans:
             squares=self.squares[rows],
         )
 
+    def seconds(self) -> FloatArray:
+        """(c,) where the last part of each clip ends; 0 for one that has none."""
+        found = np.zeros(len(self.counts))
+        has_parts = self.counts > 0
+        found[has_parts] = self.ends[(self.firsts + self.counts - 1)[has_parts]]
+        return found
+
     def last_rows(self) -> IntArray:
         """(n,) for each row the last row of the same clip."""
         return np.asarray((self.firsts + self.counts - 1)[self.owners])

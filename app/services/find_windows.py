@@ -86,8 +86,8 @@ def _rank(
 ) -> tuple[Candidates, Anchor | None]:
     load = partial(lib.arrays.get_many, lib.store)
     if method is Method.DTW:
-        ids = lib.index.candidates(wanted).ids
-        return by_warping(ids, piece, barred, load), None
+        clips = lib.index.candidates(wanted)
+        return by_warping(clips.ids, clips.seconds, piece, barred, load), None
     view = partial(_view, lib, wanted)
     if method is Method.VECTOR:
         return by_windows(view, piece, barred), None

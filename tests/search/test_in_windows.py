@@ -11,7 +11,7 @@ import pytest
 
 from app.analysis.windows import WIDTH, RunningSums, WindowScale, window_arrays
 from app.numerics.arrays import FloatArray
-from app.search import in_windows
+from app.search import in_windows, matches
 from app.search.in_windows import by_both, by_warping, by_windows
 from app.search.matches import Region, matches_in, merged
 from app.search.places import Candidates, places
@@ -32,6 +32,10 @@ class Clips:
     @property
     def ids(self) -> np.ndarray:
         return np.array(list(self.features), dtype=object)
+
+    @property
+    def seconds(self) -> np.ndarray:
+        return np.array([len(one) / 10 for one in self.features.values()])
 
     def view(self, scale: WindowScale) -> Spans:
         rows = SpanRows(WIDTH)
@@ -101,7 +105,7 @@ def test_every_way_finds_a_piece_where_it_was_cut_from(some: Clips, length: floa
     both, anchor = by_both(some.view, piece, None, some.load)
     assert anchor is not None
     for found, tolerance in (
-        (both, 0.0), (by_warping(some.ids, piece, None, some.load), 0.0),
+        (both, 0.0), (by_warping(some.ids, some.seconds, piece, None, some.load), 0.0),
         (by_windows(some.view, piece, None), 0.5),
     ):  # fmt: skip
         (best,), _ = places(found, 1)
@@ -113,7 +117,7 @@ def test_nothing_is_found_in_what_is_barred(some: Clips) -> None:
     piece, barred = piece_of(some.features["clip_0"], 12, 14), Barred("clip_0", 12.0, 14.0)
     for found in (
         by_both(some.view, piece, barred, some.load)[0],
-        by_warping(some.ids, piece, barred, some.load),
+        by_warping(some.ids, some.seconds, piece, barred, some.load),
         by_windows(some.view, piece, barred),
     ):
         own = found.owners == 0
@@ -130,7 +134,7 @@ def test_all_else_follows_behind_what_was_warped(
     assert anchor is not None
     windows = len(by_windows(some.view, piece, None))
     warped = found.distances[:-windows]
-    assert 0 < len(warped) < len(by_warping(some.ids, piece, None, some.load))
+    assert 0 < len(warped) < len(by_warping(some.ids, some.seconds, piece, None, some.load))
     assert anchor.end == warped.max()
     assert (found.distances[-windows:] >= anchor.end).all()
     assert set(found.owners[-windows:]) == {0, 1, 2, 3}
@@ -157,12 +161,30 @@ def test_an_anchor_keeps_the_same_places_before_the_others(
 
 def test_matches_in_parts_of_clips_are_those_in_all_of_them(some: Clips) -> None:
     piece = piece_of(some.features["clip_0"], 12, 14)
-    whole = by_warping(some.ids, piece, None, some.load)
-    parts = matches_in(some.ids, [Region(0, 100, 160)], piece, None, some.load)
+    whole = by_warping(some.ids, some.seconds, piece, None, some.load)
+    parts = matches_in(some.ids, some.seconds, [Region(0, 100, 160)], piece, None, some.load)
     assert set(_rows(parts)) & set(_rows(whole))
     assert ((parts.starts >= 10.0) & (parts.ends <= 16.0)).all()
-    gone = matches_in(some.ids, [Region(0)], piece, None, lambda ids, name: {})
+    gone = matches_in(some.ids, some.seconds, [Region(0)], piece, None, lambda ids, name: {})
     assert len(gone) == 0
+
+
+@pytest.mark.parametrize("frames", [1, 150, 10_000])
+def test_few_frames_are_held_at_a_time_and_nothing_changes(
+    some: Clips, monkeypatch: pytest.MonkeyPatch, frames: int
+) -> None:
+    piece = piece_of(some.features["clip_0"], 12, 14)
+    whole = by_warping(some.ids, some.seconds, piece, None, some.load)
+    held: list[int] = []
+
+    def load(clip_ids: Sequence[str], name: str) -> Mapping[str, FloatArray]:
+        found = some.load(clip_ids, name)
+        held.append(sum(len(one) for one in found.values()) if len(found) > 1 else 0)
+        return found
+
+    monkeypatch.setattr(matches, "FRAMES_AT_ONCE", frames)
+    assert _rows(by_warping(some.ids, some.seconds, piece, None, load)) == _rows(whole)
+    assert max(held) <= frames
 
 
 def _rows(found: Candidates) -> list[tuple[int, float, float]]:
