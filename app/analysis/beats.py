@@ -124,7 +124,7 @@ def no_beats(confidence: float = 0.0) -> Beats:
 def given_beats(times: FloatArray) -> Beats:
     """Beats that somebody lists: (beats,) seconds, rising."""
     steps = np.diff(times)
-    tempo = float(60.0 / np.median(steps)) if len(steps) else None
+    tempo = round(float(60.0 / np.median(steps)), 6) if len(steps) else None
     return Beats(np.asarray(times, dtype=np.float64), tempo, 1.0, BeatSource.GIVEN)
 
 

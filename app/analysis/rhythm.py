@@ -6,7 +6,8 @@ what the motion shows. A recording's beats become the clip's by the offset betwe
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -66,15 +67,25 @@ def find_rhythm(
 ) -> Rhythm:
     """The beats of `track`; onsets: of its recording; plain: `energies(track)`, if at hand."""
     energy = (plain or energies(track)).global_energy
+    duration = (len(energy) - 1) / track.rate
     heard, offset = no_beats(), None
     if onsets is not None:
         heard = find_audio_beats(onsets, told.tempo)
         # By the beats that are heard freely: stops are on every beat, a told tempo may be half.
         free = find_audio_beats(onsets) if told.tempo and told.audio_offset is None else heard
         offset = _offset(told, energy, track.rate, free, onsets)
-    shifted = None if offset is None else _shifted(heard, offset, (len(energy) - 1) / track.rate)
-    cautions = () if onsets is None else tuple(_doubts(told, heard, offset))
-    return Rhythm(_first(told, energy, track.rate, shifted), offset, cautions)
+    shifted = None if offset is None else _shifted(heard, offset, duration)
+    cautions = [] if onsets is None else _doubts(told, heard, offset, shifted)
+    if told.beats and not _within(told.beats, duration):
+        detail = f"None of the beats that were given lies within the {duration:.2f} s of motion."
+        cautions.append(Caution("beats_outside_motion", detail))
+        told = replace(told, beats=None)
+    return Rhythm(_first(told, energy, track.rate, shifted), offset, tuple(cautions))
+
+
+def _within(times: Sequence[float] | FloatArray, duration: float) -> bool:
+    """Whether any of `times` (s) lies within a motion."""
+    return any(0.0 <= time <= duration for time in times)
 
 
 def _first(told: Told, energy: FloatArray, rate: float, shifted: Beats | None) -> Beats:
@@ -98,7 +109,7 @@ def _offset(
 def _shifted(heard: Beats, offset: Offset, duration: float) -> Beats | None:
     """What is heard, in the motion's time, gone on with evenly; None where they do not meet."""
     times = heard.times + offset.seconds
-    if len(times) < 2 or not ((times >= 0.0) & (times <= duration)).any():
+    if len(times) < 2 or not _within(times, duration):
         return None
     told_tempo = heard.source is BeatSource.TEMPO
     return Beats(
@@ -109,12 +120,17 @@ def _shifted(heard: Beats, offset: Offset, duration: float) -> Beats | None:
     )
 
 
-def _doubts(told: Told, heard: Beats, offset: Offset | None) -> list[Caution]:
+def _doubts(
+    told: Told, heard: Beats, offset: Offset | None, shifted: Beats | None
+) -> list[Caution]:
     if not len(heard.times):
         return [Caution("audio_without_beats", "No beat was heard in the recording.")]
     if offset is None:
         detail = "The motion does not tell when the recording begins: send audio_offset."
         return [Caution("audio_offset_unknown", detail)]
+    if shifted is None:
+        detail = "By its audio_offset no beat of the recording falls into the motion."
+        return [Caution("audio_apart", detail)]
     if not offset.is_told and told.beats is None:
         detail = (
             f"The recording's beginning was estimated as {offset.seconds:.2f} s: right but for"

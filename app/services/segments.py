@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from app.analysis.segments import (
@@ -61,7 +62,7 @@ class Segments:
 def list_segments(lib: Library, clip_id: str) -> Segments:
     """A clip's segments and cycles. Raises ClipNotFound, ClipNotReady."""
     found = segment_arrays(lib, ready_clip(lib, clip_id))
-    spans = found[SEGMENT_SPANS].astype(float).tolist()
+    spans = np.round(found[SEGMENT_SPANS].astype(float), 6).tolist()
     cycles = tuple(
         SegmentCycle(number, run, first, stop - first, spans[first][0], spans[stop - 1][1])
         for number, (first, stop, run) in enumerate(found[SEGMENT_CYCLES].tolist())

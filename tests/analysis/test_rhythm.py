@@ -64,6 +64,16 @@ def test_a_recording_that_never_meets_the_motion_tells_nothing_of_it() -> None:
     _, track, onsets = made(5, Sound.MUSIC, 0.0)
     apart = find_rhythm(track, Told(audio_offset=1000.0), onsets)
     assert apart.beats.source in (BeatSource.MOTION, BeatSource.NONE)
+    assert [caution.code for caution in apart.cautions] == ["audio_apart"]
+
+
+def test_beats_that_are_given_for_another_motion_are_told_of_and_not_used() -> None:
+    _, track, _ = made(5, Sound.MUSIC, 0.0)
+    rhythm = find_rhythm(track, Told(beats=(600.0, 601.0)))
+    assert rhythm.beats.source is find_rhythm(track).beats.source
+    assert [caution.code for caution in rhythm.cautions] == ["beats_outside_motion"]
+    some = find_rhythm(track, Told(beats=(1.0, 600.0)))
+    assert (some.beats.source, some.cautions) == (BeatSource.GIVEN, ())
 
 
 def test_a_recording_without_a_beat_leaves_the_motion_to_tell() -> None:

@@ -153,8 +153,8 @@ class Hit(Outgoing):
             rank=hit.rank,
             score=hit.score,
             distance=hit.distance,
-            start=hit.start,
-            end=hit.end,
+            start=round(hit.start, 6),
+            end=round(hit.end, 6),
             clip=Clip.of(hit.clip),
         )
 

@@ -46,7 +46,7 @@ class SegmentList(Outgoing):
                     index=one.index,
                     start=one.start,
                     end=one.end,
-                    duration=one.end - one.start,
+                    duration=round(one.end - one.start, 6),
                     cycle=one.cycle,
                 )
                 for one in found.segments
@@ -59,7 +59,7 @@ class SegmentList(Outgoing):
                     segments=one.count,
                     start=one.start,
                     end=one.end,
-                    duration=one.end - one.start,
+                    duration=round(one.end - one.start, 6),
                 )
                 for one in found.cycles
             ],
