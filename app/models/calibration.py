@@ -21,6 +21,9 @@ SCALES = np.geomspace(0.5, 100.0, 25)
 USUAL_FALSE_REJECTION = 0.02
 """Known clips refused where the library is too small to hold anything out as unknown."""
 
+LEAST_USUAL = 20
+"""Clips of both kinds that tell their mean and deviation."""
+
 CURVE_POINTS = 50
 """Of the curve of false acceptance against false rejection."""
 
@@ -78,15 +81,25 @@ class Calibration:
         return accepted, rejected
 
 
-def fit_calibration(evidence: FloatArray, novelty: FloatArray, truth: IntArray) -> Calibration:
-    """Calibrate on held-out clips; sensible constants where there are none."""
+def fit_calibration(
+    evidence: FloatArray, novelty: FloatArray, truth: IntArray, seen: BoolArray | None = None
+) -> Calibration:
+    """Calibrate on held-out clips; sensible constants where there are none.
+
+    seen: (n,) whether the same person at the same task was among the training clips, none if
+    not given. Known clips of which that is not true look newer than those that will be asked
+    about, so that the threshold is set, and errors are told, by the others where there are enough.
+    """
     known = truth != NEW
-    threshold = _threshold(novelty[known], novelty[~known])
+    usual = known & seen if seen is not None else known
+    enough = seen is not None and min(usual.sum(), (~known).sum()) >= LEAST_USUAL
+    judged = usual if enough else known
+    threshold = (_alike if enough else _threshold)(novelty[judged], novelty[~known])
     return Calibration(
         temperature=_temperature(evidence[known], truth[known]),
         threshold=threshold,
         scale=_scale(novelty - threshold, known),
-        known_novelty=np.sort(novelty[known]),
+        known_novelty=np.sort(novelty[judged]),
         new_novelty=np.sort(novelty[~known]),
     )
 
@@ -125,6 +138,14 @@ def _threshold(known: FloatArray, new: FloatArray) -> float:
     rejected = 1 - np.searchsorted(np.sort(known), cuts, side="right") / len(known)
     best = np.flatnonzero(accepted + rejected <= (accepted + rejected).min() + 1e-12)
     return float(np.median(cuts[best]))  # the middle of the gap where they part cleanly
+
+
+def _alike(known: FloatArray, new: FloatArray) -> float:
+    """The novelty that is as many standard deviations above the mean of the known as below that
+    of the new: unlike the least sum of errors it does not hang on a few clips at the border."""
+    spreads = np.array([max(float(part.std()), 1e-9) for part in (known, new)])
+    means = np.array([float(known.mean()), float(new.mean())])
+    return float((means * spreads[::-1]).sum() / spreads.sum())
 
 
 def _scale(beyond: FloatArray, known: BoolArray) -> float:

@@ -21,7 +21,7 @@ from app.models.cells import Cells, find_cells
 from app.models.holding_out import Held, rounds
 from app.models.hypotheses import Hypotheses, fit_hypotheses
 from app.models.recognition import Answer, Recognition, answer, given
-from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
 
 RECOGNISER_VERSION = 1
@@ -183,8 +183,8 @@ def _calibration_from(name: str, arrays: Mapping[str, Any], meta: Mapping[str, A
     return Calibration(temperature, threshold, scale, known, new)
 
 
-_HeldOut = tuple[FloatArray, FloatArray, IntArray]
-"""evidence (n, labels), novelty (n,), truth (n,), as app.models.calibration has them."""
+_HeldOut = tuple[FloatArray, FloatArray, IntArray, BoolArray]
+"""evidence (n, labels), novelty (n,), truth (n,), seen (n,), as app.models.calibration has them."""
 
 
 def _calibrations(
@@ -201,11 +201,18 @@ def _calibrations(
         h = fit_hypotheses(points[train], seen)
         logs = h.log_likelihoods(points[probe])
         who, what = [persons[i] for i in probe], [tasks[i] for i in probe]
+        pairs = {(persons[i], tasks[i]) for i in train}
+        again = np.array([pair in pairs for pair in zip(who, what, strict=True)], dtype=bool)
         if held is not Held.TASKS:
-            of_persons.append(_held_out(logs, h.person, seen.persons, who, cells.persons))
+            of_persons.append(_held_out(logs, h.person, seen.persons, who, cells.persons, again))
         # A stranger's walk is a walk: persons held out count as known tasks.
-        of_tasks.append(_held_out(logs, h.task, seen.tasks, what, cells.tasks))
-    return _calibrated(of_persons, len(cells.persons)), _calibrated(of_tasks, len(cells.tasks))
+        of_tasks.append(_held_out(logs, h.task, seen.tasks, what, cells.tasks, again))
+    # The same person at another task looks as new as another person does: persons are judged
+    # by all; tasks by those who did them before.
+    return (
+        _calibrated(of_persons, len(cells.persons), by_seen=False),
+        _calibrated(of_tasks, len(cells.tasks), by_seen=True),
+    )
 
 
 def _held_out(
@@ -214,19 +221,29 @@ def _held_out(
     seen: tuple[str, ...],
     truth: Sequence[str | None],
     names: tuple[str, ...],
+    again: BoolArray,
 ) -> _HeldOut:
     """What a round said of its labelled probes; labels not `seen` have no evidence."""
     has = np.array([bool(name) for name in truth], dtype=bool)
     if not seen or not has.any():
-        return np.zeros((0, len(names))), np.zeros(0), np.zeros(0, dtype=np.int64)
+        return _nothing(len(names))
     evidence = np.full((int(has.sum()), len(names)), -np.inf)
     columns = [names.index(name) for name in seen]
     evidence[:, columns] = label_evidence(logs[has], label, len(seen))
     index = [names.index(name) if name in seen else NEW for name in truth if name]
-    return evidence, novelty(logs[has], label), np.array(index, dtype=np.int64)
+    return evidence, novelty(logs[has], label), np.array(index, dtype=np.int64), again[has]
 
 
-def _calibrated(held: list[_HeldOut], labels: int) -> Calibration:
-    empty = np.zeros((0, labels)), np.zeros(0), np.zeros(0, dtype=np.int64)
-    evidence, new, truth = (np.concatenate(parts) for parts in zip(empty, *held, strict=True))
-    return fit_calibration(evidence, new, truth)
+def _calibrated(held: list[_HeldOut], labels: int, *, by_seen: bool) -> Calibration:
+    parts = zip(_nothing(labels), *held, strict=True)
+    evidence, new, truth, again = (np.concatenate(part) for part in parts)
+    return fit_calibration(evidence, new, truth, again if by_seen else None)
+
+
+def _nothing(labels: int) -> _HeldOut:
+    return (
+        np.zeros((0, labels)),
+        np.zeros(0),
+        np.zeros(0, dtype=np.int64),
+        np.zeros(0, dtype=bool),
+    )

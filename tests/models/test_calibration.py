@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.models.calibration import fit_calibration, softmax
+from app.models.calibration import NEW, fit_calibration, softmax
 
 NONE = np.zeros((0, 2)), np.zeros(0), np.zeros(0, dtype=int)
 
@@ -76,3 +76,18 @@ def test_the_curve_falls_and_its_area_tells_how_well_they_part() -> None:
     assert found.area_under_curve() == pytest.approx(pairs)
     assert fit_calibration(*NONE).curve() == []
     assert fit_calibration(*NONE).at_false_acceptance(0.1).threshold == 0.0
+
+
+def test_known_clips_that_were_not_seen_in_training_do_not_move_the_threshold() -> None:
+    rng = np.random.default_rng(2)
+    usual, unusual, new = rng.normal(-6, 1, 60), rng.normal(1, 1, 60), rng.normal(6, 2, 60)
+    novelty = np.concatenate([usual, unusual, new])
+    truth = np.repeat([0, 0, NEW], 60)
+    seen = np.repeat([True, False, False], 60)
+    evidence = np.zeros((180, 1))
+    judged = fit_calibration(evidence, novelty, truth, seen)
+    assert judged.threshold == pytest.approx(-2.0, abs=0.6)  # two deviations from both
+    assert len(judged.known_novelty) == 60
+    assert fit_calibration(evidence, novelty, truth).threshold > 1.0
+    few = fit_calibration(evidence[50:], novelty[50:], truth[50:], seen[50:])
+    assert few.threshold == fit_calibration(evidence[50:], novelty[50:], truth[50:]).threshold
