@@ -61,6 +61,12 @@ def require_json(request: Request) -> None:
         raise UnsupportedMediaType("This call takes application/json.")
 
 
+def require_json_if_any(request: Request) -> None:
+    """As require_json, of a call that may also come without a body."""
+    if media_type(request) or request.headers.get("content-length", "0") != "0":
+        require_json(request)
+
+
 def is_multipart(request: Request) -> bool:
     """Whether the body is a form with files; JSON is the other thing that it may be.
 

@@ -1,8 +1,10 @@
 """Which symbol of a library an observed motion is likeliest of (Takano, section 2.4).
 
-The likelihood of a motion under every symbol costs some 50 ms for 500 symbols. Only the NEAREST
-by divergence from the motion's own symbol are therefore asked; on 501 real clips the likeliest
-of all was among them for every clip.
+The likelihood of a motion under every symbol of a library of 500 costs .2 s, so only the NEAREST
+by divergence from the motion's own symbol are asked. On 501 real clips, among symbols of other
+recordings, the likeliest of all was the very nearest for 72 %, among the 20 nearest for 95.8 %,
+among 60 for 96.8 %. Through it no more is recognised than through the nearest: the two share a
+word in 90.0 and 91.6 %, the task in 84.8 and 87.8 %.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm import GaussianHMM, log_likelihoods
 
-NEAREST = 60
+NEAREST = 20
 _UNASKED = -1e30
 """Below every likelihood; less a divergence, so that the unasked stay in order too."""
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from app.models.language.inflection import base_forms
 from app.models.word_vocabulary import normalise_word
 from app.services import fields, labels
 from app.services.clips import get_clip, update_clip
@@ -56,8 +57,11 @@ def accept(lib: Library, clip_id: str, words: Sequence[str] | None = None) -> Cl
 
 def complete(lib: Library, beginning: str, limit: int = 10) -> labels.Counts:
     """(word, clips) of the library's words that begin with what was typed, or hold it, in that
-    order, the frequent ones first."""
-    typed = normalise_word(beginning)
-    found = [(word, count) for word, count in labels.words(lib) if typed in word]
+    order, the frequent ones first; where there is none, those that it is a form of."""
+    typed, carried = normalise_word(beginning), labels.words(lib)
+    found = [(word, count) for word, count in carried if typed in word]
+    if not found:
+        forms = base_forms(typed)
+        found = [(word, count) for word, count in carried if word in forms]
     found.sort(key=lambda pair: (not pair[0].startswith(typed), -pair[1], pair[0]))
     return found[:limit]

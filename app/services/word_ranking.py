@@ -42,7 +42,8 @@ class WordRanking:
 
 def rank_by_words(lib: Library, texts: Sequence[str], mode: str, wanted: ClipFilter) -> WordRanking:
     """All clips that pass the filter and are not excluded; none where no word is known. The
-    index has caught up.
+    index has caught up. Where all that is asked is to leave words out, the clips stand in order
+    of how likely they carry none of them, by the default in either mode.
 
     texts: words, phrases or sentences; a word with a minus leaves out what carries it, and of
     the clips without words what the model finds likelier to carry it than not. The default
@@ -54,9 +55,11 @@ def rank_by_words(lib: Library, texts: Sequence[str], mode: str, wanted: ClipFil
     asked = fitted.model.ask(texts)
     clips = lib.index.state[1].labels
     measure, to_score = _by_surprise, _probability
-    if mode == "cca":
-        measure, to_score = _by_angle, partial(_angle_score, fitted.model, asked)
     if not asked.weights:
+        measure = _by_absence
+    elif mode == "cca":
+        measure, to_score = _by_angle, partial(_angle_score, fitted.model, asked)
+    if not asked.weights and not asked.excluded:
         nothing = Ranking(np.empty(0, dtype=object), np.zeros(0))
         return WordRanking(nothing, fitted.id, asked, to_score)
     passing = clips.passing(wanted)
@@ -120,6 +123,16 @@ def _by_surprise(
     rows = np.flatnonzero(passing & beside.there)
     scores = beside.values[rows[:, None], fitted.model.vocabulary.columns(words)]
     return rows, fitted.model.clip_surprises(scores, words, asked.meant)
+
+
+def _by_absence(
+    lib: Library, fitted: Words, clips: LabelView, passing: BoolArray, asked: WordsAsked
+) -> tuple[IntArray, FloatArray]:
+    """As _by_surprise, that clips carry none of the excluded words."""
+    beside = _word_scores(lib, fitted, clips)
+    rows = np.flatnonzero(passing & beside.there)
+    scores = beside.values[rows[:, None], fitted.model.vocabulary.columns(asked.excluded)]
+    return rows, -np.log1p(-scores.astype(np.float64)).sum(axis=1)
 
 
 def _by_angle(

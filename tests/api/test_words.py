@@ -17,6 +17,18 @@ def test_a_sentence_is_understood(demo: httpx2.Client) -> None:
     assert "kick" not in {hit["clip"]["task"] for hit in told["items"]}
 
 
+def test_words_may_only_be_left_out(demo: httpx2.Client) -> None:
+    for mode in ("default", "cca"):
+        told = demo.post("/v1/search/words", json={"words": ["-walking"], "mode": mode}).json()
+        assert told["items"]
+        assert "walk" not in {hit["clip"]["task"] for hit in told["items"]}
+        scores = [hit["score"] for hit in told["items"]]
+        assert scores == sorted(scores, reverse=True)
+        assert scores[0] > 0.9
+    nothing = demo.post("/v1/search/words", json={"words": ["-zebra"]}).json()
+    assert (nothing["items"], nothing["unknown_words"]) == ([], ["zebra"])
+
+
 def test_words_are_completed(demo: httpx2.Client) -> None:
     every = demo.get("/v1/words").json()["items"]
     first = every[0]["name"]
@@ -35,6 +47,8 @@ def test_words_are_suggested_and_accepted(demo: httpx2.Client, walk: dict[str, A
     assert same.json()["words"] == walk["words"]
     assert demo.get("/v1/clips/nobody/word-suggestions").status_code == 404
     assert demo.post("/v1/clips/nobody/word-suggestions/accept", json={}).status_code == 404
+    assert demo.post("/v1/clips/nobody/word-suggestions/accept").status_code == 404
+    assert demo.post(f"{path}/accept", content=b"words").status_code == 415
 
 
 @pytest.mark.parametrize("space", ["symbols", "vectors"])

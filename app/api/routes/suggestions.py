@@ -6,7 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query
 
-from app.api.bodies import require_json
+from app.api.bodies import require_json_if_any
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.clips import Clip
@@ -26,9 +26,13 @@ def suggest_words(lib: Lib, clip_id: ClipId, limit: Most = 10) -> WordSuggestion
 
 @router.post(
     "/accept",
-    dependencies=[writes, Depends(require_json)],
+    dependencies=[writes, Depends(require_json_if_any)],
     responses=refusals(400, 404, 409, 413, 415),
 )
-def accept_words(lib: Lib, clip_id: ClipId, accepted: AcceptedWords) -> Clip:
-    """Give the clip suggested words, those named or all likely ones; the next fit learns them."""
-    return Clip.of(suggestions.accept(lib, clip_id, accepted.words))
+def accept_words(lib: Lib, clip_id: ClipId, accepted: AcceptedWords | None = None) -> Clip:
+    """Give the clip suggested words, those named or all likely ones; the next fit learns them.
+
+    Without a body, all likely ones.
+    """
+    words = None if accepted is None else accepted.words
+    return Clip.of(suggestions.accept(lib, clip_id, words))

@@ -30,7 +30,9 @@ class WordBeginning(Incoming):
     """What was typed of a word."""
 
     q: str | None = Field(
-        None, max_length=300, description="Only words that begin with this, or hold it."
+        None,
+        max_length=300,
+        description="Only words that begin with this, or hold it, else those that it is a form of.",
     )
     limit: int = Field(10, ge=1, le=1000, description="Most completions, with `q`.")
 

@@ -19,6 +19,8 @@ Related = dict[str, dict[str, float]]
 SAME_SYNSET, KIND, BROADER, KIND_OF_KIND, SIMILAR = 0.85, 0.65, 0.6, 0.5, 0.6
 USUAL_SENSES = 4
 """Of a word in each part of speech; rarer ones bring nonsense (*run* a risk)."""
+FOREIGN_SENSES = 3
+"""Of a foreign word, likewise (a *ball* that is a dance)."""
 PARTS_OF_SPEECH = ("v", "n", "a")
 
 
@@ -87,7 +89,8 @@ def _neighbours(wordnet: Any, word: str) -> Iterator[tuple[str, float]]:
         for synset in wordnet.synsets(word, part)[:USUAL_SENSES]:
             for near, likeness in _around(synset):
                 for lemma in near.lemma_names():
-                    yield lemma.casefold().replace("-", "_"), likeness
+                    if near in wordnet.synsets(lemma, part)[:FOREIGN_SENSES]:
+                        yield lemma.casefold().replace("-", "_"), likeness
 
 
 def _around(synset: Any) -> Iterator[tuple[Any, float]]:
