@@ -1,0 +1,87 @@
+"""`POST /v1/synthesize` over HTTP."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import httpx2
+import numpy as np
+
+from app.formats.read import read_recording
+from tests.api.conftest import assert_problem
+
+CALL = "/v1/synthesize"
+
+
+def test_a_motion_comes_with_what_to_expect_and_is_not_stored(
+    demo: httpx2.Client, walk: dict[str, Any]
+) -> None:
+    before = demo.get("/v1/persons").json()
+    answer = demo.post(CALL, json={"clip_ids": [walk["id"]], "task": "wave", "bvh": True})
+    assert answer.status_code == 200, answer.text
+    told = answer.json()
+    assert list(told) == ["clip", "job", "cycles", "quality", "motion", "bvh"]
+    assert told["clip"]["id"] is None
+    assert told["job"] is None
+    assert (told["clip"]["task"], told["clip"]["source"]) == ("wave", "synthesized")
+    assert told["clip"]["person"] == walk["person"]
+    assert told["quality"]["kind"] == "new_person"
+    assert told["quality"]["given_tasks"] == ["walk"]
+    assert told["quality"]["nearest_clip"]["task"] == told["quality"]["nearest_task"]
+    positions = np.array(told["motion"]["positions"])
+    shape = (told["clip"]["frames"], told["clip"]["joints"], 3)
+    assert positions.shape == shape
+    recording = read_recording(told["bvh"].encode())
+    np.testing.assert_allclose(recording.positions / 100, positions, atol=2e-3)
+    assert demo.get("/v1/persons").json() == before
+
+
+def test_octets_are_the_positions_alone(demo: httpx2.Client) -> None:
+    asked = {"person": "ada", "task": "walk", "seconds": 2}
+    octets = demo.post(CALL, json=asked, headers={"Accept": "application/octet-stream"})
+    assert octets.status_code == 200
+    told = demo.post(CALL, json=asked).json()
+    assert told["bvh"] is None
+    assert told["quality"]["kind"] == "seen"
+    shape = tuple(int(size) for size in octets.headers["x-shape"].split(","))
+    sent = np.frombuffer(octets.content, dtype="<f4").reshape(shape)
+    np.testing.assert_allclose(sent, told["motion"]["positions"], atol=1e-5)
+
+
+def test_a_stored_one_answers_201_and_then_200(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    asked = {"clip_ids": [walk["id"]], "task": "kick", "store": True}
+    first = demo.post(CALL, json=asked)
+    assert first.status_code == 201, first.text
+    clip = first.json()["clip"]
+    try:
+        assert clip["state"] == "queued"
+        assert first.json()["job"]["kind"] == "ingest"
+        second = demo.post(CALL, json=asked)
+        assert (second.status_code, second.json()["clip"]["id"]) == (200, clip["id"])
+        assert demo.get(f"/v1/clips/{clip['id']}").json()["source"] == "synthesized"
+    finally:
+        demo.delete(f"/v1/clips/{clip['id']}")
+
+
+def test_what_cannot_be_made_is_a_problem(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    unknown = demo.post(CALL, json={"person": "nobody", "task": "walk"})
+    assert_problem(unknown, 404, "not_found", "body.person")
+    task = demo.post(CALL, json={"person": "ada", "task": "fly"})
+    assert_problem(task, 404, "not_found", "body.task")
+    clip = demo.post(CALL, json={"clip_ids": ["nowhere"], "task": "walk"})
+    assert_problem(clip, 404, "clip_not_found")
+    same = demo.post(CALL, json={"clip_ids": [walk["id"]], "task": "walk"})
+    assert_problem(same, 409, "not_enough_labels", "body.clip_ids")
+    for asked in (
+        {"task": "walk"},
+        {"task": "walk", "person": "ada", "clip_ids": [walk["id"]]},
+        {"task": "walk", "clip_ids": []},
+        {"task": "walk", "person": "ada", "seconds": 1e9},
+        {"task": "walk", "person": "ada", "mood": "merry"},
+    ):
+        assert_problem(demo.post(CALL, json=asked), 422, "bad_field")
+
+
+def test_a_library_without_models_says_so(idle: httpx2.Client) -> None:
+    answer = idle.post(CALL, json={"person": "ada", "task": "walk"})
+    assert_problem(answer, 409, "model_not_fitted")

@@ -1,0 +1,64 @@
+"""`kinedex synthesize`: a BVH file, and what to expect of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from click.testing import Result
+from typer.testing import CliRunner
+
+from app.cli.main import program
+from app.errors import NotFound
+from app.formats.read import read_recording
+from app.services.library import Library
+from app.store.clip_record import ClipRecord
+from tests.services.conftest import ready_clips, ready_library, some_demo_clips  # noqa: F401
+
+Run = Callable[..., Result]
+
+
+@pytest.fixture
+def run(
+    ready_library: Library,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> Run:
+    monkeypatch.chdir(tmp_path)
+    data_dir = str(ready_library.settings.data_dir)
+
+    def call(*arguments: str) -> Result:
+        return CliRunner().invoke(program, ["--data-dir", data_dir, "synthesize", *arguments])
+
+    return call
+
+
+def test_a_file_is_written_and_told_of(
+    run: Run,
+    ready_clips: list[ClipRecord],  # noqa: F811
+    tmp_path: Path,
+) -> None:
+    walks = next(c for c in ready_clips if (c.person, c.task) == ("ada", "walk"))
+    result = run("kick", "--clip", walks.id, "-o", "kick.bvh", "--json")
+    told = json.loads(result.stdout)
+    content = (tmp_path / "kick.bvh").read_bytes()
+    assert (told["path"], told["bytes"]) == ("kick.bvh", len(content))
+    assert told["quality"]["kind"] == "new_person"
+    assert len(read_recording(content).positions) == told["clip"]["frames"]
+    assert "motion" not in told
+
+
+def test_people_are_told_what_to_expect(run: Run, tmp_path: Path) -> None:
+    result = run("bow", "--person", "ada")
+    assert result.exit_code == 0, result.output
+    assert [file.name for file in tmp_path.iterdir()] == ["ada bow (synthesized).bvh"]
+    assert "did record the task" in result.output
+    assert "not measured" in result.output
+
+
+def test_mistakes_are_told(run: Run) -> None:
+    assert run("walk").exit_code == 2
+    assert run("walk", "--person", "ada", "--clip", "x").exit_code == 2
+    assert isinstance(run("walk", "--person", "nobody").exception, NotFound)
