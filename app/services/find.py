@@ -25,13 +25,12 @@ from app.services.hits import Hit, Hits
 from app.services.library import Library
 from app.services.metric_ranking import rank_by_metric
 from app.services.query import Answered, Question, describe
-from app.services.word_ranking import rank_by_words
+from app.services.word_ranking import WORD_MODES, rank_by_words
 from app.store import clips as stored
 from app.store.clip_filter import ClipFilter
 from app.store.files import Readable
 
 DEFAULT_LIMIT = 10
-WORD_MODES = ("default", "cca")
 SCOPES = ("clips", "windows", "segments")
 _NAMES = (VECTOR, FEATURES, RHO, EPSILON)
 

@@ -6,13 +6,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from app.analysis.motion_symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.language.inflection import base_forms
+from app.models.library_words import LibraryWords
 from app.models.word_vocabulary import normalise_word
+from app.numerics.arrays import FloatArray
 from app.services import fields, labels
 from app.services.clips import get_clip, update_clip
 from app.services.library import Library
 from app.services.query import ready_clip
-from app.services.word_ranking import STATISTICS
+from app.services.word_ranking import STATISTICS, WORD_MODES
 from app.store import arrays
 from app.store.clip_record import ClipRecord
 
@@ -24,22 +27,38 @@ Suggestions = tuple[tuple[str, float], ...]
 """(word, score 0..1), the best first."""
 
 
-def suggest(lib: Library, clip_id: str, limit: int = 10) -> Suggestions:
+def suggest(lib: Library, clip_id: str, limit: int = 10, mode: str = "default") -> Suggestions:
     """Words that the clip does not carry and that the word model would give it.
 
-    Raises ClipNotFound, ClipNotReady, ModelNotFitted, BadField.
+    mode: "default", by the kernel regression, or "cca", by where its symbol lies in the
+    correlated space. Raises ClipNotFound, ClipNotReady, ModelNotFitted, BadField, and
+    NotEnoughLabels where mode "cca" could not be fitted.
     """
     if not 1 <= limit <= MOST_SUGGESTED:
         raise fields.bad_field("limit", f"must be from 1 to {MOST_SUGGESTED}")
+    if mode not in WORD_MODES:
+        raise fields.bad_field("mode", f"must be one of {', '.join(WORD_MODES)}")
     clip = ready_clip(lib, clip_id)
     model = lib.models.words(lib.store).model
-    with lib.store.read() as tx:
-        statistics = arrays.get_one(tx, clip_id, STATISTICS)
-    scores = model.word_scores(statistics[None])[0]
+    scores = (_scores_cca if mode == "cca" else _scores)(lib, model, clip_id)
     carried = model.vocabulary.label_matrix([clip.words])[0] > 0
     order = np.argsort(-np.where(carried, -1.0, scores), kind="stable")
     found = [(model.vocabulary.words[i], float(scores[i])) for i in order if not carried[i]]
     return tuple(pair for pair in found[:limit] if pair[1] > 0)
+
+
+def _scores(lib: Library, model: LibraryWords, clip_id: str) -> FloatArray:
+    """(V,) of the vocabulary's words."""
+    with lib.store.read() as tx:
+        statistics = arrays.get_one(tx, clip_id, STATISTICS)
+    return np.asarray(model.word_scores(statistics[None])[0])
+
+
+def _scores_cca(lib: Library, model: LibraryWords, clip_id: str) -> FloatArray:
+    with lib.store.read() as tx:
+        stored = {name: arrays.get_one(tx, clip_id, name) for name in SYMBOL_ARRAYS}
+    points = model.space.place([symbol_from_arrays(stored)])
+    return np.asarray(model.word_scores_cca(points)[0])
 
 
 def accept(lib: Library, clip_id: str, words: Sequence[str] | None = None) -> ClipRecord:

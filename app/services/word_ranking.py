@@ -23,6 +23,7 @@ from app.store import arrays
 from app.store.clip_filter import ClipFilter
 
 STATISTICS = "symbol_statistics"
+WORD_MODES = ("default", "cca")
 LIKELIER_THAN_NOT = 0.5
 
 Words = Fitted[LibraryWords]

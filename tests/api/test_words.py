@@ -42,6 +42,10 @@ def test_words_are_suggested_and_accepted(demo: httpx2.Client, walk: dict[str, A
     found = demo.get(path, params={"limit": 2}).json()
     assert len(found["items"]) == 2
     assert found["next"] is None
+    through_space = demo.get(path, params={"limit": 100, "mode": "cca"}).json()["items"]
+    assert {item["word"] for item in through_space}.isdisjoint(walk["words"])
+    assert [item["score"] for item in through_space] != [item["score"] for item in found["items"]]
+    assert demo.get(path, params={"mode": "guess"}).status_code == 422
     same = demo.post(f"{path}/accept", json={"words": walk["words"][:1]})
     assert same.status_code == 200
     assert same.json()["words"] == walk["words"]

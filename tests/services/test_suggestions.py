@@ -33,6 +33,9 @@ def test_a_clip_without_words_gets_those_of_its_like_and_the_next_fit_learns_the
 
     words = [word for word, _ in suggestions.suggest(lib, bare.id)]
     assert set(last.words) & set(words[:3])
+    through_space = suggestions.suggest(lib, bare.id, 3, "cca")
+    assert set(last.words) & {word for word, _ in through_space}
+    assert all(0.0 < score < 1.0 for _, score in through_space)
     accepted = suggestions.accept(lib, bare.id, [words[0]])
     assert accepted.words == (words[0],)
     assert words[0] not in dict(suggestions.suggest(lib, bare.id))
@@ -56,3 +59,5 @@ def test_a_word_is_completed(ready_library: Library) -> None:
 def test_a_wrong_limit_is_told(ready_library: Library, clip_of: FindClip) -> None:
     with pytest.raises(BadField):
         suggestions.suggest(ready_library, clip_of("ada", "walk").id, limit=0)
+    with pytest.raises(BadField):
+        suggestions.suggest(ready_library, clip_of("ada", "walk").id, mode="guess")

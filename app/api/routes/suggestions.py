@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Query
 
@@ -15,13 +15,19 @@ from app.services import suggestions
 
 router = APIRouter(prefix="/v1/clips/{clip_id}/word-suggestions", tags=["clips"])
 
+Mode = Annotated[
+    Literal["default", "cca"],
+    Query(description="As of a search by words: kernel regression, or Takano's correlated space."),
+]
 Most = Annotated[int, Query(ge=1, le=suggestions.MOST_SUGGESTED)]
 
 
 @router.get("", dependencies=[reads], responses=refusals(404, 409))
-def suggest_words(lib: Lib, clip_id: ClipId, limit: Most = 10) -> WordSuggestions:
+def suggest_words(
+    lib: Lib, clip_id: ClipId, limit: Most = 10, mode: Mode = "default"
+) -> WordSuggestions:
     """Words that the clip does not carry and that the word model would give it."""
-    return WordSuggestions.of(suggestions.suggest(lib, clip_id, limit))
+    return WordSuggestions.of(suggestions.suggest(lib, clip_id, limit, mode))
 
 
 @router.post(
