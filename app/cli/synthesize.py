@@ -44,7 +44,8 @@ def synthesize(
     )
     with open_library(context) as lib:
         made = synthesise.synthesise(lib, query)
-    path = output or Path(f"{_safe(made.name)}.bvh")
+    whose = made.person or "someone"
+    path = output or Path(f"{_safe(f'{whose} {made.name}')}.bvh")
     write_whole(path, [made.bvh])
     if as_json:
         told = Synthesis.of(made, with_bvh=False).model_dump(mode="json", exclude={"motion"})

@@ -26,6 +26,9 @@ STAYING = 1e-3
 LARGEST_STEP = 0.4
 """Radians that a joint turns in one step."""
 
+SMALLEST_STEP = 2e-3
+"""Radians and metres: below it all frames are there."""
+
 _WEIGHTS = {
     JointRole.HIPS: 2.0,
     JointRole.LEFT_FOOT: 3.0,
@@ -68,6 +71,8 @@ def pose_to(start: Animation, joints: dict[JointRole, int], wanted: FloatArray) 
         turns = step[:, 3:]
         left += turns
         _turn(rotations, above, body.turning, turns.reshape(len(aim), -1, 3))
+        if np.abs(step).max() < SMALLEST_STEP:
+            break
     return Animation(start.skeleton, rotations, translations, start.frame_rate)
 
 

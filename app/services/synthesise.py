@@ -81,7 +81,7 @@ def synthesise(lib: Library, query: SynthesisQuery) -> Synthesised:
     Raises BadField, NotFound for a person or task that the model does not know, ClipNotFound,
     ClipNotReady, NotEnoughLabels where there is nothing to make it of, ModelNotFitted.
     """
-    _check(query)
+    query = _tidied(query)
     fitted = _model(lib)
     plan = plan_of(lib, fitted.model, query.task, query.person, query.clip_ids)
     material = material_of(lib, fitted.model, plan)
@@ -98,7 +98,8 @@ def synthesise(lib: Library, query: SynthesisQuery) -> Synthesised:
     made = Synthesised(
         person=plan.person,
         task=plan.task,
-        name=f"{plan.person or 'someone'} {plan.task} (synthesized)",
+        # Without the person, whose name must go when they are forgotten.
+        name=f"{plan.task} (synthesized)",
         clip=None,
         job=None,
         is_new=True,
@@ -111,13 +112,18 @@ def synthesise(lib: Library, query: SynthesisQuery) -> Synthesised:
     return _stored(lib, made, material, plan) if query.store else made
 
 
-def _check(query: SynthesisQuery) -> None:
+def _tidied(query: SynthesisQuery) -> SynthesisQuery:
+    task, person = fields.text("task", query.task), fields.text("person", query.person)
+    if task is None:
+        raise fields.bad_field("task", "must not be empty")
+    query = replace(query, task=task, person=person)
     if (query.person is None) == (query.clip_ids is None):
         raise fields.bad_field("person", "send exactly one of person and clip_ids")
     if query.clip_ids is not None and not 1 <= len(query.clip_ids) <= MOST_CLIPS:
         raise fields.bad_field("clip_ids", f"must be 1 to {MOST_CLIPS} clips")
     if query.seconds is not None and not SECONDS[0] <= query.seconds <= SECONDS[1]:
         raise fields.bad_field("seconds", f"must be from {SECONDS[0]:g} to {SECONDS[1]:g}")
+    return query
 
 
 def _model(lib: Library) -> Fitted[Synthesis]:

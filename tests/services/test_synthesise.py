@@ -135,6 +135,7 @@ def test_a_stored_one_is_a_clip_from_which_nothing_is_learned(mine: Library) -> 
     assert (clip.person, clip.task, clip.source) == ("chika", "walk", SYNTHESIZED)
     assert clip.frames == made.motion.frames
     assert is_synthesized(clip)
+    assert "chika" not in clip.name + clip.file_name  # who must be forgotten on request
     assert clip.id not in {c.id for c in read_training_set(mine.store).clips}
     assert synthesise(mine, query).quality.kind is SynthesisKind.NEW_TASK
 
@@ -153,6 +154,7 @@ def test_what_cannot_be_made_is_refused_with_its_reason(fitted: Library) -> None
         synthesise(fitted, SynthesisQuery("walk", clip_ids=both))
     for query in (
         SynthesisQuery("walk"),
+        SynthesisQuery("  ", person="ada"),
         SynthesisQuery("walk", person="ada", clip_ids=both),
         SynthesisQuery("walk", clip_ids=()),
         SynthesisQuery("walk", person="ada", seconds=0.1),
