@@ -7,7 +7,9 @@ among the training clips. All from held-out clips.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -41,6 +43,23 @@ class Calibration:
     scale: float
     known_novelty: FloatArray
     new_novelty: FloatArray
+
+    def to_arrays(self, name: str) -> tuple[dict[str, np.ndarray[Any, Any]], list[float]]:
+        """Arrays, their names beginning with `name`, and JSON-able numbers."""
+        arrays = {
+            f"{name}_known_novelty": self.known_novelty,
+            f"{name}_new_novelty": self.new_novelty,
+        }
+        return arrays, [self.temperature, self.threshold, self.scale]
+
+    @classmethod
+    def from_arrays(
+        cls, name: str, arrays: Mapping[str, Any], numbers: Sequence[float]
+    ) -> Calibration:
+        """What to_arrays took apart."""
+        temperature, threshold, scale = numbers
+        known, new = arrays[f"{name}_known_novelty"], arrays[f"{name}_new_novelty"]
+        return cls(temperature, threshold, scale, known, new)
 
     def beliefs(self, evidence: FloatArray, novelty: FloatArray) -> FloatArray:
         """(n, labels) belief in each label, 0..1, each row's sum = belief in being known."""

@@ -55,17 +55,13 @@ class Recogniser:
         """Arrays and JSON-able meta from which from_arrays makes the same record."""
         arrays: _Arrays = {"centre": self.axes.centre, "axes": self.axes.axes}
         arrays |= {f.name: getattr(self.hypotheses, f.name) for f in fields(Hypotheses)}
-        meta = {"version": RECOGNISER_VERSION, "persons": self.persons, "tasks": self.tasks}
+        meta: dict[str, Any] = {"version": RECOGNISER_VERSION}
+        meta |= {"persons": list(self.persons), "tasks": list(self.tasks)}
         for name in ("person", "task"):
             calibration: Calibration = getattr(self, f"{name}_calibration")
-            arrays[f"{name}_known_novelty"] = calibration.known_novelty
-            arrays[f"{name}_new_novelty"] = calibration.new_novelty
-            meta[f"{name}_calibration"] = [
-                calibration.temperature,
-                calibration.threshold,
-                calibration.scale,
-            ]
-        return arrays, {key: list(v) if isinstance(v, tuple) else v for key, v in meta.items()}
+            found, meta[f"{name}_calibration"] = calibration.to_arrays(name)
+            arrays |= found
+        return arrays, meta
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> Recogniser:
@@ -77,8 +73,8 @@ class Recogniser:
             tuple(meta["tasks"]),
             PrincipalAxes(arrays["centre"], arrays["axes"]),
             Hypotheses(**{f.name: arrays[f.name] for f in fields(Hypotheses)}),
-            _calibration_from("person", arrays, meta),
-            _calibration_from("task", arrays, meta),
+            Calibration.from_arrays("person", arrays, meta["person_calibration"]),
+            Calibration.from_arrays("task", arrays, meta["task_calibration"]),
         )
 
 
@@ -175,12 +171,6 @@ def _answers(
     beliefs = calibration.beliefs(label_evidence(logs, label, len(names)), new)
     accepted = new <= calibration.threshold
     return [answer(names, row, bool(a)) for row, a in zip(beliefs, accepted, strict=True)]
-
-
-def _calibration_from(name: str, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> Calibration:
-    temperature, threshold, scale = meta[f"{name}_calibration"]
-    known, new = arrays[f"{name}_known_novelty"], arrays[f"{name}_new_novelty"]
-    return Calibration(temperature, threshold, scale, known, new)
 
 
 _HeldOut = tuple[FloatArray, FloatArray, IntArray, BoolArray]

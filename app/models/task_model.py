@@ -2,8 +2,8 @@
 
 P (positions, people, tasks) = Q x_1 S_position x_2 S_people x_3 S_task (eq. 12), of motions
 brought to one body and one length. What is probed is brought to the span of S_position, where
-each joint is held against the same joint of every training motion (eq. 13). A category is
-told by its joints' least distances, weighted and summed (eq. 14).
+each joint is held against the same joint of every training motion (eq. 13). A category is told
+by its joints' least distances, weighted and summed (eq. 14).
 
 Read as printed, eq. 14 maximises a sum of distances. With each joint counted for the category
 in which it is nearest that is a vote by joints (Reading.PRINTED), in which a far joint weighs
@@ -12,9 +12,10 @@ more than a near one. Read as meant, the smallest sum over all joints wins (Read
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 
@@ -63,7 +64,8 @@ def link_weights() -> FloatArray:
 class TaskModel:
     """persons (P,), tasks (T,): sorted labels; axes: what the motions span, uncentred, (d, r);
     svd: of the tensor (r, P, T) in these coordinates; person, task: (c,) of the c cells that
-    were recorded; weights: (13,) of the joints."""
+    were recorded; cells: (c, 13, samples x 3) these as the factorised tensor has them;
+    weights: (13,) of the joints."""
 
     persons: tuple[str, ...]
     tasks: tuple[str, ...]
@@ -71,30 +73,51 @@ class TaskModel:
     svd: NModeSVD
     person: IntArray
     task: IntArray
+    cells: FloatArray
     weights: FloatArray
 
     def joint_distances(self, poses: FloatArray) -> FloatArray:
         """(n, c, 13) squared distances of the joints of `poses` (n, samples, 13, 3) from those
         of each recorded cell, in the tensor's subdomain (eq. 13)."""
         probes = self._in_subdomain(poses)
-        cells = _by_joint(self._cells() @ self.axes.axes.T)
         out = np.empty((len(probes), len(self.person), JOINTS))
         for joint in range(JOINTS):
-            one, other = probes[:, joint], cells[:, joint]
+            one, other = probes[:, joint], self.cells[:, joint]
             squares = (one**2).sum(1)[:, None] - 2 * one @ other.T + (other**2).sum(1)
             out[:, :, joint] = np.maximum(squares, 0.0)
         return out
-
-    def _cells(self) -> FloatArray:
-        """(c, r) the recorded cells as the factorised tensor has them."""
-        tensor = self.svd.reconstruct()
-        return np.asarray(tensor[:, self.person, self.task].T)
 
     def _in_subdomain(self, poses: FloatArray) -> FloatArray:
         """(n, 13, samples x 3) of `poses`, what S_position spans of them."""
         position = self.svd.factors[0]
         points = self.axes.project(np.asarray(poses).reshape(len(poses), -1))
         return _by_joint(points @ position @ position.T @ self.axes.axes.T)
+
+    def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
+        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        position, people, tasks = self.svd.factors
+        arrays = {
+            "centre": self.axes.centre,
+            "axes": self.axes.axes,
+            "core": self.svd.core,
+            "position_mode": position,
+            "people_mode": people,
+            "task_mode": tasks,
+        }
+        arrays |= {name: getattr(self, name) for name in ("person", "task", "cells", "weights")}
+        return arrays, {"persons": list(self.persons), "tasks": list(self.tasks)}
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> TaskModel:
+        """The record that to_arrays took apart."""
+        modes = (arrays["position_mode"], arrays["people_mode"], arrays["task_mode"])
+        return cls(
+            tuple(meta["persons"]),
+            tuple(meta["tasks"]),
+            PrincipalAxes(arrays["centre"], arrays["axes"]),
+            NModeSVD(arrays["core"], modes),
+            *(arrays[name] for name in ("person", "task", "cells", "weights")),
+        )
 
 
 def fit_task_model(
@@ -120,13 +143,16 @@ def fit_task_model(
     means = cell_means(flat, cells)
     axes = principal_axes(means, MOST_AXES, centred=False)
     tensor = np.moveaxis(complete_tensor(axes.project(means), cells), 2, 0)
+    svd = nmode_svd(tensor, ranks)
+    recorded = svd.reconstruct()[:, cells.person, cells.task].T @ axes.axes.T
     return TaskModel(
         cells.persons,
         cells.tasks,
         axes,
-        nmode_svd(tensor, ranks),
+        svd,
         cells.person,
         cells.task,
+        _by_joint(recorded),
         link_weights(),
     )
 
