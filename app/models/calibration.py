@@ -26,6 +26,9 @@ USUAL_FALSE_REJECTION = 0.02
 LEAST_USUAL = 20
 """Clips of both kinds that tell their mean and deviation."""
 
+LEAST_BELIEF = 1e-9
+"""Of being known: of what is surely new the labels still keep their order as candidates."""
+
 CURVE_POINTS = 50
 """Of the curve of false acceptance against false rejection."""
 
@@ -63,7 +66,7 @@ class Calibration:
 
     def beliefs(self, evidence: FloatArray, novelty: FloatArray) -> FloatArray:
         """(n, labels) belief in each label, 0..1, each row's sum = belief in being known."""
-        known = sigmoid((self.threshold - novelty) / self.scale)
+        known = np.maximum(sigmoid((self.threshold - novelty) / self.scale), LEAST_BELIEF)
         return softmax(evidence / self.temperature) * known[:, None]
 
     def at_false_acceptance(self, rate: float) -> Calibration:

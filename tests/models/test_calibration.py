@@ -35,6 +35,14 @@ def test_beliefs_sum_to_the_belief_in_being_known() -> None:
     np.testing.assert_allclose(beliefs.sum(axis=1), [1.0, 0.5, 0.0], atol=1e-9)
 
 
+def test_what_is_surely_new_still_has_a_best_candidate() -> None:
+    evidence = np.array([[-3.0, -1.0, -2.0]])
+    for new in (0.0, 1e3, 1e9):
+        beliefs = fit_calibration(*NONE).beliefs(evidence, np.array([new]))
+        assert np.argsort(-beliefs[0], kind="stable").tolist() == [1, 2, 0]
+        assert beliefs.sum() <= 1.0
+
+
 def test_nothing_held_out_still_calibrates() -> None:
     found = fit_calibration(*NONE)
     assert (found.temperature, found.threshold, found.scale) == (1.0, 0.0, 1.0)
