@@ -70,6 +70,11 @@ class Multilinear:
         basis = mode_product(mode_product(core, row, 0), motions, 2)[0]
         return _coordinates(basis, self.axes.project(sample))
 
+    def eigenmotions(self) -> FloatArray:
+        """(1250, R3) J of eq. 3 in the samples' own numbers: orthonormal motions, of which all
+        cells are made, those that matter most first."""
+        return np.asarray(self.axes.axes @ self.svd.factors[2])
+
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
         """Arrays and JSON-able meta from which from_arrays makes the same record."""
         people, actions, motions = self.svd.factors
@@ -163,8 +168,8 @@ def recognise_multilinear(
         to_tasks = np.linalg.norm(record.action(sample, known_person) - actions, axis=1)
     near = bool(far.min() <= record.radius)
     return Recognition(
-        person or answer(record.persons, _shares(to_persons), near),
-        task or answer(record.tasks, _shares(to_tasks), near),
+        person or answer(record.persons, shares(to_persons), near),
+        task or answer(record.tasks, shares(to_tasks), near),
     )
 
 
@@ -173,7 +178,7 @@ def _coordinates(basis: FloatArray, point: FloatArray) -> FloatArray:
     return np.asarray(point @ np.linalg.pinv(basis, rcond=SMALLEST_SINGULAR))
 
 
-def _shares(distances: FloatArray) -> FloatArray:
-    """(n,) distances to shares that sum to 1; the smallest distance sets the scale."""
+def shares(distances: FloatArray) -> FloatArray:
+    """(n,) shares that sum to 1 by distances (n,), of which the smallest sets the scale."""
     scale = max(float(distances.min()), 1e-9)
     return np.asarray(softmax(-0.5 * ((distances / scale) ** 2)[None])[0])

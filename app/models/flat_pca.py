@@ -1,0 +1,89 @@
+"""Flat PCA, the baseline that Vasilescu 2002 (section 5) holds her model against.
+
+Every observed motion is a vector of coefficients of the most significant axes. A person is as
+many such vectors as there are tasks, where the multilinear model has one signature, and nothing
+tells what two tasks of one person have in common.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.errors import NotEnoughLabels
+from app.models.cells import Cells, cell_means, find_cells
+from app.models.multilinear import DIMENSIONS, shares
+from app.models.recognition import Recognition, answer, given
+from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.principal_axes import PrincipalAxes, principal_axes
+
+
+@dataclass(frozen=True, slots=True)
+class FlatPCA:
+    """coefficients: (cells, k) in the coordinates of `axes`, the mean of each cell's takes."""
+
+    cells: Cells
+    axes: PrincipalAxes
+    coefficients: FloatArray
+
+    @property
+    def numbers_a_person(self) -> int:
+        """How many numbers represent one person: a vector for each task."""
+        return int(len(self.cells.tasks) * self.coefficients.shape[1])
+
+
+def fit_flat_pca(
+    samples: FloatArray,
+    persons: Sequence[str | None],
+    tasks: Sequence[str | None],
+    dimensions: int = DIMENSIONS,
+) -> FlatPCA:
+    """Fit on samples (clips, w) that have both labels. Raises NotEnoughLabels without any."""
+    use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
+    if not use:
+        raise NotEnoughLabels("Flat PCA needs clips with a person and a task.")
+    cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
+    axes = principal_axes(np.asarray(samples)[use], dimensions)
+    return FlatPCA(cells, axes, cell_means(axes.project(np.asarray(samples)[use]), cells))
+
+
+def recognise_flat(
+    record: FlatPCA,
+    sample: FloatArray,
+    known_person: str | None = None,
+    known_task: str | None = None,
+) -> Recognition:
+    """Who does what in one sample (w,): the nearest coefficients, among those of what is known.
+
+    It calls everything known. Scores are shares by nearness; known labels that were never seen
+    tell nothing.
+    """
+    cells = record.cells
+    far = np.linalg.norm(record.coefficients - record.axes.project(sample), axis=1)
+    to_persons = _nearest(_among(far, cells.task, cells.tasks, known_task), cells.person)
+    to_tasks = _nearest(_among(far, cells.person, cells.persons, known_person), cells.task)
+    return Recognition(
+        given(known_person, cells.persons)
+        if known_person
+        else answer(cells.persons, shares(to_persons), known=True),
+        given(known_task, cells.tasks)
+        if known_task
+        else answer(cells.tasks, shares(to_tasks), known=True),
+    )
+
+
+def _among(
+    far: FloatArray, label: IntArray, names: tuple[str, ...], known: str | None
+) -> FloatArray:
+    if known not in names:
+        return far
+    return np.where(label == names.index(known), far, np.inf)
+
+
+def _nearest(far: FloatArray, label: IntArray) -> FloatArray:
+    """(labels,) the least of distances (cells,) of each label."""
+    least = np.full(int(label.max()) + 1, np.inf)
+    np.minimum.at(least, label, far)
+    return least
