@@ -26,11 +26,12 @@ from app.config import Settings
 from app.models.symbol_space import LANDMARKS, symbol_distances
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm import GaussianHMM
+from app.services.training import NAMES
 from app.store import schema
 from app.store import tables as t
 from app.store.blobs import to_blob
 from app.store.store import Store
-from tests.bench.large_library import Sample, fill, many_clips, samples
+from tests.bench.large_library import VECTOR, Sample, fill, many_clips, samples
 from tests.bench.processes import Tree, processes_over
 from tests.live import Live, serve
 from tests.real_clips import manifest
@@ -41,7 +42,8 @@ CLIPS = 10_000
 SPREAD = 0.05
 """Of the noise, in deviations of a statistic and in the channels' own scales."""
 STATISTICS, MOVED = "symbol_statistics", "symbol_means"
-AS_THEY_ARE = ("symbol_variances", "symbol_transitions", "motion_sample")
+AS_THEY_ARE = tuple({*NAMES} - {VECTOR, STATISTICS, MOVED})
+"""What else a fit reads."""
 QUERIES = 101
 AT_ONCE = 500
 FIT_SECONDS = 3600.0
@@ -144,7 +146,7 @@ def _fit(live: Live, client: httpx2.Client, meanwhile: Callable[[], None]) -> tu
     """Seconds of a fit, of the wall and of the CPU."""
     workers = [p for p in processes_over(live.data_dir) if "app.worker" in p.cmdline()]
     tree, began = Tree(), time.perf_counter()
-    job = client.post("/v1/models/fit").json()
+    job = client.post("/v1/models/fit").json()["job"]
     while client.get(f"/v1/jobs/{job['id']}").json()["state"] in ("queued", "processing"):
         tree.sample(workers[0])
         meanwhile()

@@ -51,6 +51,16 @@ def test_old_ones_go_with_their_arrays(store: Store) -> None:
     assert count == models.KEPT_VERSIONS
 
 
+def test_what_was_made_of_clips_is_only_read_when_it_is_asked_for(store: Store) -> None:
+    arrays = {"weights": np.ones(2), f"{models.OF_CLIPS}ids": np.ones(9), "clips": np.ones(3)}
+    with store.write() as tx:
+        saved = models.save(tx, "words", meta={}, arrays=arrays, library_version=1, library_size=1)
+    with store.read() as tx:
+        assert models.load_arrays(tx, saved.id).keys() == {"weights", "clips"}
+        asked = models.load_arrays(tx, saved.id, ["clips.ids", "unknown"])
+    assert asked.keys() == {"clips.ids"}
+
+
 def test_settings_are_told_with_the_model_in_force(store: Store) -> None:
     with store.write() as tx:
         saved = save(tx, "words", 1.0)
