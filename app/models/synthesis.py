@@ -42,6 +42,9 @@ MOST_TASKS = 24
 TEMPO_SLACK = 0.15
 """Of log seconds: nobody is made to be much quicker or slower at a task than all who did it."""
 
+MOST_PERSONS = 64
+"""Persons of whose motions one is made: those who did most of the same tasks."""
+
 DIMENSIONS = 64
 """Coordinates in which real clips are compared with what was made."""
 
@@ -198,11 +201,11 @@ def predict(
         )
     if not others:
         raise NotEnoughLabels(f"Nobody else did the task {task}: a clip of another person's.")
-    known = _known_tensor(record, others, [*told, task])
+    chosen = _most_alike(record, told, task)
+    own = np.stack([told[name] for name in chosen]).astype(np.float64)
+    known = _known_tensor(record, _who_shares_most(record, others, chosen), [*chosen, task], own)
     basis, wanted = known[:, :-1], known[:, -1]
-    own = np.stack(list(told.values())).astype(np.float64)
-    near = _most_alike(basis, wanted)
-    shape = solve(basis[:, near], wanted, own[near])
+    shape = solve(basis, wanted, own)
     shape[-1] = float(np.mean(wanted[:, -1]) >= 0.5)
     shortest, longest = wanted[:, -2].min(), wanted[:, -2].max()
     shape[-2] = np.clip(shape[-2], shortest - TEMPO_SLACK, longest + TEMPO_SLACK)
@@ -251,32 +254,62 @@ def _mirrored(basis: FloatArray) -> FloatArray:
     return mirrored(basis.reshape(-1, SHAPE_LENGTH)).reshape(basis.shape)
 
 
-def _most_alike(basis: FloatArray, wanted: FloatArray) -> IntArray:
-    """Indices of the tasks (K, T, d) that are most like the wanted one, themselves or mirrored."""
-    scale, means, aim = weights(), basis.mean(axis=0), wanted.mean(axis=0)
+def _most_alike(record: Synthesis, told: Mapping[str, FloatArray], task: str) -> list[str]:
+    """The told tasks that are most like the wanted one, themselves or mirrored."""
+    if len(told) <= MOST_TASKS:
+        return list(told)
+    scale, aim = weights(), record.means[record._did(task)].mean(axis=0)
+    means = np.stack([record.means[record._did(name)].mean(axis=0) for name in told])
     away = [np.linalg.norm((rows - aim) * scale, axis=1) for rows in (means, mirrored(means))]
-    return np.sort(np.argsort(np.min(away, axis=0), kind="stable")[:MOST_TASKS])
+    near = np.argsort(np.min(away, axis=0), kind="stable")[:MOST_TASKS]
+    names = list(told)
+    return [names[i] for i in np.sort(near)]
 
 
-def _known_tensor(record: Synthesis, persons: list[str], tasks: list[str]) -> FloatArray:
-    """(persons, tasks, 1378); missing cells by person and task effects."""
-    person = np.array([record.persons.index(name) for name in persons])
-    task = np.array([record.tasks.index(name) for name in tasks])
-    rows, columns = np.repeat(person, len(task)), np.tile(task, len(person))
-    place = np.full((len(record.persons), len(record.tasks)), -1)
-    place[record.person, record.task] = np.arange(len(record.person))
-    cell = place[rows, columns]
-    found = record.means[cell]
-    missing = cell < 0
+def _who_shares_most(record: Synthesis, persons: list[str], tasks: list[str]) -> list[str]:
+    """The persons who did most of these tasks: of them there is least to be completed."""
+    if len(persons) <= MOST_PERSONS:
+        return persons
+    wanted = np.isin(record.task, [record.tasks.index(name) for name in tasks])
+    shared = np.bincount(record.person[wanted], minlength=len(record.persons))
+    count = [shared[record.persons.index(name)] for name in persons]
+    return [persons[i] for i in np.sort(np.argsort(-np.array(count), kind="stable")[:MOST_PERSONS])]
+
+
+def _known_tensor(
+    record: Synthesis, persons: list[str], tasks: list[str], own: FloatArray
+) -> FloatArray:
+    """(persons, tasks, 1378); missing cells by person and task effects.
+
+    own: (tasks - 1, 1378) what the asked person did, which tells of the effects too.
+    """
+    person, task = _places(record.persons, persons), _places(record.tasks, tasks)
+    kept = np.flatnonzero((person[record.person] >= 0) & (task[record.task] >= 0))
+    rows, columns = person[record.person[kept]], task[record.task[kept]]
+    known = np.full((len(persons), len(tasks), SHAPE_LENGTH), np.nan)
+    known[rows, columns] = record.means[kept]
+    missing = np.isnan(known[:, :, 0])
     if missing.any():
-        effects = fit_effects(record.means, _as_cells(record))
-        found[missing] = effects.predict(rows[missing], columns[missing])
-    return np.asarray(found.reshape(len(person), len(task), SHAPE_LENGTH))
+        asked = np.arange(len(own))
+        rows = np.concatenate([rows, np.full(len(own), len(persons))])
+        means, count = np.concatenate([record.means[kept], own]), len(kept) + len(own)
+        cells = Cells(
+            (*persons, ""),
+            tuple(tasks),
+            np.arange(count),
+            rows,
+            np.concatenate([columns, asked]),
+            np.ones(count, dtype=np.int64),
+        )
+        known[missing] = fit_effects(means, cells).predict(*np.nonzero(missing))
+    return known
 
 
-def _as_cells(record: Synthesis) -> Cells:
-    member = np.arange(len(record.person))
-    return Cells(record.persons, record.tasks, member, record.person, record.task, record.takes)
+def _places(names: tuple[str, ...], chosen: list[str]) -> IntArray:
+    """(names,) where each stands among the chosen, -1 where it does not."""
+    found = np.full(len(names), -1)
+    found[[names.index(name) for name in chosen]] = np.arange(len(chosen))
+    return found
 
 
 def _check(cells: Cells) -> None:

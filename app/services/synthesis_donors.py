@@ -3,7 +3,7 @@ the quick detail of a take."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,9 +12,10 @@ from app.errors import ClipNotFound, ClipNotReady, NotEnoughLabels
 from app.models.synthesis import Synthesis
 from app.models.synthetic_body import Donor, same_body
 from app.motion.animation import Animation
-from app.motion.body_frame import ANALYSIS_RATE, BodyTrack, body_track
+from app.motion.body_frame import ANALYSIS_RATE, body_track
 from app.motion.canonical_body import on_canonical_body
 from app.motion.joint_roles import JointRole
+from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
 from app.services.export import own_animation
 from app.services.library import Library
@@ -91,22 +92,21 @@ def _detail(lib: Library, takes: list[ClipRecord]) -> tuple[FloatArray | None, F
 
 def _donor(lib: Library, clip: ClipRecord) -> Donor:
     motion = load_motion(lib, clip)
-    track = body_track(motion)
-    animation = own_animation(lib, clip, motion, motion.frame_rate)
+    return donor_of(motion, own_animation(lib, clip, motion, motion.frame_rate))
+
+
+def donor_of(motion: Motion, animation: Animation) -> Donor:
+    """A clip's motion and how its joints turn, over as many frames."""
     joints = dict(motion.roles)
     if np.sum(animation.skeleton.parents < 0) != 1:
-        # markers are no skeleton: a body for all is put in
+        # Markers are no skeleton: the body for all is put in.
         animation = on_canonical_body(motion)
         joints = {JointRole(name): i for i, name in enumerate(animation.skeleton.names)}
-    return _of_one_length(animation.resampled(ANALYSIS_RATE), track, joints)
-
-
-def _of_one_length(animation: Animation, track: BodyTrack, joints: dict[JointRole, int]) -> Donor:
-    frames = min(len(animation.rotations), track.frames)
-    cut = Animation(
-        animation.skeleton,
-        animation.rotations[:frames],
-        animation.translations[:frames],
-        animation.frame_rate,
+    track, turning = body_track(motion), animation.resampled(ANALYSIS_RATE)
+    frames = min(len(turning.rotations), track.frames)
+    cut = replace(
+        turning,
+        rotations=turning.rotations[:frames],
+        translations=turning.translations[:frames],
     )
     return Donor(cut, track.part(0, frames), joints)

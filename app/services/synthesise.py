@@ -16,7 +16,7 @@ from app.models.synthetic_body import embody
 from app.models.synthetic_motion import course_of
 from app.motion.animation import Animation
 from app.motion.body_frame import body_track
-from app.motion.joint_roles import JointRole
+from app.motion.joint_roles import SUN_ROLES, JointRole
 from app.motion.motion import Motion
 from app.services import clips, fields
 from app.services.library import Library
@@ -142,7 +142,7 @@ def _as_motion(animation: Animation, joints: dict[JointRole, int]) -> Motion:
         parents=animation.skeleton.parents,
         positions=np.ascontiguousarray(animation.positions(), dtype=np.float32),
         roles=joints,
-        missing_roles=(),
+        missing_roles=tuple(role for role in SUN_ROLES if role not in joints),
         frame_rate=animation.frame_rate,
         declared_frame_rate=animation.frame_rate,
         metres_per_unit=0.01,

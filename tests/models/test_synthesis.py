@@ -5,6 +5,7 @@ import pytest
 
 from app.analysis.motion_shape import SHAPE_LENGTH, mirrored
 from app.errors import NotEnoughLabels
+from app.models import synthesis
 from app.models.synthesis import (
     PART_RIDGE,
     WHOLE_RIDGE,
@@ -150,3 +151,16 @@ def test_too_few_labels_are_refused_with_what_is_needed(lacking: Synthesis) -> N
         predict(lacking, {"t0": shape[0]}, "t0")
     with pytest.raises(NotEnoughLabels, match="Nobody else"):
         predict(lacking, lacking.tasks_of("p0"), "t0", but=("p1", "p2", "p3"))
+
+
+def test_of_a_large_library_the_most_alike_tasks_and_persons_are_taken(
+    all_cells: InventedShapes, lacking: Synthesis, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    truth, own = all_cells.cell("p0", "t0"), lacking.tasks_of("p0")
+    everything = predict(lacking, own, "t0")
+    monkeypatch.setattr(synthesis, "MOST_TASKS", 4)
+    monkeypatch.setattr(synthesis, "MOST_PERSONS", 2)
+    made = predict(lacking, own, "t0")
+    mean = np.mean([lacking.tasks_of(name)["t0"] for name in ("p1", "p2", "p3")], axis=0)
+    assert not np.array_equal(made, everything)
+    assert far(made, truth) < far(mean, truth)

@@ -10,14 +10,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.analysis.motion_shape import motion_shape
 from app.errors import BadField, ClipNotFound, ModelNotFitted, NotEnoughLabels, NotFound
 from app.formats.read import read_recording
+from app.models.synthetic_body import embody
+from app.models.synthetic_motion import course_of
+from app.motion.animation import animation_of_positions
 from app.motion.canonical import canonicalise
+from app.motion.canonical_body import canonical_body
+from app.motion.foot_contact import FEET, skating
+from app.motion.joint_roles import SUN_ROLES
 from app.services import clips, models, persons
 from app.services.demo import demo_clips
 from app.services.fit import fit_library
 from app.services.library import Library
 from app.services.model_shelf import ModelKind
+from app.services.stored_motion import load_motion
+from app.services.synthesis_donors import donor_of
 from app.services.synthesis_plan import SynthesisKind
 from app.services.synthesise import SynthesisQuery, synthesise
 from app.services.synthesized import SYNTHESIZED, is_synthesized
@@ -191,3 +200,18 @@ def test_it_is_listed_with_its_held_out_figures(fitted: Library) -> None:
     assert {"new_task", "new_person"} == set(rows)
     assert all(0 <= row["hit"] <= 1 for of_kind in rows.values() for row in of_kind)
     assert [row["given"] for row in rows["new_task"]] == [1, 2]
+
+
+def test_markers_lend_a_persons_proportions_to_the_body_for_all(fitted: Library) -> None:
+    clip = clip_of(fitted, "ada", "walk")
+    motion = load_motion(fitted, clip)
+    loose = replace(motion, parents=np.full(len(motion.names), -1))
+    animation = animation_of_positions(loose.names, loose.parents, loose.positions, 30.0)
+    donor = donor_of(loose, animation)
+    assert donor.animation.skeleton.names == canonical_body().names
+    assert donor.track.frames == len(donor.animation.rotations)
+    course = course_of(motion_shape(donor.track), donor.track.body_length)
+    made = embody(course, [donor]).positions()
+    feet = made[:, [donor.joints[SUN_ROLES[foot]] for foot in FEET]]
+    assert np.isfinite(made).all()
+    assert skating(feet, 30.0) < 0.6
