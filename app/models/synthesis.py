@@ -1,16 +1,9 @@
-"""A person's motion for a task that they never recorded (Vasilescu 2002, section 4).
+"""What synthesis learns of a library: the mean motion shape of each person at each task.
 
-The cells of persons and tasks hold mean motion shapes. The parameters of the wanted task are
-found as in eq. 8, jointly over all persons who did it (least squares, not a mean of inverses):
-the weights w with which the tasks that the asked person did make it of these persons' motions.
-The same w makes it of the person's own. So a new task comes to known persons, and every known
-task to a person of whom there are only some clips; where few tasks are known this was far
-nearer to the truth than solving eq. 7 for a signature among few persons
-(tests/bench/test_synthesis.py). Beyond the paper, each of which raised the held-out hits:
-- what w leaves over of these persons' motions is carried over as their mean ("residual");
-- the parts of the body have weights of their own, drawn towards those of the whole;
-- a mirrored task is a task: raising the left hand tells how one raises the right.
-Missing cells are completed by person and task effects. All is linear and deterministic.
+From it a person's motion is made for a task that they never recorded (Vasilescu 2002, section
+4): a new task comes to known persons, and every known task to a person of whom there are only
+some clips. Both are one question, asked of `synthesis_prediction`: solving eq. 7 for a
+signature among few persons came far less near to the truth. All is linear and deterministic.
 """
 
 from __future__ import annotations
@@ -21,29 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from app.analysis.motion_shape import SHAPE_LENGTH, mirrored
+from app.analysis.motion_shape import SHAPE_LENGTH
 from app.errors import NotEnoughLabels
-from app.models.cells import Cells, cell_means, find_cells, fit_effects
-from app.models.synthesis_basis import parts, weights
+from app.models.cells import Cells, cell_means, find_cells
+from app.models.synthesis_basis import weights
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
 
 SYNTHESIS_VERSION = 1
-
-WHOLE_RIDGE = 0.01
-"""Pull of the weights of the whole towards the mean of the tasks, in mean squares of a task."""
-
-PART_RIDGE = 0.02
-"""Pull of a part's weights towards those of the whole, likewise."""
-
-MOST_TASKS = 24
-"""Tasks of which one is made: the most alike; more only cost time."""
-
-TEMPO_SLACK = 0.15
-"""Of log seconds: nobody is made to be much quicker or slower at a task than all who did it."""
-
-MOST_PERSONS = 64
-"""Persons of whose motions one is made: those who did most of the same tasks."""
 
 DIMENSIONS = 64
 """Coordinates in which real clips are compared with what was made."""
@@ -72,7 +50,7 @@ class Synthesis:
 
     def cell(self, person: str, task: str) -> FloatArray | None:
         """(1378,) the mean of a person's own takes of a task, None where there is none."""
-        found = np.flatnonzero((self._of(person, self.persons) == self.person) & self._did(task))
+        found = np.flatnonzero((self._of(person, self.persons) == self.person) & self.did(task))
         return np.asarray(self.means[found[0]]) if len(found) else None
 
     def tasks_of(self, person: str) -> dict[str, FloatArray]:
@@ -82,7 +60,7 @@ class Synthesis:
 
     def who_did(self, task: str) -> tuple[str, ...]:
         """The persons who did a task."""
-        return tuple(self.persons[i] for i in sorted(self.person[self._did(task)]))
+        return tuple(self.persons[i] for i in sorted(self.person[self.did(task)]))
 
     def distances(self, shape: FloatArray) -> FloatArray:
         """(N,) how far the real clips are from a motion shape (1378,)."""
@@ -101,10 +79,11 @@ class Synthesis:
         if person is not None:
             cells &= self.person == self._of(person, self.persons)
         if task is not None:
-            cells &= self._did(task)
+            cells &= self.did(task)
         return np.flatnonzero(cells[self.member])
 
-    def _did(self, task: str) -> BoolArray:
+    def did(self, task: str) -> BoolArray:
+        """(cells,) which are of a task."""
         return np.asarray(self.task == self._of(task, self.tasks))
 
     @staticmethod
@@ -183,133 +162,6 @@ def fit_synthesis(
         tuple(names),
         cells.member,
     )
-
-
-def predict(
-    record: Synthesis, given: Mapping[str, FloatArray], task: str, but: Sequence[str] = ()
-) -> FloatArray:
-    """(1378,) the motion shape of `task` for someone whose shapes of other tasks are `given`.
-
-    but: persons who are not to be learned from, as the asked one. Raises NotEnoughLabels where
-    nobody else did the task, or nothing that the asked person did.
-    """
-    told = {name: shape for name, shape in given.items() if name in record.tasks and name != task}
-    others = [name for name in record.who_did(task) if name not in but]
-    if not told:
-        raise NotEnoughLabels(
-            "A clip of another task of the library is needed of the person asked for."
-        )
-    if not others:
-        raise NotEnoughLabels(f"Nobody else did the task {task}: a clip of another person's.")
-    chosen = _most_alike(record, told, task)
-    own = np.stack([told[name] for name in chosen]).astype(np.float64)
-    known = _known_tensor(record, _who_shares_most(record, others, chosen), [*chosen, task], own)
-    basis, wanted = known[:, :-1], known[:, -1]
-    shape = solve(basis, wanted, own)
-    shape[-1] = float(np.mean(wanted[:, -1]) >= 0.5)
-    shortest, longest = wanted[:, -2].min(), wanted[:, -2].max()
-    shape[-2] = np.clip(shape[-2], shortest - TEMPO_SLACK, longest + TEMPO_SLACK)
-    return shape
-
-
-def solve(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> FloatArray:
-    """(1378,) from what K persons did and the wanted task by each, (K, T, 1378), (K, 1378), and
-    what the asked person did, (T, 1378): eq. 8 jointly, and the residual carried over."""
-    scale, tasks = weights(), basis.shape[1]
-    both = np.concatenate([basis, _mirrored(basis)], axis=1) * scale  # (K, 2T, d)
-    asked = np.concatenate([own, mirrored(own)]) * scale  # (2T, d)
-    target = wanted * scale
-    prior = np.concatenate([np.full(tasks, 1 / tasks), np.zeros(tasks)])
-    by_part = [(part, *_normal(both[:, :, part], target[:, part])) for part in parts()]
-    gram = np.sum([one for _, one, _ in by_part], axis=0)
-    aim = np.sum([one for _, _, one in by_part], axis=0)
-    shared = _ridge(gram, aim, prior, WHOLE_RIDGE)
-    shape = np.empty(SHAPE_LENGTH)
-    for part, gram, aim in by_part:
-        w = _ridge(gram, aim, shared, PART_RIDGE)
-        residual = target[:, part] - np.matmul(w, both[:, :, part])
-        shape[part] = w @ asked[:, part] + residual.mean(axis=0)
-    return shape / scale
-
-
-def effects_only(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> FloatArray:
-    """As `solve`, by person and task effects added up: a baseline."""
-    return np.asarray(own.mean(axis=0) + (wanted - basis.mean(axis=1)).mean(axis=0))
-
-
-def _normal(basis: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(2T, 2T) and (2T,): the normal equations of all persons together."""
-    rows = basis.transpose(1, 0, 2).reshape(basis.shape[1], -1)  # (2T, K d)
-    return rows @ rows.T, rows @ target.ravel()
-
-
-def _ridge(gram: FloatArray, aim: FloatArray, prior: FloatArray, ridge: float) -> FloatArray:
-    """(2T,) weights nearest to the aim, drawn towards `prior`."""
-    size = len(gram)
-    pull = ridge * float(np.trace(gram)) / size + 1e-12
-    return np.asarray(prior + np.linalg.solve(gram + pull * np.eye(size), aim - gram @ prior))
-
-
-def _mirrored(basis: FloatArray) -> FloatArray:
-    return mirrored(basis.reshape(-1, SHAPE_LENGTH)).reshape(basis.shape)
-
-
-def _most_alike(record: Synthesis, told: Mapping[str, FloatArray], task: str) -> list[str]:
-    """The told tasks that are most like the wanted one, themselves or mirrored."""
-    if len(told) <= MOST_TASKS:
-        return list(told)
-    scale, aim = weights(), record.means[record._did(task)].mean(axis=0)
-    means = np.stack([record.means[record._did(name)].mean(axis=0) for name in told])
-    away = [np.linalg.norm((rows - aim) * scale, axis=1) for rows in (means, mirrored(means))]
-    near = np.argsort(np.min(away, axis=0), kind="stable")[:MOST_TASKS]
-    names = list(told)
-    return [names[i] for i in np.sort(near)]
-
-
-def _who_shares_most(record: Synthesis, persons: list[str], tasks: list[str]) -> list[str]:
-    """The persons who did most of these tasks: of them there is least to be completed."""
-    if len(persons) <= MOST_PERSONS:
-        return persons
-    wanted = np.isin(record.task, [record.tasks.index(name) for name in tasks])
-    shared = np.bincount(record.person[wanted], minlength=len(record.persons))
-    count = [shared[record.persons.index(name)] for name in persons]
-    return [persons[i] for i in np.sort(np.argsort(-np.array(count), kind="stable")[:MOST_PERSONS])]
-
-
-def _known_tensor(
-    record: Synthesis, persons: list[str], tasks: list[str], own: FloatArray
-) -> FloatArray:
-    """(persons, tasks, 1378); missing cells by person and task effects.
-
-    own: (tasks - 1, 1378) what the asked person did, which tells of the effects too.
-    """
-    person, task = _places(record.persons, persons), _places(record.tasks, tasks)
-    kept = np.flatnonzero((person[record.person] >= 0) & (task[record.task] >= 0))
-    rows, columns = person[record.person[kept]], task[record.task[kept]]
-    known = np.full((len(persons), len(tasks), SHAPE_LENGTH), np.nan)
-    known[rows, columns] = record.means[kept]
-    missing = np.isnan(known[:, :, 0])
-    if missing.any():
-        asked = np.arange(len(own))
-        rows = np.concatenate([rows, np.full(len(own), len(persons))])
-        means, count = np.concatenate([record.means[kept], own]), len(kept) + len(own)
-        cells = Cells(
-            (*persons, ""),
-            tuple(tasks),
-            np.arange(count),
-            rows,
-            np.concatenate([columns, asked]),
-            np.ones(count, dtype=np.int64),
-        )
-        known[missing] = fit_effects(means, cells).predict(*np.nonzero(missing))
-    return known
-
-
-def _places(names: tuple[str, ...], chosen: list[str]) -> IntArray:
-    """(names,) where each stands among the chosen, -1 where it does not."""
-    found = np.full(len(names), -1)
-    found[[names.index(name) for name in chosen]] = np.arange(len(chosen))
-    return found
 
 
 def _check(cells: Cells) -> None:

@@ -12,7 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from app.models.synthesis import Synthesis, effects_only, predict, solve
+from app.models.synthesis import Synthesis
+from app.models.synthesis_prediction import predict
+from app.models.synthesis_solving import effects_only, solve
 from app.numerics.arrays import FloatArray
 
 GIVEN = (1, 2, 3, 5, 8)

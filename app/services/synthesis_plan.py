@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from app.errors import ClipNotReady, NotEnoughLabels, NotFound, Place
-from app.models.synthesis import Synthesis, predict
+from app.models.synthesis import Synthesis
+from app.models.synthesis_prediction import predict
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.library import Library

@@ -5,17 +5,11 @@ import pytest
 
 from app.analysis.motion_shape import SHAPE_LENGTH, mirrored
 from app.errors import NotEnoughLabels
-from app.models import synthesis
-from app.models.synthesis import (
-    PART_RIDGE,
-    WHOLE_RIDGE,
-    Synthesis,
-    effects_only,
-    fit_synthesis,
-    predict,
-    solve,
-)
+from app.models import synthesis_prediction
+from app.models.synthesis import Synthesis, fit_synthesis
 from app.models.synthesis_basis import parts, weights
+from app.models.synthesis_prediction import predict
+from app.models.synthesis_solving import PART_RIDGE, WHOLE_RIDGE, effects_only, solve
 from tests.models.invented_shapes import InventedShapes, invented_shapes
 
 
@@ -158,8 +152,8 @@ def test_of_a_large_library_the_most_alike_tasks_and_persons_are_taken(
 ) -> None:
     truth, own = all_cells.cell("p0", "t0"), lacking.tasks_of("p0")
     everything = predict(lacking, own, "t0")
-    monkeypatch.setattr(synthesis, "MOST_TASKS", 4)
-    monkeypatch.setattr(synthesis, "MOST_PERSONS", 2)
+    monkeypatch.setattr(synthesis_prediction, "MOST_TASKS", 4)
+    monkeypatch.setattr(synthesis_prediction, "MOST_PERSONS", 2)
     made = predict(lacking, own, "t0")
     mean = np.mean([lacking.tasks_of(name)["t0"] for name in ("p1", "p2", "p3")], axis=0)
     assert not np.array_equal(made, everything)
