@@ -113,16 +113,3 @@ def in_order(ids: IdArray, distances: FloatArray) -> IntArray:
 def score(distance: float, scale: float = 1.0) -> float:
     """1 at distance 0, one half at distance `scale`, towards 0 beyond; strictly falling."""
     return scale / (scale + distance)
-
-
-def behind(head: FloatArray, shortlisted: FloatArray, rest: FloatArray) -> FloatArray:
-    """Distances for the clips that a re-rank left out, all behind those that it ranked.
-
-    head: (s,) final distances of the shortlist; shortlisted: (s,) and rest: (r,) their
-    first-stage distances. The rest keeps its own order and spacing, shifted to start
-    where the head ends. Returns (r,).
-    """
-    if not len(head) or not len(rest):
-        return np.asarray(rest, dtype=np.float64)
-    beyond = np.maximum(np.asarray(rest, dtype=np.float64) - np.max(shortlisted), 0.0)
-    return np.max(head) + beyond

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.search.cursor import Position
-from app.search.rank import behind, ranking, score
+from app.search.rank import ranking, score
 from tests.search.walking import walked
 
 DISTANCES = st.lists(st.sampled_from([0.0, 1e-10, 0.5, 0.5 + 1e-9, 2.0, 2.0, 150.0]), max_size=30)
@@ -52,9 +52,3 @@ def test_a_page_tells_whether_there_is_more() -> None:
     ranked = ranking(_ids(3), np.array([0.1, 0.3, 0.3]))
     assert [ranked.page(None, limit).more for limit in (1, 2, 3, 4)] == [True, True, False, False]
     assert not ranking(_ids(0), np.zeros(0)).page(None, 1).more
-
-
-def test_what_a_rerank_left_out_follows_in_its_own_order() -> None:
-    head, first = np.array([3.0, 1.0]), np.array([0.4, 0.5])
-    rest = np.array([0.5, 0.7])
-    assert behind(head, first, rest).tolist() == [3.0, 3.2]
