@@ -29,7 +29,7 @@ Rate = Annotated[
     float | None,
     typer.Option(
         "--false-accept-rate",
-        help="Of the default recogniser, 0..1: how often something new may be called known.",
+        help="Of default and perera, 0..1: how often something new may be called known.",
     ),
 ]
 Pictures = Annotated[

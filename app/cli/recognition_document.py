@@ -33,6 +33,7 @@ def document(found: RecognitionEvaluation) -> dict[str, Any]:
             for one in found.told
         },
         "perera": _perera(found.perera),
+        "made": found.made,
         "seconds": {method: asdict(seconds) for method, seconds in found.seconds.items()},
         "not_judged": dict(found.not_judged),
     }
@@ -75,6 +76,7 @@ def _unknown(found: Unknown) -> dict[str, Any]:
     return {
         "refused": _share(found.refused),
         "accepted": _share(found.accepted),
+        "accepted_together": _share(found.accepted_together),
         "false_acceptance": found.false_acceptance,
         "false_rejection": found.false_rejection,
         "balanced_accuracy": found.balanced_accuracy,

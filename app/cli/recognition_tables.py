@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import typer
 
@@ -35,6 +36,8 @@ def print_tables(found: RecognitionEvaluation) -> None:
         _print_sources(found.held_out[LeftOut.SOURCE])
     if found.perera is not None:
         _print_perera(found.perera)
+    for kind, rows in (found.made or {}).items():
+        _print_made(kind, rows)
     _print_confusions(found)
     typer.echo("\n" + "\n".join(_remarks(found)))
 
@@ -88,10 +91,11 @@ def _print_new(held: HeldOut, factor: str) -> None:
     other = "task" if factor == "person" else "person"
     typer.echo(
         f"\nA {factor} left out, {held.rounds} in turn: which {other} it is, whether the {factor} "
-        "is\ncalled new, and whether known ones are called known meanwhile:\n"
+        "is\ncalled new, and known ones known meanwhile (together: of a person at a task of "
+        "theirs):\n"
     )
     print_table(
-        ["method", other, "new", "known", "balanced", "AUC", "EER", "worst"],
+        ["method", other, "new", "known", "together", "balanced", "AUC", "EER", "worst"],
         [_new_row(one, factor, other) for one in held.methods],
     )
     judged = next((one for one in held.methods if factor in one.unknown), None)
@@ -103,12 +107,13 @@ def _new_row(judged: Judged, factor: str, other: str) -> list[object]:
     share: Share = getattr(judged.of_new, other)
     found = judged.unknown.get(factor)
     if found is None:
-        return [judged.method, share.value, *[None] * 6]
+        return [judged.method, share.value, *[None] * 7]
     return [
         judged.method,
         share.value,
         found.refused.value,
         found.accepted.value,
+        found.accepted_together.value,
         found.balanced_accuracy,
         found.area_under_curve,
         found.equal_error_rate,
@@ -182,6 +187,18 @@ def _print_perera(found: PereraEvaluation) -> None:
                 ]
             )
     print_table(["table", "eq. 14", "recognition", "probed", "right", "balanced", "paper"], rows)
+
+
+def _print_made(kind: str, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Whose, and of what, the real clip is that is nearest to a made one, by how many given."""
+    given = {"new_task": "other persons", "new_person": "other tasks"}[kind]
+    typer.echo(
+        f"\nMotions made for cells left out, a {kind.replace('_', ' ')}: the labels of the nearest "
+        "real clip\nare right (Vasilescu, 7); at the right both, by baselines:\n"
+    )
+    names = ("given", "trials", "person", "task", "hit", "effects", "task_mean")
+    columns = [given, "trials", "person", "task", "both", "effects", "mean motion"]
+    print_table(columns, [[row[name] for name in names] for row in rows])
 
 
 def _print_confusions(found: RecognitionEvaluation) -> None:

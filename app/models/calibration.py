@@ -67,7 +67,7 @@ class Calibration:
     def beliefs(self, evidence: FloatArray, novelty: FloatArray) -> FloatArray:
         """(n, labels) belief in each label, 0..1, each row's sum = belief in being known."""
         known = np.maximum(sigmoid((self.threshold - novelty) / self.scale), LEAST_BELIEF)
-        return softmax(evidence / self.temperature) * known[:, None]
+        return np.asarray(softmax(evidence / self.temperature) * known[:, None])
 
     def at_false_acceptance(self, rate: float) -> Calibration:
         """The same with the largest threshold under which at most `rate` (0..1, below 1) of the

@@ -169,8 +169,10 @@ def _answers(
         return [given(known or "", names)] * len(logs)
     new = novelty(logs, label)
     beliefs = calibration.beliefs(label_evidence(logs, label, len(names)), new)
-    accepted = new <= calibration.threshold
-    return [answer(names, row, bool(a)) for row, a in zip(beliefs, accepted, strict=True)]
+    beyond = (new - calibration.threshold) / calibration.scale
+    return [
+        answer(names, row, bool(n <= 0), float(n)) for row, n in zip(beliefs, beyond, strict=True)
+    ]
 
 
 _HeldOut = tuple[FloatArray, FloatArray, IntArray, BoolArray]

@@ -25,13 +25,15 @@ class Candidate:
 class Answer:
     """Who, or what: label is None when unknown; candidates by falling score, sum at most 1.
 
-    score: belief in `label`, or, when unknown, in the best candidate (0 without any).
+    score: belief in `label`, or, when unknown, in the best candidate (0 without any); novelty:
+    how far beyond the threshold of the unknown, at most 0 where known, 0 where nothing tells.
     """
 
     label: str | None
     known: bool
     score: float
     candidates: tuple[Candidate, ...] = ()
+    novelty: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,13 +48,13 @@ NO_ANSWER = Answer(label=None, known=False, score=0.0)
 """For a factor that the library has no labels of."""
 
 
-def answer(labels: Sequence[str], scores: FloatArray, known: bool) -> Answer:
+def answer(labels: Sequence[str], scores: FloatArray, known: bool, novelty: float = 0.0) -> Answer:
     """The answer from one score a label, (labels,), each 0..1 and together at most 1."""
     if not labels:
         return NO_ANSWER
     order = np.argsort(-scores, kind="stable")[:MAX_CANDIDATES]
     best = tuple(Candidate(labels[i], float(scores[i])) for i in order)
-    return Answer(best[0].label if known else None, known, best[0].score, best)
+    return Answer(best[0].label if known else None, known, best[0].score, best, novelty)
 
 
 def given(label: str, labels: Sequence[str]) -> Answer:

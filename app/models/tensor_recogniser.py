@@ -98,6 +98,14 @@ def fit_tensor_recogniser(
     return TensorRecogniser(model, *reaches, *calibrations)
 
 
+def uncalibrated(samples: FloatArray, persons: Labels, tasks: Labels) -> TensorRecogniser:
+    """The same without holding anything out: its candidates are in the right order, what it calls
+    unknown and its scores tell nothing. Raises NotEnoughLabels."""
+    model = fit_task_model(poses_of(samples), persons, tasks)
+    people, doings = np.ones(len(model.persons)), np.ones(len(model.tasks))
+    return TensorRecogniser(model, people, doings, _calibrated([], people), _calibrated([], doings))
+
+
 def recognise_by_tensor(
     record: TensorRecogniser,
     samples: FloatArray,
@@ -237,5 +245,7 @@ def _answers(
 ) -> list[Answer]:
     new = _novelty(objectives, reach)
     beliefs = calibration.beliefs(_evidence(objectives), new)
-    accepted = new <= calibration.threshold
-    return [answer(names, row, bool(a)) for row, a in zip(beliefs, accepted, strict=True)]
+    beyond = (new - calibration.threshold) / calibration.scale
+    return [
+        answer(names, row, bool(n <= 0), float(n)) for row, n in zip(beliefs, beyond, strict=True)
+    ]

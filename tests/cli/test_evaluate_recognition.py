@@ -22,7 +22,28 @@ def test_tables_for_people(kinedex: Kinedex) -> None:
     assert list(rows)[:2] == ["default", "multilinear"]
     assert rows["chance"] == ["0.333", "0.500", "0.167", "12"]
     assert ["method", "task", "person", "told", "person", "task", "told"] in lines
-    assert ["method", "person", "new", "known", "balanced", "AUC", "EER", "worst"] in lines
+    assert [
+        "method",
+        "person",
+        "new",
+        "known",
+        "together",
+        "balanced",
+        "AUC",
+        "EER",
+        "worst",
+    ] in lines
+    assert [
+        "other",
+        "tasks",
+        "trials",
+        "person",
+        "task",
+        "both",
+        "effects",
+        "mean",
+        "motion",
+    ] in lines
     assert "Not judged, person: 3 persons are needed to leave one out; there are 2." in ended.out
     assert "Not judged, source: Two sources are needed" in ended.out
     assert "What tasks are taken for by default, takes left out, %:" in ended.out
@@ -43,6 +64,7 @@ def test_json_for_programs(kinedex: Kinedex) -> None:
     errors = by_task["false_acceptance"] + by_task["false_rejection"]
     assert by_task["balanced_accuracy"] == pytest.approx(1 - errors / 2)
     assert by_task["curve"][0] == {"false_acceptance": 0.0, "false_rejection": 1.0}
+    assert [row["given"] for row in told["made"]["new_task"]] == [1]
     assert set(told["takes_a_cell"]) == {"1"}
     assert set(told["not_judged"]) >= {"person", "source", "3-takes"}
 

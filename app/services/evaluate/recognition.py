@@ -6,19 +6,24 @@ What cannot be judged on a library is told with the reason, never guessed.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from statistics import median
 from typing import TypeVar
 
 from app.errors import NotEnoughLabels
 from app.services import fields
-from app.services.evaluate.recognition_clips import JudgedClips, read_judged_clips
+from app.services.evaluate.recognition_clips import (
+    JudgedClips,
+    read_judged_clips,
+    read_training,
+)
 from app.services.evaluate.recognition_methods import METHODS, Method, methods_at
 from app.services.evaluate.recognition_perera import judge_perera
 from app.services.evaluate.recognition_results import (
     HeldOut,
     Judged,
+    Made,
     RecognitionEvaluation,
     Seconds,
     WhenTold,
@@ -33,15 +38,17 @@ from app.services.evaluate.recognition_rounds import (
 from app.services.evaluate.recognition_shares import chance, confusion, recognised, unknown
 from app.services.evaluate.recognition_trials import Stopwatch, Trial, run, run_told
 from app.services.library import Library
+from app.services.synthesis_fit import fit_on
 from app.store.clip_filter import ClipFilter
 
 FACTORS = ("person", "task")
 TAKES = (3, 1)
 """Takes a cell that are learned from."""
-TOLD, PERERA = "told", "perera"
+TOLD, MADE, PERERA = "told", "made", "perera"
 """Vasilescu's and Perera's experiments, among what could not be judged."""
 
 Key = TypeVar("Key")
+Found = TypeVar("Found")
 Progress = Callable[[int, int], None]
 """Told after each step: done, in all."""
 
@@ -65,24 +72,41 @@ def judge_recognition(
     if len(clips) < 2:
         raise NotEnoughLabels("Two ready clips with a person or a task are needed to judge.")
     known = methods_at(false_accept_rate)
-    try:
-        perera, reasons = judge_perera(lib, wanted), {}
-    except NotEnoughLabels as reason:
-        perera, reasons = None, {PERERA: reason.detail}
     found = judge_clips(clips, {name: known[name] for name in methods}, progress)
-    return replace(found, perera=perera, not_judged=reasons | found.not_judged)
+    reasons = dict(found.not_judged)
+    perera = _or_reason(PERERA, reasons, lambda: judge_perera(lib, wanted))
+    made = _or_reason(MADE, reasons, lambda: _judge_made(lib, wanted))
+    return replace(found, perera=perera, made=made, not_judged=reasons)
+
+
+def _judge_made(lib: Library, wanted: ClipFilter | None) -> Made:
+    figures: Made = fit_on(lib.store, read_training(lib, wanted))[1]["held_out"]
+    return figures
+
+
+def _or_reason(name: str, reasons: dict[str, str], judge: Callable[[], Found]) -> Found | None:
+    """What is found, or None and among the reasons why not."""
+    try:
+        return judge()
+    except NotEnoughLabels as reason:
+        reasons[name] = reason.detail
+        return None
 
 
 def judge_clips(
     clips: JudgedClips, methods: Mapping[str, Method], progress: Progress | None = None
 ) -> RecognitionEvaluation:
     """The same of clips that were read. What cannot be judged is in `not_judged`."""
-    plan = _Plan()
-    held = {way: plan.add(way.value, partial(rounds, clips, way)) for way in LeftOut}
-    takes = {n: plan.add(takes_key(n), partial(rounds_by_takes, clips, n)) for n in TAKES}
-    told = plan.add(TOLD, partial(rounds_by_recording, clips))
+    reasons: dict[str, str] = {}
+
+    def plan(name: str, found: Callable[[], list[Round]]) -> list[Round]:
+        return _or_reason(name, reasons, found) or []
+
+    held = {way: plan(way.value, partial(rounds, clips, way)) for way in LeftOut}
+    takes = {n: plan(takes_key(n), partial(rounds_by_takes, clips, n)) for n in TAKES}
+    told = plan(TOLD, partial(rounds_by_recording, clips))
     counted = (*held.values(), *takes.values(), told)
-    asking = _Asking(clips, methods, sum(map(len, counted)) * len(methods), progress, plan.reasons)
+    asking = _Asking(clips, methods, sum(map(len, counted)) * len(methods), progress, reasons)
     return RecognitionEvaluation(
         clips=clips,
         held_out=_judged_ones({w: asking.held_out(w.value, found) for w, found in held.items()}),
@@ -108,20 +132,6 @@ def _check(methods: Sequence[str], false_accept_rate: float | None) -> None:
             raise fields.bad_field("method", f"must be one of {', '.join(METHODS)}")
     if false_accept_rate is not None and not 0 <= false_accept_rate < 1:
         raise fields.bad_field("false_accept_rate", "must be at least 0 and below 1")
-
-
-@dataclass(slots=True)
-class _Plan:
-    """Why what cannot be held out cannot."""
-
-    reasons: dict[str, str] = field(default_factory=dict)
-
-    def add(self, name: str, found: Callable[[], list[Round]]) -> list[Round]:
-        try:
-            return found()
-        except NotEnoughLabels as reason:
-            self.reasons[name] = reason.detail
-            return []
 
 
 class _Asking:

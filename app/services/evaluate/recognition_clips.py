@@ -54,12 +54,17 @@ def names_of(labels: Labels) -> list[str]:
 
 
 def read_judged_clips(lib: Library, wanted: ClipFilter | None) -> JudgedClips:
-    """The ready clips that pass the filter and carry a label.
+    """The ready clips that pass the filter and carry a label."""
+    return judged_clips(read_training(lib, wanted))
 
-    Where persons are not to be recognised (setting `recognize_persons`) they are not read.
+
+def read_training(lib: Library, wanted: ClipFilter | None) -> TrainingSet:
+    """The ready clips that pass the filter.
+
+    Where persons are not to be recognised (setting `recognize_persons`) they are not told.
     """
     training = read_training_set(lib.store, ready_only(wanted))
-    return judged_clips(replace(training, is_anonymous=not lib.settings.recognize_persons))
+    return replace(training, is_anonymous=not lib.settings.recognize_persons)
 
 
 def judged_clips(training: TrainingSet) -> JudgedClips:

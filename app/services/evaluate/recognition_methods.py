@@ -19,6 +19,7 @@ from app.models.multilinear import fit_multilinear, recognise_multilinear
 from app.models.recogniser import fit_recogniser, recognise_many
 from app.models.recognition import Answer, Recognition
 from app.models.recognition_figures import Clips
+from app.models.tensor_recogniser import fit_tensor_recogniser, recognise_by_tensor
 from app.numerics.arrays import FloatArray
 
 Labels = Sequence[str | None]
@@ -61,6 +62,20 @@ def default(clips: Clips, false_accept_rate: float | None = None) -> Judge:
         samples: FloatArray, person: str | None = None, task: str | None = None
     ) -> list[tuple[Guess, Guess]]:
         return [_guesses(found) for found in recognise_many(record, samples, person, task)]
+
+    return judge
+
+
+def perera(clips: Clips, false_accept_rate: float | None = None) -> Judge:
+    """Perera's objective (eqs 13-14), and what is new by eqs 15-16 with learned thresholds."""
+    record = fit_tensor_recogniser(*clips)
+    if false_accept_rate is not None:
+        record = record.accepting(false_accept_rate)
+
+    def judge(
+        samples: FloatArray, person: str | None = None, task: str | None = None
+    ) -> list[tuple[Guess, Guess]]:
+        return [_guesses(found) for found in recognise_by_tensor(record, samples, person, task)]
 
     return judge
 
@@ -161,6 +176,7 @@ DEFAULT = "default"
 METHODS: Mapping[str, Method] = {
     DEFAULT: default,
     "multilinear": multilinear,
+    "perera": perera,
     "mean-motion": mean_motion,
     "prior": prior,
 }
@@ -168,17 +184,16 @@ METHODS: Mapping[str, Method] = {
 
 
 def methods_at(false_accept_rate: float | None) -> dict[str, Method]:
-    """All methods; the default calls new things known at this rate at most, if it is given."""
-    return {**METHODS, DEFAULT: partial(default, false_accept_rate=false_accept_rate)}
+    """All methods; the calibrated ones call new things known at this rate at most, if given."""
+    at_rate = {
+        DEFAULT: partial(default, false_accept_rate=false_accept_rate),
+        "perera": partial(perera, false_accept_rate=false_accept_rate),
+    }
+    return {**METHODS, **at_rate}
 
 
 def _guesses(found: Recognition) -> tuple[Guess, Guess]:
-    return _calibrated(found.person), _calibrated(found.task)
-
-
-def _calibrated(answer: Answer) -> Guess:
-    """Belief in being known, which candidates share, is one half at the threshold."""
-    return _guess(answer, 0.5 - sum(candidate.score for candidate in answer.candidates))
+    return _guess(found.person, found.person.novelty), _guess(found.task, found.task.novelty)
 
 
 def _guess(answer: Answer, novelty: float) -> Guess:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from app.numerics.arrays import FloatArray
 from app.services.evaluate.recognition_clips import JudgedClips
 from app.services.evaluate.recognition_perera import PereraEvaluation
 from app.services.evaluate.recognition_rounds import LeftOut
 from app.services.evaluate.recognition_shares import Recognised, Unknown
+
+Made = Mapping[str, Sequence[Mapping[str, Any]]]
+"""Rows by kind, "new_task" and "new_person"."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +70,8 @@ class RecognitionEvaluation:
     """What `kinedex evaluate recognition` tells.
 
     clips: what is judged; held_out: by what was left out; takes: by takes a cell; told:
-    Vasilescu's; seconds: by method; perera: his tables; not_judged: why what is missing is
+    Vasilescu's; seconds: by method; perera: his tables; made: Vasilescu's check of what is
+    synthesised (section 7), see `held_out_synthesis`; not_judged: why what is missing is
     missing, by its name.
     """
 
@@ -77,3 +82,4 @@ class RecognitionEvaluation:
     seconds: Mapping[str, Seconds]
     not_judged: dict[str, str]
     perera: PereraEvaluation | None = None
+    made: Made | None = None

@@ -73,13 +73,15 @@ class Category:
 class Unknown:
     """How well the labels that a method has not seen are told from those it has.
 
-    refused: new ones called new; accepted: known ones called known; area_under_curve: chance
+    refused: new ones called new; accepted: known ones called known; accepted_together: of
+    those, the ones whose person had been seen at their very task; area_under_curve: chance
     that a new one looks newer than a known one, ties counting half; categories: by label that
     was left out; curve: (P, 2) false acceptance and false rejection at P thresholds.
     """
 
     refused: Share
     accepted: Share
+    accepted_together: Share
     area_under_curve: float
     categories: tuple[Category, ...]
     curve: FloatArray
@@ -143,8 +145,11 @@ def unknown(trials: Sequence[Trial], factor: str) -> Unknown | None:
     known = [told for _, told in pairs if not told.new]
     if not new or not known:
         return None
+    together = [told for trial, told in pairs if not told.new and trial.together]
     curve, area = _curve(*(np.array([t.guess.novelty for t in some]) for some in (known, new)))
-    return Unknown(_refused(new), _accepted(known), area, _categories(pairs), curve)
+    return Unknown(
+        _refused(new), _accepted(known), _accepted(together), area, _categories(pairs), curve
+    )
 
 
 def confusion(trials: Iterable[Trial], factor: str) -> tuple[tuple[str, ...], FloatArray]:

@@ -34,12 +34,16 @@ class Told:
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """A clip (its index) that was asked about while these labels, or sources, were left out."""
+    """A clip (its index) that was asked about while these labels, or sources, were left out.
+
+    together: whether the same person at the same task had been seen, not only each elsewhere.
+    """
 
     clip: int
     left_out: tuple[str, ...]
     person: Told
     task: Told
+    together: bool
 
     def of(self, factor: str) -> Told:
         """What was told of the factor "person" or "task"."""
@@ -155,12 +159,14 @@ def _trials(
     guesses: Sequence[tuple[Guess, Guess]],
 ) -> list[Trial]:
     persons, tasks = ({label for label in labels if label} for labels in train[1:3])
+    cells = set(zip(train.persons, train.tasks, strict=True))
     return [
         Trial(
             clip=i,
             left_out=one.left_out,
             person=_told(clips.persons[i], persons, who),
             task=_told(clips.tasks[i], tasks, what),
+            together=(clips.persons[i], clips.tasks[i]) in cells,
         )
         for i, (who, what) in zip(np.asarray(probes).tolist(), guesses, strict=True)
     ]

@@ -11,10 +11,13 @@ from tests.models.factor_clips import factor_clips
 def invented(
     persons: int = 5, tasks: int = 6, takes: int = 4, sources: int = 1, noise: float = 0.05
 ) -> JudgedClips:
-    """Every person does every task; sources divide the persons."""
+    """Every person does every task; sources divide the persons.
+
+    Samples are as long as those of two poses of 13 joints, and the two numbers after them.
+    """
     clips = factor_clips(persons, tasks, takes, noise=noise)
     return JudgedClips(
-        samples=clips.samples,
+        samples=np.concatenate([clips.samples, clips.samples[:, :20]], axis=1),
         persons=clips.persons,
         tasks=clips.tasks,
         groups=[

@@ -128,6 +128,9 @@ def test_a_library_is_read(ready_library: Library) -> None:
     assert takes_key(1) in found.not_judged
     assert "perera" in found.not_judged or found.perera is not None
     assert {one.method for one in found.held_out[LeftOut.PERSON].methods} == set(METHODS)
+    assert found.made is not None
+    assert set(found.made) == {"new_task", "new_person"}
+    assert all(0 <= row["hit"] <= 1 for rows in found.made.values() for row in rows)
 
 
 def test_where_persons_are_not_recognised_none_is_read(ready_library: Library) -> None:

@@ -17,7 +17,7 @@ PART = CLIPS.part(np.arange(len(CLIPS)))
 def test_known_means_below_zero(name: str) -> None:
     judge = METHODS[name](PART)
     rng = np.random.default_rng(0)
-    strange = np.concatenate([CLIPS.samples[::7], 3 * rng.normal(size=(6, 60))])
+    strange = np.concatenate([CLIPS.samples[::7], 3 * rng.normal(size=(6, CLIPS.samples.shape[1]))])
     for guesses in judge(strange):
         for guess in guesses:
             assert guess.known == (guess.novelty <= 0)
@@ -58,11 +58,11 @@ def test_who_is_told_helps_the_mean_motion() -> None:
 
 
 def test_the_prior_is_the_most_frequent() -> None:
-    clips = Clips(np.zeros((4, 60)), ["a", "b", "b", "a"], ["x", "y", "y", "y"], list("1234"))
+    clips = Clips(np.zeros((4, 80)), ["a", "b", "b", "a"], ["x", "y", "y", "y"], list("1234"))
     judge = METHODS["prior"](clips)
-    assert [guess.label for guess in judge(np.zeros((1, 60)))[0]] == ["a", "y"]
-    assert judge(np.zeros((1, 60)), task="y")[0][0].label == "b"
-    assert judge(np.zeros((1, 60)), person="a")[0][1].label == "x"
+    assert [guess.label for guess in judge(np.zeros((1, 80)))[0]] == ["a", "y"]
+    assert judge(np.zeros((1, 80)), task="y")[0][0].label == "b"
+    assert judge(np.zeros((1, 80)), person="a")[0][1].label == "x"
 
 
 @pytest.mark.parametrize("name", ["default", "mean-motion", "prior"])

@@ -25,7 +25,7 @@ def told(truth: str | None, guess: str, novelty: float = -1.0, *, new: bool = Fa
 
 
 def trial(task: Told, person: Told = NOBODY, left_out: tuple[str, ...] = ()) -> Trial:
-    return Trial(0, left_out, person, task)
+    return Trial(0, left_out, person, task, together=task.guess.novelty < -2)
 
 
 def test_shares_count_clips_whose_label_was_seen() -> None:
@@ -73,6 +73,7 @@ def test_errors_on_the_new() -> None:
     found = unknown(trials, "task")
     assert found is not None
     assert (found.refused, found.accepted) == (Share(2, 3), Share(2, 3))
+    assert found.accepted_together == Share(1, 1)
     assert (found.false_acceptance, found.false_rejection) == pytest.approx((1 / 3, 1 / 3))
     assert found.balanced_accuracy == pytest.approx(2 / 3)
     # of nine pairs, only (-1 new, 1 known) is the wrong way round
