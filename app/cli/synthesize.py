@@ -83,8 +83,12 @@ def _expectation(made: Synthesised) -> str:
         return "not measured"
     return (
         f"{quality.expected_hit:.0%} of {quality.expected_trials} left out, made of"
-        f" {quality.expected_given}"
+        f" {quality.expected_given}{_real(quality.real_hit)}"
     )
+
+
+def _real(share: float | None) -> str:
+    return "" if share is None else f"; of real takes {share:.0%}"
 
 
 def _beside(real: float | None) -> str:

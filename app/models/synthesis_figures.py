@@ -41,7 +41,9 @@ def held_out_synthesis(record: Synthesis, trials: int = TRIALS) -> dict[str, lis
 
     Each row: given, trials, and shares of
     trials whose nearest real clip is right in person, in task and in both ("hit"); and the hit
-    of the baselines "effects" (person and task effects added) and "task_mean".
+    of the baselines "effects" (person and task effects added) and "task_mean". "real": the
+    same share of the cells' real takes, each among all other real clips, None where no cell
+    has two: no made motion can be expected to do better.
     """
     return {
         kind: [row for given in GIVEN if (row := _row(record, kind, given, trials))]
@@ -95,7 +97,19 @@ def _row(record: Synthesis, kind: str, given: int, trials: int) -> dict[str, Any
     hits = np.array(list(_judged(record, kind, drawn)), dtype=np.float64).mean(axis=0)
     names = ("person", "task", "hit", "effects", "task_mean")
     shares = {name: round(float(hit), 4) for name, hit in zip(names, hits, strict=True)}
-    return {"given": given, "trials": len(drawn), **shares}
+    return {"given": given, "trials": len(drawn), **shares, "real": real_hit(record, drawn)}
+
+
+def real_hit(record: Synthesis, drawn: list[Trial]) -> float | None:
+    """Share of the real takes of the trials' cells whose nearest other clip is of their cell."""
+    hits = []
+    for trial in drawn:
+        takes = record.clips_of(trial.person, trial.task)
+        for take in takes if len(takes) > 1 else []:
+            away = np.linalg.norm(record.points - record.points[take], axis=1)
+            away[take] = np.inf
+            hits.append(record.labels_of(int(np.argmin(away))) == (trial.person, trial.task))
+    return round(float(np.mean(hits)), 4) if hits else None
 
 
 def _judged(record: Synthesis, kind: str, drawn: list[Trial]) -> Iterator[tuple[bool, ...]]:

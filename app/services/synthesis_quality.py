@@ -31,7 +31,8 @@ class Quality:
     task_is_right: whether the labels are those asked for.
     expected_hit: share of cells left out when the model was fitted, made of as many takes, whose
     nearest real clip was right in both; expected_given, expected_trials: how many persons (or
-    tasks) and cells that was; all None for what was seen, or where nothing could be left out.
+    tasks) and cells that was; real_hit: that share of the cells' real takes, beyond which nothing
+    can be expected; all None for what was seen, or where nothing could be left out.
     skate, real_skate: mean horizontal speed of feet that are low, m/s, of this motion and of
     real takes of the task.
     """
@@ -48,6 +49,7 @@ class Quality:
     expected_hit: float | None
     expected_given: int | None
     expected_trials: int | None
+    real_hit: float | None
     skate: float
     real_skate: float | None
 
@@ -78,6 +80,7 @@ def judge(
         expected_hit=expected.get("hit"),
         expected_given=expected.get("given"),
         expected_trials=expected.get("trials"),
+        real_hit=expected.get("real"),
         skate=_skate(motion),
         real_skate=_real_skate(lib, takes),
     )

@@ -169,13 +169,13 @@ def _table(title: str, record: Synthesis, trials: int) -> dict[str, list[dict[st
     print(f"\n{title}: {len(record.persons)} persons, {len(record.tasks)} tasks,")
     seconds = time.perf_counter() - start
     print(f"  {len(record.person)} cells, {len(record.ids)} clips; {seconds:.0f} s")
-    print(f"  {'':11} given trials    hit person  task  effects  task mean")
+    print(f"  {'':11} given trials    hit person  task  effects  task mean  real takes")
     for kind, of_kind in rows.items():
         for row in of_kind:
             print(
                 f"  {kind:11} {row['given']:5} {row['trials']:6}  {row['hit']:.3f}  "
                 f"{row['person']:.3f} {row['task']:.3f}    {row['effects']:.3f}      "
-                f"{row['task_mean']:.3f}"
+                f"{row['task_mean']:.3f}      {row['real'] or float('nan'):.3f}"
             )
     return rows
 

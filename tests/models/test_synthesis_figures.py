@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 from app.models.synthesis import fit_synthesis
-from app.models.synthesis_figures import NEW_PERSON, NEW_TASK, draw_trials, held_out_synthesis, made
+from app.models.synthesis_figures import (
+    NEW_PERSON,
+    NEW_TASK,
+    Trial,
+    draw_trials,
+    held_out_synthesis,
+    made,
+    real_hit,
+)
 from tests.models.invented_shapes import invented_shapes
 
 
@@ -17,7 +25,19 @@ def test_cells_are_left_out_wholly_and_judged_beside_the_baselines() -> None:
     assert all(row["trials"] == 10 for rows in found.values() for row in rows)
     assert found[NEW_TASK][-1]["hit"] >= 0.8 > found[NEW_TASK][-1]["task_mean"]
     assert found[NEW_PERSON][-1]["hit"] >= found[NEW_PERSON][0]["hit"]
+    assert all(row["real"] == 1.0 for rows in found.values() for row in rows)
     assert found == held_out_synthesis(record, trials=10)
+
+
+def test_real_takes_are_judged_alike_where_there_are_two() -> None:
+    clips = invented_shapes()
+    mixed = clips.shapes.copy()
+    mixed[0], mixed[2] = clips.shapes[2], clips.shapes[0]  # a take of t0 for one of t1
+    record = fit_synthesis(mixed, clips.persons, clips.tasks)
+    cells = [Trial("p0", "t0", ()), Trial("p0", "t1", ()), Trial("p1", "t0", ())]
+    assert real_hit(record, cells) == pytest.approx(2 / 6, abs=1e-4)
+    once = fit_synthesis(clips.shapes[::2], clips.persons[::2], clips.tasks[::2])
+    assert real_hit(once, cells) is None
 
 
 @pytest.mark.parametrize("kind", [NEW_TASK, NEW_PERSON])

@@ -101,6 +101,12 @@ class Quality(Outgoing):
         description="From so many persons' takes (new_task) or tasks (new_person)."
     )
     expected_trials: int | None = Field(description="Combinations left out.")
+    real_hit: float | None = Field(
+        ge=0,
+        le=1,
+        description="That share of their real takes, each beside all others: no motion can be"
+        " expected to do better. Null where there are no two takes.",
+    )
     skate: float = Field(ge=0, description="Mean horizontal speed of low feet, m/s.")
     real_skate: float | None = Field(description="The same of real takes of the task.")
 
@@ -120,6 +126,7 @@ class Quality(Outgoing):
             expected_hit=found.expected_hit,
             expected_given=found.expected_given,
             expected_trials=found.expected_trials,
+            real_hit=found.real_hit,
             skate=found.skate,
             real_skate=found.real_skate,
         )
