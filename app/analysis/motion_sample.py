@@ -33,7 +33,8 @@ def motion_sample(track: BodyTrack) -> FloatArray:
     """
     cycles = gait_cycles(track)
     poses = mean_cycle(track, cycles) if cycles else resample_to(track.local, SAMPLES)
-    return np.concatenate([poses.ravel(), turn_and_speed(track)]).astype(np.float32)
+    parts = [poses.ravel(), turn_and_speed(track)]
+    return np.asarray(np.concatenate(parts), dtype=np.float32)
 
 
 def turn_and_speed(track: BodyTrack) -> FloatArray:

@@ -102,7 +102,9 @@ def recognize(
     query: Query,
     known_person: Annotated[str | None, typer.Option(help="The person, if known.")] = None,
     known_task: Annotated[str | None, typer.Option(help="The task, if known.")] = None,
-    method: Annotated[str, typer.Option(help="default or multilinear.")] = "default",
+    method: Annotated[
+        str, typer.Option(help="default, multilinear, signatures or perera.")
+    ] = "default",
     skeleton: Skeleton = None,
     frame_rate: FrameRate = None,
     unit: Unit = None,

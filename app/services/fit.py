@@ -15,7 +15,12 @@ from app.models.library_words import fit_library_words
 from app.models.metric_figures import held_out_metric
 from app.models.multilinear import fit_multilinear
 from app.models.recogniser import fit_recogniser
-from app.models.recognition_figures import held_out_recognition_figures, unknown_figures
+from app.models.recognition_figures import (
+    held_out_recognition_figures,
+    signature_figures,
+    unknown_figures,
+)
+from app.models.tensor_recogniser import fit_tensor_recogniser
 from app.models.word_figures import held_out_word_figures
 from app.services.annotated import read_annotated
 from app.services.keypose_learning import learn_keyposes
@@ -143,7 +148,8 @@ def word_figures(training: TrainingSet) -> Meta:
 
 
 def recognition_figures(training: TrainingSet) -> dict[str, dict[str, float]]:
-    """Held-out shares recognised by method: "default", "multilinear" and "prior"."""
+    """Held-out shares recognised by method: "default", "multilinear", "perera", "pca" and
+    "prior"."""
     return held_out_recognition_figures(
         training.samples, training.persons, training.tasks, training.groups
     )
@@ -161,6 +167,21 @@ def _fit_multilinear(training: TrainingSet, _: Before) -> Fit:
     model = fit_multilinear(training.samples, training.persons, training.tasks)
     arrays, meta = model.to_arrays()
     return Fit(arrays, meta, {})
+
+
+def _fit_signatures(training: TrainingSet, _: Before) -> Fit:
+    angles, persons, tasks, groups = training.with_angles()
+    model = fit_multilinear(angles, persons, tasks)
+    arrays, meta = model.to_arrays()
+    return Fit(arrays, meta, {"held_out": signature_figures(angles, persons, tasks, groups)})
+
+
+def _fit_perera(training: TrainingSet, _: Before) -> Fit:
+    model = fit_tensor_recogniser(
+        training.samples, training.persons, training.tasks, training.groups
+    )
+    arrays, meta = model.to_arrays()
+    return Fit(arrays, meta, {"unknown": unknown_figures(model)})
 
 
 def _fit_keyposes(_: TrainingSet, before: Before) -> Fit:
@@ -190,6 +211,8 @@ _FITS: dict[ModelKind, Callable[[TrainingSet, Before], Fit]] = {
     ModelKind.WORDS: _fit_words,
     ModelKind.RECOGNISER: _fit_recogniser,
     ModelKind.MULTILINEAR: _fit_multilinear,
+    ModelKind.SIGNATURES: _fit_signatures,
+    ModelKind.PERERA: _fit_perera,
     ModelKind.METRIC_TASK: partial(_fit_metric, Factor.TASK),
     ModelKind.METRIC_PERSON: partial(_fit_metric, Factor.PERSON),
     ModelKind.KEYPOSES: _fit_keyposes,

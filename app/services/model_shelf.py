@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from app.models.multilinear import Multilinear
     from app.models.recogniser import Recogniser
     from app.models.synthesis import Synthesis
+    from app.models.tensor_recogniser import TensorRecogniser
 
 Model = TypeVar("Model")
 
@@ -34,6 +35,10 @@ class ModelKind(StrEnum):
     """Kernel ridge to words, Takano's symbol space and correlated space."""
     MULTILINEAR = "multilinear"
     """Vasilescu's N-mode decomposition of persons and tasks."""
+    SIGNATURES = "signatures"
+    """The same on joint angles, as Vasilescu did it."""
+    PERERA = "perera"
+    """Perera's task model: who does what by weighted distances of joints."""
     RECOGNISER = "recogniser"
     """Who does what, with an honest unknown."""
     METRIC_TASK = "metric-task"
@@ -50,7 +55,10 @@ METRICS = (ModelKind.METRIC_TASK, ModelKind.METRIC_PERSON)
 """Learned metrics."""
 
 FALSE_ACCEPT_RATE = "false_accept_rate"
-"""A setting of the recogniser: how often something new may be called known."""
+"""A setting of a recogniser: how often something new may be called known."""
+
+TELLING_UNKNOWN = (ModelKind.RECOGNISER, ModelKind.PERERA)
+"""Recognisers that have that setting."""
 
 _WITHOUT_PERSONS = frozenset({ModelKind.WORDS, ModelKind.METRIC_TASK, ModelKind.KEYPOSES})
 
@@ -96,6 +104,20 @@ class ModelShelf:
         from app.models.multilinear import Multilinear
 
         return self._get(store, ModelKind.MULTILINEAR, Multilinear.from_arrays)
+
+    def signatures(self, store: Store) -> Fitted[Multilinear]:
+        """The multilinear model of joint angles in force; raises ModelNotFitted."""
+        from app.models.multilinear import Multilinear
+
+        return self._get(store, ModelKind.SIGNATURES, Multilinear.from_arrays)
+
+    def perera(self, store: Store) -> Fitted[TensorRecogniser]:
+        """Perera's recogniser in force; raises ModelNotFitted."""
+        from app.models.tensor_recogniser import TensorRecogniser
+
+        fitted = self._get(store, ModelKind.PERERA, TensorRecogniser.from_arrays)
+        rate = fitted.settings.get(FALSE_ACCEPT_RATE)
+        return fitted if rate is None else replace(fitted, model=fitted.model.accepting(rate))
 
     def keyposes(self, store: Store) -> Fitted[KeyposeThresholds]:
         """The learned thresholds in force; raises ModelNotFitted."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from app.services import fields
 from app.services.library import Library
-from app.services.model_shelf import FALSE_ACCEPT_RATE, ModelKind
+from app.services.model_shelf import FALSE_ACCEPT_RATE, TELLING_UNKNOWN
 from app.store import jobs, library
 from app.store import models as stored
 from app.store.clip_filter import ClipFilter
@@ -52,7 +52,7 @@ def list_unfitted(lib: Library) -> tuple[Unfitted, ...]:
 
 
 def set_false_accept_rate(lib: Library, model_id: str, rate: float | None) -> ModelRecord:
-    """How often the recogniser may call something new known; None: where both errors weigh alike.
+    """How often a recogniser may call something new known; None: where both errors weigh alike.
 
     Takes effect with the next question, on every replica, and stays when the model is fitted
     anew. Raises NotFound, BadField for another kind of model or a rate outside 0..1.
@@ -61,7 +61,7 @@ def set_false_accept_rate(lib: Library, model_id: str, rate: float | None) -> Mo
         raise fields.bad_field(FALSE_ACCEPT_RATE, "must be above 0 and below 1, or null")
     with lib.store.write() as tx:
         record = stored.get(tx, model_id)
-        if record.kind != ModelKind.RECOGNISER:
+        if record.kind not in TELLING_UNKNOWN:
             raise fields.bad_field(FALSE_ACCEPT_RATE, f"cannot be set for {record.kind} models")
         settings = {} if rate is None else {FALSE_ACCEPT_RATE: rate}
         return stored.set_settings(tx, model_id, settings)

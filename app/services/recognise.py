@@ -11,6 +11,7 @@ from app.errors import ModelNotFitted
 from app.models.multilinear import recognise_multilinear
 from app.models.recogniser import recognise as recognise_by_default
 from app.models.recognition import NO_ANSWER, Answer, Recognition
+from app.models.tensor_recogniser import recognise_by_tensor
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.library import Library
@@ -19,7 +20,10 @@ from app.services.word_ranking import STATISTICS
 from app.store.files import Readable
 
 SAMPLE = "motion_sample"
-METHODS = ("default", "multilinear")
+ANGLES = "angle_sample"
+METHODS = ("default", "multilinear", "signatures", "perera")
+"""The recogniser that does best held out; Vasilescu's model on positions and, as hers, on joint
+angles; Perera's objective."""
 WORDS_SHOWN = 10
 
 WordScores = tuple[tuple[str, float], ...]
@@ -28,7 +32,7 @@ WordScores = tuple[tuple[str, float], ...]
 
 @dataclass(frozen=True, slots=True)
 class RecogniseQuery:
-    """Exactly one of `clip_id` and `content`; method "default" or "multilinear".
+    """Exactly one of `clip_id` and `content`; method: one of METHODS.
 
     known_person, known_task: what is known already; skeleton, frame_rate (Hz), unit, roles,
     stack: of an upload only.
@@ -72,18 +76,25 @@ def recognise(lib: Library, query: RecogniseQuery) -> Recognised:
         roles=query.roles,
         stack=query.stack,
     )
-    asked = describe(lib, question, (SAMPLE, STATISTICS))
-    found = _who_does_what(lib, asked.arrays[SAMPLE], query)
+    sample = ANGLES if query.method == "signatures" else SAMPLE
+    asked = describe(lib, question, (sample, STATISTICS))
+    found = _who_does_what(lib, asked.arrays[sample], query)
     return Recognised(found.person, found.task, words_of(lib, asked.arrays[STATISTICS]))
 
 
 def _who_does_what(lib: Library, sample: FloatArray, query: RecogniseQuery) -> Recognition:
-    """Person and task of a motion sample (1250,)."""
+    """Person and task of a motion sample (1250,), or of an angle sample (642,) by signatures."""
     person = fields.text("known_person", query.known_person)
     task = fields.text("known_task", query.known_task)
     if query.method == "multilinear":
         model = lib.models.multilinear(lib.store).model
         found = recognise_multilinear(model, sample, person, task)
+    elif query.method == "signatures":
+        model = lib.models.signatures(lib.store).model
+        found = recognise_multilinear(model, sample, person, task)
+    elif query.method == "perera":
+        tensor = lib.models.perera(lib.store).model
+        (found,) = recognise_by_tensor(tensor, sample[None], person, task)
     else:
         found = recognise_by_default(lib.models.recogniser(lib.store).model, sample, person, task)
     if not lib.settings.recognize_persons:

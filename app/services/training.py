@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from app.store.clip_record import ClipRecord, ClipState
 from app.store.store import Store
 
 NAMES = (*SYMBOL_ARRAYS, *INPUTS)
+ANGLES = "angle_sample"
 READY = ClipFilter(state=(ClipState.READY,))
 
 
@@ -27,8 +28,9 @@ class TrainingSet:
     """N ready clips, sorted by id, at a library version.
 
     groups: (N,) clips of one recording share a name; symbols: N; statistics: (N, 131);
-    samples: (N, 1250); vectors: (N, 128); is_anonymous: persons are not told, since none is to
-    be recognised.
+    samples: (N, 1250); vectors: (N, 128); angles: (642,) by clip id, of those that have been
+    analysed since there are joint angles; is_anonymous: persons are not told, since none is to be
+    recognised.
     """
 
     library_version: int
@@ -38,6 +40,7 @@ class TrainingSet:
     statistics: FloatArray
     samples: FloatArray
     vectors: FloatArray
+    angles: Mapping[str, FloatArray] = field(default_factory=dict)
     is_anonymous: bool = False
 
     def __len__(self) -> int:
@@ -57,6 +60,17 @@ class TrainingSet:
     def label_sets(self) -> Sequence[tuple[str, ...]]:
         """(N,) in which words."""
         return [clip.words for clip in self.clips]
+
+    def with_angles(self) -> tuple[FloatArray, list[str | None], list[str | None], list[str]]:
+        """Angle samples (M, 642), persons, tasks and groups of the clips that have angles."""
+        has = [i for i, clip in enumerate(self.clips) if clip.id in self.angles]
+        who, what = self.persons, self.tasks
+        return (
+            _stacked([self.angles[self.clips[i].id] for i in has]),
+            [who[i] for i in has],
+            [what[i] for i in has],
+            [self.groups[i] for i in has],
+        )
 
     @property
     def described(self) -> Described:
@@ -80,6 +94,7 @@ def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
         found = {name: arrays.get_many(tx, ids, name) for name in NAMES}
         whole = [clip_id for clip_id in ids if all(clip_id in part for part in found.values())]
         records = clips.get_many(tx, whole)
+        angles = arrays.get_many(tx, whole, ANGLES)
     whole = [clip_id for clip_id in whole if not is_synthesized(records[clip_id])]
     return TrainingSet(
         library_version=version,
@@ -92,6 +107,7 @@ def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
         statistics=_stacked([found["symbol_statistics"][clip_id] for clip_id in whole]),
         samples=_stacked([found["motion_sample"][clip_id] for clip_id in whole]),
         vectors=_stacked([found["motion_vector"][clip_id] for clip_id in whole]),
+        angles=angles,
     )
 
 

@@ -174,7 +174,7 @@ def test_words_find_motions(demo: httpx2.Client, mode: str) -> None:
     assert told["items"][0]["clip"]["task"] == "walk"
 
 
-@pytest.mark.parametrize("method", ["default", "multilinear"])
+@pytest.mark.parametrize("method", ["default", "multilinear", "signatures", "perera"])
 def test_recognition_of_a_stored_clip(
     demo: httpx2.Client, walk: dict[str, Any], method: str
 ) -> None:

@@ -115,6 +115,8 @@ def test_a_fit_shows_the_held_out_figures_of_each_model(kinedex: Kinedex) -> Non
         "words",
         "recogniser",
         "multilinear",
+        "signatures",
+        "perera",
         "metric-task",
         "metric-person",
     }

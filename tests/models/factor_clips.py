@@ -7,7 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 WIDTH = 60
-"""Numbers in a sample; models take any width."""
+"""Numbers in a sample; most models take any width."""
+
+POSES = 2 * 39 + 2
+"""Numbers in a sample that models of poses can read: two moments, turn and speed."""
 
 
 @dataclass(frozen=True)
@@ -28,11 +31,16 @@ class FactorClips:
 
 
 def factor_clips(
-    persons: int = 5, tasks: int = 6, takes: int = 4, seed: int = 0, noise: float = 0.05
+    persons: int = 5,
+    tasks: int = 6,
+    takes: int = 4,
+    seed: int = 0,
+    noise: float = 0.05,
+    width: int = WIDTH,
 ) -> FactorClips:
     rng = np.random.default_rng(seed)
-    who, what = 0.4 * rng.normal(size=(persons, WIDTH)), rng.normal(size=(tasks, WIDTH))
-    both = 0.15 * rng.normal(size=(persons, tasks, WIDTH))
+    who, what = 0.4 * rng.normal(size=(persons, width)), rng.normal(size=(tasks, width))
+    both = 0.15 * rng.normal(size=(persons, tasks, width))
     p, t, k = (a.ravel() for a in np.indices((persons, tasks, takes)))
-    samples = 1.0 + who[p] + what[t] + both[p, t] + noise * rng.normal(size=(len(p), WIDTH))
+    samples = 1.0 + who[p] + what[t] + both[p, t] + noise * rng.normal(size=(len(p), width))
     return FactorClips(samples, [f"p{i}" for i in p], [f"t{i}" for i in t], k)

@@ -55,6 +55,7 @@ def test_models_tell_what_they_were_fitted_on_and_how_good_they_are(
 ) -> None:
     fitted = {record.kind: record for record in models.list_models(ready_library)}
     kinds = {"words", "recogniser", "multilinear", "metric-task", "metric-person", "synthesis"}
+    kinds |= {"signatures", "perera"}
     assert set(fitted) == kinds
     assert {record.library_size for record in fitted.values()} == {12}
     words = {row["method"]: row for row in fitted["words"].meta["figures"]["figures"]}

@@ -15,8 +15,10 @@ from app.services.recognise import Recognised
 
 
 class _Known(Incoming):
-    method: Literal["default", "multilinear"] = Field(
-        "default", description="The recogniser; multilinear is Vasilescu 2002."
+    method: Literal["default", "multilinear", "signatures", "perera"] = Field(
+        "default",
+        description="The recogniser: signatures is Vasilescu 2002 on joint angles, multilinear the "
+        "same on positions, perera the weighted distances of joints of Perera 2009.",
     )
     known_person: Label | None = Field(None, description="Recognise the task given the person.")
     known_task: Label | None = Field(None, description="Recognise the person given the task.")
