@@ -25,6 +25,7 @@ import pytest
 from app.config import Settings
 from app.store import schema
 from app.store.store import Store
+from tests import live as live_service
 from tests.bench.large_library import fill
 from tests.bench.processes import processes_over
 from tests.live import Live, serve
@@ -44,6 +45,14 @@ SEARCHES: dict[str, dict[str, Any]] = {
 }
 HEAD = "    ".join(f"{n:>8}{'p95':>8}{'p99':>8}{'CPU':>8}" for n in ("1: p50", "8: p50"))
 """One client, and eight at once."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _patience() -> Iterator[None]:
+    """A library that has left the disk's cache takes its time to be loaded."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(live_service, "START_SECONDS", 300.0)
+        yield
 
 
 @pytest.fixture(scope="module", params=COUNTS)
