@@ -7,17 +7,18 @@ import numpy as np
 from app.services.evaluate.recognition_clips import JudgedClips
 from tests.models.factor_clips import factor_clips
 
+LENGTH = 2 * 39 + 2
+"""Numbers in a sample."""
+
 
 def invented(
     persons: int = 5, tasks: int = 6, takes: int = 4, sources: int = 1, noise: float = 0.05
 ) -> JudgedClips:
-    """Every person does every task; sources divide the persons.
-
-    Samples are as long as those of two poses of 13 joints, and the two numbers after them.
-    """
+    """Every person does every task; sources divide the persons."""
+    # as long as two poses of 13 joints and the two numbers after them
     clips = factor_clips(persons, tasks, takes, noise=noise)
     return JudgedClips(
-        samples=np.concatenate([clips.samples, clips.samples[:, :20]], axis=1),
+        samples=np.resize(clips.samples.T, (LENGTH, len(clips.persons))).T,
         persons=clips.persons,
         tasks=clips.tasks,
         groups=[
