@@ -117,6 +117,7 @@ def test_a_fit_shows_the_held_out_figures_of_each_model(kinedex: Kinedex) -> Non
         "multilinear",
         "signatures",
         "perera",
+        "synthesis",
         "metric-task",
         "metric-person",
     }
