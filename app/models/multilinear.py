@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from app.errors import NotEnoughLabels
+from app.models.alignment import Courses, fit_courses
 from app.models.calibration import softmax
 from app.models.cells import Cells, cell_means, find_cells, fit_effects
 from app.models.recognition import Recognition, answer, given
@@ -24,7 +25,7 @@ from app.numerics.nmode_svd import NModeSVD, nmode_svd
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
 from app.numerics.tensor import mode_product
 
-MULTILINEAR_VERSION = 1
+MULTILINEAR_VERSION = 2
 
 DIMENSIONS = 100
 """Coordinates of the sample mode."""
@@ -48,13 +49,23 @@ class Multilinear:
     """persons (P,), tasks (T,) sorted labels; svd: core and the mode matrices persons
     (P, R1) whose rows are signatures, actions (T, R2), and eigenmotions (d, R3) in the
     coordinates of `axes`; radius: distance in those coordinates beyond which a clip is of
-    no cell."""
+    no cell; courses: onto which motions of each task were warped, if they were."""
 
     persons: tuple[str, ...]
     tasks: tuple[str, ...]
     axes: PrincipalAxes
     svd: NModeSVD
     radius: float
+    courses: Courses | None = None
+
+    def aligned(self, sample: FloatArray, task: str) -> FloatArray:
+        """A sample (1250,) in the course of time that `task` has, as the tensor's motions are."""
+        if self.courses is None:
+            return sample
+        moments, width = self.courses.means.shape[1:]
+        poses = np.asarray(sample[: moments * width]).reshape(1, moments, width)
+        warped = self.courses.onto(poses, self.courses.tasks.index(task))
+        return np.concatenate([warped.ravel(), sample[moments * width :]])
 
     def signature(self, sample: FloatArray, task: str) -> FloatArray:
         """(R1,) p = B_a^-T d of a motion sample (1250,) of `task` (section 5)."""
@@ -92,6 +103,8 @@ class Multilinear:
             "tasks": list(self.tasks),
             "radius": self.radius,
         }
+        if self.courses is not None:
+            arrays["courses"] = self.courses.means
         return arrays, meta
 
     @classmethod
@@ -106,6 +119,7 @@ class Multilinear:
             PrincipalAxes(arrays["centre"], arrays["axes"]),
             NModeSVD(arrays["core"], factors),
             float(meta["radius"]),
+            Courses(tuple(meta["tasks"]), arrays["courses"]) if "courses" in arrays else None,
         )
 
 
@@ -114,10 +128,13 @@ def fit_multilinear(
     persons: Sequence[str | None],
     tasks: Sequence[str | None],
     ranks: tuple[int | None, int | None] = (None, None),
+    moments: int | None = None,
 ) -> Multilinear:
     """Fit on motion samples (clips, 1250) that have both labels; others are left out.
 
-    ranks: columns kept of the person and action matrices, None for all.
+    ranks: columns kept of the person and action matrices, None for all; moments: how many poses
+    a sample begins with, so that all takes of a task can be warped onto its mean; None leaves
+    them as they are.
     Raises NotEnoughLabels without two persons or two tasks, or with too many of both.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
@@ -126,13 +143,28 @@ def fit_multilinear(
         raise NotEnoughLabels("The multilinear model needs two persons and two tasks.")
     if len(cells.persons) * len(cells.tasks) > MOST_CELLS:
         raise NotEnoughLabels(f"The multilinear model holds {MOST_CELLS} persons x tasks.")
-    axes = principal_axes(np.asarray(samples)[use], DIMENSIONS, centred=False)
-    points = axes.project(np.asarray(samples)[use])
+    chosen, courses = np.asarray(samples)[use], None
+    if moments is not None:
+        chosen, courses = _aligned(chosen, [tasks[i] for i in use], moments)
+    axes = principal_axes(chosen, DIMENSIONS, centred=False)
+    points = axes.project(chosen)
     tensor = complete_tensor(cell_means(points, cells), cells)
     svd = nmode_svd(tensor, [*ranks, None])
     own = svd.reconstruct()[cells.person[cells.member], cells.task[cells.member]]
     reach = np.percentile(np.linalg.norm(points - own, axis=1), RADIUS_SHARE)
-    return Multilinear(cells.persons, cells.tasks, axes, svd, float(reach * RADIUS_SLACK))
+    radius = float(reach * RADIUS_SLACK)
+    return Multilinear(cells.persons, cells.tasks, axes, svd, radius, courses)
+
+
+def _aligned(
+    samples: FloatArray, tasks: Sequence[str | None], moments: int
+) -> tuple[FloatArray, Courses]:
+    """`samples` (n, w), the poses that each begins with in the course of its task."""
+    width = samples.shape[1] // moments
+    poses = samples[:, : moments * width].reshape(len(samples), moments, width)
+    courses = fit_courses(poses, tasks)
+    warped = courses.aligned(poses, tasks).reshape(len(samples), -1)
+    return np.hstack([warped, samples[:, moments * width :]]), courses
 
 
 def complete_tensor(means: FloatArray, cells: Cells) -> FloatArray:
@@ -162,7 +194,13 @@ def recognise_multilinear(
     to_persons, to_tasks = far.min(axis=1), far.min(axis=0)
     if known_task in record.tasks:
         people = record.svd.factors[0]
-        to_persons = np.linalg.norm(record.signature(sample, known_task) - people, axis=1)
+        own = record.signature(record.aligned(sample, known_task), known_task)
+        to_persons = np.linalg.norm(own - people, axis=1)
+    elif record.courses is not None:
+        # in whose way it is done is told without its timing; what is done, with it
+        likely = int(to_tasks.argmin())
+        point = record.axes.project(record.aligned(sample, record.tasks[likely]))
+        to_persons = np.linalg.norm(record.svd.reconstruct()[:, likely] - point, axis=1)
     if known_person in record.persons:
         actions = record.svd.factors[1]
         to_tasks = np.linalg.norm(record.action(sample, known_person) - actions, axis=1)

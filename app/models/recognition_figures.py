@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from app.analysis.motion_sample import SAMPLES
 from app.errors import NotEnoughLabels
 from app.models.flat_pca import fit_flat_pca, recognise_flat
 from app.models.folds import grouped_folds
@@ -71,7 +72,7 @@ def signature_figures(
     seed: int = 0,
 ) -> dict[str, dict[str, float]]:
     """The same of "signatures" and "pca" on angle samples (clips, 642), beside "prior"."""
-    methods = {"signatures": _multilinear, "pca": _flat_pca, "prior": _prior}
+    methods = {"signatures": _signatures, "pca": _flat_pca, "prior": _prior}
     return _figures(methods, angles, persons, tasks, groups, folds, seed)
 
 
@@ -159,6 +160,11 @@ def _default(clips: Clips, probes: FloatArray) -> list[Recognition]:
 
 def _multilinear(clips: Clips, probes: FloatArray) -> list[Recognition]:
     record = fit_multilinear(clips.samples, clips.persons, clips.tasks)
+    return [recognise_multilinear(record, probe) for probe in probes]
+
+
+def _signatures(clips: Clips, probes: FloatArray) -> list[Recognition]:
+    record = fit_multilinear(clips.samples, clips.persons, clips.tasks, moments=SAMPLES)
     return [recognise_multilinear(record, probe) for probe in probes]
 
 

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Any
 
+from app.analysis.motion_sample import SAMPLES
 from app.errors import NotEnoughLabels
 from app.models.language.wordnet import Meanings
 from app.models.learned_metric import Factor, LearnedMetric, fit_axes
@@ -171,7 +172,7 @@ def _fit_multilinear(training: TrainingSet, _: Before) -> Fit:
 
 def _fit_signatures(training: TrainingSet, _: Before) -> Fit:
     angles, persons, tasks, groups = training.with_angles()
-    model = fit_multilinear(angles, persons, tasks)
+    model = fit_multilinear(angles, persons, tasks, moments=SAMPLES)
     arrays, meta = model.to_arrays()
     return Fit(arrays, meta, {"held_out": signature_figures(angles, persons, tasks, groups)})
 
