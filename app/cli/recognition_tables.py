@@ -194,11 +194,11 @@ def _print_made(kind: str, rows: Sequence[Mapping[str, Any]]) -> None:
     given = {"new_task": "other persons", "new_person": "other tasks"}[kind]
     typer.echo(
         f"\nMotions made for cells left out, a {kind.replace('_', ' ')}: the labels of the nearest "
-        "real clip\nare right (Vasilescu, 7); at the right both, by baselines:\n"
+        "real clip\nare right (Vasilescu, 7); at the right both, by baselines and of real takes:\n"
     )
-    names = ("given", "trials", "person", "task", "hit", "effects", "task_mean")
-    columns = [given, "trials", "person", "task", "both", "effects", "mean motion"]
-    print_table(columns, [[row[name] for name in names] for row in rows])
+    names = ("given", "trials", "person", "task", "hit", "effects", "task_mean", "real")
+    columns = [given, "trials", "person", "task", "both", "effects", "mean motion", "real"]
+    print_table(columns, [[row.get(name) for name in names] for row in rows])
 
 
 def _print_confusions(found: RecognitionEvaluation) -> None:

@@ -18,7 +18,7 @@ def test_tables_for_people(kinedex: Kinedex) -> None:
     lines = [line.split() for line in ended.out.splitlines()]
     assert " ".join(lines[0][:8]) == "12 clips: 2 persons, 3 tasks, 0 sources."
     by_take = lines.index(["method", "task", "person", "both", "clips"])
-    rows = {line[0]: line[1:] for line in lines[by_take + 1 : by_take + 7] if line}
+    rows = {line[0]: line[1:] for line in lines[by_take + 1 : by_take + 9] if line}
     assert list(rows)[:2] == ["default", "multilinear"]
     assert rows["chance"] == ["0.333", "0.500", "0.167", "12"]
     assert ["method", "task", "person", "told", "person", "task", "told"] in lines
