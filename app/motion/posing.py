@@ -33,12 +33,13 @@ _WEIGHTS = {
     JointRole.HIPS: 2.0,
     JointRole.LEFT_FOOT: 3.0,
     JointRole.RIGHT_FOOT: 3.0,
-    JointRole.LEFT_SHOULDER: 0.7,
-    JointRole.RIGHT_SHOULDER: 0.7,
+    JointRole.LEFT_SHOULDER: 1.5,
+    JointRole.RIGHT_SHOULDER: 1.5,
     JointRole.LEFT_KNEE: 0.7,
     JointRole.RIGHT_KNEE: 0.7,
 }
-"""Of joint roles, 1 where not named: proportions differ, and feet must stand."""
+"""Of joint roles, 1 where not named: proportions differ, feet must stand, and the shoulders'
+line is the body's heading."""
 
 
 @dataclass(frozen=True, slots=True)
