@@ -108,6 +108,11 @@ def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
     assert again.settings == changed.settings
     assert models.set_false_accept_rate(lib, again.id, None).settings == {}
 
+    (perera,) = (r for r in models.list_models(lib) if r.kind == "perera")
+    assert perera.meta["figures"]["unknown"]["task"]["curve"]
+    models.set_false_accept_rate(lib, perera.id, 0.001)
+    assert lib.models.perera(lib.store).model.task_calibration.error_rates()[0] == 0.0
+
     (words,) = (r for r in models.list_models(lib) if r.kind == "words")
     for model_id, rate in ((words.id, 0.1), (again.id, 0.0), (again.id, 1.0)):
         with pytest.raises(BadField, match="false_accept_rate"):

@@ -33,7 +33,7 @@ def list_models(lib: Lib) -> ModelList:
 def update_model(
     lib: Lib, model_id: Annotated[str, Path(max_length=64)], patch: ModelPatch
 ) -> Model:
-    """Set the recogniser's false-accept rate; it takes effect at once and outlives fits."""
+    """Set a recogniser's false-accept rate; it takes effect at once and outlives fits."""
     return Model.of(models.set_false_accept_rate(lib, model_id, patch.false_accept_rate))
 
 

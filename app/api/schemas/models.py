@@ -23,7 +23,7 @@ class Model(Outgoing):
     library_size: int = Field(description="Clips in the library at the fit.")
     figures: dict[str, Any] = Field(description="Held-out figures, by name.")
     false_accept_rate: float | None = Field(
-        description="How often the recogniser may call something new known, if that was set."
+        description="How often this recogniser may call something new known, if that was set."
     )
     created_at: datetime
 
@@ -48,8 +48,8 @@ class ModelPatch(Incoming):
     false_accept_rate: float | None = Field(
         gt=0,
         lt=1,
-        description="Of the recogniser: how often it may call something new known; see `curve` in "
-        "its figures. null: where false acceptance and false rejection weigh alike.",
+        description="Of the models recogniser and perera: how often they may call something new "
+        "known; see `curve` in their figures. null: where both errors weigh alike.",
         examples=[0.05],
     )
 
