@@ -47,6 +47,12 @@ def test_json_for_programs(kinedex: Kinedex) -> None:
     assert by_task["balanced_accuracy"] == pytest.approx(1 - errors / 2)
     assert by_task["curve"][0] == {"false_acceptance": 0.0, "false_rejection": 1.0}
     assert [row["given"] for row in told["made"]["new_task"]] == [1]
+    assert set(told["perera"]["tables"]) == {"least", "printed"}
+    for rows in told["perera"]["tables"].values():
+        named = [row["category"] for row in rows if row["table"] == 3]
+        assert named == ["task recognition", "person recognition"]
+        assert all(0 < row["probed"] <= told["perera"]["segments"] for row in rows[:2])
+        assert all(row["accuracy"] == row["correct"] / row["probed"] for row in rows[:2])
     assert set(told["takes_a_cell"]) == {"1"}
     assert set(told["not_judged"]) >= {"person", "source", "3-takes"}
 
