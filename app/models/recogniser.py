@@ -200,7 +200,8 @@ def _calibrations(
         # A stranger's walk is a walk: persons held out count as known tasks.
         of_tasks.append(_held_out(logs, h.task, seen.tasks, what, cells.tasks, again))
     # The same person at another task looks as new as another person does: persons are judged
-    # by all; tasks by those who did them before.
+    # by all; tasks by those who did them before, at the cost of strangers, whose walk is more
+    # often called unknown, though `walk` stays its best candidate.
     return (
         _calibrated(of_persons, len(cells.persons), by_seen=False),
         _calibrated(of_tasks, len(cells.tasks), by_seen=True),
