@@ -41,7 +41,7 @@ from app.motion.motion import Motion
 from app.motion.recording import Caution
 from app.numerics.arrays import FloatArray
 
-ANALYSIS_VERSION = 2
+ANALYSIS_VERSION = 3
 """Raise it with every change of what an array holds; older clips are then analysed again."""
 
 
