@@ -121,7 +121,7 @@ def test_a_fit_shows_the_held_out_figures_of_each_model(kinedex: Kinedex) -> Non
         "metric-task",
         "metric-person",
     }
-    told = [line.split()[3:] for line in ended.out.splitlines()]
+    told = [row[3:] for line in ended.out.splitlines() if (row := line.split())[0] == "recogniser"]
     for method in ("prior", "default"):
         (share,) = [row[-1] for row in told if row[:-1] == ["held_out", method, "task"]]
         assert 0.0 <= float(share) <= 1.0
