@@ -29,6 +29,10 @@ LEAST_USUAL = 20
 LEAST_BELIEF = 1e-9
 """Of being known: of what is surely new the labels still keep their order as candidates."""
 
+FENCE = 1.5
+"""Interquartile ranges beyond the quartiles (Tukey) beyond which a novelty counts as if it lay
+there: one task far from all others had drawn the threshold away from the rest."""
+
 CURVE_POINTS = 50
 """Of the curve of false acceptance against false rejection."""
 
@@ -165,9 +169,16 @@ def _threshold(known: FloatArray, new: FloatArray) -> float:
 def _alike(known: FloatArray, new: FloatArray) -> float:
     """The novelty that is as many standard deviations above the mean of the known as below that
     of the new: unlike the least sum of errors it does not hang on a few clips at the border."""
-    spreads = np.array([max(float(part.std()), 1e-9) for part in (known, new)])
-    means = np.array([float(known.mean()), float(new.mean())])
+    parts = [_fenced(part) for part in (known, new)]
+    spreads = np.array([max(float(part.std()), 1e-9) for part in parts])
+    means = np.array([float(part.mean()) for part in parts])
     return float((means * spreads[::-1]).sum() / spreads.sum())
+
+
+def _fenced(novelty: FloatArray) -> FloatArray:
+    first, third = np.quantile(novelty, [0.25, 0.75])
+    reach = FENCE * (third - first)
+    return np.clip(novelty, first - reach, third + reach)
 
 
 def _scale(beyond: FloatArray, known: BoolArray) -> float:

@@ -99,3 +99,15 @@ def test_known_clips_that_were_not_seen_in_training_do_not_move_the_threshold() 
     assert fit_calibration(evidence, novelty, truth).threshold > 1.0
     few = fit_calibration(evidence[50:], novelty[50:], truth[50:], seen[50:])
     assert few.threshold == fit_calibration(evidence[50:], novelty[50:], truth[50:]).threshold
+
+
+@pytest.mark.parametrize("far", [50.0, 1000.0, 1e6])
+def test_one_task_that_is_far_from_all_others_does_not_hide_the_other_new_ones(far: float) -> None:
+    rng = np.random.default_rng(3)
+    known, new = rng.normal(-20, 5, 200), rng.normal(10, 5, 170)
+    novelty = np.concatenate([known, new, rng.normal(far, far / 4, 30)])
+    truth = np.where(np.arange(400) < 200, 0, NEW)
+    found = fit_calibration(np.zeros((400, 1)), novelty, truth, truth != NEW)
+    accepted, rejected = found.error_rates()
+    assert accepted <= 0.02
+    assert rejected <= 0.02
