@@ -6,7 +6,9 @@ what would have been predicted without them:
 - SEEN: a cell of the library; covariance within cells (this alone is LDA on cells, and
   nearest cell mean where each has one take);
 - UNSEEN: a known person at a known task, never recorded together, predicted by effects;
-- NEW_PERSON: anyone at a known task; NEW_TASK: a known person at anything;
+- NEW_PERSON: someone who does a known task as one of its persons does, give or take what two
+  persons differ in (the mean of all persons is nobody's motion: strangers' tasks were found
+  less often, above all those of other sources); NEW_TASK: a known person at anything;
 - NEW_BOTH: any human motion.
 """
 
@@ -90,8 +92,8 @@ def fit_hypotheses(points: FloatArray, cells: Cells) -> Hypotheses:
     total = shrunk(np.cov(means.T, bias=True).reshape(2 * [points.shape[1]]))
     unseen = _unseen(means, cells, total)
     seen = _seen(points, means, cells, 0.5 * unseen.covariance)
-    tasks = _by_label(Kind.NEW_PERSON, means, cells.task, len(cells.tasks), total)
-    persons = _by_label(Kind.NEW_TASK, means, cells.person, len(cells.persons), total)
+    tasks = _like_others(means, cells, total)
+    persons = _new_task(means, cells, total)
     nobody = np.array([-1])
     centre = means.mean(axis=0, keepdims=True)
     new = _Group(Kind.NEW_BOTH, centre, nobody, nobody, total, np.ones(1))
@@ -134,22 +136,42 @@ def _missing(cells: Cells) -> BoolArray:
     return np.asarray(missing & (missing.sum() <= MOST_UNSEEN))
 
 
-def _by_label(
-    kind: Kind, means: FloatArray, label: IntArray, labels: int, stand_in: FloatArray
-) -> _Group:
-    """One hypothesis a label: the mean of its cells, each cell weighing the same."""
+def _like_others(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
+    """One hypothesis a cell whose task is known, with the covariance of the differences
+    between the cells of two persons at one task, over all such pairs."""
+    has = np.flatnonzero(cells.task >= 0)
+    task = cells.task[has]
+    counts = np.bincount(task, minlength=len(cells.tasks))
+    pairs = int((counts * (counts - 1)).sum())
+    deviations = means[has] - _centres(means, cells.task, len(cells.tasks))[task]
+    # of n points, all n (n - 1) differences: their sum of squares is 2 n that about the mean
+    errors = deviations * np.sqrt(2 * counts[task] / max(pairs, 1))[:, None]
+    enough = (counts[task] > 1).sum() >= LEAST_FREEDOM
+    covariance = shrunk(errors.T @ errors) if enough else stand_in
+    nobody = np.full(len(has), -1)
+    return _Group(Kind.NEW_PERSON, means[has], nobody, task, covariance, np.ones(len(has)))
+
+
+def _new_task(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
+    """One hypothesis a person: the mean of their cells, each cell weighing the same."""
+    label, labels = cells.person, len(cells.persons)
     has = np.flatnonzero(label >= 0)
     counts = np.bincount(label[has], minlength=labels)
-    centres = np.zeros((labels, means.shape[1]))
-    np.add.at(centres, label[has], means[has])
-    centres /= np.maximum(counts, 1)[:, None]
+    centres = _centres(means, label, labels)
     several = has[counts[label[has]] > 1]
     others = counts[label[several]] - 1
     errors = (means[several] - centres[label[several]]) * (1 + 1 / others)[:, None]
     covariance = _second_moment(errors) if len(errors) >= LEAST_FREEDOM else stand_in
-    index, nobody = np.arange(labels), np.full(labels, -1)
-    person, task = (nobody, index) if kind is Kind.NEW_PERSON else (index, nobody)
-    return _Group(kind, centres, person, task, covariance, np.ones(labels))
+    index, nothing = np.arange(labels), np.full(labels, -1)
+    return _Group(Kind.NEW_TASK, centres, index, nothing, covariance, np.ones(labels))
+
+
+def _centres(means: FloatArray, label: IntArray, labels: int) -> FloatArray:
+    """(labels, d) the mean of each label's cells."""
+    has = np.flatnonzero(label >= 0)
+    centres = np.zeros((labels, means.shape[1]))
+    np.add.at(centres, label[has], means[has])
+    return np.asarray(centres / np.maximum(np.bincount(label[has], minlength=labels), 1)[:, None])
 
 
 def _second_moment(errors: FloatArray) -> FloatArray:

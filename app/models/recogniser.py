@@ -24,7 +24,7 @@ from app.models.recognition import Answer, Recognition, answer, given
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
 
-RECOGNISER_VERSION = 1
+RECOGNISER_VERSION = 2
 
 DIMENSIONS = 50
 """PCA coordinates; 30 to 100 recognise alike, fewer tell the unknown better."""
