@@ -93,6 +93,12 @@ def mirrored(shapes: FloatArray) -> FloatArray:
     return np.hstack([turned.reshape(len(shapes), -1), shapes[:, -2:]])
 
 
+def clearance(moments: FloatArray) -> FloatArray:
+    """(...,) of moments (..., 43): how high the lowest joint is over the floor, body lengths."""
+    poses = moments[..., :39].reshape(*moments.shape[:-1], 13, 3)
+    return np.asarray(moments[..., 39] + poses[..., 1].min(axis=-1))
+
+
 def closed(cycle: FloatArray) -> FloatArray:
     """(32, ...) of a cycle (33, ...) whose end is not quite its start: the difference is spread
     over the whole cycle, so that no jump is left where it goes round."""

@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from app.analysis.motion_shape import SHAPE_LENGTH, mirrored
+from app.analysis.motion_sample import SAMPLES
+from app.analysis.motion_shape import CHANNELS, SHAPE_LENGTH, clearance, mirrored
 from app.errors import NotEnoughLabels
 from app.models.cells import Cells, fit_effects
 from app.models.synthesis import Synthesis
@@ -49,7 +50,19 @@ def predict(
     shape[-1] = float(np.mean(wanted[:, -1]) >= 0.5)
     shortest, longest = wanted[:, -2].min(), wanted[:, -2].max()
     shape[-2] = np.clip(shape[-2], shortest - TEMPO_SLACK, longest + TEMPO_SLACK)
-    return shape
+    return _off_the_floor(shape, wanted)
+
+
+def _off_the_floor(shape: FloatArray, wanted: FloatArray) -> FloatArray:
+    """The shape (1378,) as high over the floor as somebody is who does the task (K, 1378).
+
+    Legs and hips have weights of their own: bent knees would leave the feet in the air.
+    """
+    moments = shape[:-2].reshape(SAMPLES, CHANNELS)
+    there = clearance(wanted[:, :-2].reshape(-1, SAMPLES, CHANNELS))
+    now = clearance(moments)
+    moments[:, 39] += np.clip(now, there.min(axis=0), there.max(axis=0)) - now
+    return np.concatenate([moments.ravel(), shape[-2:]])
 
 
 def _most_alike(record: Synthesis, told: Mapping[str, FloatArray], task: str) -> list[str]:

@@ -3,8 +3,11 @@
 The weights w with which the tasks that the asked person did make the wanted one of other
 persons' motions are found over all these persons at once (least squares, not a mean of
 inverses); the same w makes it of the person's own. Beyond the paper, each of which raised the
-held-out hits (tests/bench/test_synthesis.py):
+held-out hits (tests/bench/test_synthesis.py) but for the second, which brought what is made
+nearer to what was left out:
 - what w leaves over of the others' motions is carried over as their mean ("residual");
+- how the asked person moves otherwise than the others is carried over as far as the tasks'
+  movements tell of each other: a kick's does not belong into a bow, how one stands in both does;
 - the parts of the body have weights of their own, drawn towards those of the whole;
 - a mirrored task is a task: raising the left hand tells how one raises the right.
 """
@@ -13,7 +16,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.analysis.motion_shape import SHAPE_LENGTH, mirrored
+from app.analysis.motion_sample import SAMPLES
+from app.analysis.motion_shape import CHANNELS, SHAPE_LENGTH, mirrored
 from app.models.synthesis_basis import parts, weights
 from app.numerics.arrays import FloatArray
 
@@ -22,6 +26,10 @@ WHOLE_RIDGE = 0.01
 
 PART_RIDGE = 0.02
 """Pull of a part's weights towards those of the whole, likewise."""
+
+EXPLAINED = 0.5
+"""Share of a task's movement that must come of the other tasks for a person's own way of moving
+to be carried over whole; with less it is in proportion."""
 
 
 def solve(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> FloatArray:
@@ -36,17 +44,34 @@ def solve(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> FloatArray:
     gram = np.sum([one for _, one, _ in by_part], axis=0)
     aim = np.sum([one for _, _, one in by_part], axis=0)
     shared = _ridge(gram, aim, prior, WHOLE_RIDGE)
-    shape = np.empty(SHAPE_LENGTH)
-    for part, gram, aim in by_part:
-        w = _ridge(gram, aim, shared, PART_RIDGE)
-        residual = target[:, part] - np.matmul(w, both[:, :, part])
-        shape[part] = w @ asked[:, part] + residual.mean(axis=0)
-    return shape / scale
+    found = [(part, _ridge(gram, aim, shared, PART_RIDGE)) for part, gram, aim in by_part]
+    made, apart = np.empty_like(target), np.empty(SHAPE_LENGTH)
+    for part, w in found:
+        made[:, part] = np.matmul(w, both[:, :, part])
+        apart[part] = w @ (asked - both.mean(axis=0))[:, part]
+    held = _held(apart)
+    carried = min(_explained(made, target) / EXPLAINED, 1.0)
+    return np.asarray((target.mean(axis=0) + held + carried * (apart - held)) / scale)
 
 
 def effects_only(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> FloatArray:
     """As `solve`, by person and task effects added up: a baseline."""
     return np.asarray(own.mean(axis=0) + (wanted - basis.mean(axis=1)).mean(axis=0))
+
+
+def _held(shapes: FloatArray) -> FloatArray:
+    """(..., 1378) the mean over the 32 moments in each; how long, and whether cyclic, as it is."""
+    moments = shapes[..., :-2].reshape(*shapes.shape[:-1], SAMPLES, CHANNELS)
+    mean = np.broadcast_to(moments.mean(axis=-2, keepdims=True), moments.shape)
+    flat = mean.reshape(*shapes.shape[:-1], SAMPLES * CHANNELS)
+    return np.concatenate([flat, shapes[..., -2:]], axis=-1)
+
+
+def _explained(made: FloatArray, target: FloatArray) -> float:
+    """Share 0..1 of the movement in `target` (K, 1378) that is in `made`, squares summed."""
+    moving = target - _held(target)
+    left = moving - (made - _held(made))
+    return max(0.0, 1.0 - float((left**2).sum() / max((moving**2).sum(), 1e-12)))
 
 
 def _normal(basis: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from app.analysis.motion_sample import SAMPLES
-from app.analysis.motion_shape import CHANNELS, Shape, parts_of
+from app.analysis.motion_shape import CHANNELS, Shape, clearance, parts_of
 from app.motion.body_frame import ANALYSIS_RATE, turned
 from app.motion.foot_contact import FEET, carried_by_feet
 from app.motion.joint_roles import SUN_ROLES
@@ -83,7 +83,13 @@ def _stretched(
         return resample_to(wanted, frames)
     away = wanted - _moments(take_shape)
     slow = gaussian_filter1d(away, SLOWLY, axis=0, mode="nearest")
-    return np.asarray(resample_to(take, frames) + resample_to(slow, frames))
+    detailed = resample_to(take, frames)
+    made = detailed + resample_to(slow, frames)
+    # As high over the floor as the take, and what the shape adds: the sum of two poses is not.
+    higher = clearance(wanted) - clearance(_moments(take_shape))
+    higher = gaussian_filter1d(higher, SLOWLY, mode="nearest")[:, None]
+    made[:, 39] += clearance(detailed) + resample_to(higher, frames)[:, 0] - clearance(made)
+    return np.asarray(made)
 
 
 def _moments(shape: FloatArray) -> FloatArray:

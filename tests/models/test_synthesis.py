@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.analysis.motion_shape import SHAPE_LENGTH, mirrored
+from app.analysis.motion_shape import SHAPE_LENGTH, clearance, mirrored
 from app.errors import NotEnoughLabels
 from app.models import synthesis_prediction
 from app.models.synthesis import Synthesis, fit_synthesis
@@ -107,6 +107,39 @@ def test_a_mirrored_task_tells_of_the_other_side() -> None:
     left = mirrored(right)
     made = solve(np.stack([right, still], axis=1)[1:], left[1:], np.stack([right[0], still[0]]))
     assert far(made, left[0]) < 0.2 * far(left[1:].mean(axis=0), left[0])
+
+
+def moments(shapes: np.ndarray) -> np.ndarray:
+    return shapes[..., :-2].reshape(*shapes.shape[:-1], 32, 43)
+
+
+def test_of_a_task_that_tells_nothing_only_the_bearing_is_carried_over() -> None:
+    rng = np.random.default_rng(4)
+    stance, bearing = np.pad(np.tile(rng.normal(size=(2, 43)), 32), ((0, 0), (0, 2)))
+    kick, bow = 4 * stance + rng.normal(size=(2, 3, SHAPE_LENGTH))
+    own = 4 * stance + rng.normal(size=(1, SHAPE_LENGTH))
+    upright, bent = (solve(kick[:, None], bow, own + b) for b in (0 * bearing, bearing))
+    mean = moments(bow.mean(axis=0))
+    for made in (upright, bent):
+        away = moments(made) - mean
+        np.testing.assert_allclose(away, np.broadcast_to(away[:1], away.shape), atol=0.05)
+    moved = moments(bent - upright)[0]
+    assert np.corrcoef(moved, moments(bearing)[0])[0, 1] > 0.7
+
+
+def test_nobody_is_higher_over_the_floor_than_all_who_do_the_task(
+    all_cells: InventedShapes, lacking: Synthesis
+) -> None:
+    own = lacking.tasks_of("p0")
+    bent = {name: shape.copy() for name, shape in own.items()}
+    for shape in bent.values():  # the feet drawn up, the hips where they were
+        moments(shape)[:, :39].reshape(32, 13, 3)[:, :, 1] += 0.3
+    others = np.array([lacking.tasks_of(name)["t0"] for name in lacking.who_did("t0")])
+    there = clearance(moments(others))
+    for given in (own, bent):
+        made = clearance(moments(predict(lacking, given, "t0", but=("p0",))))
+        assert (made >= there.min(axis=0) - 1e-9).all()
+        assert (made <= there.max(axis=0) + 1e-9).all()
 
 
 def test_cells_that_are_partly_cyclic_keep_the_more_frequent_kind() -> None:

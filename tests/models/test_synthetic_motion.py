@@ -3,12 +3,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.analysis.motion_shape import moments_of, motion_shape
+from app.analysis.motion_shape import clearance, moments_of, motion_shape
 from app.models.synthetic_body import Donor, embody, same_body
 from app.models.synthetic_motion import course_of
 from app.motion.animation import Animation, animation_of_positions
 from app.motion.body_frame import BodyTrack, body_track
-from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
+from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, standing, walking, waving
 
@@ -79,6 +79,24 @@ def test_what_does_not_go_round_keeps_the_detail_of_a_take() -> None:
     assert full.cycles == 0
     short = course_of(wanted, wave.body_length, seconds=2.0)
     assert len(short.positions) == 60
+
+
+def test_a_take_that_steps_is_not_left_in_the_air_by_another_posture() -> None:
+    steps = np.array(standing(240))
+    foot = [SUN_ROLES.index(role) for role in (JointRole.LEFT_FOOT, JointRole.RIGHT_FOOT)]
+    swing = 0.1 * np.sin(2 * np.pi * 2.0 * np.arange(len(steps)) / 30)
+    for side, lift in zip(foot, (np.maximum(swing, 0), np.maximum(-swing, 0)), strict=True):
+        steps[:, side, 1] += lift
+    track = track_of(steps)
+    shape = motion_shape(track).astype(np.float64)
+    wanted = np.array(shape)
+    moments = wanted[:-2].reshape(32, 43)
+    moments[:, 3 * foot[0] + 1] += 0.15  # on the right foot only, no higher over the floor
+    moments[:, 39] += clearance(shape[:-2].reshape(32, 43)) - clearance(moments)
+    course = course_of(wanted, track.body_length, take=moments_of(track), take_shape=shape)
+    real = steps[:, :, 1].min(axis=1)
+    lowest = course.positions[:, :, 1].min(axis=1)
+    np.testing.assert_allclose(lowest - lowest.min(), real - real.min(), atol=0.02)
 
 
 def test_it_comes_on_the_donors_bones_with_its_feet_on_the_floor() -> None:
