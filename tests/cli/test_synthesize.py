@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from click.testing import Result
-from typer.testing import CliRunner
 
-from app.cli.main import program
 from app.errors import NotFound
 from app.formats.read import read_recording
 from app.services.library import Library
 from app.store.clip_record import ClipRecord
+from tests.cli.in_process import Run, running
 from tests.services.conftest import ready_clips, ready_library, some_demo_clips  # noqa: F401
-
-Run = Callable[..., Result]
 
 
 @pytest.fixture
@@ -26,13 +21,7 @@ def run(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> Run:
-    monkeypatch.chdir(tmp_path)
-    data_dir = str(ready_library.settings.data_dir)
-
-    def call(*arguments: str) -> Result:
-        return CliRunner().invoke(program, ["--data-dir", data_dir, "synthesize", *arguments])
-
-    return call
+    return running("synthesize", ready_library, tmp_path, monkeypatch)
 
 
 def test_a_file_is_written_and_told_of(
