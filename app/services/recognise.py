@@ -67,6 +67,11 @@ def recognise(lib: Library, query: RecogniseQuery) -> Recognised:
     """
     if query.method not in METHODS:
         raise fields.bad_field("method", f"must be one of {', '.join(METHODS)}")
+    if query.method != "default" and not lib.settings.recognize_persons:
+        raise ModelNotFitted(
+            f"The method {query.method} tells tasks by the persons who did them, and recognising"
+            " people by how they move is switched off here: the default still tells the task."
+        )
     question = Question(
         clip_id=query.clip_id,
         content=query.content,

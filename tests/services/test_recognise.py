@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -13,7 +15,7 @@ from app.services.library import Library
 from app.services.recognise import METHODS, RecogniseQuery
 from app.store.job_record import JobKind, JobState
 from app.store.jobs import list_jobs
-from tests.services.conftest import FindClip, upload, work
+from tests.services.conftest import FindClip, settings_for, upload, work
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -117,3 +119,14 @@ def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
     for model_id, rate in ((words.id, 0.1), (again.id, 0.0), (again.id, 1.0)):
         with pytest.raises(BadField, match="false_accept_rate"):
             models.set_false_accept_rate(lib, model_id, rate)
+
+
+@pytest.mark.parametrize("method", sorted(set(METHODS) - {"default"}))
+def test_methods_that_need_persons_say_so_where_persons_are_not_recognised(
+    ready_library: Library, clip_of: FindClip, method: str
+) -> None:
+    closed = replace(
+        ready_library, settings=settings_for(Path("/nowhere"), recognize_persons=False)
+    )
+    with pytest.raises(ModelNotFitted, match="switched off"):
+        recognise.recognise(closed, RecogniseQuery(clip_of("ada", "wave").id, method=method))
