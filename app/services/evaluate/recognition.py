@@ -18,7 +18,13 @@ from app.services.evaluate.recognition_clips import (
     read_judged_clips,
     read_training,
 )
-from app.services.evaluate.recognition_methods import METHODS, RANKING, Method, methods_at
+from app.services.evaluate.recognition_methods import (
+    METHODS,
+    RANKING,
+    SIGNATURES,
+    Method,
+    methods_at,
+)
 from app.services.evaluate.recognition_perera import judge_perera
 from app.services.evaluate.recognition_results import (
     HeldOut,
@@ -155,7 +161,7 @@ class _Asking:
         quickly = name not in set(_NEW) | {LeftOut.SOURCE}
         for method, learn, watch in self._learners(quickly=quickly) if found else ():
             try:
-                trials[method] = run(learn, self._clips, found, watch, self._step)
+                trials[method] = run(learn, self._seen_by(method), found, watch, self._step)
             except NotEnoughLabels as reason:
                 self.reasons[f"{name}, {method}"] = reason.detail
         every = next(iter(trials.values()), ())
@@ -166,12 +172,16 @@ class _Asking:
         judged = []
         for method, learn, watch in self._learners(quickly=True) if found else ():
             try:
-                neither, told = run_told(learn, self._clips, found, watch, self._step)
+                clips = self._seen_by(method)
+                neither, told = run_told(learn, clips, found, watch, self._step)
             except NotEnoughLabels as reason:
                 self.reasons[f"{TOLD}, {method}"] = reason.detail
             else:
                 judged.append(WhenTold(method, recognised(neither), recognised(told)))
         return tuple(judged)
+
+    def _seen_by(self, method: str) -> JudgedClips:
+        return self._clips.in_angles() if method == SIGNATURES else self._clips
 
     def _learners(self, *, quickly: bool) -> Iterator[tuple[str, Method, Stopwatch]]:
         """The methods; quickly: only best candidates are wanted. Such fits are not timed."""

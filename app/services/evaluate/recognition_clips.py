@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from app.errors import NotEnoughLabels
 from app.models.recognition_figures import Clips
 from app.numerics.arrays import FloatArray, IntArray
 from app.services.library import Library
@@ -22,7 +23,8 @@ class JudgedClips:
 
     samples: (N, 1250) motion samples; persons, tasks: (N,) labels, None where there is none;
     groups: (N,) clips of one recording share a value, and are never on both sides; sources:
-    (N,) where they come from, None where nobody knows; unlabelled: clips that were left out.
+    (N,) where they come from, None where nobody knows; unlabelled: clips that were left out;
+    angles: (N, 642) angle samples, None where a clip has none.
     """
 
     samples: FloatArray
@@ -31,6 +33,7 @@ class JudgedClips:
     groups: Sequence[str]
     sources: Labels
     unlabelled: int = 0
+    angles: FloatArray | None = None
 
     def __len__(self) -> int:
         return len(self.groups)
@@ -42,6 +45,14 @@ class JudgedClips:
             [labels[i] for i in chosen] for labels in (self.persons, self.tasks, self.groups)
         )
         return Clips(self.samples[index], persons, tasks, groups)
+
+    def in_angles(self) -> JudgedClips:
+        """The same by their angle samples. Raises NotEnoughLabels where a clip has none."""
+        if self.angles is None:
+            raise NotEnoughLabels(
+                "Some clips have no joint angles: they were analysed by an earlier version."
+            )
+        return replace(self, samples=self.angles)
 
     def labels(self, factor: str) -> Labels:
         """(N,) of the factor "person" or "task"."""
@@ -72,6 +83,8 @@ def judged_clips(training: TrainingSet) -> JudgedClips:
     pairs = zip(training.persons, training.tasks, strict=True)
     use = [i for i, labels in enumerate(pairs) if any(labels)]
     persons, tasks = training.persons, training.tasks
+    angles = [training.angles.get(training.clips[i].id) for i in use]
+    told = [one for one in angles if one is not None]
     return JudgedClips(
         samples=training.samples[use] if use else np.zeros((0, 0)),
         persons=[persons[i] for i in use],
@@ -79,4 +92,5 @@ def judged_clips(training: TrainingSet) -> JudgedClips:
         groups=[training.groups[i] for i in use],
         sources=[training.clips[i].source for i in use],
         unlabelled=len(training) - len(use),
+        angles=np.stack(told) if told and len(told) == len(use) else None,
     )

@@ -15,6 +15,7 @@ from typing import Protocol
 
 import numpy as np
 
+from app.analysis.motion_sample import SAMPLES
 from app.models.flat_pca import fit_flat_pca, recognise_flat
 from app.models.multilinear import fit_multilinear, recognise_multilinear
 from app.models.recogniser import fit_recogniser, recognise_many
@@ -106,9 +107,12 @@ def _by_tensor(record: TensorRecogniser) -> Judge:
     return judge
 
 
-def multilinear(clips: Clips) -> Judge:
-    """Vasilescu's: signatures where the other factor is told, else the nearest cell."""
-    record = fit_multilinear(clips.samples, clips.persons, clips.tasks)
+def multilinear(clips: Clips, moments: int | None = None) -> Judge:
+    """Vasilescu's: signatures where the other factor is told, else the nearest cell.
+
+    moments: poses with which a sample begins, where they are to be warped onto their task's.
+    """
+    record = fit_multilinear(clips.samples, clips.persons, clips.tasks, moments=moments)
     cells = record.svd.reconstruct().reshape(-1, record.svd.factors[2].shape[0])
 
     def judge(
@@ -199,9 +203,13 @@ def prior(clips: Clips) -> Judge:
 
 
 DEFAULT = "default"
+SIGNATURES = "signatures"
+"""The multilinear model on joint angles: it is given angle samples instead of motion samples."""
+
 METHODS: Mapping[str, Method] = {
     DEFAULT: default,
     "multilinear": multilinear,
+    SIGNATURES: partial(multilinear, moments=SAMPLES),
     "pca": pca,
     "perera": perera,
     "mean-motion": mean_motion,

@@ -17,8 +17,10 @@ def invented(
     """Every person does every task; sources divide the persons."""
     # as long as two poses of 13 joints and the two numbers after them
     clips = factor_clips(persons, tasks, takes, noise=noise)
+    samples = np.resize(clips.samples.T, (LENGTH, len(clips.persons))).T
     return JudgedClips(
-        samples=np.resize(clips.samples.T, (LENGTH, len(clips.persons))).T,
+        samples=samples,
+        angles=samples,
         persons=clips.persons,
         tasks=clips.tasks,
         groups=[
