@@ -121,7 +121,8 @@ def problem_of_validation(found: Iterable[ErrorDetails | Mapping[str, Any]]) -> 
     details = list(found)
     if any(_whole_body_is_not_json(detail) for detail in details):
         return problem_of(MalformedBody("The body is not valid JSON."))
-    places = [Place(location_of(d["loc"]), d["msg"]) for d in details]
+    # what our own validators say comes from pydantic with this before it
+    places = [Place(location_of(d["loc"]), d["msg"].removeprefix("Value error, ")) for d in details]
     return problem_of(errors.BadField("The request has fields that are wrong.", places=places))
 
 

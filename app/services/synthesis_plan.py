@@ -55,7 +55,7 @@ def plan_of(
     if task not in model.tasks:
         raise _unknown("task", task, model.tasks)
     if clip_ids is not None:
-        return _of_clips(lib, model, task, clip_ids)
+        return _of_clips(lib, model, task, tuple(dict.fromkeys(clip_ids)))
     if person not in model.persons:
         raise _unknown("person", person or "", model.persons)
     return _of_person(model, task, person)

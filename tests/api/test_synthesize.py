@@ -80,6 +80,8 @@ def test_what_cannot_be_made_is_a_problem(demo: httpx2.Client, walk: dict[str, A
         {"task": "walk", "person": "ada", "mood": "merry"},
     ):
         assert_problem(demo.post(CALL, json=asked), 422, "bad_field")
+    both = demo.post(CALL, json={"task": "walk", "person": "ada", "clip_ids": [walk["id"]]}).json()
+    assert both["errors"][0]["message"] == "send exactly one of person and clip_ids"
 
 
 def test_a_library_without_models_says_so(idle: httpx2.Client) -> None:

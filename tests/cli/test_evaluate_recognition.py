@@ -70,7 +70,7 @@ def test_pictures_go_where_they_are_wanted(kinedex: Kinedex, tmp_path: Path) -> 
     ("words", "told"),
     [
         (("--method", "guess"), "must be one of default"),
-        (("--false-accept-rate", "1.5"), "at least 0 and below 1"),
+        (("--false-accept-rate", "1.5"), "above 0 and below 1"),
         (("--filter", '{"task": "nothing"}'), "Two ready clips with a person or a task"),
         (("--pictures", "figures", "--picture-format", "bmp"), ".svg, .png, .pdf"),
     ],

@@ -121,6 +121,15 @@ def test_clips_count_as_though_there_were_no_others_of_that_person(fitted: Libra
     assert made.quality.given_persons == ("bruno", "chika")
 
 
+def test_a_clip_that_is_named_twice_counts_once(fitted: Library) -> None:
+    walk = clip_of(fitted, "ada", "walk").id
+    once, twice = (
+        synthesise(fitted, SynthesisQuery("bow", clip_ids=ids)) for ids in ((walk,), (walk, walk))
+    )
+    np.testing.assert_array_equal(once.motion.positions, twice.motion.positions)
+    assert once.quality == twice.quality
+
+
 def test_it_lasts_as_long_as_wished_and_is_the_same_each_time(fitted: Library) -> None:
     query = SynthesisQuery("walk", person="chika", seconds=7.0)
     made, again = synthesise(fitted, query), synthesise(fitted, query)

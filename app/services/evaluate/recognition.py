@@ -69,7 +69,7 @@ def judge_recognition(
 ) -> RecognitionEvaluation:
     """Of the ready clips that pass the filter, by each method.
 
-    false_accept_rate: 0..1, of the default recogniser; where None its own threshold.
+    false_accept_rate: above 0, below 1, of default and perera; where None its own threshold.
     Raises BadField for an unknown method or a wrong rate, NotEnoughLabels below two labelled
     clips.
     """
@@ -136,8 +136,8 @@ def _check(methods: Sequence[str], false_accept_rate: float | None) -> None:
     for name in methods:
         if name not in METHODS:
             raise fields.bad_field("method", f"must be one of {', '.join(METHODS)}")
-    if false_accept_rate is not None and not 0 <= false_accept_rate < 1:
-        raise fields.bad_field("false_accept_rate", "must be at least 0 and below 1")
+    if false_accept_rate is not None and not 0 < false_accept_rate < 1:
+        raise fields.bad_field("false_accept_rate", "must be above 0 and below 1")
 
 
 class _Asking:

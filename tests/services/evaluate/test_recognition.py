@@ -149,7 +149,7 @@ def test_where_persons_are_not_recognised_none_is_read(ready_library: Library) -
 def test_wrong_wishes_are_refused(ready_library: Library) -> None:
     with pytest.raises(BadField, match="must be one of default"):
         evaluate.judge_recognition(ready_library, methods=("guess",))
-    with pytest.raises(BadField, match="at least 0 and below 1"):
+    with pytest.raises(BadField, match="above 0 and below 1"):
         evaluate.judge_recognition(ready_library, false_accept_rate=1.0)
     with pytest.raises(NotEnoughLabels, match="Two ready clips"):
         evaluate.judge_recognition(ready_library, ClipFilter(task=("nothing",)))
