@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from app.cli.find import filter_of
-from app.cli.options import FilterJson
+from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json, print_table, progress_bar
 from app.cli.settings import open_library
 from app.models.keypose_matching import TOLERANCE
@@ -35,7 +35,6 @@ Pictures = Annotated[
         help="Draw energies, beats and keyposes of every clip, annotated or not, into this folder.",
     ),
 ]
-PictureFormat = Annotated[str, typer.Option(help="Of the pictures in the folder: svg, png or pdf.")]
 TOLD_EVERY = 2
 """Of the values of a curve every second one is printed: that many fit a line."""
 

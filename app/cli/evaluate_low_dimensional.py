@@ -9,7 +9,7 @@ import typer
 
 from app.analysis.low_dimensional import Basis
 from app.cli.find import filter_of
-from app.cli.options import FilterJson
+from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json, print_table, progress_bar
 from app.cli.settings import open_library
 from app.search.filters import parse_filter
@@ -19,7 +19,6 @@ from app.services.evaluate import LowDimensionalEvaluation, low_dimensional_pict
 Pictures = Annotated[
     Path | None, typer.Option("--pictures", help="Draw figures 7 to 14 into this folder.")
 ]
-PictureFormat = Annotated[str, typer.Option(help="Of the pictures of curves: svg, png or pdf.")]
 
 
 def low_dimensional(

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from app.cli.find import filter_of
-from app.cli.options import FilterJson
+from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.recognition_document import document
 from app.cli.recognition_tables import print_tables
@@ -36,7 +36,6 @@ Pictures = Annotated[
     Path | None,
     typer.Option("--pictures", help="Draw confusions and curves of the unknown into this folder."),
 ]
-PictureFormat = Annotated[str, typer.Option(help="Of the pictures: svg, png or pdf.")]
 
 
 def recognition(

@@ -11,7 +11,7 @@ import typer
 
 from app.cli.confusion_table import print_confusion
 from app.cli.find import filter_of
-from app.cli.options import FilterJson
+from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json, print_table, progress_bar
 from app.cli.settings import open_library
 from app.search.filters import parse_filter
@@ -47,7 +47,6 @@ Pictures = Annotated[
     Path | None,
     typer.Option("--pictures", help="Draw confusions, vectors, convergence into this folder."),
 ]
-PictureFormat = Annotated[str, typer.Option(help="Of the pictures in the folder: svg, png or pdf.")]
 
 
 def retrieval(

@@ -9,3 +9,4 @@ import typer
 FilterJson = Annotated[
     str | None, typer.Option("--filter", help='JSON, as {"source": ["my studio"]}.')
 ]
+PictureFormat = Annotated[str, typer.Option(help="Of the pictures in a folder: svg, png or pdf.")]

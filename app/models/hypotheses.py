@@ -8,7 +8,9 @@ what would have been predicted without them:
 - UNSEEN: a known person at a known task, never recorded together, predicted by effects;
 - NEW_PERSON: someone who does a known task as one of its persons does, give or take what two
   persons differ in (the mean of all persons is nobody's motion: strangers' tasks were found
-  less often, above all those of other sources); NEW_TASK: a known person at anything;
+  less often, above all those of other sources: on 501 clips .61 -> .94 of 31 from CMU, .83 ->
+  .87 of 471 with each person left out, the figures by which it was chosen); NEW_TASK: a known
+  person at anything;
 - NEW_BOTH: any human motion.
 """
 
