@@ -50,8 +50,8 @@ class ModelPatch(Incoming):
         lt=1,
         description="Of the models recogniser and perera: how often they may call something new "
         "known; see `curve` in their figures. null: where both errors weigh alike. The figures "
-        "stay those of the usual threshold; where there are enough clips, a known task counts there "
-        "only as done by a person who did it before (a stranger's is called unknown more often).",
+        "stay those of the usual threshold; with enough clips, a known task counts there only as "
+        "done by a person who did it before (a stranger's is called unknown more often).",
         examples=[0.05],
     )
 
