@@ -82,6 +82,8 @@ def test_lists_page_through_everything_once(demo: httpx2.Client) -> None:
         ({"task": ["walk", "kick"]}, "task", {"walk", "kick"}),
         ({"state": "ready", "person": "bruno"}, "person", {"bruno"}),
         ({"word": " KICK ", "person": " bruno "}, "task", {"kick"}),
+        ({"not_task": ["walk", "kick"], "not_source": "demo"}, "task", {"wave"}),
+        ({"not_person": "ada", "not_word": "walk", "not_license": "none"}, "person", {"bruno"}),
     ],
 )
 def test_lists_are_filtered(
@@ -89,6 +91,30 @@ def test_lists_are_filtered(
 ) -> None:
     items = demo.get("/v1/clips", params=params | {"limit": 100}).json()["items"]
     assert {clip[field] for clip in items} == values
+
+
+def test_lists_are_filtered_by_where_clips_come_from(idle: httpx2.Client) -> None:
+    ours = _post(idle, _tiny(61), source=" Studio 4 ").json()["clip"]["id"]
+    theirs = _post(idle, _tiny(62), source="a friend").json()["clip"]["id"]
+
+    def found(**wanted: Any) -> set[str]:
+        items = idle.get("/v1/clips", params=wanted | {"limit": 1000}).json()["items"]
+        return {clip["id"] for clip in items} & {ours, theirs}
+
+    assert found(source="Studio 4") == {ours}
+    assert found(source=["a friend", "Studio 4"]) == {ours, theirs}
+    assert found(not_source="a friend") == {ours}
+    assert found(source="studio") == set()
+
+
+def test_lists_and_maps_take_every_filter_of_a_search(idle: httpx2.Client) -> None:
+    told = idle.get("/openapi.json").json()
+    of_search = set(told["components"]["schemas"]["Filter"]["properties"])
+    assert {"source", "not_source", "license", "max_duration"} <= of_search
+    for path in ("/v1/clips", "/v1/space"):
+        taken = {one["name"] for one in told["paths"][path]["get"]["parameters"]}
+        assert of_search <= taken
+        assert idle.get(path, params={"studio": "4"}).status_code == 422
 
 
 def test_patch_changes_only_what_is_sent(demo: httpx2.Client, walk: dict[str, Any]) -> None:

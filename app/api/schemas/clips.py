@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field, Json
 
-from app.api.schemas.base import AnyOf, Cursor, FormWords, Incoming, Limit, Outgoing, Seconds
+from app.api.schemas.base import Cursor, FormWords, Incoming, Limit, Outgoing, Seconds
+from app.api.schemas.filters import Filter
 from app.api.schemas.jobs import Job
 from app.api.schemas.problem import Problem
-from app.search.filters import as_kept
+from app.search.filters import parse_filter
 from app.services.fields import MAX_KEYPOSES, MAX_OFFSET, TEMPI
 from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord, ClipState
@@ -204,16 +206,10 @@ class ClipPatch(Incoming):
     )
 
 
-class ClipQuery(Incoming):
-    """Filters of a list of clips; all that are given must hold."""
+class ClipQuery(Filter):
+    """Filters of a list of clips, those of searches among them; all that are given must hold."""
 
-    person: AnyOf | None = None
-    task: AnyOf | None = None
-    word: AnyOf | None = None
-    license: AnyOf | None = None
     state: ClipState | None = None
-    min_duration: Seconds | None = None
-    max_duration: Seconds | None = None
     q: str | None = Field(None, max_length=300, description="Part of the name.")
     sort: Sort = Field("-created_at", description="A leading - turns the order round.")
     limit: Limit = 10
@@ -221,17 +217,5 @@ class ClipQuery(Incoming):
 
     def as_filter(self) -> ClipFilter:
         """The conditions as the store takes them."""
-        return ClipFilter(
-            person=_as_kept("person", self.person),
-            task=_as_kept("task", self.task),
-            word=_as_kept("word", self.word),
-            license=_as_kept("license", self.license),
-            state=() if self.state is None else (self.state,),
-            min_duration=self.min_duration,
-            max_duration=self.max_duration,
-            q=self.q,
-        )
-
-
-def _as_kept(key: str, values: list[str] | None) -> tuple[str, ...]:
-    return tuple(as_kept(key, value) for value in values or ())
+        states = () if self.state is None else (self.state,)
+        return replace(parse_filter(self.given()), state=states, q=self.q)

@@ -7,7 +7,8 @@ from typing import Annotated, Any
 from pydantic import ConfigDict, Field, WithJsonSchema
 
 from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, Seconds
-from app.api.schemas.search import ClipId, Filter, Hit, MotionHits
+from app.api.schemas.filters import Filter
+from app.api.schemas.search import ClipId, Hit, MotionHits
 from app.motion.joint_roles import SUN_ROLES
 from app.search.pose_places import Places
 from app.services import hits as services

@@ -2,35 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field, Json
 
-from app.api.schemas.base import AnyOf, Cursor, Incoming, Limit, Outgoing, Seconds
+from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, Seconds
 from app.api.schemas.clips import Clip, FrameRate, Stack
+from app.api.schemas.filters import Filter
 from app.search.methods import Method
 from app.services import hits as services
-
-
-class Filter(Incoming):
-    """What narrows a search before anything is ranked; all that are given must hold."""
-
-    person: AnyOf | None = None
-    task: AnyOf | None = None
-    word: AnyOf | None = None
-    license: AnyOf | None = None
-    source: AnyOf | None = None
-    not_person: AnyOf | None = Field(None, description="None of these persons.")
-    not_task: AnyOf | None = Field(None, description="None of these tasks.")
-    not_word: AnyOf | None = Field(None, description="Carrying none of these words.")
-    not_license: AnyOf | None = Field(None, description="None of these licences.")
-    not_source: AnyOf | None = Field(None, description="None of these sources.")
-    min_duration: Seconds | None = Field(None, description="Seconds.")
-    max_duration: Seconds | None = Field(None, description="Seconds.")
-
-    def given(self) -> dict[str, Any]:
-        """The conditions that were sent."""
-        return self.model_dump(exclude_none=True)
 
 
 class _MotionOptions(Incoming):

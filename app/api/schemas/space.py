@@ -6,33 +6,27 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.api.schemas.base import AnyOf, Incoming, Outgoing
-from app.search.filters import as_kept
+from app.api.schemas.base import Outgoing
+from app.api.schemas.filters import Filter
+from app.search.filters import parse_filter
 from app.services.space import MOST_POINTS, Map, SpaceName
 from app.store.clip_filter import ClipFilter
 
 
-class SpaceQuery(Incoming):
-    """Which map is wanted, and of which clips."""
+class SpaceQuery(Filter):
+    """Which map is wanted, and of which clips: those that pass every filter."""
 
     space: SpaceName = Field(
         "symbols", description="The motion symbol space, which is fitted, or motion vectors."
     )
     dimensions: Literal["2", "3"] = "2"
-    person: AnyOf | None = None
-    task: AnyOf | None = None
-    word: AnyOf | None = None
     limit: int = Field(
         10_000, ge=1, le=MOST_POINTS, description="Most points; of more clips, evenly picked ones."
     )
 
     def as_filter(self) -> ClipFilter:
         """The conditions as the store takes them."""
-        return ClipFilter(
-            person=tuple(as_kept("person", value) for value in self.person or ()),
-            task=tuple(as_kept("task", value) for value in self.task or ()),
-            word=tuple(as_kept("word", value) for value in self.word or ()),
-        )
+        return parse_filter(self.given())
 
 
 class MapPoint(Outgoing):
