@@ -20,7 +20,15 @@ from app.api.problems import (
     respond,
     status_of,
 )
-from app.errors import BadField, DiskFull, KinedexError, Place, Unauthorized
+from app.errors import (
+    BadField,
+    Conflict,
+    DiskFull,
+    KinedexError,
+    NotFound,
+    Place,
+    Unauthorized,
+)
 
 log = logging.getLogger(__name__)
 
@@ -45,8 +53,8 @@ def answer_unexpected(error: Exception) -> Response:
 
 async def _on_failure(request: Request, error: Exception) -> Response:
     failure = cast(KinedexError, error)
-    if isinstance(failure, BadField):
-        failure = _located(failure, "query" if request.method == "GET" else "body")
+    if isinstance(failure, (BadField, NotFound, Conflict)):
+        failure = _located(failure, request)
     if status_of(type(failure)) >= 500 and not isinstance(failure, (NotReadyYet, TooBusy)):
         log.error("failure: %s", failure.detail, exc_info=failure)
     return respond(problem_of(failure), _headers(failure))
@@ -60,15 +68,23 @@ def _headers(failure: KinedexError) -> dict[str, str]:
     return {}
 
 
-def _located(failure: BadField, part: str) -> BadField:
+def _located(failure: KinedexError, request: Request) -> KinedexError:
     """The same failure with the part of the request before the fields that services name."""
-    places = [
-        place
-        if place.location.startswith(("query.", "body.", "path.", "header."))
-        else Place(f"{part}.{place.location}", place.message)
-        for place in failure.places
-    ]
-    return BadField(failure.detail, places=places)
+    return type(failure)(
+        failure.detail,
+        places=[
+            place
+            if place.location.startswith(("query.", "body.", "path.", "header."))
+            else Place(f"{_part(place.location, request)}.{place.location}", place.message)
+            for place in failure.places
+        ],
+    )
+
+
+def _part(field: str, request: Request) -> str:
+    if field in request.path_params:
+        return "path"
+    return "query" if request.method == "GET" else "body"
 
 
 async def _on_validation(_request: Request, error: Exception) -> Response:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,7 +15,7 @@ from app.api.schemas.recognition import Answer, Recognition
 from app.api.schemas.search import MotionHits, WordHits
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
-from app.errors import BadField, Place
+from app.errors import BadField, ClipNotFound, Place
 from app.search.methods import Method
 from app.services import find, recognise
 from app.services.hits import Hits
@@ -160,13 +161,31 @@ def filter_of(text: str | None) -> dict[str, Any]:
 
 @contextmanager
 def content_of(query: str | None) -> Iterator[tuple[str | None, Readable | None]]:
-    """A file's content where there is such a file, else the query as a clip's id."""
-    path = Path(query or "")
-    if not path.is_file():
-        yield query, None
+    """A file's content where there is such a file, else the query as a clip's id.
+
+    Raises BadField for what cannot be read, ClipNotFound where it is neither.
+    """
+    if query is None or not os.path.lexists(query):
+        try:
+            yield query, None
+        except ClipNotFound as problem:
+            detail = f"There is no file {query!r}, and no clip has that id."
+            raise ClipNotFound(detail, places=problem.places) from None
         return
-    with path.open("rb") as content:
+    with opened(Path(query)) as content:
         yield None, content
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[Readable]:
+    """A file that a user named. Raises BadField where it cannot be read."""
+    try:
+        content = path.open("rb")
+    except OSError as problem:
+        message = f"cannot be read: {problem.strerror}"
+        raise BadField(f"{path} {message}", places=[Place("file", message)]) from None
+    with content:
+        yield content
 
 
 @contextmanager
@@ -175,7 +194,7 @@ def companion_of(skeleton: Path | None) -> Iterator[Readable | None]:
     if skeleton is None:
         yield None
         return
-    with skeleton.open("rb") as content:
+    with opened(skeleton) as content:
         yield content
 
 

@@ -24,7 +24,7 @@ from app.cli import (
     synthesize,
 )
 from app.cli.settings import remember
-from app.errors import KinedexError
+from app.errors import ClipNotFound, KinedexError
 
 USAGE_ERROR = 2
 FAILURE = 1
@@ -81,11 +81,24 @@ def main() -> None:
         program()
     except KinedexError as failure:
         typer.echo(f"kinedex: {failure.detail}", err=True)
-        for place in failure.places:
-            if f"{place.location}: {place.message}" not in failure.detail:
-                typer.echo(f"  {place.location}: {place.message}", err=True)
+        for line in _places(failure):
+            typer.echo(f"  {line}", err=True)
         sys.exit(FAILURE)
     except OSError as failure:
         # The machine's doing: a folder that may not be read, a disk that fails.
-        typer.echo(f"kinedex: {failure}", err=True)
+        typer.echo(f"kinedex: {_of_the_machine(failure)}", err=True)
         sys.exit(FAILURE)
+
+
+def _places(failure: KinedexError) -> list[str]:
+    """What the detail does not tell already; an id that no clip has stands in it."""
+    if isinstance(failure, ClipNotFound):
+        return []
+    told = [f"{place.location}: {place.message}" for place in failure.places]
+    return [line for line in told if line not in failure.detail]
+
+
+def _of_the_machine(failure: OSError) -> str:
+    if failure.strerror is None or failure.filename is None:
+        return str(failure)
+    return f"{failure.filename}: {failure.strerror}"

@@ -27,7 +27,7 @@ from app.numerics.arrays import FloatArray, IntArray
 from app.services import fields
 from app.services.keypose_frames import keypose_frames
 from app.services.library import Library
-from app.services.query import ready_clip
+from app.services.query import ready_clip, ready_clips
 from app.services.stored_motion import load_motion
 from app.services.views import MAX_FPS, MotionView
 from app.store.clip_record import ClipRecord
@@ -154,8 +154,9 @@ def keyposes_of(lib: Library, clip: ClipRecord, model_clips: Sequence[str] = ())
     """
     _check_clips(model_clips)
     found: Keyposes = {}
-    for clip_id in dict.fromkeys(model_clips) or (clip.id,):
-        track = body_track(load_motion(lib, ready_clip(lib, clip_id)))
+    clips = ready_clips(lib, model_clips, "model_clips") or {clip.id: clip}
+    for clip_id, of_model in clips.items():
+        track = body_track(load_motion(lib, of_model))
         found[clip_id] = keypose_frames(lib, clip_id, track).tolist()
     return found
 
@@ -207,10 +208,12 @@ def _model_poses(
     poses: list[ModelPose] = []
     local: list[FloatArray] = []
     counts: dict[str, int] = {}
-    for clip_id in wanted.keyposes or dict.fromkeys(wanted.model_clips) or (clip.id,):
+    asked = tuple(wanted.keyposes or wanted.model_clips)
+    clips = ready_clips(lib, asked, "model_clips") or {clip.id: clip}
+    for clip_id, of_model in clips.items():
         found = track
         if clip_id != clip.id:
-            found = body_track(load_motion(lib, ready_clip(lib, clip_id)))
+            found = body_track(load_motion(lib, of_model))
         if wanted.keyposes is None:
             frames = keypose_frames(lib, clip_id, found)
         else:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from app.analysis.analyse import describe_for_search
-from app.errors import BadField, ClipNotReady, EmptyFile, Place, TooLarge
+from app.errors import BadField, ClipNotFound, ClipNotReady, EmptyFile, Place, TooLarge
 from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
 from app.services import fields
@@ -73,10 +73,35 @@ def ready_clip(lib: Library, clip_id: str) -> ClipRecord:
         return _ready(tx, clip_id)
 
 
+def ready_clips(lib: Library, clip_ids: Sequence[str], field: str) -> dict[str, ClipRecord]:
+    """Clips that are ready, by id, each once, in the order asked for.
+
+    field: which holds the ids: every one that is wrong is named by its place in it. Raises
+    ClipNotFound, ClipNotReady.
+    """
+    with lib.store.read() as tx:
+        found = stored.get_many(tx, dict.fromkeys(clip_ids))
+    unknown = [place for place, clip_id in enumerate(clip_ids) if clip_id not in found]
+    if unknown:
+        names = list(dict.fromkeys(repr(clip_ids[place]) for place in unknown))
+        which = "is no clip with the id" if len(names) == 1 else "are no clips with the ids"
+        places = [Place(f"{field}.{place}", "is the id of no clip") for place in unknown]
+        raise ClipNotFound(f"There {which} {', '.join(names)}", places=places)
+    waiting = [
+        Place(f"{field}.{place}", f"is {found[clip_id].state.value}")
+        for place, clip_id in enumerate(clip_ids)
+        if found[clip_id].state is not ClipState.READY
+    ]
+    if waiting:
+        raise ClipNotReady("Some of the clips are not ready.", places=waiting)
+    return found
+
+
 def _ready(tx: Tx, clip_id: str) -> ClipRecord:
     clip = stored.get(tx, clip_id)
     if clip.state is not ClipState.READY:
-        raise ClipNotReady(f"The clip {clip_id} is {clip.state.value}.")
+        where = Place("clip_id", f"is {clip.state.value}")
+        raise ClipNotReady(f"The clip {clip_id} is {clip.state.value}.", places=[where])
     return clip
 
 

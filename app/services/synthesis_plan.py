@@ -11,7 +11,7 @@ from app.models.synthesis_prediction import predict
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.library import Library
-from app.services.query import ready_clip
+from app.services.query import ready_clips
 from app.services.synthesis_fit import SHAPE
 from app.store import arrays
 from app.store.clip_record import ClipRecord
@@ -55,7 +55,7 @@ def plan_of(
     if task not in model.tasks:
         raise _unknown("task", task, model.tasks)
     if clip_ids is not None:
-        return _of_clips(lib, model, task, tuple(dict.fromkeys(clip_ids)))
+        return _of_clips(lib, model, task, clip_ids)
     if person not in model.persons:
         raise _unknown("person", person or "", model.persons)
     return _of_person(model, task, person)
@@ -76,7 +76,8 @@ def _of_person(model: Synthesis, task: str, person: str) -> Plan:
 
 def _of_clips(lib: Library, model: Synthesis, task: str, clip_ids: tuple[str, ...]) -> Plan:
     """As though the library had no other clip of that person: what comes of these alone."""
-    found = [ready_clip(lib, clip_id) for clip_id in clip_ids]
+    by_id = ready_clips(lib, clip_ids, "clip_ids")
+    found, own = list(by_id.values()), tuple(by_id)
     person = _whose(found)
     given = _by_task(lib, model, found, task)
     shape = predict(model, given, task, but=(person,) if person else ())
@@ -84,9 +85,7 @@ def _of_clips(lib: Library, model: Synthesis, task: str, clip_ids: tuple[str, ..
     takes = tuple(
         model.ids[i] for i in model.clips_of(task=task) if model.labels_of(int(i))[0] != person
     )
-    return Plan(
-        SynthesisKind.NEW_PERSON, person, task, shape, clip_ids, tuple(given), others, takes
-    )
+    return Plan(SynthesisKind.NEW_PERSON, person, task, shape, own, tuple(given), others, takes)
 
 
 def _whose(found: list[ClipRecord]) -> str | None:
@@ -103,11 +102,11 @@ def _by_task(
     with lib.store.read() as tx:
         shapes = arrays.get_many(tx, [clip.id for clip in found], SHAPE)
     by_task: dict[str, list[FloatArray]] = {}
-    for place, clip in enumerate(found):
+    for clip in found:
         if clip.id not in shapes:
             raise ClipNotReady(
                 "The clip was analysed by an older Kinedex: run `kinedex reanalyze`.",
-                places=[Place(f"body.clip_ids.{place}", clip.id)],
+                places=[Place("body.clip_ids", f"{clip.id} was analysed by an older Kinedex")],
             )
         if clip.task in model.tasks and clip.task != task:
             by_task.setdefault(clip.task or "", []).append(shapes[clip.id])

@@ -8,7 +8,7 @@ from typing import Any
 
 from sqlalchemy import RowMapping, bindparam, delete, insert, select, update
 
-from app.errors import ClipNotFound
+from app.errors import ClipNotFound, Place
 from app.store import library
 from app.store.clip_record import (
     Added,
@@ -73,7 +73,7 @@ def get(tx: Tx, clip_id: str) -> ClipRecord:
     """The clip; raises ClipNotFound."""
     found = _load(tx, [clip_id])
     if not found:
-        raise ClipNotFound(f"There is no clip with the id {clip_id!r}")
+        raise _not_found(clip_id)
     return found[0]
 
 
@@ -218,8 +218,13 @@ def _state_of(tx: Tx, clip_id: str) -> ClipState:
     """The state alone, for every step of every ingest; raises ClipNotFound."""
     state = tx.execute(_STATE, {"the_id": clip_id}).scalar_one_or_none()
     if state is None:
-        raise ClipNotFound(f"There is no clip with the id {clip_id!r}")
+        raise _not_found(clip_id)
     return ClipState(state)
+
+
+def _not_found(clip_id: str) -> ClipNotFound:
+    detail = f"There is no clip with the id {clip_id!r}"
+    return ClipNotFound(detail, places=[Place("clip_id", "is the id of no clip")])
 
 
 def _load(tx: Tx, clip_ids: Collection[str]) -> list[ClipRecord]:

@@ -211,11 +211,24 @@ def test_ids_and_paths_that_do_not_exist(
     assert_problem(idle.request(method, path), 404, code)
 
 
-def test_unknown_clips_in_bodies(idle: httpx2.Client) -> None:
+def test_unknown_clips_are_told_where_they_were_named(idle: httpx2.Client) -> None:
     for path in (SEARCH, RECOGNIZE):
-        answer = idle.post(path, json={"clip_id": "nope"})
-        assert_problem(answer, 404, "clip_not_found")
-    assert_problem(idle.patch("/v1/clips/nope", json={"name": "a"}), 404, "clip_not_found")
+        for sent in ({"json": {"clip_id": "nope"}}, {"files": {"clip_id": (None, "nope")}}):
+            answer = idle.post(path, **sent)
+            assert_problem(answer, 404, "clip_not_found", "body.clip_id")
+    patched = idle.patch("/v1/clips/nope", json={"name": "a"})
+    assert_problem(patched, 404, "clip_not_found", "path.clip_id")
+    assert_problem(idle.get("/v1/clips/nope/motion"), 404, "clip_not_found", "path.clip_id")
+
+
+def test_a_clip_that_is_not_ready_is_told_where_it_was_named(idle: httpx2.Client) -> None:
+    clip = idle.post("/v1/clips", files={"file": ("a.bvh", b"HIERARCHY never analysed")}).json()[
+        "clip"
+    ]["id"]
+    answer = idle.post(SEARCH, json={"clip_id": clip})
+    assert_problem(answer, 409, "clip_not_ready", "body.clip_id")
+    answer = idle.get(f"/v1/clips/{clip}/motion")
+    assert_problem(answer, 409, "clip_not_ready", "path.clip_id")
 
 
 def test_a_method_that_is_not_there(idle: httpx2.Client) -> None:

@@ -91,7 +91,7 @@ def test_who_never_moves_has_too_few_keyposes(demo: httpx2.Client, demo_service:
         assert demo_service.wait_for_job(answer["job"]["id"])["state"] == "succeeded"
         for basis in ("keypose", "uniform"):
             refused = demo.get(f"{path}/low-dimensional", params={"basis": basis})
-            assert_problem(refused, 409, "not_enough_keyposes", "model_clips")
+            assert_problem(refused, 409, "not_enough_keyposes", "query.model_clips")
             assert "at least 2 poses; found 0" in refused.json()["detail"]
         params = {"basis": "uniform", "poses": 5}
         told = demo.get(f"{path}/low-dimensional", params=params).json()
@@ -104,9 +104,9 @@ def test_who_never_moves_has_too_few_keyposes(demo: httpx2.Client, demo_service:
 def test_unknown_clips_are_not_found(demo: httpx2.Client, wave: dict[str, Any]) -> None:
     assert_problem(demo.get("/v1/clips/none/low-dimensional"), 404, "clip_not_found")
     assert_problem(demo.get("/v1/clips/none/animation.svg"), 404, "clip_not_found")
-    params = {"model_clips": "none"}
+    params = {"model_clips": f"{wave['id']},none"}
     answer = demo.get(f"/v1/clips/{wave['id']}/low-dimensional", params=params)
-    assert_problem(answer, 404, "clip_not_found")
+    assert_problem(answer, 404, "clip_not_found", "query.model_clips.1")
 
 
 @pytest.mark.parametrize("path", ["animation.svg", "export?format=csv"])

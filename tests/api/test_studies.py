@@ -95,9 +95,10 @@ def test_bad_pairs_are_named(demo: httpx2.Client, pair: dict[str, Any]) -> None:
     assert_problem(demo.post(PAIRS, json={}), 422, "bad_field", "body.clip_id")
     answer = demo.post(PAIRS, json=clip | {"dimensions": 400})
     assert_problem(answer, 422, "bad_field", "body.dimensions")
-    assert_problem(demo.post(PAIRS, json={"clip_id": "none"}), 404, "clip_not_found")
-    answer = demo.post(PAIRS, json=clip | {"model_clips": ["none"]})
-    assert_problem(answer, 404, "clip_not_found")
+    answer = demo.post(PAIRS, json={"clip_id": "none"})
+    assert_problem(answer, 404, "clip_not_found", "body.clip_id")
+    answer = demo.post(PAIRS, json=clip | {"model_clips": [pair["clip_id"], "none", "no"]})
+    assert_problem(answer, 404, "clip_not_found", "body.model_clips.1", "body.model_clips.2")
 
 
 def test_unknown_pairs_are_not_found(demo: httpx2.Client) -> None:
@@ -107,4 +108,5 @@ def test_unknown_pairs_are_not_found(demo: httpx2.Client) -> None:
     answer = demo.post(f"{PAIRS}/none/votes", json={"choice": "left"})
     assert_problem(answer, 404, "not_found")
     assert_problem(demo.get(f"{PAIRS}/none/middle"), 422, "bad_field", "path.side")
-    assert_problem(demo.get(TALLY, params={"clip_id": "none"}), 404, "clip_not_found")
+    answer = demo.get(TALLY, params={"clip_id": "none"})
+    assert_problem(answer, 404, "clip_not_found", "query.clip_id")

@@ -69,7 +69,13 @@ def test_what_cannot_be_made_is_a_problem(demo: httpx2.Client, walk: dict[str, A
     task = demo.post(CALL, json={"person": "ada", "task": "fly"})
     assert_problem(task, 404, "not_found", "body.task")
     clip = demo.post(CALL, json={"clip_ids": ["nowhere"], "task": "walk"})
-    assert_problem(clip, 404, "clip_not_found")
+    assert_problem(clip, 404, "clip_not_found", "body.clip_ids.0")
+    ids = [walk["id"], "nowhere", walk["id"], "lost", "nowhere"]
+    several = demo.post(CALL, json={"clip_ids": ids, "task": "wave"})
+    wrong = [f"body.clip_ids.{place}" for place in (1, 3, 4)]
+    assert_problem(several, 404, "clip_not_found", *wrong)
+    assert len(several.json()["errors"]) == len(wrong)
+    assert several.json()["detail"] == "There are no clips with the ids 'nowhere', 'lost'"
     same = demo.post(CALL, json={"clip_ids": [walk["id"]], "task": "walk"})
     assert_problem(same, 409, "not_enough_labels", "body.clip_ids")
     for asked in (

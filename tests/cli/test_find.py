@@ -128,7 +128,13 @@ def test_a_fit_shows_the_held_out_figures_of_each_model(kinedex: Kinedex) -> Non
 
 
 def test_a_bad_question_is_told_in_words(kinedex: Kinedex, folder: Path) -> None:
-    assert "no clip with the id" in _refused(kinedex, "search", "clip_of_nobody")
+    neither = "kinedex: There is no file 'missing.bvh', and no clip has that id.\n"
+    for command in (("search",), ("recognize",), ("search-pose", "--time", "0")):
+        assert _refused(kinedex, *command, "missing.bvh") == neither
+    assert f"{folder} cannot be read: Is a directory" in _refused(kinedex, "search", str(folder))
+    not_there = "There is no clip with the id 'missing.bvh'\n"
+    assert _refused(kinedex, "export", "missing.bvh").endswith(not_there)
+    assert _refused(kinedex, "synthesize", "kick", "--clip", "missing.bvh").endswith(not_there)
     assert "filter: " in _refused(kinedex, "search", _file(folder, "walk"), "--filter", "{")
     assert "filter.tusk: " in _refused(kinedex, "search", "x", "--filter", '{"tusk": "walk"}')
     assert "start: " in _refused(kinedex, "search", _file(folder, "walk"), "--start", "99")
