@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from app.cli.find import filter_of
+from app.cli.drawing import Drawing
+from app.cli.evaluation import wanted_of
 from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json, print_table, progress_bar
 from app.cli.settings import open_library
 from app.models.keypose_matching import TOLERANCE
 from app.models.keypose_thresholds import USUAL, ThresholdCurve
-from app.search.filters import parse_filter
 from app.services import evaluate, pictures
 from app.services.evaluate import KeyposeEvaluation, keypose_pictures
 from app.services.keypose_learning import told
 from app.services.library import Library
-from app.store.clip_filter import ClipFilter
+from app.store.clip_record import ClipRecord
 
 Tolerance = Annotated[
     float, typer.Option(help="Seconds by which a keypose may be missed and is still the same.")
@@ -49,35 +50,30 @@ def keyposes(
     as_json: AsJson = False,
 ) -> None:
     """Keyposes found against those that people named (Perera 2009, table 1, figs 3 to 6)."""
-    wanted = parse_filter(filter_of(filter_json))
-    form = None if picture is None else pictures.format_of(picture)
-    form_in_folder = pictures.format_of(Path(f"picture.{picture_format}"))
-    if picture is not None or pictures_dir is not None:
-        pictures.need_plots()
+    wanted = wanted_of(filter_json)
+    drawing = Drawing.prepared(picture, pictures_dir, picture_format)
     with open_library(context) as lib:
         if pictures_dir is not None:
-            drawn = _draw_clips(lib, wanted, pictures_dir, form_in_folder)
-            typer.echo(f"{drawn} pictures are in {pictures_dir}.\n", err=as_json)
+            clips = keypose_pictures.clips_to_draw(lib, wanted)
+            drawing.draw_all(lambda form: _clip_figures(lib, clips, form))
+            typer.echo(f"{len(clips)} pictures are in {pictures_dir}.\n", err=as_json)
             if not evaluate.is_any_annotated(lib, wanted):
                 return  # the pictures were all that could be had
         found = evaluate.judge_keyposes(lib, wanted, tolerance)
-    if picture is not None and form is not None:
-        picture.write_bytes(keypose_pictures.threshold_figure(found, form))
     if as_json:
         print_json(_document(found))
     else:
         _print(found)
+    drawing.draw_one(lambda form: keypose_pictures.threshold_figure(found, form))
 
 
-def _draw_clips(lib: Library, wanted: ClipFilter, folder: Path, form: pictures.Format) -> int:
-    """A picture of each clip, by its id: names are others', and not fit for files. How many."""
-    folder.mkdir(parents=True, exist_ok=True)
-    clips = keypose_pictures.clips_to_draw(lib, wanted)
+def _clip_figures(
+    lib: Library, clips: Sequence[ClipRecord], form: pictures.Format
+) -> Iterator[tuple[str, bytes]]:
+    """A picture of each clip, by its id: names are others', and not fit for files."""
     with progress_bar() as bar:
         for clip in bar.track(clips, description="drawing"):
-            content = keypose_pictures.clip_figure(lib, clip, form)
-            (folder / f"{clip.id}.{form}").write_bytes(content)
-    return len(clips)
+            yield f"{clip.id}.{form}", keypose_pictures.clip_figure(lib, clip, form)
 
 
 def _document(found: KeyposeEvaluation) -> dict[str, Any]:

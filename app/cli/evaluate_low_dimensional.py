@@ -8,12 +8,11 @@ from typing import Annotated, Any
 import typer
 
 from app.analysis.low_dimensional import Basis
-from app.cli.find import filter_of
+from app.cli.drawing import Drawing
+from app.cli.evaluation import judging, wanted_of
 from app.cli.options import FilterJson, PictureFormat
-from app.cli.output import AsJson, print_json, print_table, progress_bar
-from app.cli.settings import open_library
-from app.search.filters import parse_filter
-from app.services import evaluate, pictures
+from app.cli.output import AsJson, print_json, print_table
+from app.services import evaluate
 from app.services.evaluate import LowDimensionalEvaluation, low_dimensional_pictures
 
 Pictures = Annotated[
@@ -29,23 +28,15 @@ def low_dimensional(
     as_json: AsJson = False,
 ) -> None:
     """Motions drawn from few dimensions of keyposes, and of uniform poses (Perera 2009)."""
-    wanted = parse_filter(filter_of(filter_json))
-    form = pictures.format_of(Path(f"picture.{picture_format}"))
-    if pictures_dir is not None:
-        pictures.need_plots()
-        pictures_dir.mkdir(parents=True, exist_ok=True)
-    with open_library(context) as lib, progress_bar() as bar:
-        task = bar.add_task("drawing", total=None)
-        found = evaluate.judge_low_dimensional(
-            lib, wanted, lambda done, total: bar.update(task, completed=done, total=total)
-        )
-    if pictures_dir is not None:
-        for name, content in low_dimensional_pictures.all_figures(found, form).items():
-            (pictures_dir / name).write_bytes(content)
+    wanted = wanted_of(filter_json)
+    drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
+    with judging(context, "drawing") as (lib, progress):
+        found = evaluate.judge_low_dimensional(lib, wanted, progress)
     if as_json:
         print_json(_document(found))
     else:
         _print(found)
+    drawing.draw_all(lambda form: low_dimensional_pictures.all_figures(found, form).items())
 
 
 def _document(found: LowDimensionalEvaluation) -> dict[str, Any]:

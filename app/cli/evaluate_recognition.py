@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from app.cli.find import filter_of
+from app.cli.drawing import Drawing
+from app.cli.evaluation import judging, wanted_of
 from app.cli.options import FilterJson, PictureFormat
-from app.cli.output import AsJson, print_json, progress_bar
+from app.cli.output import AsJson, print_json
 from app.cli.recognition_document import document
 from app.cli.recognition_tables import print_tables
-from app.cli.settings import open_library
-from app.search.filters import parse_filter
-from app.services import evaluate, pictures
-from app.services.evaluate import RecognitionEvaluation, recognition_pictures
+from app.services import evaluate
+from app.services.evaluate import recognition_pictures
 
 Methods = Annotated[
     list[str] | None,
@@ -48,40 +46,18 @@ def recognition(
     as_json: AsJson = False,
 ) -> None:
     """Person and task, held out by take, person, task and source (Vasilescu; Perera, 5)."""
-    wanted = parse_filter(filter_of(filter_json))
-    drawing = _Drawing.prepared(pictures_dir, picture_format)
-    with open_library(context) as lib, progress_bar() as bar:
-        task = bar.add_task("asking", total=None)
+    wanted = wanted_of(filter_json)
+    drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
+    with judging(context, "asking") as (lib, progress):
         found = evaluate.judge_recognition(
             lib,
             wanted,
             tuple(method or evaluate.RECOGNISERS),
             false_accept_rate=false_accept_rate,
-            progress=lambda done, total: bar.update(task, completed=done, total=total),
+            progress=progress,
         )
-    drawing.draw(found)
     if as_json:
         print_json(document(found))
     else:
         print_tables(found)
-
-
-@dataclass(frozen=True, slots=True)
-class _Drawing:
-    """Where pictures go; checked before the work, so that it is not done in vain."""
-
-    folder: Path | None
-    form: pictures.Format
-
-    @classmethod
-    def prepared(cls, folder: Path | None, picture_format: str) -> _Drawing:
-        form = pictures.format_of(Path(f"picture.{picture_format}"))
-        if folder is not None:
-            pictures.need_plots()
-        return cls(folder, form)
-
-    def draw(self, found: RecognitionEvaluation) -> None:
-        if self.folder is not None:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            for name, content in recognition_pictures.all_figures(found, self.form).items():
-                (self.folder / name).write_bytes(content)
+    drawing.draw_all(lambda form: recognition_pictures.all_figures(found, form).items())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,11 +10,10 @@ import numpy as np
 import typer
 
 from app.cli.confusion_table import print_confusion
-from app.cli.find import filter_of
+from app.cli.drawing import Drawing
+from app.cli.evaluation import judging, wanted_of
 from app.cli.options import FilterJson, PictureFormat
-from app.cli.output import AsJson, print_json, print_table, progress_bar
-from app.cli.settings import open_library
-from app.search.filters import parse_filter
+from app.cli.output import AsJson, print_json, print_table
 from app.search.methods import Method
 from app.services import evaluate, pictures
 from app.services.evaluate import (
@@ -63,11 +62,10 @@ def retrieval(
     as_json: AsJson = False,
 ) -> None:
     """Each clip asks for the others; relevant is what carries the same task (Sun 2011)."""
-    wanted = parse_filter(filter_of(filter_json))
+    wanted = wanted_of(filter_json)
     names = None if classes is None else [name.strip() for name in classes.split(",")]
-    drawing = _Drawing.prepared(picture, pictures_dir, picture_format)
-    with open_library(context) as lib, progress_bar() as bar:
-        task = bar.add_task("asking", total=None)
+    drawing = Drawing.prepared(picture, pictures_dir, picture_format)
+    with judging(context, "asking") as (lib, progress):
         found = evaluate.judge_retrieval(
             lib,
             wanted,
@@ -76,45 +74,19 @@ def retrieval(
             k=k,
             threshold=eta,
             most_queries=queries,
-            progress=lambda done, total: bar.update(task, completed=done, total=total),
+            progress=progress,
         )
         volumes = evaluate.judge_volumes(lib, wanted, classes=names, threshold=eta)
-    drawing.draw(found, volumes)
     if as_json:
         print_json(_document(found, volumes))
     else:
         _print(found, volumes)
+    drawing.draw_one(lambda form: _confusions(found, form))
+    drawing.draw_all(lambda form: retrieval_pictures.all_figures(found, volumes, form).items())
 
 
-@dataclass(frozen=True, slots=True)
-class _Drawing:
-    """Where pictures go; checked before the work, so that it is not done in vain."""
-
-    file: Path | None
-    folder: Path | None
-    folder_format: pictures.Format
-
-    @classmethod
-    def prepared(cls, file: Path | None, folder: Path | None, picture_format: str) -> _Drawing:
-        folder_format = pictures.format_of(Path(f"picture.{picture_format}"))
-        if file is not None:
-            pictures.format_of(file)
-            file.parent.mkdir(parents=True, exist_ok=True)
-        if folder is not None:
-            folder.mkdir(parents=True, exist_ok=True)
-        if file is not None or folder is not None:
-            pictures.need_plots()
-        return cls(file, folder, folder_format)
-
-    def draw(self, found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
-        if self.file is not None:
-            names = retrieval_pictures.shown_ways(found)
-            form = pictures.format_of(self.file)
-            self.file.write_bytes(retrieval_pictures.confusion_figure(found, names, form))
-        if self.folder is not None:
-            drawn = retrieval_pictures.all_figures(found, volumes, self.folder_format)
-            for name, content in drawn.items():
-                (self.folder / name).write_bytes(content)
+def _confusions(found: RetrievalEvaluation, form: pictures.Format) -> bytes:
+    return retrieval_pictures.confusion_figure(found, retrieval_pictures.shown_ways(found), form)
 
 
 def _document(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> dict[str, Any]:

@@ -8,12 +8,13 @@ from typing import Annotated
 
 import typer
 
-from app.cli.find import filter_of
+from app.cli.drawing import Drawing
+from app.cli.evaluation import wanted_of
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
-from app.search.filters import parse_filter
-from app.services import evaluate, pictures
+from app.models.symbol_figures import SymbolFigures
+from app.services import evaluate
 
 Picture = Annotated[
     Path | None, typer.Option(help="Draw error against dimensions: a .svg, .png or .pdf file.")
@@ -27,17 +28,17 @@ def symbols(
     as_json: AsJson = False,
 ) -> None:
     """How many dimensions motion symbols need, and how well new ones are placed (Takano)."""
-    wanted = parse_filter(filter_of(filter_json))
-    form = None if picture is None else pictures.format_of(picture)
-    if form is not None:
-        pictures.need_plots()
+    wanted, drawing = wanted_of(filter_json), Drawing.prepared(picture)
     with open_library(context) as lib:
         found = evaluate.judge_symbols(lib, wanted)
-    if picture is not None and form is not None:
-        picture.write_bytes(evaluate.draw_symbols(found, form))
     if as_json:
         print_json(asdict(found))
-        return
+    else:
+        _print(found)
+    drawing.draw_one(lambda form: evaluate.draw_symbols(found, form))
+
+
+def _print(found: SymbolFigures) -> None:
     rows = [asdict(errors) for errors in found.errors]
     print_table(list(rows[0]), [list(row.values()) for row in rows])
     typer.echo(

@@ -9,7 +9,8 @@ from typing import Annotated, Any
 
 import typer
 
-from app.cli.find import filter_of
+from app.cli.drawing import Drawing
+from app.cli.evaluation import wanted_of
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
@@ -20,8 +21,7 @@ from app.models.word_figures import (
     WordEvaluation,
     WordFigures,
 )
-from app.search.filters import parse_filter
-from app.services import evaluate, pictures
+from app.services import evaluate
 from app.services.evaluate import WordExample
 
 Queries = Annotated[
@@ -47,20 +47,15 @@ def words(
     as_json: AsJson = False,
 ) -> None:
     """Words for clips and clips for words, held out and in-sample, beside their frequency."""
-    wanted = parse_filter(filter_of(filter_json))
-    form = None if picture is None else pictures.format_of(picture)
-    if picture is not None:
-        pictures.need_plots()
-        picture.parent.mkdir(parents=True, exist_ok=True)
+    wanted, drawing = wanted_of(filter_json), Drawing.prepared(picture)
     with open_library(context) as lib:
         found = evaluate.judge_words(lib, wanted)
         examples = evaluate.word_examples(lib, query, wanted)
-    if picture is not None and form is not None:
-        picture.write_bytes(evaluate.draw_words(found, form))
     if as_json:
         print_json(_document(found, examples))
     else:
         _print(found, examples)
+    drawing.draw_one(lambda form: evaluate.draw_words(found, form))
 
 
 def _document(found: WordEvaluation, examples: Sequence[WordExample]) -> dict[str, Any]:

@@ -11,9 +11,9 @@ import typer
 from app.analysis.low_dimensional import Basis
 from app.cli.output import AsJson, print_json
 from app.cli.settings import open_library
-from app.errors import BadField, Place
 from app.services import export as exporting
 from app.services.export import ExportFormat, ExportSkeleton
+from app.services.fields import bad_field
 from app.services.low_dimensional import Reduction
 
 
@@ -64,7 +64,7 @@ def _by_ending(output: Path | None) -> ExportFormat:
     except ValueError:
         known = ", ".join(ExportFormat)
         message = f"must end in one of {known}, or --format must be given"
-        raise BadField(f"output: {message}", places=[Place("output", message)]) from None
+        raise bad_field("output", message) from None
 
 
 def write_whole(path: Path, blocks: Iterable[bytes]) -> int:
@@ -78,8 +78,7 @@ def write_whole(path: Path, blocks: Iterable[bytes]) -> int:
             size = sum(written.write(block) for block in blocks)
         part.replace(path)
     except OSError as problem:
-        message = f"cannot be written: {problem.strerror}"
-        raise BadField(f"{path} {message}", places=[Place("output", message)]) from None
+        raise bad_field("output", f"{path} cannot be written: {problem.strerror}") from None
     finally:
         part.unlink(missing_ok=True)
     return size

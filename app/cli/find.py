@@ -13,11 +13,13 @@ import typer
 
 from app.api.schemas.recognition import Answer, Recognition
 from app.api.schemas.search import MotionHits, WordHits
+from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 from app.errors import BadField, ClipNotFound, Place
 from app.search.methods import Method
 from app.services import find, recognise
+from app.services.fields import bad_field
 from app.services.hits import Hits
 from app.store.files import Readable
 
@@ -56,9 +58,7 @@ def search(
     start: Annotated[float | None, typer.Option(help="Seconds: search by a part.")] = None,
     end: Annotated[float | None, typer.Option(help="Seconds: where the part ends.")] = None,
     limit: Annotated[int, typer.Option(help="Most hits, 1 to 1000.")] = 10,
-    filter_json: Annotated[
-        str | None, typer.Option("--filter", help='JSON, as {"task": ["walk", "run"]}.')
-    ] = None,
+    filter_json: FilterJson = None,
     skeleton: Skeleton = None,
     frame_rate: FrameRate = None,
     unit: Unit = None,
@@ -182,8 +182,7 @@ def opened(path: Path) -> Iterator[Readable]:
     try:
         content = path.open("rb")
     except OSError as problem:
-        message = f"cannot be read: {problem.strerror}"
-        raise BadField(f"{path} {message}", places=[Place("file", message)]) from None
+        raise bad_field("file", f"{path} cannot be read: {problem.strerror}") from None
     with content:
         yield content
 

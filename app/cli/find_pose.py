@@ -10,6 +10,7 @@ import typer
 
 from app.api.schemas.pose import PoseHits
 from app.cli.find import FrameRate, Skeleton, Stack, Unit, companion_of, content_of, filter_of
+from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 from app.errors import BadField, Place
@@ -33,9 +34,7 @@ def search_pose(
         Places, typer.Option(help="best: one hit a clip; all: each place where it is taken.")
     ] = Places.BEST,
     limit: Annotated[int, typer.Option(help="Most hits, 1 to 1000.")] = 10,
-    filter_json: Annotated[
-        str | None, typer.Option("--filter", help='JSON, as {"task": ["walk", "run"]}.')
-    ] = None,
+    filter_json: FilterJson = None,
     skeleton: Skeleton = None,
     frame_rate: FrameRate = None,
     unit: Unit = None,

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 FilterJson = Annotated[
-    str | None, typer.Option("--filter", help='JSON, as {"source": ["my studio"]}.')
+    str | None,
+    typer.Option("--filter", help='JSON, as {"task": ["walk", "run"], "not_source": "my studio"}.'),
 ]
 PictureFormat = Annotated[str, typer.Option(help="Of the pictures in a folder: svg, png or pdf.")]
