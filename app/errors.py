@@ -174,6 +174,10 @@ class ModelNotFitted(Conflict):
     code = "model_not_fitted"
 
 
+class ModelBeingFitted(ModelNotFitted):
+    """The model is being fitted: ask again shortly."""
+
+
 class NotEnoughLabels(Conflict):
     """The library has too few labelled clips to fit this model."""
 

@@ -25,6 +25,7 @@ from app.errors import (
     Conflict,
     DiskFull,
     KinedexError,
+    ModelBeingFitted,
     NotFound,
     Place,
     Unauthorized,
@@ -33,6 +34,8 @@ from app.errors import (
 log = logging.getLogger(__name__)
 
 RETRY_AFTER_SECONDS = "1"
+FIT_SECONDS = "5"
+"""A fit takes from a second to a minute."""
 
 
 def install_handlers(app: FastAPI) -> None:
@@ -65,6 +68,8 @@ def _headers(failure: KinedexError) -> dict[str, str]:
         return {"WWW-Authenticate": "Bearer"}
     if isinstance(failure, (NotReadyYet, TooBusy)):
         return {"Retry-After": RETRY_AFTER_SECONDS}
+    if isinstance(failure, ModelBeingFitted):
+        return {"Retry-After": FIT_SECONDS}
     return {}
 
 

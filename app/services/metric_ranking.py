@@ -16,8 +16,7 @@ from app.search.methods import Method
 from app.search.near import Near
 from app.services.known_clips import POINTS, read_known
 from app.services.library import Library
-from app.services.model_shelf import Fitted, ModelKind
-from app.services.models import list_unfitted
+from app.services.model_shelf import ModelKind
 from app.services.query import Arrays
 from app.store import arrays
 from app.store.clip_filter import ClipFilter
@@ -53,7 +52,7 @@ def rank_by_metric(
     kind = KINDS[method]
     if kind is ModelKind.METRIC_PERSON and not lib.settings.recognize_persons:
         raise ModelNotFitted("Recognising people by how they move is switched off here.")
-    fitted = _fitted(lib, kind)
+    fitted = lib.models.metric(lib.store, kind)
     model = fitted.model
     query = model.axes.project(Described(*(asked[name][None] for name in INPUTS)))[0]
     found = lib.metrics[kind].nearest(
@@ -66,16 +65,6 @@ def rank_by_metric(
     )
     content = hashlib.sha256(b"".join(asked[name].tobytes() for name in INPUTS)).hexdigest()
     return MetricRanking(found, fitted.id, content, model.calibration.probability)
-
-
-def _fitted(lib: Library, kind: ModelKind) -> Fitted[LearnedMetric]:
-    try:
-        return lib.models.metric(lib.store, kind)
-    except ModelNotFitted as missing:
-        reasons = [one.reason for one in list_unfitted(lib) if one.kind == kind]
-        if not reasons:
-            raise
-        raise ModelNotFitted(f"{missing.detail}. {reasons[0]}") from missing
 
 
 def _project(lib: Library, model: LearnedMetric, clip_ids: Sequence[str]) -> dict[str, FloatArray]:

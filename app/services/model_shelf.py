@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from app.errors import ModelNotFitted
 from app.numerics.arrays import FloatArray
+from app.services.missing_model import missing_model
 from app.store import models as stored
 from app.store.store import Store
 
@@ -128,7 +129,7 @@ class ModelShelf:
 
             return KeyposeThresholds.from_arrays(arrays, meta)
 
-        return self._get(store, ModelKind.KEYPOSES, build)
+        return self._get(store, ModelKind.KEYPOSES, build, explain=False)
 
     def synthesis(self, store: Store) -> Fitted[Synthesis]:
         """The synthesis in force; raises ModelNotFitted."""
@@ -147,7 +148,10 @@ class ModelShelf:
         store: Store,
         kind: ModelKind,
         build: Callable[[Mapping[str, FloatArray], Mapping[str, Any]], Model],
+        *,
+        explain: bool = True,
     ) -> Fitted[Model]:
+        """explain: whether to look up why there is none, which costs two queries."""
         with store.read() as tx:
             in_force = stored.current_ids(tx).get(kind.value)
             with self._lock:
@@ -157,6 +161,8 @@ class ModelShelf:
                     held = None
             if held is not None:
                 return held
+            if in_force is None and explain:
+                raise missing_model(tx, kind.value)
             record = stored.current(tx, kind.value)
             arrays = stored.load_arrays(tx, record.id)
         try:

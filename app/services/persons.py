@@ -2,7 +2,8 @@
 
 Their label is taken from every clip and every model that holds them goes at once, in one
 transaction: from then on no search and no recognition knows them. The models are fitted again
-without them in the background. Files keep their content and their names.
+without them in the background; what needs those models says meanwhile that it must wait. Files
+keep their content and their names.
 """
 
 from __future__ import annotations

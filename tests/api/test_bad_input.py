@@ -222,9 +222,8 @@ def test_unknown_clips_are_told_where_they_were_named(idle: httpx2.Client) -> No
 
 
 def test_a_clip_that_is_not_ready_is_told_where_it_was_named(idle: httpx2.Client) -> None:
-    clip = idle.post("/v1/clips", files={"file": ("a.bvh", b"HIERARCHY never analysed")}).json()[
-        "clip"
-    ]["id"]
+    files = {"file": ("a.bvh", b"HIERARCHY never analysed")}
+    clip = idle.post("/v1/clips", files=files).json()["clip"]["id"]
     answer = idle.post(SEARCH, json={"clip_id": clip})
     assert_problem(answer, 409, "clip_not_ready", "body.clip_id")
     answer = idle.get(f"/v1/clips/{clip}/motion")
@@ -240,6 +239,19 @@ def test_a_method_that_is_not_there(idle: httpx2.Client) -> None:
 def test_no_model_yet(idle: httpx2.Client) -> None:
     answer = idle.post(WORDS, json={"words": ["walk"]})
     assert_problem(answer, 409, "model_not_fitted")
+    assert "retry-after" not in answer.headers
+    assert "POST /v1/models/fit" in answer.json()["detail"]
+
+
+def test_a_model_that_is_being_fitted_is_worth_waiting_for(idle: httpx2.Client) -> None:
+    job = idle.post("/v1/models/fit").json()["job"]["id"]
+    try:
+        answer = idle.post(WORDS, json={"words": ["walk"]})
+        assert_problem(answer, 409, "model_not_fitted")
+        assert int(answer.headers["retry-after"]) > 0
+        assert job in answer.json()["detail"]
+    finally:
+        assert idle.delete(f"/v1/jobs/{job}").status_code == 202
 
 
 def test_a_file_over_the_limit(idle_service: Live) -> None:

@@ -6,13 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from app.errors import ModelNotFitted, NotFound
-from app.services import clips, labels, models, persons, recognise
+from app.errors import ModelBeingFitted, ModelNotFitted, NotFound
+from app.services import clips, jobs, labels, models, persons, recognise
 from app.services.demo import DemoClip
+from app.services.find import MotionQuery, find_motion
 from app.services.fit import fit_library
 from app.services.library import Library
 from app.services.recognise import RecogniseQuery
 from app.store.clip_record import ClipState
+from app.store.job_record import JobKind, JobState
 from tests.services.conftest import settings_for, upload, work
 
 NAME = "Zebulon Quatermain"
@@ -47,8 +49,11 @@ def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoCl
     assert NAME not in dict(labels.persons(lib))
     found = clips.get_clip(lib, theirs)
     assert (found.person, found.state) == (None, ClipState.READY)
-    with pytest.raises(ModelNotFitted):
+    with pytest.raises(ModelBeingFitted, match="a person was removed") as refused:
         recognise.recognise(lib, RecogniseQuery(theirs))
+    (waiting,) = jobs.list_jobs(lib, kind=JobKind.FIT, state=JobState.QUEUED).items
+    assert f"ask again when the job {waiting.id} has ended" in refused.value.detail
+    assert NAME not in refused.value.detail
     lib.store.erase_traces()
     assert NAME.encode() not in _bytes_of(lib.settings.data_dir)
 
@@ -58,6 +63,24 @@ def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoCl
     assert after.task.candidates[0].label == "wave"
     with pytest.raises(NotFound):
         persons.forget_person(lib, NAME)
+
+
+def test_why_a_model_is_not_there_is_told(lib: Library, some_demo_clips: list[DemoClip]) -> None:
+    one = [clip for clip in some_demo_clips if clip.person == "ada"]
+    ids = [upload(lib, clip, person=NAME, task="all the same").clip.id for clip in one]
+    models.request_fit(lib)
+    work(lib.settings)
+    asked = MotionQuery(ids[0], method="metric-person")
+    with pytest.raises(ModelNotFitted, match="two clips each"):
+        find_motion(lib, asked)
+    models.request_fit(lib)
+    with pytest.raises(ModelBeingFitted, match=r"yet\. The models are being fitted: ask"):
+        find_motion(lib, asked)
+    persons.forget_person(lib, NAME)
+    work(lib.settings)
+    with pytest.raises(ModelNotFitted) as refused:
+        find_motion(lib, asked)
+    assert not isinstance(refused.value, ModelBeingFitted)
 
 
 def test_a_fit_that_began_before_brings_nobody_back(

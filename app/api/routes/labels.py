@@ -23,7 +23,9 @@ def list_persons(lib: Lib) -> NamedCounts:
 @router.delete("/persons/{name}", status_code=204, dependencies=[writes], responses=refusals(404))
 def forget_person(lib: Lib, name: Annotated[str, Path(max_length=300)]) -> None:
     """Take a person's label from all clips, and remove every model that holds them at once;
-    they are fitted anew in the background. The clips stay, and so do names of files."""
+    they are fitted anew in the background, and until then recognition, synthesis and
+    `metric-person` answer 409 `model_not_fitted` with `Retry-After`. The clips stay, and so do
+    names of files."""
     persons.forget_person(lib, name)
 
 

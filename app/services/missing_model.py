@@ -1,0 +1,48 @@
+"""Why a model is not there, and what to do about it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from app.errors import ModelBeingFitted, ModelNotFitted
+from app.store import jobs
+from app.store.engine import Tx
+from app.store.job_record import OPEN_STATES, JobKind, JobRecord, JobState
+
+WHY_REMOVED = "a person was removed from the library, or recognising people was switched off"
+
+
+def missing_model(tx: Tx, kind: str) -> ModelNotFitted:
+    """What to raise for a kind of which no model is in force.
+
+    ModelBeingFitted where a fit waits or runs; else with the reason that the last fit gave.
+    """
+    outcome = _last_outcome(tx, kind)
+    # What the last fit made is taken away for this reason only.
+    gone = outcome.get("outcome") == "fitted"
+    what = (
+        f"The {kind} model was removed for whom it held: {WHY_REMOVED}"
+        if gone
+        else f"No {kind} model has been fitted on this library yet"
+    )
+    fit = _open_fit(tx)
+    if fit is not None:
+        anew = "It is being fitted anew without them" if gone else "The models are being fitted"
+        return ModelBeingFitted(f"{what}. {anew}: ask again when the job {fit.id} has ended.")
+    if "reason" in outcome:
+        return ModelNotFitted(f"{what}. {outcome['reason']}")
+    return ModelNotFitted(f"{what}. Fit the models: POST /v1/models/fit, or `kinedex fit`.")
+
+
+def _last_outcome(tx: Tx, kind: str) -> dict[str, Any]:
+    """What the last fit that ended made of a kind; empty where there was none."""
+    last = jobs.list_jobs(tx, kind=JobKind.FIT, state=JobState.SUCCEEDED, limit=1).items
+    return dict((last[0].result or {}).get("models", {}).get(kind, {})) if last else {}
+
+
+def _open_fit(tx: Tx) -> JobRecord | None:
+    for state in OPEN_STATES:
+        found = jobs.list_jobs(tx, kind=JobKind.FIT, state=state, limit=1).items
+        if found:
+            return found[0]
+    return None
