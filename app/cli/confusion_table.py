@@ -7,12 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 import typer
 
-from app.cli.output import print_table
+from app.cli.output import WIDEST, print_table
 from app.numerics.arrays import FloatArray
 from app.services import pictures
 
-WIDEST = 100
-"""Columns of what is printed; a matrix that needs more is told by its largest confusions."""
 MOST_PAIRS = 25
 LEAST_SHOWN = 0.005
 """Share that rounds to one per cent."""
@@ -46,8 +44,18 @@ def _print_largest(classes: Sequence[str], shares: FloatArray) -> None:
             ["true", "taken for", "%", "right, %"], [_row(classes, shares, *p) for p in shown]
         )
         typer.echo("")
-    how_many = f"the {len(shown)} largest of {len(told)} confusions" if told else "none is confused"
-    typer.echo(f"{len(classes)} classes, {how_many}; --json and --pictures have the whole matrix.")
+    typer.echo(
+        f"{len(classes)} classes, {_how_many(len(shown), len(told))};"
+        " --json and --pictures have the whole matrix."
+    )
+
+
+def _how_many(shown: int, told: int) -> str:
+    if not told:
+        return "none of which is taken for another"
+    return (
+        f"all {told} confusions" if shown == told else f"the {shown} largest of {told} confusions"
+    )
 
 
 def _row(classes: Sequence[str], shares: FloatArray, true: int, taken: int) -> list[object]:

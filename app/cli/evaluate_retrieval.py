@@ -13,7 +13,7 @@ from app.cli.confusion_table import print_confusion
 from app.cli.drawing import Drawing
 from app.cli.evaluation import judging, wanted_of
 from app.cli.options import FilterJson, PictureFormat
-from app.cli.output import AsJson, print_json, print_table
+from app.cli.output import AsJson, print_json, print_table, print_text
 from app.search.methods import Method
 from app.services import evaluate, pictures
 from app.services.evaluate import (
@@ -138,7 +138,7 @@ def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
         if way.figures.method in retrieval_pictures.shown_ways(found):
             typer.echo(f"\nWhat the {found.k} nearest are by {way.figures.method}, % (figure 8):\n")
             print_confusion(found.classes, way.confusion)
-    typer.echo("\n" + "\n".join(_remarks(found, volumes)))
+    print_text("\n" + "\n".join(_remarks(found, volumes)))
 
 
 def _remarks(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> list[str]:

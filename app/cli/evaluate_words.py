@@ -12,7 +12,7 @@ import typer
 from app.cli.drawing import Drawing
 from app.cli.evaluation import wanted_of
 from app.cli.options import FilterJson
-from app.cli.output import AsJson, print_json, print_table
+from app.cli.output import AsJson, print_json, print_table, print_text
 from app.cli.settings import open_library
 from app.models.word_figures import (
     LEAST_RECORDINGS,
@@ -77,7 +77,7 @@ def _print(found: WordEvaluation, examples: Sequence[WordExample]) -> None:
     typer.echo("\nPrecision of single words at a recall, held out (figure 7):\n")
     _print_curves(found.figures)
     for method, told in found.reliability.items():
-        typer.echo(
+        print_text(
             f"\nScores of {method} as probabilities, held out: expected calibration error "
             f"{told.word_error:.4f} and Brier score {told.word_brier:.4f} of single words (by "
             f"frequency {told.prior_brier:.4f}); {told.set_error:.4f} and {told.set_brier:.4f} "
@@ -85,7 +85,7 @@ def _print(found: WordEvaluation, examples: Sequence[WordExample]) -> None:
         )
     for kind, correlations in found.correlations.items():
         shown = " ".join(f"{one:.3f}" for one in correlations)
-        typer.echo(f"Canonical correlations ({kind.replace('_', '-')}): {shown}")
+        print_text(f"Canonical correlations ({kind.replace('_', '-')}): {shown}")
     typer.echo("\nWord by word, held out:\n")
     _print_words(found.by_word)
     for example in examples:
@@ -124,7 +124,7 @@ def _print_words(by_word: Sequence[JudgedWord]) -> None:
     rare = [one.word for one in by_word if one.too_rare]
     if rare:
         more = "" if len(rare) <= MOST_SHOWN else f" and {len(rare) - MOST_SHOWN} more"
-        typer.echo(
+        print_text(
             f"Too rare to judge one by one, in fewer than {LEAST_RECORDINGS} recordings: "
             f"{', '.join(rare[:MOST_SHOWN])}{more}."
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import textwrap
 from collections.abc import Sequence
 from typing import Annotated, Any
 
@@ -14,12 +15,21 @@ from rich.text import Text
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
+WIDEST = 100
+"""Columns of what is printed for people."""
+
 console = Console()
 
 
 def print_json(value: Any) -> None:
     """One JSON document on standard output."""
     typer.echo(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def print_text(text: str) -> None:
+    """Running text, its lines broken where they would be wider than WIDEST."""
+    for line in _shown(text).split("\n"):
+        typer.echo(textwrap.fill(line, WIDEST, break_long_words=False, break_on_hyphens=False))
 
 
 def print_table(columns: Sequence[str], rows: Sequence[Sequence[object]]) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import typer
 
 from app.cli.confusion_table import print_confusion
-from app.cli.output import print_table
+from app.cli.output import print_table, print_text
 from app.services.evaluate import RecognitionEvaluation
 from app.services.evaluate.recognition_clips import names_of
 from app.services.evaluate.recognition_perera import PereraEvaluation
@@ -39,7 +39,7 @@ def print_tables(found: RecognitionEvaluation) -> None:
     for kind, rows in (found.made or {}).items():
         _print_made(kind, rows)
     _print_confusions(found)
-    typer.echo("\n" + "\n".join(_remarks(found)))
+    print_text("\n" + "\n".join(_remarks(found)))
 
 
 def _print_recognised(found: RecognitionEvaluation) -> None:
@@ -169,7 +169,7 @@ def _print_sources(held: HeldOut) -> None:
 def _print_perera(found: PereraEvaluation) -> None:
     typer.echo(
         f"\nPerera's experiments: {found.segments} segments between keyposes, of {found.persons} "
-        f"persons and {found.tasks} tasks; one cycle learned, another probed:\n"
+        f"persons and {found.tasks}\ntasks; one cycle learned, another probed:\n"
     )
     rows: list[list[object]] = []
     for reading, table in found.tables.items():

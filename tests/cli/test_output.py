@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.cli.output import print_table
+from app.cli.output import WIDEST, print_table, print_text
 
 
 @pytest.mark.parametrize("name", ["[red]walk[/red].bvh", "root:x:0", "[/]", "日本", "a\\b"])
@@ -20,3 +20,12 @@ def test_control_characters_do_not_reach_the_terminal(capsys: pytest.CaptureFixt
     printed = capsys.readouterr().out
     assert not set(printed) & {"\x1b", "\x07", "\r"}
     assert "title" in printed
+
+
+def test_running_text_is_broken_between_words(capsys: pytest.CaptureFixture[str]) -> None:
+    print_text("\nshort\n" + "walk-left\x07 " * 40)
+    empty, short, *long = capsys.readouterr().out.splitlines()
+    assert (empty, short) == ("", "short")
+    assert len(long) > 1
+    assert max(map(len, long)) <= WIDEST
+    assert set(" ".join(long).split()) == {"walk-left\N{REPLACEMENT CHARACTER}"}
