@@ -104,7 +104,7 @@ def _fit_one(store: Store, training: TrainingSet, kind: ModelKind, wordnet: bool
 
 def _is_someone_gone(tx: Tx, training: TrainingSet) -> bool:
     """Whether a person of the training set is in the library no more."""
-    return not set(filter(None, training.persons)) <= dict(labels.persons(tx)).keys()
+    return not set(filter(None, training.persons)) <= labels.person_names(tx)
 
 
 def _before(store: Store, kind: ModelKind, wordnet: bool) -> Before:

@@ -28,7 +28,7 @@ def forget_person(lib: Library, name: str) -> JobRecord:
     """
     person = fields.text("name", name) or ""
     with lib.store.write() as tx:
-        if person not in dict(labels.persons(tx)):
+        if person not in labels.person_names(tx):
             raise NotFound(
                 "No clip carries this person.", places=[Place("path.name", "is not in the library")]
             )

@@ -13,6 +13,7 @@ from app.models.word_vocabulary import normalise_word
 from app.numerics.arrays import FloatArray
 from app.services import fields, labels
 from app.services.clips import get_clip, update_clip
+from app.services.labels import LabelCount
 from app.services.library import Library
 from app.services.query import ready_clip
 from app.services.word_ranking import STATISTICS, WORD_MODES
@@ -74,13 +75,13 @@ def accept(lib: Library, clip_id: str, words: Sequence[str] | None = None) -> Cl
     return update_clip(lib, clip_id, {"words": (*carried, *new)})
 
 
-def complete(lib: Library, beginning: str, limit: int = 10) -> labels.Counts:
-    """(word, clips) of the library's words that begin with what was typed, or hold it, in that
+def complete(lib: Library, beginning: str, limit: int = 10) -> list[LabelCount]:
+    """The library's words that begin with what was typed, or hold it, in that
     order, the frequent ones first; where there is none, those that it is a form of."""
     typed, carried = normalise_word(beginning), labels.words(lib)
-    found = [(word, count) for word, count in carried if typed in word]
+    found = [word for word in carried if typed in word.name]
     if not found:
         forms = base_forms(typed)
-        found = [(word, count) for word, count in carried if word in forms]
-    found.sort(key=lambda pair: (not pair[0].startswith(typed), -pair[1], pair[0]))
+        found = [word for word in carried if word.name in forms]
+    found.sort(key=lambda word: (not word.name.startswith(typed), -word.recordings, word.name))
     return found[:limit]

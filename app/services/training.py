@@ -12,7 +12,7 @@ from app.models.folds import recording_of
 from app.models.learned_metric import INPUTS, Described
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm import GaussianHMM
-from app.services.synthesized import is_synthesized
+from app.services.synthesized import SYNTHESIZED, is_synthesized
 from app.store import arrays, clip_listing, clips, library
 from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord, ClipState
@@ -79,8 +79,11 @@ class TrainingSet:
 
 
 def ready_only(wanted: ClipFilter | None) -> ClipFilter:
-    """A filter that besides lets only ready clips pass."""
-    return replace(wanted or READY, state=READY.state)
+    """A filter that besides lets only ready clips pass, and none that we made ourselves: they
+    would tell of the methods what the methods think."""
+    given = wanted or READY
+    refused = (*given.not_source, SYNTHESIZED)
+    return replace(given, state=READY.state, not_source=refused)
 
 
 def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:

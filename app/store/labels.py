@@ -2,32 +2,50 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import ColumnElement, Select, func, select
+from sqlalchemy import ColumnElement, FromClause, case, func, select
 
 from app.store.engine import Tx
 from app.store.tables import clip_words, clips
 
-Counts = tuple[tuple[str, int], ...]
-"""Names in alphabetical order, each with its number of clips, whatever their state."""
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """A label, and how many clips carry it, whatever their state: those of one source, which
+    are told apart, and all others."""
+
+    name: str
+    others: int
+    of_source: int
 
 
-def persons(tx: Tx) -> Counts:
-    """Who moves."""
-    return _counts(tx, select(clips.c.person, func.count()), clips.c.person)
+def persons(tx: Tx, source: str) -> tuple[Count, ...]:
+    """Who moves, by name; the clips of `source` are counted by themselves."""
+    return _counts(tx, clips.c.person, clips, source)
 
 
-def tasks(tx: Tx) -> Counts:
-    """What is done."""
-    return _counts(tx, select(clips.c.task, func.count()), clips.c.task)
+def tasks(tx: Tx, source: str) -> tuple[Count, ...]:
+    """What is done, as `persons`."""
+    return _counts(tx, clips.c.task, clips, source)
 
 
-def words(tx: Tx) -> Counts:
-    """In which words."""
-    return _counts(tx, select(clip_words.c.word, func.count()), clip_words.c.word)
+def words(tx: Tx, source: str) -> tuple[Count, ...]:
+    """In which words, as `persons`."""
+    return _counts(tx, clip_words.c.word, clip_words.join(clips), source)
 
 
-def _counts(tx: Tx, query: Select[Any], name: ColumnElement[Any]) -> Counts:
+def person_names(tx: Tx) -> frozenset[str]:
+    """Everybody whose label a clip carries."""
+    found = select(clips.c.person).where(clips.c.person.is_not(None)).distinct()
+    return frozenset(tx.execute(found).scalars())
+
+
+def _counts(
+    tx: Tx, name: ColumnElement[Any], carriers: FromClause, source: str
+) -> tuple[Count, ...]:
+    of_source = func.sum(case((clips.c.source == source, 1), else_=0))
+    query = select(name, func.count(), of_source).select_from(carriers)
     rows = tx.execute(query.where(name.is_not(None)).group_by(name).order_by(name))
-    return tuple((label, int(count)) for label, count in rows)
+    return tuple(Count(label, int(every) - int(some), int(some)) for label, every, some in rows)

@@ -50,6 +50,7 @@ def test_octets_are_the_positions_alone(demo: httpx2.Client) -> None:
 
 def test_a_stored_one_answers_201_and_then_200(demo: httpx2.Client, walk: dict[str, Any]) -> None:
     asked = {"clip_ids": [walk["id"]], "task": "kick", "store": True}
+    before = {path: _counts(demo, path) for path in ("persons", "tasks", "words")}
     first = demo.post(CALL, json=asked)
     assert first.status_code == 201, first.text
     clip = first.json()["clip"]
@@ -59,8 +60,14 @@ def test_a_stored_one_answers_201_and_then_200(demo: httpx2.Client, walk: dict[s
         second = demo.post(CALL, json=asked)
         assert (second.status_code, second.json()["clip"]["id"]) == (200, clip["id"])
         assert demo.get(f"/v1/clips/{clip['id']}").json()["source"] == "synthesized"
+        for path, name in (("persons", walk["person"]), ("tasks", "kick"), ("words", "kick")):
+            assert _counts(demo, path)[name] == before[path][name] | {"synthesized": 1}
     finally:
         demo.delete(f"/v1/clips/{clip['id']}")
+
+
+def _counts(demo: httpx2.Client, path: str) -> dict[str, dict[str, Any]]:
+    return {one["name"]: one for one in demo.get(f"/v1/{path}").json()["items"]}
 
 
 def test_what_cannot_be_made_is_a_problem(demo: httpx2.Client, walk: dict[str, Any]) -> None:

@@ -46,7 +46,7 @@ def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoCl
 
     persons.forget_person(lib, NAME)
 
-    assert NAME not in dict(labels.persons(lib))
+    assert NAME not in {one.name for one in labels.persons(lib)}
     found = clips.get_clip(lib, theirs)
     assert (found.person, found.state) == (None, ClipState.READY)
     with pytest.raises(ModelBeingFitted, match="a person was removed") as refused:

@@ -50,9 +50,9 @@ def test_a_clip_without_words_gets_those_of_its_like_and_the_next_fit_learns_the
 
 
 def test_a_word_is_completed(ready_library: Library) -> None:
-    assert suggestions.complete(ready_library, "WA")[0][0].startswith("wa")
+    assert suggestions.complete(ready_library, "WA")[0].name.startswith("wa")
     assert suggestions.complete(ready_library, "zzz") == []
-    assert suggestions.complete(ready_library, "Walking")[0][0] == "walk"
+    assert suggestions.complete(ready_library, "Walking")[0].name == "walk"
     assert len(suggestions.complete(ready_library, "", limit=2)) == 2
 
 

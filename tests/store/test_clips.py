@@ -13,6 +13,7 @@ import pytest
 from app.errors import ClipNotFound
 from app.store import arrays, clips, labels, library
 from app.store.clip_record import AddOutcome, ClipState
+from app.store.labels import Count
 from app.store.store import Store
 from tests.store.conftest import AddClip, facts, new_clip
 
@@ -103,7 +104,7 @@ def test_patch_changes_only_what_is_given(store: Store, add_clip: AddClip) -> No
     assert (changed.name, changed.person, changed.task) == ("New", "anna", None)
     assert changed.words == ("run",)
     with store.read() as tx:
-        assert labels.words(tx) == (("run", 1),)
+        assert labels.words(tx, "us") == (Count("run", 1, 0),)
 
 
 @pytest.mark.parametrize("act", ["get", "patch", "requeue", "delete_clip"])
@@ -119,7 +120,7 @@ def test_deletion_takes_words_and_arrays_along(store: Store, add_clip: AddClip) 
         for each in (clip, other):
             arrays.put_many(tx, each.id, {"v": np.zeros(3)}, version=1)
         assert clips.delete_clip(tx, clip.id) == clip
-        assert labels.words(tx) == (("run", 1),)
+        assert labels.words(tx, "us") == (Count("run", 1, 0),)
         assert arrays.get_all(tx, clip.id) == {}
         assert set(arrays.get_many(tx, [clip.id, other.id], "v")) == {other.id}
 
@@ -138,12 +139,14 @@ def test_get_many_keeps_the_order_and_leaves_out_what_is_not_there(
 
 def test_labels_are_counted(store: Store, add_clip: AddClip) -> None:
     add_clip("1", person="anna", task="walk", words=("walk", "slow"))
-    add_clip("2", person="anna", words=("walk",))
-    add_clip("3", person="ben")
+    add_clip("2", person="anna", words=("walk",), source="us")
+    add_clip("3", person="ben", source="them")
+    add_clip("4")
     with store.read() as tx:
-        assert labels.persons(tx) == (("anna", 2), ("ben", 1))
-        assert labels.tasks(tx) == (("walk", 1),)
-        assert labels.words(tx) == (("slow", 1), ("walk", 2))
+        assert labels.persons(tx, "us") == (Count("anna", 1, 1), Count("ben", 1, 0))
+        assert labels.tasks(tx, "us") == (Count("walk", 1, 0),)
+        assert labels.words(tx, "us") == (Count("slow", 1, 0), Count("walk", 1, 1))
+        assert labels.person_names(tx) == {"anna", "ben"}
 
 
 def _add_the_same(url: str, directory: Path, barrier: Barrier) -> None:

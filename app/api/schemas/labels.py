@@ -5,13 +5,17 @@ from __future__ import annotations
 from pydantic import Field
 
 from app.api.schemas.base import Incoming, Outgoing
+from app.services.labels import LabelCount
 
 
 class NamedCount(Outgoing):
-    """A label and how many clips carry it."""
+    """A label and how many clips carry it, whatever their state."""
 
     name: str
-    count: int = Field(ge=0)
+    count: int = Field(ge=0, description="Clips of what people did.")
+    synthesized: int = Field(
+        ge=0, description="Clips besides that were made by POST /v1/synthesize and kept."
+    )
 
 
 class NamedCounts(Outgoing):
@@ -21,9 +25,14 @@ class NamedCounts(Outgoing):
     next: str | None = None
 
     @classmethod
-    def of(cls, counts: list[tuple[str, int]]) -> NamedCounts:
+    def of(cls, counts: list[LabelCount]) -> NamedCounts:
         """Labels as they go over the wire."""
-        return cls(items=[NamedCount(name=name, count=count) for name, count in counts])
+        return cls(
+            items=[
+                NamedCount(name=one.name, count=one.recordings, synthesized=one.synthesized)
+                for one in counts
+            ]
+        )
 
 
 class WordBeginning(Incoming):

@@ -20,7 +20,7 @@ class Model(Outgoing):
     kind: str
     version: int
     library_version: int = Field(description="The library's version at the fit.")
-    library_size: int = Field(description="Clips in the library at the fit.")
+    library_size: int = Field(description="Ready clips at the fit, without synthesized ones.")
     figures: dict[str, Any] = Field(description="Held-out figures, by name.")
     false_accept_rate: float | None = Field(
         description="How often this recogniser may call something new known, if that was set."
