@@ -11,6 +11,7 @@ import pytest
 from app.errors import BadField, ModelNotFitted
 from app.services import models, recognise
 from app.services.demo import DemoClip
+from app.services.errors_in_force import errors_in_force
 from app.services.library import Library
 from app.services.recognise import METHODS, RecogniseQuery
 from app.store.job_record import JobKind, JobState
@@ -103,6 +104,13 @@ def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
     strict = lib.models.recogniser(lib.store).model.person_calibration
     assert strict.error_rates()[0] == 0.0
     assert strict.threshold <= threshold
+    told = errors_in_force(lib, changed)
+    assert told is not None
+    person = told["person"]
+    assert (person.threshold, person.false_acceptance) == (strict.threshold, 0.0)
+    assert person.false_rejection == strict.error_rates()[1]
+    usual = changed.meta["figures"]["unknown"]["person"]
+    assert person.false_rejection >= usual["false_rejection"]
 
     models.request_fit(lib)
     work(lib.settings)

@@ -12,6 +12,7 @@ from app.api.openapi import refusals
 from app.api.schemas.jobs import Job, JobStarted
 from app.api.schemas.models import Model, ModelList, ModelPatch, UnfittedModel
 from app.services import models
+from app.services.errors_in_force import errors_in_force
 
 router = APIRouter(prefix="/v1/models", tags=["models"])
 
@@ -20,7 +21,7 @@ router = APIRouter(prefix="/v1/models", tags=["models"])
 def list_models(lib: Lib) -> ModelList:
     """The current model of each kind, with the library's size at the fit and held-out figures."""
     return ModelList(
-        items=[Model.of(record) for record in models.list_models(lib)],
+        items=[Model.of(one, errors_in_force(lib, one)) for one in models.list_models(lib)],
         unfitted=[UnfittedModel.of(one) for one in models.list_unfitted(lib)],
     )
 
@@ -34,7 +35,8 @@ def update_model(
     lib: Lib, model_id: Annotated[str, Path(max_length=64)], patch: ModelPatch
 ) -> Model:
     """Set a recogniser's false-accept rate; it takes effect at once and outlives fits."""
-    return Model.of(models.set_false_accept_rate(lib, model_id, patch.false_accept_rate))
+    record = models.set_false_accept_rate(lib, model_id, patch.false_accept_rate)
+    return Model.of(record, errors_in_force(lib, record))
 
 
 @router.post("/fit", status_code=202, dependencies=[writes], responses=refusals(409))

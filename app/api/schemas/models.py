@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from datetime import datetime
 from typing import Any
 
@@ -9,8 +10,28 @@ from pydantic import Field
 
 from app.api.schemas.base import Incoming, Outgoing
 from app.services import models as services
+from app.services.errors_in_force import Errors
 from app.services.model_shelf import FALSE_ACCEPT_RATE
 from app.store.models import ModelRecord
+
+
+class ErrorsInForce(Outgoing):
+    """How often a recogniser errs on what is new, at the threshold that is in force: shares of
+    clips that were held out at the fit. The threshold was chosen on them: other clips may fare a
+    little worse."""
+
+    threshold: float = Field(description="Novelty above which something is called new.")
+    false_acceptance: float = Field(ge=0, le=1, description="Of what is new, called known.")
+    false_rejection: float = Field(ge=0, le=1, description="Of what is known, called new.")
+
+    @classmethod
+    def of(cls, errors: Errors) -> ErrorsInForce:
+        """Errors as they go over the wire."""
+        return cls(
+            threshold=errors.threshold,
+            false_acceptance=errors.false_acceptance,
+            false_rejection=errors.false_rejection,
+        )
 
 
 class Model(Outgoing):
@@ -21,15 +42,23 @@ class Model(Outgoing):
     version: int
     library_version: int = Field(description="The library's version at the fit.")
     library_size: int = Field(description="Ready clips at the fit, without synthesized ones.")
-    figures: dict[str, Any] = Field(description="Held-out figures, by name.")
+    figures: dict[str, Any] = Field(
+        description="Held-out figures, by name; of a recogniser those of the usual threshold."
+    )
     false_accept_rate: float | None = Field(
         description="How often this recogniser may call something new known, if that was set."
+    )
+    errors_in_force: dict[str, ErrorsInForce] | None = Field(
+        description="Of a recogniser that calls something unknown: its errors by `person` and"
+        " `task` at the threshold in force, which is that of `false_accept_rate` where it is set;"
+        " a factor is missing where too few labels could be held out. null of other models."
     )
     created_at: datetime
 
     @classmethod
-    def of(cls, record: ModelRecord) -> Model:
-        """A model as it goes over the wire."""
+    def of(cls, record: ModelRecord, errors: Mapping[str, Errors] | None) -> Model:
+        """A model as it goes over the wire, with its errors in force."""
+        told = None if errors is None else {n: ErrorsInForce.of(e) for n, e in errors.items()}
         return cls(
             id=record.id,
             kind=record.kind,
@@ -38,6 +67,7 @@ class Model(Outgoing):
             library_size=record.library_size,
             figures=dict(record.meta.get("figures", {})),
             false_accept_rate=record.settings.get(FALSE_ACCEPT_RATE),
+            errors_in_force=told,
             created_at=record.created_at,
         )
 
@@ -49,9 +79,10 @@ class ModelPatch(Incoming):
         gt=0,
         lt=1,
         description="Of the models recogniser and perera: how often they may call something new "
-        "known; see `curve` in their figures. null: where both errors weigh alike. The figures "
-        "stay those of the usual threshold; with enough clips, a known task counts there only as "
-        "done by a person who did it before (a stranger's is called unknown more often).",
+        "known; see `curve` in their figures. null: where both errors weigh alike. What comes of "
+        "it stands in `errors_in_force`; `figures` stay those of the usual threshold. With enough "
+        "clips, a known task counts there only as done by a person who did it before (a "
+        "stranger's is called unknown more often).",
         examples=[0.05],
     )
 
