@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from app.errors import EmptyFile, ExtraNeeded, Place, TooLarge, UnknownFormat, Unreadable
+from app.formats.riff import promised_bytes
 from app.numerics.arrays import FloatArray
 
 FORMATS = "WAV, FLAC, OGG or MP3"
@@ -26,17 +27,24 @@ ENOUGH = 22_050
 """Hz; of faster recordings neighbouring samples are averaged, down to not less than this."""
 
 MAX_SECONDS = 1800.0
+LONGEST_TOLD = 24 * 3600.0
+"""Seconds; a header that promises more does not know."""
+MOST_OF = 0.95
+"""Share of what is promised that must be there: MP3 is estimated, and comes in whole frames."""
+
 MAX_CHANNELS = 32
 BLOCK_FRAMES = 65_536
 
 
 @dataclass(frozen=True, slots=True)
 class Sound:
-    """samples: (n,) float32 mono, full scale 1; rate: Hz of `samples`; format: of the file."""
+    """samples: (n,) float32 mono, full scale 1; rate: Hz of `samples`; format: of the file;
+    missing: of a file that was cut off or damaged, what it promises and what is there."""
 
     samples: FloatArray
     rate: float
     format: str
+    missing: str | None = None
 
     @property
     def duration(self) -> float:
@@ -63,7 +71,7 @@ def sniff_audio(head: bytes) -> str:
 
 
 def read_audio(content: bytes) -> Sound:
-    """Decode a recording.
+    """Decode a recording, or what is there of one that was cut off.
 
     Raises EmptyFile, UnknownFormat, Unreadable, TooLarge beyond MAX_SECONDS or MAX_CHANNELS,
     and ExtraNeeded where soundfile is not installed.
@@ -74,6 +82,7 @@ def read_audio(content: bytes) -> Sound:
         with soundfile.SoundFile(io.BytesIO(content)) as file:
             _check(file)
             samples, rate = _decode(file)
+            missing = _missing(content, file, len(samples) / rate)
     except soundfile.SoundFileError as problem:
         # Without what libsndfile was doing, and to which object in memory.
         told = str(getattr(problem, "error_string", problem)).removeprefix("Error : ")
@@ -82,7 +91,7 @@ def read_audio(content: bytes) -> Sound:
         raise _unreadable("it holds no sound")
     if not np.isfinite(samples).all():
         raise _unreadable("it holds samples that are no numbers")
-    return Sound(samples, rate, format)
+    return Sound(samples, rate, format, missing)
 
 
 def _library() -> Any:
@@ -110,8 +119,9 @@ def _decode(file: Any) -> tuple[FloatArray, float]:
     step = max(1, file.samplerate // ENOUGH)
     rate = file.samplerate / step
     most = int(MAX_SECONDS * rate)
-    blocks, count = [], 0
-    while len(block := file.read(BLOCK_FRAMES // step * step, dtype="float32", always_2d=True)):
+    blocks: list[FloatArray] = []
+    count = 0
+    while len(block := _next_block(file, step, is_first=not blocks)):
         mono = block.mean(axis=1)
         whole = len(mono) // step * step
         blocks.append(mono[:whole].reshape(-1, step).mean(axis=1))
@@ -121,6 +131,28 @@ def _decode(file: Any) -> tuple[FloatArray, float]:
             raise TooLarge(f"The recording is {message}.", places=[Place("audio", message)])
     empty: FloatArray = np.zeros(0, dtype=np.float32)
     return np.concatenate([empty, *blocks]), rate
+
+
+def _next_block(file: Any, step: int, *, is_first: bool) -> FloatArray:
+    """(n, channels) samples; none at the end, nor where a decoder gives up after the first."""
+    try:
+        block = file.read(BLOCK_FRAMES // step * step, dtype="float32", always_2d=True)
+    except _library().SoundFileError:
+        if is_first:
+            raise
+        return np.zeros((0, 1), dtype=np.float32)
+    return np.asarray(block)
+
+
+def _missing(content: bytes, file: Any, seconds: float) -> str | None:
+    """What a header promises beyond the `seconds` that were decoded, and what is there."""
+    promised = promised_bytes(content)
+    if promised is not None and promised > len(content):
+        return f"its header promises {promised} bytes, {len(content)} are there"
+    told = file.frames / file.samplerate
+    if told <= LONGEST_TOLD and seconds < MOST_OF * told:
+        return f"its header promises {told:.2f} s, {seconds:.2f} s could be decoded"
+    return None
 
 
 def _unreadable(message: str) -> Unreadable:

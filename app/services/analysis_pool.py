@@ -27,7 +27,12 @@ from app.errors import (
     StorageError,
     TooLarge,
 )
-from app.services.child_processes import child_context, die_with_parent, limit_memory
+from app.services.child_processes import (
+    child_context,
+    die_with_parent,
+    limit_memory,
+    stderr_silenced,
+)
 
 if TYPE_CHECKING:
     from app.analysis.analyse import Analysis
@@ -194,14 +199,19 @@ def _listen(path: Path) -> tuple[Onsets | None, tuple[Caution, ...]]:
 
     content = path.read_bytes()
     try:
-        sound = read_audio(content)
-        return find_onsets(sound.samples, sound.rate), ()
+        with stderr_silenced():
+            sound = read_audio(content)
+        onsets = find_onsets(sound.samples, sound.rate)
     except ExtraNeeded as missing:
         return None, (Caution("audio_not_read", missing.detail),)
     except (BadContent, TooLarge) as problem:
         return None, (Caution("audio_unreadable", problem.detail),)
     except MemoryError:
         return None, (Caution("audio_unreadable", "The recording needs too much memory."),)
+    if sound.missing is None:
+        return onsets, ()
+    detail = f"The recording is cut off: {sound.missing}, and only that is heard."
+    return onsets, (Caution("audio_truncated", detail),)
 
 
 def read_order(order: Order, limits: Limits) -> Recording:

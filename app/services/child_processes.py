@@ -23,6 +23,9 @@ from multiprocessing.process import BaseProcess
 LIBRARIES = ["app.analysis.analyse", "app.formats.read", "app.motion.canonical"]
 """What the server process imports for its children."""
 
+STDERR = 2
+"""Its file descriptor, whatever `sys.stderr` is."""
+
 _hiding = threading.Lock()
 
 
@@ -81,3 +84,19 @@ def limit_memory(memory_mb: int) -> None:
     """Let this process take `memory_mb` MB of address space, libraries included."""
     limit = memory_mb * 2**20
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+
+
+@contextmanager
+def stderr_silenced() -> Iterator[None]:
+    """Let nothing reach this process's standard error, which holds lines of JSON.
+
+    Decoders in C (libmpg123) write there past Python. For children, which do one thing at a time.
+    """
+    kept, nowhere = os.dup(STDERR), os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, STDERR)
+        yield
+    finally:
+        os.dup2(kept, STDERR)
+        os.close(kept)
+        os.close(nowhere)

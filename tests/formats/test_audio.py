@@ -120,6 +120,43 @@ def test_broken_files_are_read_or_refused(format: str) -> None:
     assert 0 < refused < 60
 
 
+def _stated(size: int) -> bytes:
+    """A WAV file whose header states this size of its samples."""
+    whole = bytearray(encoded())
+    at = whole.index(b"data") + 4
+    whole[at : at + 4] = size.to_bytes(4, "little")
+    return bytes(whole)
+
+
+@pytest.mark.parametrize("format", ["WAV", "WAVEX", "RF64"])
+def test_a_wav_that_was_cut_off_tells_how_much_is_there(format: str) -> None:
+    whole = encoded(format=format)
+    assert read_audio(whole).missing is None
+    for length in (2000, len(whole) - 2):
+        cut = read_audio(whole[:length])
+        assert cut.missing == f"its header promises {len(whole)} bytes, {length} are there"
+        np.testing.assert_allclose(cut.samples, TONE[: len(cut.samples)], atol=1e-3)
+        assert cut.duration == pytest.approx(length / 2 / RATE, abs=0.01)
+
+
+@pytest.mark.parametrize("size", [0x7FFFFFFF, 0x80000000, 0xFFFFFFFF])
+def test_a_wav_that_was_written_as_a_stream_is_whole(size: int) -> None:
+    streamed = read_audio(_stated(size))
+    assert streamed.missing is None
+    assert streamed.duration == pytest.approx(2.0, abs=0.01)
+
+
+@pytest.mark.parametrize("format", ["FLAC", "MP3"])
+def test_what_is_there_of_a_compressed_recording_is_heard(format: str) -> None:
+    tone = np.tile(TONE, 10)
+    whole = encoded(tone, format=format)
+    cut = read_audio(whole[: len(whole) * 2 // 3])
+    assert 8 < cut.duration < 15
+    assert cut.missing is not None
+    assert cut.missing.startswith("its header promises 20.00 s, 1")
+    assert read_audio(whole).missing is None
+
+
 def test_without_the_library_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "soundfile", None)
     with pytest.raises(ExtraNeeded, match=r"kinedex\[audio\]"):

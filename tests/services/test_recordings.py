@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,10 +13,11 @@ import soundfile
 
 from app.errors import BadField, NotFound
 from app.services import clips, imports, keyposes
+from app.services.analysis_pool import Order, analyse_order
 from app.services.clips import Created, NewClip
 from app.services.demo import DemoClip
 from app.services.demo.dances import Sound, dance
-from app.services.library import Library
+from app.services.library import Library, ingest_limits
 from app.services.recordings import NewRecording
 from app.store import imports as import_records
 from app.store.clip_record import ClipRecord, ClipState
@@ -64,6 +66,30 @@ def test_the_beats_of_a_recording_become_those_of_the_motion(
     beats = np.array(danced.beats)
     assert np.abs(beats[:, None] - found.beats.times).min(axis=1).max() < 0.08
     assert codes(clip) == set()
+
+
+@pytest.mark.parametrize("format", ["WAV", "MP3"])
+def test_a_recording_that_was_cut_off_is_said_to_be(
+    lib: Library, danced: DemoClip, format: str
+) -> None:
+    whole = as_format(danced.audio, format)
+    clip = ready(lib, send(lib, danced, whole[:2000], audio_offset=-1.3))
+    told = {warning.code: warning.detail for warning in clip.warnings}
+    assert list(told) == ["audio_truncated", "audio_without_beats"]
+    assert "is cut off: its header promises" in told["audio_truncated"]
+    if format == "WAV":
+        assert f"promises {len(whole)} bytes, 2000 are there" in told["audio_truncated"]
+
+
+def test_a_decoder_writes_nothing_into_our_log(
+    lib: Library, danced: DemoClip, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    song = tmp_path / "song.mp3"
+    song.write_bytes(as_format(danced.audio, "MP3")[:2000])
+    order = Order(content=danced.content, audio_path=str(song))
+    found = analyse_order(order, ingest_limits(lib.settings))  # in this process
+    assert "audio_truncated" in {caution.code for caution in found.cautions}
+    assert capfd.readouterr() == ("", "")
 
 
 def test_an_offset_that_nobody_tells_is_estimated_and_said_to_be(
