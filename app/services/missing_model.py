@@ -9,6 +9,7 @@ from app.store import jobs
 from app.store.engine import Tx
 from app.store.job_record import OPEN_STATES, JobKind, JobRecord, JobState
 
+WHAT_TO_DO = "Fit the models: POST /v1/models/fit, or `kinedex fit`."
 WHY_REMOVED = "a person was removed from the library, or recognising people was switched off"
 
 
@@ -28,10 +29,23 @@ def missing_model(tx: Tx, kind: str) -> ModelNotFitted:
     fit = _open_fit(tx)
     if fit is not None:
         anew = "It is being fitted anew without them" if gone else "The models are being fitted"
-        return ModelBeingFitted(f"{what}. {anew}: ask again when the job {fit.id} has ended.")
+        return ModelBeingFitted(f"{what}. {_ask_again(anew, fit)}")
     if "reason" in outcome:
         return ModelNotFitted(f"{what}. {outcome['reason']}")
-    return ModelNotFitted(f"{what}. Fit the models: POST /v1/models/fit, or `kinedex fit`.")
+    return ModelNotFitted(f"{what}. {WHAT_TO_DO}")
+
+
+def outdated_model(tx: Tx, kind: str) -> ModelNotFitted:
+    """What to raise for a kind whose model in force this version of Kinedex cannot read."""
+    what = f"The {kind} model was fitted by another version of Kinedex"
+    fit = _open_fit(tx)
+    if fit is not None:
+        return ModelBeingFitted(f"{what}. {_ask_again('It is being fitted anew', fit)}")
+    return ModelNotFitted(f"{what}. {WHAT_TO_DO}")
+
+
+def _ask_again(doing: str, fit: JobRecord) -> str:
+    return f"{doing}: ask again when the job {fit.id} has ended."
 
 
 def _last_outcome(tx: Tx, kind: str) -> dict[str, Any]:

@@ -11,9 +11,8 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from app.errors import ModelNotFitted
 from app.numerics.arrays import FloatArray
-from app.services.missing_model import missing_model
+from app.services.missing_model import missing_model, outdated_model
 from app.store import models as stored
 from app.store.store import Store
 
@@ -169,9 +168,8 @@ class ModelShelf:
             model = build(arrays, record.meta["model"])
             fitted = Fitted(record.id, record.version, model, record.settings)
         except (ValueError, KeyError) as other:
-            raise ModelNotFitted(
-                f"The {kind.value} model was fitted by another version of Kinedex: fit it again."
-            ) from other
+            with store.read() as tx:
+                raise outdated_model(tx, kind.value) from other
         with self._lock:
             self._loaded[kind] = fitted
         return fitted

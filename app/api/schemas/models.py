@@ -44,6 +44,7 @@ class Model(Outgoing):
     library_size: int = Field(description="Ready clips at the fit, without synthesized ones.")
     figures: dict[str, Any] = Field(
         description="Held-out figures, by name; of a recogniser those of the usual threshold."
+        " Those of `multilinear` stand beside the recogniser's."
     )
     false_accept_rate: float | None = Field(
         description="How often this recogniser may call something new known, if that was set."

@@ -13,6 +13,8 @@ from app.api.schemas.search import ClipId, UploadFields
 from app.models.recognition import Answer as FoundAnswer
 from app.services.recognise import Recognised
 
+_NEW = "One that the library does not know is taken to be new: its label in the answer is null."
+
 
 class _Known(Incoming):
     method: Literal["default", "multilinear", "signatures", "perera"] = Field(
@@ -20,8 +22,12 @@ class _Known(Incoming):
         description="The recogniser: signatures is Vasilescu 2002 on joint angles, multilinear the "
         "same on positions, perera the weighted distances of joints of Perera 2009.",
     )
-    known_person: Label | None = Field(None, description="Recognise the task given the person.")
-    known_task: Label | None = Field(None, description="Recognise the person given the task.")
+    known_person: Label | None = Field(
+        None, description=f"Recognise the task given the person. {_NEW}"
+    )
+    known_task: Label | None = Field(
+        None, description=f"Recognise the person given the task. {_NEW}"
+    )
 
 
 class Recognize(_Known):

@@ -1,0 +1,29 @@
+"""Why a model is not there, and what to do about it."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.errors import ModelBeingFitted, ModelNotFitted
+from app.services import models
+from app.services.library import Library
+from app.store import models as stored
+
+
+def test_a_model_of_another_version_is_to_be_fitted_again(lib: Library) -> None:
+    meta = {"model": {"version": -1}}
+    with lib.store.write() as tx:
+        stored.save(tx, "multilinear", meta=meta, arrays={}, library_version=1, library_size=2)
+    with pytest.raises(ModelNotFitted, match=r"another version.*POST /v1/models/fit") as refused:
+        lib.models.multilinear(lib.store)
+    assert not isinstance(refused.value, ModelBeingFitted)
+    job = models.request_fit(lib)
+    with pytest.raises(ModelBeingFitted, match=f"another version.* job {job.id} has ended"):
+        lib.models.multilinear(lib.store)
+
+
+def test_without_a_fit_it_is_said_what_to_do(lib: Library) -> None:
+    with pytest.raises(ModelNotFitted, match=r"No words model .* `kinedex fit`"):
+        lib.models.words(lib.store)
+    with pytest.raises(ModelNotFitted):
+        lib.models.keyposes(lib.store)
