@@ -11,7 +11,7 @@ import typer
 from app.cli.drawing import Drawing
 from app.cli.evaluation import wanted_of
 from app.cli.options import FilterJson
-from app.cli.output import AsJson, print_json, print_table
+from app.cli.output import AsJson, print_json, print_table, print_text
 from app.cli.settings import open_library
 from app.models.symbol_figures import SymbolFigures
 from app.services import evaluate
@@ -41,7 +41,7 @@ def symbols(
 def _print(found: SymbolFigures) -> None:
     rows = [asdict(errors) for errors in found.errors]
     print_table(list(rows[0]), [list(row.values()) for row in rows])
-    typer.echo(
+    print_text(
         f"{found.symbols} symbols. Distances to landmarks are off by "
         f"{found.placing_error:.1%} for symbols placed later, {found.fitting_error:.1%} among "
         f"landmarks. The fast divergence ranks {found.pairs} pairs as Monte Carlo does: "

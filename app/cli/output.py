@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import textwrap
 from collections.abc import Sequence
 from typing import Annotated, Any
@@ -19,6 +20,8 @@ WIDEST = 100
 """Columns of what is printed for people."""
 
 console = Console()
+if not (console.is_terminal or "COLUMNS" in os.environ):
+    console.width = WIDEST  # of a file or a pipe; rich would cut names at 80
 
 
 def print_json(value: Any) -> None:
