@@ -10,7 +10,9 @@ from app.store.engine import Tx
 from app.store.job_record import OPEN_STATES, JobKind, JobRecord, JobState
 
 WHAT_TO_DO = "Fit the models: POST /v1/models/fit, or `kinedex fit`."
-WHY_REMOVED = "a person was removed from the library, or recognising people was switched off"
+WHY_REMOVED = (
+    "a person whom it held was removed from the library, or recognising people was switched off"
+)
 
 
 def missing_model(tx: Tx, kind: str) -> ModelNotFitted:
@@ -22,7 +24,7 @@ def missing_model(tx: Tx, kind: str) -> ModelNotFitted:
     # What the last fit made is taken away for this reason only.
     gone = outcome.get("outcome") == "fitted"
     what = (
-        f"The {kind} model was removed for whom it held: {WHY_REMOVED}"
+        f"The {kind} model was removed: {WHY_REMOVED}"
         if gone
         else f"No {kind} model has been fitted on this library yet"
     )

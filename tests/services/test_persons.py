@@ -49,7 +49,9 @@ def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoCl
     assert NAME not in {one.name for one in labels.persons(lib)}
     found = clips.get_clip(lib, theirs)
     assert (found.person, found.state) == (None, ClipState.READY)
-    with pytest.raises(ModelBeingFitted, match="a person was removed") as refused:
+    with pytest.raises(
+        ModelBeingFitted, match="removed: a person whom it held was removed"
+    ) as refused:
         recognise.recognise(lib, RecogniseQuery(theirs))
     (waiting,) = jobs.list_jobs(lib, kind=JobKind.FIT, state=JobState.QUEUED).items
     assert f"ask again when the job {waiting.id} has ended" in refused.value.detail
