@@ -72,8 +72,11 @@ def _tell(made: Synthesised, path: Path) -> None:
 def _made_of(made: Synthesised) -> str:
     quality = made.quality
     if quality.kind is SynthesisKind.SEEN:
-        return "their own takes: this person did record the task"
+        one = "one of their own takes, which do not agree" if quality.follows else "their own takes"
+        return f"{one}: this person did record the task"
     tasks, persons = len(quality.given_tasks), len(quality.given_persons)
+    if quality.follows:
+        return f"{tasks} of their tasks, after {quality.follows}: {persons} persons' do not agree"
     return f"{tasks} of their tasks, and {persons} other persons' takes of this one"
 
 

@@ -1,9 +1,12 @@
 """What synthesis learns of a library: the mean motion shape of each person at each task.
 
-From it a person's motion is made for a task that they never recorded (Vasilescu 2002, section
-4): a new task comes to known persons, and every known task to a person of whom there are only
-some clips. Both are one question, asked of `synthesis_prediction`: solving eq. 7 for a
-signature among few persons came far less near to the truth. All is linear and deterministic.
+Means are taken of takes to one side (`synthesis_sides`) and of one course of time
+(`synthesis_timing`), and only where they agree (`synthesis_agreement`): else one take, that most
+like the others, stands for all. From them a person's motion is made for a task that they never
+recorded (Vasilescu 2002, section 4): a new task comes to known persons, and every known task to a
+person of whom there are only some clips. Both are one question, asked of `synthesis_prediction`:
+solving eq. 7 for a signature among few persons came far less near to the truth. All is linear
+within these choices, and deterministic.
 """
 
 from __future__ import annotations
@@ -16,26 +19,34 @@ import numpy as np
 
 from app.analysis.motion_shape import SHAPE_LENGTH
 from app.errors import NotEnoughLabels
-from app.models.cells import Cells, cell_means, find_cells
+from app.models.cells import Cells, find_cells
+from app.models.synthesis_agreement import AGREED, agreement
 from app.models.synthesis_basis import weights
+from app.models.synthesis_sides import sides, to_side
+from app.models.synthesis_timing import medoid, together
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
 
-SYNTHESIS_VERSION = 1
+SYNTHESIS_VERSION = 2
 
 DIMENSIONS = 64
 """Coordinates in which real clips are compared with what was made."""
 
 MOST_CELLS = 20_000
-"""Cells that are kept: some 110 MB."""
+"""Cells that are kept: some 220 MB."""
 
 
 @dataclass(frozen=True, slots=True)
 class Synthesis:
     """persons, tasks: sorted labels; means: (cells, 1378) mean motion shapes; person, task:
-    (cells,) index of the label; takes: (cells,) clips of each. axes, points (N, 64), ids (N,),
-    member (N,): the real clips' weighted shapes, among which the nearest to a made one is
-    looked up, and the cell of each."""
+    (cells,) index of the label; takes: (cells,) clips of each; agreement: (cells,) how far they
+    agree, below AGREED the mean is one of them.
+
+    side: (cells,) to which a task is done, 0 where it is not of two sides; aligned: (cells, 1378)
+    the means mirrored to the side +1 and in the task's time; timing: (cells, 32), see `Timed`.
+
+    axes, points (N, 64), ids (N,), member (N,): the real clips' weighted shapes, among which the
+    nearest to a made one is looked up, and the cell of each."""
 
     persons: tuple[str, ...]
     tasks: tuple[str, ...]
@@ -43,6 +54,10 @@ class Synthesis:
     person: IntArray
     task: IntArray
     takes: IntArray
+    agreement: FloatArray
+    side: IntArray
+    aligned: FloatArray
+    timing: FloatArray
     axes: PrincipalAxes
     points: FloatArray
     ids: tuple[str, ...]
@@ -52,6 +67,20 @@ class Synthesis:
         """(1378,) the mean of a person's own takes of a task, None where there is none."""
         found = np.flatnonzero((self._of(person, self.persons) == self.person) & self.did(task))
         return np.asarray(self.means[found[0]]) if len(found) else None
+
+    def cell_agreement(self, person: str, task: str) -> float | None:
+        """How far a person's takes of a task agree, None where there are not two."""
+        mine = (self._of(person, self.persons) == self.person) & self.did(task)
+        found = np.flatnonzero(mine & (self.takes > 1))
+        return float(self.agreement[found[0]]) if len(found) else None
+
+    def reference(self, task: str) -> FloatArray:
+        """(1378,) the mean of all persons' shapes of a task, to one side and in one time."""
+        return np.asarray(self.aligned[self.did(task)].mean(axis=0))
+
+    def is_two_sided(self, task: str) -> bool:
+        """Whether a task is done to the one side by some and to the other by others."""
+        return bool(self.side[self.did(task)].any())
 
     def tasks_of(self, person: str) -> dict[str, FloatArray]:
         """Mean shapes (1378,) of what a person did, by task."""
@@ -97,6 +126,10 @@ class Synthesis:
             "person": self.person,
             "task": self.task,
             "takes": self.takes,
+            "agreement": self.agreement,
+            "side": self.side,
+            "aligned": self.aligned.astype(np.float32),
+            "timing": self.timing.astype(np.float32),
             "centre": self.axes.centre,
             "axes": self.axes.axes,
             "points": self.points.astype(np.float32),
@@ -122,6 +155,10 @@ class Synthesis:
             arrays["person"],
             arrays["task"],
             arrays["takes"],
+            arrays["agreement"],
+            arrays["side"],
+            arrays["aligned"].astype(np.float64),
+            arrays["timing"].astype(np.float64),
             PrincipalAxes(arrays["centre"], arrays["axes"]),
             arrays["points"].astype(np.float64),
             tuple(meta["ids"]),
@@ -146,8 +183,9 @@ def fit_synthesis(
     rows = np.asarray(shapes, dtype=np.float64)[use].reshape(len(use), SHAPE_LENGTH)
     cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
     _check(cells)
-    kept = _of_one_kind(rows, cells)
-    means = cell_means(rows[kept], find_cells(*_labels(cells, kept)))
+    means, agreed = _cell_means(rows, cells)
+    side = _sides(means, cells)
+    timed = together(to_side(means, side, 1), cells.task)
     counted = rows * weights()
     axes = principal_axes(counted, DIMENSIONS)
     return Synthesis(
@@ -157,11 +195,52 @@ def fit_synthesis(
         cells.person,
         cells.task,
         cells.takes,
+        agreed,
+        side,
+        timed.shapes,
+        timed.timing,
         axes,
         axes.project(counted),
         tuple(names),
         cells.member,
     )
+
+
+def _cell_means(rows: FloatArray, cells: Cells) -> tuple[FloatArray, FloatArray]:
+    """(cells, 1378) the mean of the takes of each, or the one most like the others where they do
+    not agree; and (cells,) how far they do."""
+    kept = _of_one_kind(rows, cells)
+    member, rows = cells.member[kept], rows[kept]
+    order = np.argsort(member, kind="stable")
+    takes = np.split(order, np.cumsum(np.bincount(member))[:-1])
+    turned = np.array(rows)
+    for of_cell in takes:
+        turned[of_cell] = to_side(rows[of_cell], sides(rows[of_cell]), 1)
+    timed = together(turned, member).shapes
+    means, agreed = np.empty((len(cells), SHAPE_LENGTH)), np.empty(len(cells))
+    for cell, of_cell in enumerate(takes):
+        agreed[cell] = agreement(timed[of_cell])
+        if agreed[cell] < AGREED:
+            means[cell] = rows[of_cell[medoid(timed[of_cell] * weights())]]
+        else:
+            means[cell] = timed[of_cell].mean(axis=0)
+    return means, agreed
+
+
+def _sides(means: FloatArray, cells: Cells) -> IntArray:
+    """(cells,) to which side each task is done, held against the task's other cells alone."""
+    found = np.zeros(len(cells), dtype=np.int64)
+    for task in range(len(cells.tasks)):
+        of_task = np.flatnonzero(cells.task == task)
+        found[of_task] = sides(means[of_task])
+    return found
+
+
+def mean_of_takes(shapes: FloatArray) -> FloatArray:
+    """(1378,) what a cell's takes, motion shapes (n, 1378), n > 0, come to."""
+    names = ["all"] * len(shapes)
+    rows = np.asarray(shapes, dtype=np.float64)
+    return np.asarray(_cell_means(rows, find_cells(names, names))[0][0])
 
 
 def _check(cells: Cells) -> None:
@@ -178,11 +257,3 @@ def _of_one_kind(rows: FloatArray, cells: Cells) -> IntArray:
     is_cyclic = rows[:, -1] >= 0.5
     share = np.bincount(cells.member, weights=is_cyclic, minlength=len(cells)) / cells.takes
     return np.flatnonzero(is_cyclic == (share >= 0.5)[cells.member])
-
-
-def _labels(cells: Cells, kept: IntArray) -> tuple[list[str], list[str]]:
-    member = cells.member[kept]
-    return (
-        [cells.persons[i] for i in cells.person[member]],
-        [cells.tasks[i] for i in cells.task[member]],
-    )

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from app.models.synthesis import Synthesis
-from app.models.synthesis_prediction import predict
-from app.models.synthesis_solving import effects_only, solve
+from app.models.synthesis_prediction import Predicted, predict
+from app.models.synthesis_solving import effects_only
 from app.numerics.arrays import FloatArray
 
 GIVEN = (1, 2, 3, 5, 8)
@@ -41,7 +41,9 @@ def held_out_synthesis(record: Synthesis, trials: int = TRIALS) -> dict[str, lis
 
     Each row: given, trials, and shares of
     trials whose nearest real clip is right in person, in task and in both ("hit"); and the hit
-    of the baselines "effects" (person and task effects added) and "task_mean". "real": the
+    of the baselines "effects" (person and task effects added) and "task_mean". "followed",
+    "averaged": trials and hit of those in which one person's take was followed, and of the
+    others; hit is None of none. "real": the
     same share of the cells' real takes, each among all other real clips, None where no cell
     has two: no made motion can be expected to do better.
     """
@@ -56,8 +58,8 @@ def nearest_labels(record: Synthesis, shape: FloatArray) -> tuple[str, str]:
     return record.labels_of(int(np.argmin(record.distances(shape))))
 
 
-def made(record: Synthesis, kind: str, trial: Trial) -> FloatArray:
-    """(1378,) the cell of a trial, made of what it gives."""
+def made(record: Synthesis, kind: str, trial: Trial) -> Predicted:
+    """The cell of a trial, made of what it gives."""
     own = record.tasks_of(trial.person)
     if kind == NEW_PERSON:
         own = {task: own[task] for task in trial.given}
@@ -94,10 +96,21 @@ def _row(record: Synthesis, kind: str, given: int, trials: int) -> dict[str, Any
     drawn = draw_trials(record, kind, given, trials)
     if not drawn:
         return None
-    hits = np.array(list(_judged(record, kind, drawn)), dtype=np.float64).mean(axis=0)
+    judged = list(_judged(record, kind, drawn))
+    hits = np.array([marks for marks, _ in judged], dtype=np.float64)
     names = ("person", "task", "hit", "effects", "task_mean")
-    shares = {name: round(float(hit), 4) for name, hit in zip(names, hits, strict=True)}
-    return {"given": given, "trials": len(drawn), **shares, "real": real_hit(record, drawn)}
+    shares = {
+        name: round(float(hit), 4) for name, hit in zip(names, hits.mean(axis=0), strict=True)
+    }
+    followed = np.array([follows for _, follows in judged])
+    parted = {"followed": _hit(hits[followed, 2]), "averaged": _hit(hits[~followed, 2])}
+    real = real_hit(record, drawn)
+    return {"given": given, "trials": len(drawn), **shares, **parted, "real": real}
+
+
+def _hit(hits: FloatArray) -> dict[str, Any]:
+    share = round(float(hits.mean()), 4) if len(hits) else None
+    return {"trials": len(hits), "hit": share}
 
 
 def real_hit(record: Synthesis, drawn: list[Trial]) -> float | None:
@@ -112,21 +125,26 @@ def real_hit(record: Synthesis, drawn: list[Trial]) -> float | None:
     return round(float(np.mean(hits)), 4) if hits else None
 
 
-def _judged(record: Synthesis, kind: str, drawn: list[Trial]) -> Iterator[tuple[bool, ...]]:
+def _judged(
+    record: Synthesis, kind: str, drawn: list[Trial]
+) -> Iterator[tuple[tuple[bool, ...], bool]]:
+    """What is right of each, and whether it followed one take."""
     for trial in drawn:
         label = (trial.person, trial.task)
-        who, what = nearest_labels(record, made(record, kind, trial))
+        predicted = made(record, kind, trial)
+        who, what = nearest_labels(record, predicted.shape)
         baselines = (
             nearest_labels(record, baseline(record, kind, trial, by)) == label
             for by in (effects_only, task_mean)
         )
-        yield (who == trial.person, what == trial.task, (who, what) == label, *baselines)
+        marks = (who == trial.person, what == trial.task, (who, what) == label, *baselines)
+        yield marks, predicted.follows is not None
 
 
 Way = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
 
 
-def baseline(record: Synthesis, kind: str, trial: Trial, by: Way = solve) -> FloatArray:
+def baseline(record: Synthesis, kind: str, trial: Trial, by: Way) -> FloatArray:
     """(1378,) the cell of a trial made in another way; only cells that are there are used."""
     own = record.tasks_of(trial.person)
     own.pop(trial.task)

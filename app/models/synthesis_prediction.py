@@ -1,20 +1,23 @@
 """What someone is expected to do who did something else: from the cells of a library to the
-solver's tensors and back. Missing cells are completed by person and task effects."""
+solver's tensors (`synthesis_tensor`) and back to a motion in its own time."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from app.analysis.motion_sample import SAMPLES
-from app.analysis.motion_shape import CHANNELS, SHAPE_LENGTH, clearance, mirrored
+from app.analysis.motion_shape import CHANNELS, clearance, mirrored
 from app.errors import NotEnoughLabels
-from app.models.cells import Cells, fit_effects
 from app.models.synthesis import Synthesis
+from app.models.synthesis_agreement import AGREED
 from app.models.synthesis_basis import weights
 from app.models.synthesis_solving import solve
-from app.numerics.arrays import FloatArray, IntArray
+from app.models.synthesis_tensor import known_tensor, own_motions, wanted_motions
+from app.models.synthesis_timing import in_own_time
+from app.numerics.arrays import FloatArray
 
 MOST_TASKS = 24
 """Tasks of which one is made: the most alike; more only cost time."""
@@ -26,10 +29,20 @@ TEMPO_SLACK = 0.15
 """Of log seconds: nobody is made to be much quicker or slower at a task than all who did it."""
 
 
+@dataclass(frozen=True, slots=True)
+class Predicted:
+    """shape: (1378,) the motion shape; follows: the person whose motion it follows where those
+    who did the task do not agree; agreement: how far they do, None where there is but one."""
+
+    shape: FloatArray
+    follows: str | None
+    agreement: float | None
+
+
 def predict(
     record: Synthesis, given: Mapping[str, FloatArray], task: str, but: Sequence[str] = ()
-) -> FloatArray:
-    """(1378,) the motion shape of `task` for someone whose shapes of other tasks are `given`.
+) -> Predicted:
+    """`task` by someone whose motion shapes (1378,) of other tasks are `given`.
 
     but: persons who are not to be learned from, as the asked one. Raises NotEnoughLabels where
     nobody else did the task, or nothing that the asked person did.
@@ -43,10 +56,31 @@ def predict(
     if not others:
         raise NotEnoughLabels(f"Nobody else did the task {task}: a clip of another person's.")
     chosen = _most_alike(record, told, task)
-    own = np.stack([told[name] for name in chosen]).astype(np.float64)
-    known = _known_tensor(record, _who_shares_most(record, others, chosen), [*chosen, task], own)
-    basis, wanted = known[:, :-1], known[:, -1]
-    shape = solve(basis, wanted, own)
+    others = _who_shares_most(record, others, chosen)
+    own = own_motions(record, {name: told[name] for name in chosen})
+    aim = wanted_motions(record, task, others, own)
+    known = known_tensor(record, others, own, aim.timed)
+    followed = None if aim.agreement >= AGREED else aim.most_like_all
+    solution = solve(known.basis, aim.timed.shapes, own.timed.shapes, followed)
+    if followed is None:
+        timing = aim.timed.timing.mean(axis=0)
+        beside = own.timed.timing - known.timing.mean(axis=0)
+        timing = timing + solution.carried * (solution.weights @ beside)
+    else:
+        timing = aim.timed.timing[followed]
+    shape = _as_one_does_it(solution.shape, aim.timed.shapes)
+    if shape[-1] < 0.5:
+        shape = in_own_time(shape, timing)
+    return Predicted(
+        shape,
+        None if followed is None else others[followed],
+        aim.agreement if len(others) > 1 else None,
+    )
+
+
+def _as_one_does_it(shape: FloatArray, wanted: FloatArray) -> FloatArray:
+    """The shape (1378,) of the kind, about as quick and as high as those who do it (K, 1378)."""
+    shape = np.array(shape)
     shape[-1] = float(np.mean(wanted[:, -1]) >= 0.5)
     shortest, longest = wanted[:, -2].min(), wanted[:, -2].max()
     shape[-2] = np.clip(shape[-2], shortest - TEMPO_SLACK, longest + TEMPO_SLACK)
@@ -69,8 +103,8 @@ def _most_alike(record: Synthesis, told: Mapping[str, FloatArray], task: str) ->
     """The told tasks that are most like the wanted one, themselves or mirrored."""
     if len(told) <= MOST_TASKS:
         return list(told)
-    scale, aim = weights(), record.means[record.did(task)].mean(axis=0)
-    means = np.stack([record.means[record.did(name)].mean(axis=0) for name in told])
+    scale, aim = weights(), record.reference(task)
+    means = np.stack([record.reference(name) for name in told])
     away = [np.linalg.norm((rows - aim) * scale, axis=1) for rows in (means, mirrored(means))]
     near = np.argsort(np.min(away, axis=0), kind="stable")[:MOST_TASKS]
     names = list(told)
@@ -85,39 +119,3 @@ def _who_shares_most(record: Synthesis, persons: list[str], tasks: list[str]) ->
     shared = np.bincount(record.person[wanted], minlength=len(record.persons))
     count = [shared[record.persons.index(name)] for name in persons]
     return [persons[i] for i in np.sort(np.argsort(-np.array(count), kind="stable")[:MOST_PERSONS])]
-
-
-def _known_tensor(
-    record: Synthesis, persons: list[str], tasks: list[str], own: FloatArray
-) -> FloatArray:
-    """(persons, tasks, 1378); missing cells by person and task effects.
-
-    own: (tasks - 1, 1378) what the asked person did, which tells of the effects too.
-    """
-    person, task = _places(record.persons, persons), _places(record.tasks, tasks)
-    kept = np.flatnonzero((person[record.person] >= 0) & (task[record.task] >= 0))
-    rows, columns = person[record.person[kept]], task[record.task[kept]]
-    known = np.full((len(persons), len(tasks), SHAPE_LENGTH), np.nan)
-    known[rows, columns] = record.means[kept]
-    missing = np.isnan(known[:, :, 0])
-    if missing.any():
-        asked = np.arange(len(own))
-        rows = np.concatenate([rows, np.full(len(own), len(persons))])
-        means, count = np.concatenate([record.means[kept], own]), len(kept) + len(own)
-        cells = Cells(
-            (*persons, ""),
-            tuple(tasks),
-            np.arange(count),
-            rows,
-            np.concatenate([columns, asked]),
-            np.ones(count, dtype=np.int64),
-        )
-        known[missing] = fit_effects(means, cells).predict(*np.nonzero(missing))
-    return known
-
-
-def _places(names: tuple[str, ...], chosen: list[str]) -> IntArray:
-    """(names,) where each stands among the chosen, -1 where it does not."""
-    found = np.full(len(names), -1)
-    found[[names.index(name) for name in chosen]] = np.arange(len(chosen))
-    return found

@@ -10,9 +10,13 @@ nearer to what was left out:
   movements tell of each other: a kick's does not belong into a bow, how one stands in both does;
 - the parts of the body have weights of their own, drawn towards those of the whole;
 - a mirrored task is a task: raising the left hand tells how one raises the right.
+Where the others do not agree on the task, which is theirs each, one of them is followed and only
+the asked person's bearing carried over.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -32,9 +36,24 @@ EXPLAINED = 0.5
 to be carried over whole; with less it is in proportion."""
 
 
-def solve(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> FloatArray:
-    """(1378,) from what K persons did and the wanted task by each, (K, T, 1378), (K, 1378), and
-    what the asked person did, (T, 1378): eq. 8 jointly, and the residual carried over."""
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """shape: (1378,) what is made; weights: (T,) of the tasks, themselves and mirrored, for the
+    body as a whole; carried: share 0..1 of what it moves otherwise that was carried over."""
+
+    shape: FloatArray
+    weights: FloatArray
+    carried: float
+
+
+def solve(
+    basis: FloatArray, wanted: FloatArray, own: FloatArray, followed: int | None = None
+) -> Solution:
+    """What K persons did and the wanted task by each, (K, T, 1378), (K, 1378), and what the asked
+    person did, (T, 1378): eq. 8 jointly, and the residual carried over.
+
+    followed: of the K persons the one whose motion is taken for the mean.
+    """
     scale, tasks = weights(), basis.shape[1]
     both = np.concatenate([basis, _mirrored(basis)], axis=1) * scale  # (K, 2T, d)
     asked = np.concatenate([own, mirrored(own)]) * scale  # (2T, d)
@@ -45,13 +64,17 @@ def solve(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> FloatArray:
     aim = np.sum([one for _, _, one in by_part], axis=0)
     shared = _ridge(gram, aim, prior, WHOLE_RIDGE)
     found = [(part, _ridge(gram, aim, shared, PART_RIDGE)) for part, gram, aim in by_part]
+    beside = both.mean(axis=0) if followed is None else both[followed]
     made, apart = np.empty_like(target), np.empty(SHAPE_LENGTH)
     for part, w in found:
         made[:, part] = np.matmul(w, both[:, :, part])
-        apart[part] = w @ (asked - both.mean(axis=0))[:, part]
-    held = _held(apart)
+        apart[part] = w @ (asked - beside)[:, part]
+    held, of_each = _held(apart), shared[:tasks] + shared[tasks:]
+    if followed is not None:
+        return Solution((target[followed] + held) / scale, of_each, 0.0)
     carried = min(_explained(made, target) / EXPLAINED, 1.0)
-    return np.asarray((target.mean(axis=0) + held + carried * (apart - held)) / scale)
+    shape = (target.mean(axis=0) + held + carried * (apart - held)) / scale
+    return Solution(shape, of_each, carried)
 
 
 def effects_only(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> FloatArray:

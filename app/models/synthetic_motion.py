@@ -2,7 +2,8 @@
 
 A cycle goes round and round. What does not go round has more in it than 32 moments can say
 (a hand that waves): there a real take of the task is followed, led to where the shape wants
-it, slowly, so that what is quick stays the take's own. The way over ground is such that feet
+it, slowly, so that what is quick stays the take's own; it hurries and lingers where the shape
+does, else what is quick would come beside what is slow. The way over ground is such that feet
 that stand do not slide.
 """
 
@@ -15,6 +16,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from app.analysis.motion_sample import SAMPLES
 from app.analysis.motion_shape import CHANNELS, Shape, clearance, parts_of
+from app.models.synthesis_timing import onto
 from app.motion.body_frame import ANALYSIS_RATE, turned
 from app.motion.foot_contact import FEET, carried_by_feet
 from app.motion.joint_roles import SUN_ROLES
@@ -81,15 +83,23 @@ def _stretched(
     wanted = _moments(shape)
     if take is None or take_shape is None:
         return resample_to(wanted, frames)
-    away = wanted - _moments(take_shape)
-    slow = gaussian_filter1d(away, SLOWLY, axis=0, mode="nearest")
-    detailed = resample_to(take, frames)
+    timed = onto(np.asarray(take_shape, dtype=np.float64)[None], np.asarray(shape)[None])
+    there = _moments(timed.shapes[0])
+    slow = gaussian_filter1d(wanted - there, SLOWLY, axis=0, mode="nearest")
+    detailed = _in_time(take, timed.timing[0], frames)
     made = detailed + resample_to(slow, frames)
     # As high over the floor as the take, and what the shape adds: the sum of two poses is not.
-    higher = clearance(wanted) - clearance(_moments(take_shape))
+    higher = clearance(wanted) - clearance(there)
     higher = gaussian_filter1d(higher, SLOWLY, mode="nearest")[:, None]
     made[:, 39] += clearance(detailed) + resample_to(higher, frames)[:, 0] - clearance(made)
     return np.asarray(made)
+
+
+def _in_time(take: FloatArray, timing: FloatArray, frames: int) -> FloatArray:
+    """(frames, 43) the moments of a take (n, 43) where its own time is late by `timing` (32,)."""
+    steady = resample_to(take, frames)
+    late = np.interp(np.linspace(0, SAMPLES - 1, frames), np.arange(SAMPLES), timing)
+    return sample_at(steady, np.arange(frames) + late * (frames - 1) / (SAMPLES - 1))
 
 
 def _moments(shape: FloatArray) -> FloatArray:

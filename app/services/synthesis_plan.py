@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+import numpy as np
+
 from app.errors import ClipNotReady, NotEnoughLabels, NotFound, Place
-from app.models.synthesis import Synthesis
-from app.models.synthesis_prediction import predict
+from app.models.synthesis import Synthesis, mean_of_takes
+from app.models.synthesis_agreement import AGREED
+from app.models.synthesis_prediction import Predicted, predict
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.library import Library
@@ -25,14 +29,16 @@ class SynthesisKind(StrEnum):
     NEW_PERSON = "new_person"
     """A task by the person of some clips."""
     SEEN = "seen"
-    """What the person did record: the mean of their takes."""
+    """What the person did record: the mean of their takes, or one where these do not agree."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
     """shape: (1378,) what is to be made. person: None of clips without one; own: ids of real
     clips of the person, for their body; given_tasks: of the person; given_persons: who did the
-    task; takes: ids of real clips of the task by them."""
+    task; takes: ids of real clips of the task by them; follows: the person whose take is followed,
+    where those that there are do not agree on what the task is (see `AGREED`): then `takes` are
+    theirs; agreement: how far they agree, None of a single one."""
 
     kind: SynthesisKind
     person: str | None
@@ -42,6 +48,8 @@ class Plan:
     given_tasks: tuple[str, ...]
     given_persons: tuple[str, ...]
     takes: tuple[str, ...]
+    follows: str | None
+    agreement: float | None
 
 
 def plan_of(
@@ -66,12 +74,12 @@ def _of_person(model: Synthesis, task: str, person: str) -> Plan:
     given = model.tasks_of(person)
     seen = model.cell(person, task)
     if seen is not None:
-        takes = tuple(model.ids[i] for i in model.clips_of(person, task))
-        return Plan(SynthesisKind.SEEN, person, task, seen, own, tuple(given), (person,), takes)
-    shape = predict(model, given, task)
-    others = model.who_did(task)
-    takes = tuple(model.ids[i] for i in model.clips_of(task=task))
-    return Plan(SynthesisKind.NEW_TASK, person, task, shape, own, tuple(given), others, takes)
+        agreement = model.cell_agreement(person, task)
+        follows = None if agreement is None or agreement >= AGREED else person
+        found = Predicted(seen, follows, agreement)
+        return _plan(model, SynthesisKind.SEEN, person, task, found, own, given, (person,))
+    found, others = predict(model, given, task), model.who_did(task)
+    return _plan(model, SynthesisKind.NEW_TASK, person, task, found, own, given, others)
 
 
 def _of_clips(lib: Library, model: Synthesis, task: str, clip_ids: tuple[str, ...]) -> Plan:
@@ -80,12 +88,36 @@ def _of_clips(lib: Library, model: Synthesis, task: str, clip_ids: tuple[str, ..
     found, own = list(by_id.values()), tuple(by_id)
     person = _whose(found)
     given = _by_task(lib, model, found, task)
-    shape = predict(model, given, task, but=(person,) if person else ())
+    predicted = predict(model, given, task, but=(person,) if person else ())
     others = tuple(name for name in model.who_did(task) if name != person)
-    takes = tuple(
-        model.ids[i] for i in model.clips_of(task=task) if model.labels_of(int(i))[0] != person
+    return _plan(model, SynthesisKind.NEW_PERSON, person, task, predicted, own, given, others)
+
+
+def _plan(
+    model: Synthesis,
+    kind: SynthesisKind,
+    person: str | None,
+    task: str,
+    predicted: Predicted,
+    own: tuple[str, ...],
+    given: Mapping[str, FloatArray],
+    persons: tuple[str, ...],
+) -> Plan:
+    """persons: who did the task."""
+    followed = persons if predicted.follows is None else (predicted.follows,)
+    takes = [model.ids[i] for name in followed for i in model.clips_of(name, task)]
+    return Plan(
+        kind,
+        person,
+        task,
+        predicted.shape,
+        own,
+        tuple(given),
+        persons,
+        tuple(takes),
+        predicted.follows,
+        predicted.agreement,
     )
-    return Plan(SynthesisKind.NEW_PERSON, person, task, shape, own, tuple(given), others, takes)
 
 
 def _whose(found: list[ClipRecord]) -> str | None:
@@ -98,7 +130,7 @@ def _whose(found: list[ClipRecord]) -> str | None:
 def _by_task(
     lib: Library, model: Synthesis, found: list[ClipRecord], task: str
 ) -> dict[str, FloatArray]:
-    """Mean shapes of the clips by task, but for the wanted one."""
+    """Shapes of the clips by task, but for the wanted one; what several takes come to."""
     with lib.store.read() as tx:
         shapes = arrays.get_many(tx, [clip.id for clip in found], SHAPE)
     by_task: dict[str, list[FloatArray]] = {}
@@ -117,7 +149,7 @@ def _by_task(
             f"Nothing can be learned from these clips: {message}.",
             places=[Place("body.clip_ids", message)],
         )
-    return {name: sum(rows[1:], start=rows[0]) / len(rows) for name, rows in by_task.items()}
+    return {name: mean_of_takes(np.stack(rows)) for name, rows in by_task.items()}
 
 
 def _unknown(field: str, name: str, known: tuple[str, ...]) -> NotFound:

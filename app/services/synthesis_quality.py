@@ -29,9 +29,11 @@ class Quality:
     nearest: the real clip that is most like the made motion, analysed as any other, None where
     it is gone; nearest_person, nearest_task: its labels; distance to it; person_is_right,
     task_is_right: whether the labels are those asked for.
+    follows, agreement: see Plan.
     expected_hit: share of cells left out when the model was fitted, made of as many takes, whose
-    nearest real clip was right in both; expected_given, expected_trials: how many persons (or
-    tasks) and cells that was; real_hit: that share of the cells' real takes, beyond which nothing
+    nearest real clip was right in both; of those that followed one take if this one does, else of
+    those that did not; expected_given, expected_trials: how many persons (or tasks) and cells
+    that was; real_hit: that share of the cells' real takes, beyond which nothing
     can be expected; all None for what was seen, or where nothing could be left out.
     skate, real_skate: mean horizontal speed of feet that are low, m/s, of this motion and of
     real takes of the task.
@@ -40,6 +42,8 @@ class Quality:
     kind: SynthesisKind
     given_persons: tuple[str, ...]
     given_tasks: tuple[str, ...]
+    follows: str | None
+    agreement: float | None
     nearest: ClipRecord | None
     nearest_person: str
     nearest_task: str
@@ -71,6 +75,8 @@ def judge(
         kind=plan.kind,
         given_persons=plan.given_persons,
         given_tasks=plan.given_tasks,
+        follows=plan.follows,
+        agreement=plan.agreement,
         nearest=nearest,
         nearest_person=person,
         nearest_task=task,
@@ -87,14 +93,17 @@ def judge(
 
 
 def _expected(figures: dict[str, Any], plan: Plan) -> dict[str, Any]:
-    """The row of the held-out figures for as many given, or the nearest fewer."""
+    """The hits of motions like this one, in the row of the held-out figures for as many given, or
+    the nearest fewer; of rows that have no motion like it, of all."""
     rows = figures.get("held_out", {}).get(plan.kind.value, [])
     if not rows:
         return {}
     is_new_task = plan.kind is SynthesisKind.NEW_TASK
     given = len(plan.given_persons if is_new_task else plan.given_tasks)
     fewer = [row for row in rows if row["given"] <= given]
-    return dict(fewer[-1] if fewer else rows[0])
+    row = fewer[-1] if fewer else rows[0]
+    alike = row["averaged" if plan.follows is None else "followed"]
+    return {**row, **(alike if alike["trials"] else {})}
 
 
 def _skate(motion: Motion) -> float:

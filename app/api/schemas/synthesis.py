@@ -75,10 +75,22 @@ class Quality(Outgoing):
 
     kind: SynthesisKind = Field(
         description="`new_task` of a known person; `new_person` of some clips; `seen`: the person"
-        " did record this task, and the motion is the mean of their takes."
+        " did record this task, and the motion is the mean of their takes, or one of them where"
+        " these do not agree."
     )
     given_persons: list[str] = Field(description="Who did the task.")
     given_tasks: list[str] = Field(description="What the asked person did.")
+    follows: str | None = Field(
+        description="The person whose take the motion follows, in the asked person's bearing, where"
+        " the takes of the task do not agree on what it is (dances); else null, and the motion is"
+        " made of all of them."
+    )
+    agreement: float | None = Field(
+        le=1,
+        description="Share of their movement that those takes have in common, persons' means side"
+        " by side, or of `seen` the takes; about 0, or a little less, of unlike motions. Null where"
+        " there is but one.",
+    )
     nearest_clip: Clip | None = Field(
         description="The real clip most like the motion, analysed as any other."
     )
@@ -95,7 +107,8 @@ class Quality(Outgoing):
         le=1,
         description="Measured when the model was fitted: combinations of person and task were"
         " left out and made; this share of the motions had a take of just that combination as"
-        " the nearest real clip. Null for `seen`.",
+        " the nearest real clip. Of motions that followed one take as this one does, or did not as"
+        " this one does not. Null for `seen`.",
     )
     expected_given: int | None = Field(
         description="From so many persons' takes (new_task) or tasks (new_person)."
@@ -117,6 +130,8 @@ class Quality(Outgoing):
             kind=found.kind,
             given_persons=list(found.given_persons),
             given_tasks=list(found.given_tasks),
+            follows=found.follows,
+            agreement=found.agreement,
             nearest_clip=None if found.nearest is None else Clip.of(found.nearest),
             nearest_person=found.nearest_person,
             nearest_task=found.nearest_task,
