@@ -10,6 +10,7 @@ import typer
 
 from app import __version__
 from app.cli import (
+    backup,
     db,
     demo,
     evaluate,
@@ -46,6 +47,7 @@ program.command("recognize")(find.recognize)
 program.command("synthesize")(synthesize.synthesize)
 program.command("fit")(fit.fit)
 program.command("export")(export.export)
+program.command("backup")(backup.backup)
 program.add_typer(evaluate.program, name="evaluate")
 program.add_typer(keys.program, name="keys")
 program.add_typer(db.program, name="db")

@@ -12,7 +12,7 @@ import sqlite3
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -90,6 +90,33 @@ class Database:
         connection = self.engine.raw_connection()
         try:
             connection.cursor().execute("PRAGMA wal_checkpoint(TRUNCATE)")
+        finally:
+            connection.close()
+
+    def check_copyable(self) -> None:
+        """Raises ConfigurationError unless the database is a file (SQLite's), for `copy_to`."""
+        if not self._is_sqlite:
+            raise ConfigurationError(
+                f"Kinedex copies SQLite databases only, and this one is {self.engine.dialect.name}:"
+                " copy the folder of files, dump the database with its own program (pg_dump), and"
+                " copy what is new in the folder after that."
+            )
+
+    def copy_to(self, path: Path) -> None:
+        """Writes a copy of the database as it is at one moment, while others read and write.
+
+        See `check_copyable`. Raises DiskFull, StorageError.
+        """
+        connection = self.engine.raw_connection()
+        try:
+            with closing(sqlite3.connect(path)) as copy:
+                # All pages in one step: they are those of one snapshot, and no writer waits.
+                connection.driver_connection.backup(copy)  # type: ignore[union-attr]
+        except sqlite3.Error as error:
+            code = getattr(error, "sqlite_errorcode", None)
+            if code == sqlite3.SQLITE_FULL:
+                raise DiskFull() from error
+            raise StorageError(f"The database cannot be copied: {error}") from error
         finally:
             connection.close()
 

@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from typing import Any
 
-from sqlalchemy import select, union
+from sqlalchemy import ColumnElement, select, union
 
 from app.store import library
 from app.store.clips import in_batches
 from app.store.engine import Tx
 from app.store.job_record import OPEN_STATES
 from app.store.tables import clips, jobs
+
+_OF_OPEN_JOBS = jobs.c.state.in_([state.value for state in OPEN_STATES])
+_REFERENCES: tuple[tuple[ColumnElement[Any], tuple[ColumnElement[bool], ...]], ...] = (
+    (clips.c.sha256, ()),
+    (clips.c.skeleton_sha256, ()),
+    (clips.c.audio_sha256, ()),
+    (jobs.c.file_sha256, (_OF_OPEN_JOBS,)),
+)
+"""Columns that name files, and of which rows they count."""
 
 
 def unreferenced(tx: Tx, sha256s: Collection[str]) -> tuple[str, ...]:
@@ -22,12 +32,12 @@ def unreferenced(tx: Tx, sha256s: Collection[str]) -> tuple[str, ...]:
     return tuple(sha256 for sha256 in dict.fromkeys(sha256s) if sha256 not in needed)
 
 
+def referenced(tx: Tx) -> frozenset[str]:
+    """Every file that a clip or an open job refers to."""
+    every = union(*(select(c).where(c.is_not(None), *when) for c, when in _REFERENCES))
+    return frozenset(tx.execute(every).scalars())
+
+
 def _needed(tx: Tx, batch: list[str]) -> set[str]:
-    of_open_jobs = jobs.c.state.in_([state.value for state in OPEN_STATES])
-    every = union(
-        select(clips.c.sha256).where(clips.c.sha256.in_(batch)),
-        select(clips.c.skeleton_sha256).where(clips.c.skeleton_sha256.in_(batch)),
-        select(clips.c.audio_sha256).where(clips.c.audio_sha256.in_(batch)),
-        select(jobs.c.file_sha256).where(jobs.c.file_sha256.in_(batch), of_open_jobs),
-    )
+    every = union(*(select(c).where(c.in_(batch), *when) for c, when in _REFERENCES))
     return set(tx.execute(every).scalars())

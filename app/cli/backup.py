@@ -1,0 +1,45 @@
+"""Copying the library while it is in use (DESIGN 12)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.cli.output import AsJson, print_json, progress_bar
+from app.cli.settings import settings_of
+from app.errors import ConfigurationError
+from app.store import schema
+from app.store.backup import DATABASE, back_up
+from app.store.store import Store
+
+
+def backup(
+    context: typer.Context,
+    path: Annotated[Path, typer.Argument(help="A folder that is not there yet.")],
+    as_json: AsJson = False,
+) -> None:
+    """Copy the library as it is now, while it is in use, into a new folder.
+
+    The copy is a data directory: to restore it, start Kinedex with KINEDEX_DATA_DIR set to it, or
+    to a copy of it. It holds everything, also keys (hashed) and what is deleted later.
+    """
+    settings = settings_of(context)
+    if settings.database_url is None and not (settings.data_dir / DATABASE).is_file():
+        raise ConfigurationError(f"There is no library in {settings.data_dir}.")
+    schema.check(settings.database)
+    store = Store.open(settings.database, settings.files_dir)
+    try:
+        with progress_bar() as bar:
+            task = bar.add_task("copying", total=None)
+            made = back_up(
+                store, path, lambda done, total: bar.update(task, completed=done, total=total)
+            )
+            bar.update(task, completed=1, total=1)
+    finally:
+        store.close()
+    if as_json:
+        print_json({"path": str(made.path), "files": made.files, "bytes": made.bytes})
+    else:
+        typer.echo(f"{made.path}: the database and {made.files} files, {made.bytes} bytes")

@@ -1,0 +1,59 @@
+"""`kinedex backup`: a library that can be worked with, made of one that is in use."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from app.services.demo import DemoClip
+from tests.cli.conftest import Kinedex
+from tests.live import serve, wait_until
+
+
+def test_a_copy_is_restored_by_running_on_it(kinedex: Kinedex, tmp_path: Path) -> None:
+    copy = tmp_path / "backups" / "monday"
+    made = kinedex("backup", str(copy), "--json").json()
+    assert made["path"] == str(copy)
+    assert made["files"] == 13  # one of them is no motion
+    assert made["bytes"] == sum(p.stat().st_size for p in copy.rglob("*") if p.is_file())
+    asked = ("search", "--words", "kick", "--limit", "3", "--json")
+    ours, theirs = kinedex(*asked).json(), kinedex(*asked, data_dir=copy).json()
+    assert ours["items"] == theirs["items"]
+    clip = ours["items"][0]["clip"]["id"]
+    exported = [tmp_path / "ours.bvh", tmp_path / "theirs.bvh"]
+    for path, settings in zip(exported, ({}, {"data_dir": copy}), strict=True):
+        assert kinedex("export", clip, "-o", str(path), **settings).code == 0
+    assert exported[0].read_bytes() == exported[1].read_bytes()
+    assert kinedex("recognize", clip, "--json", data_dir=copy).json()["task"]["label"] == "kick"
+
+
+def test_what_cannot_be_copied_is_said(kinedex: Kinedex, tmp_path: Path) -> None:
+    again = kinedex("backup", str(tmp_path))
+    assert (again.code, again.out) == (1, "")
+    assert f"{tmp_path} is there already" in again.err
+    nothing = kinedex("backup", str(tmp_path / "copy"), data_dir=tmp_path / "elsewhere")
+    assert nothing.code == 1
+    assert "There is no library in" in nothing.err
+    assert list(tmp_path.iterdir()) == []
+    assert kinedex("backup").code == 2
+
+
+def test_a_library_is_copied_while_it_serves(
+    kinedex: Kinedex, clips: list[DemoClip], tmp_path: Path
+) -> None:
+    data_dir, copy = tmp_path / "data", tmp_path / "copy"
+    with serve(data_dir) as live:
+        for clip in clips[:3]:
+            assert live.upload(clip).status_code == 202
+        assert kinedex("backup", str(copy), data_dir=data_dir).code == 0
+        assert live.upload(clips[3]).status_code == 202
+    with serve(copy, worker=True) as restored, restored.client() as client:
+
+        def ready() -> list[dict[str, Any]]:
+            found: list[dict[str, Any]] = client.get("/v1/clips?state=ready").json()["items"]
+            return found if len(found) == 3 else []
+
+        told = wait_until(ready, 60.0)  # what waited in the library waits in its copy
+        assert client.get("/v1/clips?limit=100&state=queued").json()["items"] == []
+        contents = {client.get(f"/v1/clips/{clip['id']}/file").content for clip in told}
+        assert contents == {clip.content for clip in clips[:3]}
