@@ -21,6 +21,9 @@ from app.numerics.arrays import BoolArray, FloatArray, IntArray
 ROUNDS = 2
 """Of warping onto the mean and taking the mean of what was warped."""
 
+_TIE = 1e-6
+"""Relative: distances this close count as equal, rounding must not decide."""
+
 _STEADY: FloatArray = np.arange(SAMPLES, dtype=np.float64)
 
 
@@ -108,7 +111,8 @@ def medoid(rows: FloatArray) -> int:
     """Which of `rows` (n, d) is nearest to all the others, the first where several are."""
     gram = rows @ rows.T
     squares = np.diag(gram)[:, None] + np.diag(gram) - 2 * gram
-    return int(np.argmin(np.sqrt(np.maximum(squares, 0.0)).sum(axis=1).round(9)))
+    away = np.sqrt(np.maximum(squares, 0.0)).sum(axis=1)
+    return int(np.argmax(away <= (1 + _TIE) * away.min()))  # of two, both are: rounding apart
 
 
 def _members(group: IntArray) -> list[IntArray]:
