@@ -34,6 +34,8 @@ Stack = Annotated[
 ]
 Unit = Annotated[str | None, typer.Option(help="Of a file: m, cm, mm, in, or metres per unit.")]
 
+ASK_BY_WORDS = " Words go behind --words."
+
 
 def search(
     context: typer.Context,
@@ -76,7 +78,10 @@ def search(
             asked = find.WordQuery(words, mode, limit, wanted)
             hits = find.find_words(lib, asked)
         else:
-            with content_of(query or "") as (clip_id, content), companion_of(skeleton) as asf:
+            with (
+                content_of(query, ASK_BY_WORDS) as (clip_id, content),
+                companion_of(skeleton) as asf,
+            ):
                 hits = find.find_motion(
                     lib,
                     find.MotionQuery(
@@ -160,8 +165,9 @@ def filter_of(text: str | None) -> dict[str, Any]:
 
 
 @contextmanager
-def content_of(query: str | None) -> Iterator[tuple[str | None, Readable | None]]:
-    """A file's content where there is such a file, else the query as a clip's id.
+def content_of(query: str | None, advice: str = "") -> Iterator[tuple[str | None, Readable | None]]:
+    """A file's content where there is such a file, else the query as a clip's id; advice: what
+    to say besides where it is neither.
 
     Raises BadField for what cannot be read, ClipNotFound where it is neither.
     """
@@ -169,7 +175,7 @@ def content_of(query: str | None) -> Iterator[tuple[str | None, Readable | None]
         try:
             yield query, None
         except ClipNotFound as problem:
-            detail = f"There is no file {query!r}, and no clip has that id."
+            detail = f"There is no file {query!r}, and no clip has that id.{advice}"
             raise ClipNotFound(detail, places=problem.places) from None
         return
     with opened(Path(query)) as content:

@@ -129,8 +129,10 @@ def test_a_fit_shows_the_held_out_figures_of_each_model(kinedex: Kinedex) -> Non
 
 def test_a_bad_question_is_told_in_words(kinedex: Kinedex, folder: Path) -> None:
     neither = "kinedex: There is no file 'missing.bvh', and no clip has that id.\n"
-    for command in (("search",), ("recognize",), ("search-pose", "--time", "0")):
+    for command in (("recognize",), ("search-pose", "--time", "0")):
         assert _refused(kinedex, *command, "missing.bvh") == neither
+    words_too = f"{neither[:-1]} Words go behind --words.\n"
+    assert _refused(kinedex, "search", "missing.bvh") == words_too
     assert f"{folder} cannot be read: Is a directory" in _refused(kinedex, "search", str(folder))
     not_there = "There is no clip with the id 'missing.bvh'\n"
     assert _refused(kinedex, "export", "missing.bvh").endswith(not_there)
