@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 
 from app.analysis.motion_sample import SAMPLES
 from app.analysis.motion_shape import CHANNELS
@@ -61,9 +62,13 @@ def together(shapes: FloatArray, group: IntArray) -> Timed:
     return Timed(shapes, timing)
 
 
-def onto(shapes: FloatArray, references: FloatArray) -> Timed:
+def onto(shapes: FloatArray, references: FloatArray, smoothing: float = 0.0) -> Timed:
     """Each of `shapes` (n, 1378) in the time of the same row of `references` (n, 1378); what
-    goes round, and what is held against something that does, stays as it is."""
+    goes round, and what is held against something that does, stays as it is.
+
+    smoothing: moments (standard deviation) within which time is not to hurry and linger, beyond
+    what `warping_times` smooths.
+    """
     shapes = np.array(shapes, dtype=np.float64)
     timing = np.zeros((len(shapes), SAMPLES))
     chosen = np.flatnonzero((shapes[:, -1] < 0.5) & (references[:, -1] == 0.0))
@@ -71,6 +76,9 @@ def onto(shapes: FloatArray, references: FloatArray) -> Timed:
         moments = moments_of_shapes(shapes[chosen])
         aims = moments_of_shapes(references[chosen])
         times = warping_times(_compared(moments), _compared(aims))
+        if smoothing > 0:
+            moved = gaussian_filter1d(times - _STEADY, smoothing, axis=1, mode="nearest")
+            times = rising(moved + _STEADY)
         shapes[chosen, :-2] = read_at(moments, times).reshape(len(chosen), -1)
         timing[chosen] = times - _STEADY
     return Timed(shapes, timing)

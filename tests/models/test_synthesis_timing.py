@@ -89,3 +89,9 @@ def test_the_medoid_is_nearest_to_all_others() -> None:
     assert medoid(rows) == 1
     assert medoid(rows[:1]) == 0
     assert medoid(rows[[2, 0]]) == 0  # of two the first
+
+
+def test_smoothed_time_hurries_less() -> None:
+    late, usual = np.stack([gesture(20)]), np.stack([gesture(15)])
+    pace = [np.diff(onto(late, usual, s).timing[0]) for s in (0.0, 2.0, 4.0)]
+    assert np.abs(pace[0]).max() > np.abs(pace[1]).max() > np.abs(pace[2]).max()

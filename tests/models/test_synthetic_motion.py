@@ -123,3 +123,23 @@ def test_little_motion_is_no_trouble() -> None:
     made: Animation = embody(course, [donor(still)])
     assert np.isfinite(made.rotations).all()
     assert np.isfinite(made.positions()).all()
+
+
+def test_a_take_gestures_when_the_shape_does() -> None:
+    hand = SUN_ROLES.index(JointRole.RIGHT_HAND)
+
+    def raised(at: float) -> BodyTrack:
+        body = np.array(standing(180))
+        body[:, hand, 1] += 0.8 * np.exp(-0.5 * ((np.arange(180) / 30 - at) / 0.4) ** 2)
+        return track_of(body)
+
+    take, wanted = raised(2.5), motion_shape(raised(3.2)).astype(np.float64)
+    course = course_of(
+        wanted, take.body_length, take=moments_of(take), take_shape=motion_shape(take)
+    )
+    height = course.positions[:, hand, 1]
+    assert abs(int(height.argmax()) / 30 - 3.2) < 0.15
+    assert 0.72 < np.ptp(height) < 0.84
+    lingering = height > height.min() + 0.4  # as long as the take's, not once for either
+    real = take.positions[:, hand, 1]
+    assert lingering.sum() < 1.25 * (real > real.min() + 0.4).sum()
