@@ -20,7 +20,7 @@ _DESCRIPTIONS = {
     401: "An API key is needed",
     403: "This API key does not allow that",
     404: "There is no such thing",
-    409: "The state of things does not allow this",
+    409: "The state of things does not allow this; with `Retry-After` where waiting helps",
     413: "The body is larger than the limit",
     415: "Content or media type that is not known here",
     422: "A field is wrong, or a file that cannot be used",

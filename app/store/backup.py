@@ -18,7 +18,7 @@ from pathlib import Path
 from app.errors import BadField, DiskFull, NotFound, Place, StorageError
 from app.store import references
 from app.store.engine import Database
-from app.store.files import NO_SPACE, FileStore
+from app.store.files import NO_SPACE, FileStore, sync_directory
 from app.store.store import Store
 
 DATABASE, FILES = "kinedex.sqlite3", "files"
@@ -129,17 +129,9 @@ def _copy_file(source: FileStore, target: FileStore, sha256: str) -> None:
 def _rename(part: Path, path: Path) -> None:
     """Gives the copy its name, and sees to it that this is on disk; it stays its maker's own."""
     for folder in (part, part / FILES):
-        _sync(folder)
+        sync_directory(folder)
     part.rename(path)
-    _sync(path.parent)
-
-
-def _sync(folder: Path) -> None:
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
+    sync_directory(path.parent)
 
 
 def _size_of(path: Path) -> int:

@@ -53,7 +53,7 @@ class StagedFile:
         with _disk_failures():
             _make_synced(self.final.parent)
             self.temporary.replace(self.final)
-            _sync_directory(self.final.parent)
+            sync_directory(self.final.parent)
 
     def open(self) -> BinaryIO:
         """The staged bytes, to look at before they are kept."""
@@ -146,10 +146,11 @@ def _make_synced(directory: Path) -> None:
         return
     _make_synced(directory.parent)
     directory.mkdir(exist_ok=True)
-    _sync_directory(directory.parent)
+    sync_directory(directory.parent)
 
 
-def _sync_directory(directory: Path) -> None:
+def sync_directory(directory: Path) -> None:
+    """Sees to it that what a directory holds by which name is on disk."""
     descriptor = os.open(directory, os.O_RDONLY)
     try:
         os.fsync(descriptor)
