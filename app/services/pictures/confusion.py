@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.numerics.arrays import FloatArray
-from app.services.pictures.drawing import Format, drawn, shown
+from app.services.pictures.drawing import MOST_INCHES, Format, drawn, shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,6 +19,10 @@ CELL = 0.42
 """Inches; cells shrink when there are more than MOST_LARGE classes."""
 MOST_LARGE = 30
 MOST_WITH_NUMBERS = 60
+USUAL_LETTERS = 9.0
+"""Points; names are smaller where that is more than a cell is high."""
+LETTERS_A_CELL = 0.75 * 72
+"""Points of an inch of cell: lines of names stand apart."""
 DARK = 0.55
 """Cells of a larger share carry white numbers."""
 
@@ -52,19 +56,24 @@ def confusions_picture(
     if not count or not by_title or {m.shape for m in by_title.values()} != {(count, count)}:
         raise ValueError("a confusion matrix has one row and one column a class")
     side = CELL * max(min(count, MOST_LARGE), 4) + 0.2 * max(count - MOST_LARGE, 0)
+    width, height = (side + 0.3) * len(by_title) + 2.6, side + 1.6
+    fitting = min(1.0, MOST_INCHES / width, MOST_INCHES / height)
+    letters = min(USUAL_LETTERS, LETTERS_A_CELL * fitting * side / count)
 
     def draw(figure: Figure) -> None:
         for place, (title, shares) in enumerate(by_title.items(), 1):
             axes = figure.add_subplot(1, len(by_title), place)
             axes.set(title=title, xlabel=columns, ylabel=rows if place == 1 else "")
-            mesh = _fill(axes, shares, classes, with_rows=place == 1)
+            mesh = _fill(axes, shares, classes, letters, with_rows=place == 1)
         bar = figure.colorbar(mesh, ax=axes, shrink=0.6, aspect=25, pad=0.02, label="share")
         bar.outline.set_visible(False)
 
-    return drawn(draw, ((side + 0.3) * len(by_title) + 2.6, side + 1.6), form)
+    return drawn(draw, (width, fitting * side + 1.6), form)
 
 
-def _fill(axes: Axes, shares: FloatArray, classes: Sequence[str], *, with_rows: bool) -> QuadMesh:
+def _fill(
+    axes: Axes, shares: FloatArray, classes: Sequence[str], letters: float, *, with_rows: bool
+) -> QuadMesh:
     count = len(classes)
     names = [shown(name) for name in classes]
     # squares of their own stay sharp in an SVG, and white edges part them
@@ -77,10 +86,10 @@ def _fill(axes: Axes, shares: FloatArray, classes: Sequence[str], *, with_rows: 
     axes.set_aspect("equal")
     axes.invert_yaxis()
     axes.grid(visible=False)
-    axes.tick_params(length=0)
+    axes.tick_params(length=0, labelsize=letters)
     axes.spines[:].set_visible(False)
     if count <= MOST_WITH_NUMBERS:
-        _number(axes, shares, size=8.0 if count <= MOST_LARGE else 5.0)
+        _number(axes, shares, size=min(letters, 8.0 if count <= MOST_LARGE else 5.0))
     return mesh
 
 

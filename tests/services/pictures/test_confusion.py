@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 
-from app.services.pictures import Format, confusion_picture, confusions_picture
+from app.services.pictures import Format, confusion, confusion_picture, confusions_picture
+from app.services.pictures.drawing import MOST_INCHES
 
 SIGNATURES: dict[Format, bytes] = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
 
@@ -59,3 +63,31 @@ def test_shapes_that_do_not_fit_are_refused() -> None:
     for shares, names in ((np.eye(2), ["a"]), (np.zeros((0, 0)), []), (np.ones((2, 3)), "ab")):
         with pytest.raises(ValueError, match="one row and one column"):
             confusion_picture(shares, list(names), "svg")
+
+
+@pytest.mark.parametrize(
+    ("count", "beside"), [(5, 1), (41, 8), pytest.param(300, 1, marks=pytest.mark.slow)]
+)
+def test_names_do_not_run_into_one_another(
+    monkeypatch: pytest.MonkeyPatch, count: int, beside: int
+) -> None:
+    heights: list[float] = []
+
+    def measured(
+        draw: Callable[[Figure], None], inches: tuple[float, float], form: Format
+    ) -> bytes:
+        width, height = (min(side, MOST_INCHES) for side in inches)
+        figure = Figure(figsize=(width, height), layout="constrained")
+        draw(figure)
+        FigureCanvasAgg(figure).draw()
+        names = [name.get_window_extent() for name in figure.axes[0].get_yticklabels()]
+        assert len(names) == count
+        pairs = zip(names[1:], names, strict=False)  # from below upwards: the axis is inverted
+        assert all(lower.y1 <= upper.y0 for lower, upper in pairs)
+        heights.extend(name.height * 72 / figure.dpi for name in names)
+        return form.encode()
+
+    monkeypatch.setattr(confusion, "drawn", measured)
+    shares = {str(place): np.eye(count) for place in range(beside)}
+    confusions_picture(shares, [f"walk-left-{number}" for number in range(count)], "svg")
+    assert min(heights) > 3.0  # points: small, and still letters
