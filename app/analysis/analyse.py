@@ -2,8 +2,8 @@
 
 Arrays (float32 unless told otherwise; n frames at 30 Hz, m at 10 Hz):
 role_positions (n, 13, 3) metres, world; features_10hz (m, 82); motion_vector (128,);
-msv_lambda (1,), msv_rho (13,), msv_epsilon (n,), msv_convergence (i, 2), the error and the
-change of lambda after each of i iterations; motion_sample (1250,);
+wide_motion_vector (512,); msv_lambda (1,), msv_rho (13,), msv_epsilon (n,), msv_convergence
+(i, 2), the error and the change of lambda after each of i iterations; motion_sample (1250,);
 angle_sample (642,); motion_shape (1378,); symbol_statistics (131,); window_vectors_* (w, 125)
 float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s; beat_times (b,) float64
 seconds, beat_facts (3,) float64 (see `rhythm`); keypose_frames (k,)
@@ -29,7 +29,7 @@ from app.analysis.keyposes import T1, T2, find_keyposes
 from app.analysis.motion_sample import motion_sample
 from app.analysis.motion_shape import motion_shape
 from app.analysis.motion_symbol import describe_symbol
-from app.analysis.motion_vector import motion_vector
+from app.analysis.motion_vector import describe, narrow, wide
 from app.analysis.motion_volume import decompose
 from app.analysis.onsets import Onsets
 from app.analysis.pose_cover import pose_cover
@@ -41,7 +41,7 @@ from app.motion.motion import Motion
 from app.motion.recording import Caution
 from app.numerics.arrays import FloatArray
 
-ANALYSIS_VERSION = 3
+ANALYSIS_VERSION = 4
 """Raise it with every change of what an array holds; older clips are then analysed again."""
 
 
@@ -96,11 +96,13 @@ def describe_for_search(motion: Motion) -> Analysis:
 def _for_search(motion: Motion, track: BodyTrack) -> dict[str, FloatArray]:
     features = frame_features(track)
     features_10hz = features_at_10hz(features, track.rate)
+    described = describe(features)
     volume = decompose(track)
     arrays = {
         "role_positions": track.positions,
         "features_10hz": features_10hz,
-        "motion_vector": motion_vector(features),
+        "motion_vector": narrow(described),
+        "wide_motion_vector": wide(described),
         "msv_lambda": np.array([volume.weight]),
         "msv_rho": volume.primary,
         "msv_epsilon": volume.secondary,
@@ -110,5 +112,5 @@ def _for_search(motion: Motion, track: BodyTrack) -> dict[str, FloatArray]:
         "motion_shape": motion_shape(track),
         "symbol_statistics": symbol_statistics(symbol_features(track), track.rate),
     }
-    described = {name: array.astype(np.float32) for name, array in arrays.items()}
-    return described | window_arrays(features_10hz)
+    kept = {name: array.astype(np.float32) for name, array in arrays.items()}
+    return kept | window_arrays(features_10hz)

@@ -6,7 +6,9 @@ that place itself wanders (an arm that is raised), the order of things (the firs
 over the clip), how the body travels, sways and turns. Beside these the features' covariance
 as a matrix logarithm (where such matrices have a Euclidean geometry: Arsigny et al. 2006),
 which tells more of manner. All through one fixed random projection: nothing is fitted on a
-library, so vectors stay comparable for years.
+library, so vectors stay comparable for years. The wide motion vector is the same through a
+projection of 512: slower to search by, it keeps finer differences, by which the recogniser
+tells whom and what it knows (app.models.recogniser).
 
 The weights were chosen by hand on half of dataset 2's styles, dataset 1, CMU's clips and the
 demo library (`tests/bench/test_retrieval.py` has the curve). None of it depends on the phase
@@ -25,6 +27,7 @@ from app.motion.body_frame import ANALYSIS_RATE
 from app.numerics.arrays import FloatArray
 
 DIMENSIONS = 128
+WIDE_DIMENSIONS = 512
 RIDGE = 1e-3
 """Added to the covariance's diagonal: the logarithm's floor for what stands still."""
 
@@ -53,7 +56,7 @@ TURNS_WEIGHT = 0.5
 """Of the slow yaw rate's standard deviation, per radian per second."""
 
 SEED = 20111
-"""Of the projection; changing it changes every stored vector."""
+"""Of the projections; changing it changes every stored vector."""
 
 PLACES, VELOCITY, YAW_RATE = slice(0, 39), slice(78, 81), 81
 """Columns of the frame features."""
@@ -64,8 +67,22 @@ DESCRIBED = 5 * 39 + 3 + 3 + 1 + 1 + FEATURES * (FEATURES + 1) // 2
 
 def motion_vector(features: FloatArray) -> FloatArray:
     """(128,) float32 motion vector of frame features (n, 82) at ANALYSIS_RATE, n >= 1."""
-    described = np.concatenate([course(features), log_covariance(features)])
-    return np.asarray(described @ projection(), dtype=np.float32)
+    return narrow(describe(features))
+
+
+def describe(features: FloatArray) -> FloatArray:
+    """(3606,) the numbers that motion vectors are projected from, of frame features (n, 82)."""
+    return np.concatenate([course(features), log_covariance(features)])
+
+
+def narrow(described: FloatArray) -> FloatArray:
+    """(128,) float32 the motion vector, from `describe` (3606,)."""
+    return np.asarray(described @ projection(DIMENSIONS), dtype=np.float32)
+
+
+def wide(described: FloatArray) -> FloatArray:
+    """(512,) float32 the wide motion vector, from `describe` (3606,)."""
+    return np.asarray(described @ projection(WIDE_DIMENSIONS), dtype=np.float32)
 
 
 def course(features: FloatArray) -> FloatArray:
@@ -123,13 +140,13 @@ def log_covariance(features: FloatArray) -> FloatArray:
     return np.asarray((weights * logarithm)[np.triu_indices(count)] * COVARIANCE_SCALE)
 
 
-@lru_cache(maxsize=1)
-def projection() -> FloatArray:
-    """(3606, 128) Gaussian, columns of unit variance over DIMENSIONS; the same for ever.
+@lru_cache(maxsize=2)
+def projection(dimensions: int = DIMENSIONS) -> FloatArray:
+    """(3606, dimensions) Gaussian, of variance 1 over `dimensions`; the same for ever.
 
     `RandomState` because its stream is frozen by numpy's policy; `Generator`'s is not.
     """
     stream = np.random.RandomState(SEED)
-    drawn: FloatArray = stream.standard_normal((DESCRIBED, DIMENSIONS)) / np.sqrt(DIMENSIONS)
+    drawn: FloatArray = stream.standard_normal((DESCRIBED, dimensions)) / np.sqrt(dimensions)
     drawn.setflags(write=False)
     return drawn

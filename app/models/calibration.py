@@ -29,10 +29,6 @@ LEAST_USUAL = 20
 LEAST_BELIEF = 1e-9
 """Of being known: of what is surely new the labels still keep their order as candidates."""
 
-FENCE = 1.5
-"""Interquartile ranges beyond the quartiles (Tukey) beyond which a novelty counts as if it lay
-there: one task far from all others had drawn the threshold away from the rest."""
-
 CURVE_POINTS = 50
 """Of the curve of false acceptance against false rejection."""
 
@@ -167,18 +163,14 @@ def _threshold(known: FloatArray, new: FloatArray) -> float:
 
 
 def _alike(known: FloatArray, new: FloatArray) -> float:
-    """The novelty that is as many standard deviations above the mean of the known as below that
-    of the new: unlike the least sum of errors it does not hang on a few clips at the border."""
-    parts = [_fenced(part) for part in (known, new)]
-    spreads = np.array([max(float(part.std()), 1e-9) for part in parts])
-    means = np.array([float(part.mean()) for part in parts])
-    return float((means * spreads[::-1]).sum() / spreads.sum())
-
-
-def _fenced(novelty: FloatArray) -> FloatArray:
-    first, third = np.quantile(novelty, [0.25, 0.75])
-    reach = FENCE * (third - first)
-    return np.clip(novelty, first - reach, third + reach)
+    """The novelty that is as many interquartile ranges above the median of the known as below
+    that of the new: unlike the least sum of errors it does not hang on a few clips at the
+    border, and unlike means not on one task that is far from all others."""
+    medians = np.array([float(np.median(part)) for part in (known, new)])
+    ranges = np.array(
+        [max(float(np.subtract(*np.quantile(part, [0.75, 0.25]))), 1e-9) for part in (known, new)]
+    )
+    return float((medians * ranges[::-1]).sum() / ranges.sum())
 
 
 def _scale(beyond: FloatArray, known: BoolArray) -> float:

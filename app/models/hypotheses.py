@@ -1,10 +1,10 @@
-"""Hypotheses on a clip: this person doing this task, or something new, each a Gaussian.
+"""Hypotheses on a clip: this person doing this task, or something new, each a distribution.
 
-Shapes: points (n, d), coordinates of motion samples; hypotheses (h,).
-Five kinds, each with a covariance of its own, estimated from how far real cells lie from
-what would have been predicted without them:
-- SEEN: a cell of the library; covariance within cells (this alone is LDA on cells, and
-  nearest cell mean where each has one take);
+Shapes: points (n, d), coordinates of clips; hypotheses (h,).
+Five kinds, each with a covariance estimated from how far real cells lie from what would have
+been predicted without them:
+- SEEN: a cell of the library; covariance within cells, of each task its own
+  (app.models.within_cells; nearest cell mean where each has one take);
 - UNSEEN: a known person at a known task, never recorded together, predicted by effects;
 - NEW_PERSON: someone who does a known task as one of its persons does, give or take what two
   persons differ in (the mean of all persons is nobody's motion: strangers' tasks were found
@@ -18,14 +18,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from itertools import pairwise
 
 import numpy as np
 
 from app.models.cells import Cells, cell_means, fit_effects
+from app.models.within_cells import Scatter, scatter_within
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.numerics.shrinkage import oracle_share
 
 SHRINKAGE = 0.1
-"""Share of each covariance that is replaced by a sphere of the same volume of variance."""
+"""Share of each covariance that is replaced by a sphere of the same volume of variance; within
+cells more where repeated takes are too few to tell its shape."""
 
 SMALLEST_VARIANCE = 1e-6
 """Floor of a mean variance, body lengths squared: identical takes must not divide by 0."""
@@ -49,36 +53,49 @@ class Kind(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Hypotheses:
-    """means: (h, d), whitened by their kind; person, task: (h,) label indices, -1 for new;
-    kind: (h,); spread: (h,) factor on the covariance; whiteners: (5, d, d), a point is
-    whitened by `point @ whiteners[kind]`; log_scale: (5,) half the log determinants."""
+    """person, task: (h,) label indices, -1 for new; kind: (h,); form: (h,) which covariance,
+    never falling; means: (h, d), whitened by their form; spread: (h,) factor on the covariance;
+    whiteners: (forms, d, d), a point is whitened by `point @ whiteners[form]`; log_scale:
+    (forms,) half the log determinants."""
 
     means: FloatArray
     person: IntArray
     task: IntArray
     kind: IntArray
+    form: IntArray
     spread: FloatArray
     whiteners: FloatArray
     log_scale: FloatArray
 
-    def log_likelihoods(self, points: FloatArray) -> FloatArray:
-        """(n, h) log densities of `points` (n, d), up to a constant."""
-        dimensions = points.shape[1]
-        out = np.empty((len(points), len(self.kind)))
-        for kind in Kind:
-            chosen = np.flatnonzero(self.kind == kind)
-            white, means = points @ self.whiteners[kind], self.means[chosen]
-            cross = 2 * white @ means.T
-            squares = (white**2).sum(1)[:, None] - cross + (means**2).sum(1)
-            spread = self.spread[chosen]
-            volume = self.log_scale[kind] + 0.5 * dimensions * np.log(spread)
-            out[:, chosen] = -0.5 * np.maximum(squares, 0) / spread - volume
-        return out
+    def log_likelihoods(self, points: FloatArray, freedom: float | None = None) -> FloatArray:
+        """(n, h) log densities of `points` (n, d), up to a constant: Gaussian, or Student's
+        with so many degrees of `freedom`, to which what is far off is less of a surprise."""
+        return self.log_densities(self.squares(points), freedom)
+
+    def log_densities(self, squares: FloatArray, freedom: float | None = None) -> FloatArray:
+        """`log_likelihoods` of what lies at these `squares` (n, h)."""
+        dimensions = self.means.shape[1]
+        volume = self.log_scale[self.form] + 0.5 * dimensions * np.log(self.spread)
+        if freedom is None:
+            return np.asarray(-0.5 * squares - volume)
+        return np.asarray(-0.5 * (freedom + dimensions) * np.log1p(squares / freedom) - volume)
+
+    def squares(self, points: FloatArray) -> FloatArray:
+        """(n, h) squared distances of `points` (n, d) in standard deviations."""
+        out = np.empty((len(points), len(self.form)))
+        # hypotheses of one form stand together
+        starts = np.searchsorted(self.form, np.arange(len(self.whiteners) + 1))
+        for form, (start, end) in enumerate(pairwise(starts)):
+            white, means = points @ self.whiteners[form], self.means[start:end]
+            lengths = np.einsum("nd,nd->n", white, white)
+            out[:, start:end] = lengths[:, None] - 2 * white @ means.T
+        out += np.einsum("hd,hd->h", self.means, self.means)
+        return np.asarray(np.maximum(out, 0) / self.spread)
 
 
 @dataclass(frozen=True, slots=True)
 class _Group:
-    """Hypotheses of one kind before whitening; fields as in Hypotheses."""
+    """Hypotheses of one covariance before whitening; fields as in Hypotheses."""
 
     kind: Kind
     means: FloatArray
@@ -94,12 +111,12 @@ def fit_hypotheses(points: FloatArray, cells: Cells) -> Hypotheses:
     total = shrunk(np.cov(means.T, bias=True).reshape(2 * [points.shape[1]]))
     unseen = _unseen(means, cells, total)
     seen = _seen(points, means, cells, 0.5 * unseen.covariance)
-    tasks = _like_others(means, cells, total)
+    strangers = _like_others(means, cells, total)
     persons = _new_task(means, cells, total)
     nobody = np.array([-1])
     centre = means.mean(axis=0, keepdims=True)
     new = _Group(Kind.NEW_BOTH, centre, nobody, nobody, total, np.ones(1))
-    return _whitened([seen, unseen, tasks, persons, new])
+    return _whitened([*seen, unseen, strangers, persons, new])
 
 
 def shrunk(covariance: FloatArray, share: float = SHRINKAGE) -> FloatArray:
@@ -109,16 +126,29 @@ def shrunk(covariance: FloatArray, share: float = SHRINKAGE) -> FloatArray:
     return (1 - share) * covariance + share * mean * np.eye(len(covariance))
 
 
-def _seen(points: FloatArray, means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
-    """`stand_in` (d, d) is the covariance where there are hardly any repeated takes."""
+def _seen(
+    points: FloatArray, means: FloatArray, cells: Cells, stand_in: FloatArray
+) -> list[_Group]:
+    """A group for each task that has repeated takes, and one of all other cells.
+
+    `stand_in` (d, d) is the covariance where there are hardly any repeated takes at all.
+    """
     full = np.flatnonzero(cells.full)
-    in_full = np.isin(cells.member, full)
-    deviations = points[in_full] - means[cells.member[in_full]]
+    inside = np.flatnonzero(np.isin(cells.member, full))
+    deviations = points[inside] - means[cells.member[inside]]
     freedom = len(deviations) - len(full)
-    enough = freedom >= LEAST_FREEDOM
-    within = shrunk(deviations.T @ deviations / freedom) if enough else stand_in
-    spread = 1 + 1 / cells.takes[full]
-    return _Group(Kind.SEEN, means[full], cells.person[full], cells.task[full], within, spread)
+    if freedom < LEAST_FREEDOM:
+        scatter = Scatter.same(stand_in, cells)
+    else:
+        within = deviations.T @ deviations / freedom
+        pooled = shrunk(within, max(SHRINKAGE, oracle_share(within, freedom)))
+        scatter = scatter_within(deviations, cells.member[inside], cells, pooled)
+    spread = scatter.spread * (1 + 1 / np.maximum(cells.takes, 1))
+    return [
+        _Group(Kind.SEEN, means[own], cells.person[own], cells.task[own], covariance, spread[own])
+        for form, covariance in enumerate(scatter.covariances)
+        if len(own := full[scatter.form[full] == form])
+    ]
 
 
 def _unseen(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
@@ -184,11 +214,13 @@ def _whitened(groups: list[_Group]) -> Hypotheses:
     factors = [np.linalg.cholesky(group.covariance) for group in groups]
     whiteners = [np.linalg.inv(factor).T for factor in factors]
     white = [group.means @ by for group, by in zip(groups, whiteners, strict=True)]
+    sizes = [len(group.means) for group in groups]
     return Hypotheses(
         means=np.concatenate(white),
         person=np.concatenate([group.person for group in groups]),
         task=np.concatenate([group.task for group in groups]),
-        kind=np.repeat([int(group.kind) for group in groups], [len(g.means) for g in groups]),
+        kind=np.repeat([int(group.kind) for group in groups], sizes),
+        form=np.repeat(np.arange(len(groups)), sizes),
         spread=np.concatenate([group.spread for group in groups]),
         whiteners=np.stack(whiteners),
         log_scale=np.array([float(np.log(np.diag(factor)).sum()) for factor in factors]),

@@ -15,6 +15,7 @@ from app.models.folds import grouped_folds
 from app.models.holding_out import FOLDS
 from app.models.multilinear import fit_multilinear, recognise_multilinear
 from app.models.recogniser import Recogniser, fit_recogniser, recognise_many
+from app.models.recogniser_views import full_samples
 from app.models.recognition import NO_ANSWER, Answer, Recognition, given
 from app.models.tensor_recogniser import TensorRecogniser, recognise_by_tensor, uncalibrated
 from app.numerics.arrays import FloatArray, IntArray
@@ -26,7 +27,8 @@ _CURVE = ("threshold", "false_acceptance", "false_rejection")
 
 
 class Clips(NamedTuple):
-    """Training clips: samples (clips, 1250), labels and groups (clips,) each."""
+    """Training clips: samples (clips, 1250), or what else the method looks at; labels and groups
+    (clips,) each."""
 
     samples: FloatArray
     persons: Labels
@@ -44,23 +46,27 @@ def held_out_recognition_figures(
     groups: Sequence[str],
     folds: int = FOLDS,
     seed: int = 0,
+    *,
+    wide: FloatArray | None = None,
 ) -> dict[str, dict[str, float]]:
     """Shares recognised, each clip by a model of the other folds; known factors not told.
 
-    samples: (clips, 1250); groups: (clips,) clips of one recording share a value, and a
-    fold. Returns for "default", "multilinear", "perera", "pca" (flat PCA) and "prior" (the most
-    frequent label of the training folds) the shares "person", "task" and "both" over the clips
-    that have the label: the best candidate counts, whether called known or not; and "clips", how
-    many have both labels. A method that cannot be fitted is left out.
+    samples: (clips, 1250); wide: (clips, 512) wide motion vectors, at which the default looks
+    too; groups: (clips,) clips of one recording share a value, and a fold.
+    Returns for "default", "multilinear", "perera", "pca" (flat PCA) and "prior" (the most frequent
+    label of the training folds) the shares "person", "task" and "both" over the clips that have
+    the label: the best candidate counts, whether called known or not; and "clips", how many have
+    both labels. A method that cannot be fitted is left out.
     """
+    seen = samples if wide is None else full_samples(samples, wide)
+    default = _figures({"default": _default}, seen, persons, tasks, groups, folds, seed)
     methods = {
-        "default": _default,
         "multilinear": _multilinear,
         "perera": _perera,
         "pca": _flat_pca,
         "prior": _prior,
     }
-    return _figures(methods, samples, persons, tasks, groups, folds, seed)
+    return default | _figures(methods, samples, persons, tasks, groups, folds, seed)
 
 
 def signature_figures(

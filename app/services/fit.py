@@ -152,12 +152,12 @@ def recognition_figures(training: TrainingSet) -> dict[str, dict[str, float]]:
     """Held-out shares recognised by method: "default", "multilinear", "perera", "pca" and
     "prior"."""
     return held_out_recognition_figures(
-        training.samples, training.persons, training.tasks, training.groups
+        training.samples, training.persons, training.tasks, training.groups, wide=training.wide
     )
 
 
 def _fit_recogniser(training: TrainingSet, _: Before) -> Fit:
-    model = fit_recogniser(training.samples, training.persons, training.tasks, training.groups)
+    model = fit_recogniser(training.full_samples, training.persons, training.tasks, training.groups)
     arrays, meta = model.to_arrays()
     figures: Meta = {"held_out": recognition_figures(training)}
     return Fit(arrays, meta, figures | {"unknown": unknown_figures(model)})

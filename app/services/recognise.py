@@ -20,10 +20,13 @@ from app.services.word_ranking import STATISTICS
 from app.store.files import Readable
 
 SAMPLE = "motion_sample"
+WIDE = "wide_motion_vector"
 ANGLES = "angle_sample"
 METHODS = ("default", "multilinear", "signatures", "perera")
 """The recogniser that does best held out; Vasilescu's model on positions and, as hers, on joint
 angles; Perera's objective."""
+LOOKED_AT = {"default": (SAMPLE, WIDE), "signatures": (ANGLES,)}
+"""Arrays that a method is given, one behind the other; the others are given motion samples."""
 WORDS_SHOWN = 10
 
 WordScores = tuple[tuple[str, float], ...]
@@ -81,14 +84,15 @@ def recognise(lib: Library, query: RecogniseQuery) -> Recognised:
         roles=query.roles,
         stack=query.stack,
     )
-    sample = ANGLES if query.method == "signatures" else SAMPLE
-    asked = describe(lib, question, (sample, STATISTICS))
-    found = _who_does_what(lib, asked.arrays[sample], query)
+    looked_at = LOOKED_AT.get(query.method, (SAMPLE,))
+    asked = describe(lib, question, (*looked_at, STATISTICS))
+    sample = np.concatenate([asked.arrays[name] for name in looked_at])
+    found = _who_does_what(lib, sample, query)
     return Recognised(found.person, found.task, words_of(lib, asked.arrays[STATISTICS]))
 
 
 def _who_does_what(lib: Library, sample: FloatArray, query: RecogniseQuery) -> Recognition:
-    """Person and task of a motion sample (1250,), or of an angle sample (642,) by signatures."""
+    """Person and task of a clip by what its method is given (LOOKED_AT)."""
     person = fields.text("known_person", query.known_person)
     task = fields.text("known_task", query.known_task)
     if query.method == "multilinear":

@@ -10,6 +10,7 @@ import numpy as np
 from app.analysis.motion_symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.folds import recording_of
 from app.models.learned_metric import INPUTS, Described
+from app.models.recogniser_views import full_samples
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm import GaussianHMM
 from app.services.synthesized import SYNTHESIZED, is_synthesized
@@ -18,7 +19,8 @@ from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord, ClipState
 from app.store.store import Store
 
-NAMES = (*SYMBOL_ARRAYS, *INPUTS)
+WIDE = "wide_motion_vector"
+NAMES = (*SYMBOL_ARRAYS, *INPUTS, WIDE)
 ANGLES = "angle_sample"
 READY = ClipFilter(state=(ClipState.READY,))
 
@@ -28,9 +30,9 @@ class TrainingSet:
     """N ready clips, sorted by id, at a library version.
 
     groups: (N,) clips of one recording share a name; symbols: N; statistics: (N, 131);
-    samples: (N, 1250); vectors: (N, 128); angles: (642,) by clip id, of those that have been
-    analysed since there are joint angles; is_anonymous: persons are not told, since none is to be
-    recognised.
+    samples: (N, 1250); vectors: (N, 128); wide: (N, 512); angles: (642,) by clip id, of those that
+    have been analysed since there are joint angles; is_anonymous: persons are not told, since none
+    is to be recognised.
     """
 
     library_version: int
@@ -40,6 +42,7 @@ class TrainingSet:
     statistics: FloatArray
     samples: FloatArray
     vectors: FloatArray
+    wide: FloatArray
     angles: Mapping[str, FloatArray] = field(default_factory=dict)
     is_anonymous: bool = False
 
@@ -71,6 +74,11 @@ class TrainingSet:
             [what[i] for i in has],
             [self.groups[i] for i in has],
         )
+
+    @property
+    def full_samples(self) -> FloatArray:
+        """(N, 1762) what the default recogniser looks at."""
+        return full_samples(self.samples, self.wide)
 
     @property
     def described(self) -> Described:
@@ -110,6 +118,7 @@ def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
         statistics=_stacked([found["symbol_statistics"][clip_id] for clip_id in whole]),
         samples=_stacked([found["motion_sample"][clip_id] for clip_id in whole]),
         vectors=_stacked([found["motion_vector"][clip_id] for clip_id in whole]),
+        wide=_stacked([found[WIDE][clip_id] for clip_id in whole]),
         angles=angles,
     )
 

@@ -30,7 +30,8 @@ def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray
     n, states = len(body), len(arrays["symbol_means"])
     shapes = {
         "role_positions": (n, 13, 3), "features_10hz": ((n - 1) // 3 + 1, 82),
-        "motion_vector": (128,), "msv_lambda": (1,), "msv_rho": (13,), "msv_epsilon": (n,),
+        "motion_vector": (128,), "wide_motion_vector": (512,),
+        "msv_lambda": (1,), "msv_rho": (13,), "msv_epsilon": (n,),
         "msv_convergence": (len(arrays["msv_convergence"]), 2),
         "pose_cover": (len(arrays["pose_cover"]), 38),
         "motion_sample": (1250,), "angle_sample": (642,), "motion_shape": (1378,),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -14,14 +15,18 @@ from app.analysis.frame_features import frame_features
 from app.analysis.motion_vector import (
     COVARIANCE_SCALE,
     RIDGE,
+    describe,
     log_covariance,
     motion_vector,
+    narrow,
     projection,
+    wide,
 )
 from app.motion.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, standing, turned_about_y, walking, waving
 
+WIDE_PROJECTION_SHA256 = "4af14d8170e8bb4a80c22498f868799ea69b15e4b25050b8149fe2c2e7170ecd"
 PROJECTION_SHA256 = "b0d178b49a7db1d9a942665857243e94f9d94aeb57ac6d00ac212d001a61b291"
 
 
@@ -37,6 +42,26 @@ def apart(one: FloatArray, other: FloatArray) -> float:
 def test_the_projection_never_changes() -> None:
     rounded = np.round(projection() * 1e6).astype("<i8")
     assert hashlib.sha256(rounded.tobytes()).hexdigest() == PROJECTION_SHA256
+    rounded = np.round(projection(512) * 1e6).astype("<i8")
+    assert hashlib.sha256(rounded.tobytes()).hexdigest() == WIDE_PROJECTION_SHA256
+
+
+def test_the_wide_vector_keeps_distances_better() -> None:
+    features = [
+        frame_features(body_track(motion_of(body)))
+        for body in (walking(turn=0.3), walking(), waving(), standing())
+    ]
+    described = [describe(one) for one in features]
+    errors = {
+        project: max(
+            abs(np.linalg.norm(project(one) - project(other)) / np.linalg.norm(one - other) - 1)
+            for one, other in combinations(described, 2)
+        )
+        for project in (narrow, wide)
+    }
+    assert errors[wide] < 0.1
+    np.testing.assert_array_equal(narrow(described[0]), motion_vector(features[0]))
+    assert wide(described[0]).shape == (512,)
 
 
 def test_the_covariance_s_logarithm_equals_its_slow_twin() -> None:

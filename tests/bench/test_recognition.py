@@ -25,6 +25,7 @@ from app.models.folds import recording_of
 from app.models.multilinear import fit_multilinear, recognise_multilinear
 from app.models.perera_experiment import perera_tables
 from app.models.recogniser import fit_recogniser, recognise, recognise_many
+from app.models.recogniser_views import full_samples
 from app.models.recognition import Answer, Recognition
 from app.models.recognition_figures import held_out_recognition_figures, unknown_figures
 from app.models.task_model import Reading
@@ -44,15 +45,22 @@ class Library:
     groups: list[str]
     takes: np.ndarray
     """Take of a dataset-2 clip, 1..5; 0 for the others."""
+    wide: np.ndarray
     angles: np.ndarray
     cycles: list[DancedCycles]
 
+    @property
+    def full(self) -> np.ndarray:
+        return full_samples(self.samples, self.wide)
+
     def part(
-        self, chosen: np.ndarray, *, angles: bool = False
+        self, chosen: np.ndarray, method: str = "default"
     ) -> tuple[np.ndarray, list[str | None], list[str]]:
+        """What a method is given of some clips, and their labels."""
         index = np.flatnonzero(chosen)
         who, what = [self.persons[i] for i in index], [self.tasks[i] for i in index]
-        return (self.angles if angles else self.samples)[index], who, what
+        given = {"default": self.full, "signatures": self.angles}.get(method, self.samples)
+        return given[index], who, what
 
 
 @pytest.fixture(scope="module")
@@ -67,6 +75,7 @@ def library() -> Library:
         [row["task"] for row in rows],
         [recording_of(row["path"]) for row in rows],
         np.array(takes),
+        np.stack([arrays["wide_motion_vector"] for arrays in clips]),
         np.stack([arrays["angle_sample"] for arrays in clips]),
         [danced_cycles(arrays) for arrays in clips],
     )
@@ -88,8 +97,8 @@ def _recognise(
     library: Library, method: str, train: np.ndarray, probe: np.ndarray
 ) -> list[Recognition]:
     """What each clip of `probe` is by a model of `train`, nothing told."""
-    learned = library.part(train, angles=method == "signatures")
-    asked, _, _ = library.part(probe, angles=method == "signatures")
+    learned = library.part(train, method)
+    asked, _, _ = library.part(probe, method)
     if method == "default":
         return recognise_many(fit_recogniser(*learned), asked)
     if method == "perera":
@@ -103,10 +112,10 @@ def _recognise(
 
 def test_the_whole_library(library: Library) -> None:
     figures = held_out_recognition_figures(
-        library.samples, library.persons, library.tasks, library.groups
+        library.samples, library.persons, library.tasks, library.groups, wide=library.wide
     )
     _tell("all clips, 5 folds", figures)
-    record = fit_recogniser(library.samples, library.persons, library.tasks, library.groups)
+    record = fit_recogniser(library.full, library.persons, library.tasks, library.groups)
     _tell("unknown, all clips (threshold chosen on these)", unknown_figures(record))
     assert figures["default"]["task"] > 0.85
     assert figures["default"]["person"] > 0.8
@@ -114,9 +123,11 @@ def test_the_whole_library(library: Library) -> None:
 
 
 def test_five_takes_a_cell(library: Library) -> None:
-    samples, who, what = library.part(library.takes > 0)
-    takes = [str(take) for take in library.takes[library.takes > 0]]
-    figures = held_out_recognition_figures(samples, who, what, takes)
+    second = library.takes > 0
+    samples, who, what = library.part(second, "multilinear")
+    takes = [str(take) for take in library.takes[second]]
+    wide = library.wide[second]
+    figures = held_out_recognition_figures(samples, who, what, takes, wide=wide)
     _tell("dataset 2, a take held out in turn", figures)
     assert figures["default"]["task"] >= 0.993
     assert figures["default"]["person"] >= 0.996
@@ -157,13 +168,17 @@ def test_the_other_factor_known(library: Library) -> None:
     second = library.takes > 0
     hits = []
     for take in range(1, 6):
-        train = library.part(second & (library.takes != take))
-        default, multilinear = fit_recogniser(*train), fit_multilinear(*train)
-        for sample, who, what in zip(*library.part(library.takes == take), strict=True):
+        train, probe = second & (library.takes != take), library.takes == take
+        default = fit_recogniser(*library.part(train))
+        multilinear = fit_multilinear(*library.part(train, "multilinear"))
+        plain = library.part(probe, "multilinear")[0]
+        for full, sample, who, what in zip(
+            library.part(probe)[0], plain, *library.part(probe)[1:], strict=True
+        ):
             hits.append(
                 [
-                    recognise(default, sample, known_task=what).person.candidates[0].label == who,
-                    recognise(default, sample, known_person=who).task.candidates[0].label == what,
+                    recognise(default, full, known_task=what).person.candidates[0].label == who,
+                    recognise(default, full, known_person=who).task.candidates[0].label == what,
                     recognise_multilinear(multilinear, sample, known_task=what)
                     .person.candidates[0]
                     .label
@@ -224,7 +239,8 @@ def test_the_unknown(library: Library, factor: str, method: str, learned: int) -
         _tell("what strangers do", {method: {"called_known": known_task, "best_right": right_task}})
     if method == "default":
         assert shares["balanced_accuracy"] > 0.92
-        assert shares["area_under_curve"] > 0.94
+        assert shares["area_under_curve"] > 0.98
+        assert shares["worst"] >= 0.8
 
 
 def test_perera_s_experiment(library: Library) -> None:
@@ -248,10 +264,10 @@ def test_perera_s_experiment(library: Library) -> None:
 
 def test_fitting_and_probing_are_quick(library: Library) -> None:
     start = time.perf_counter()
-    record = fit_recogniser(library.samples, library.persons, library.tasks, library.groups)
+    record = fit_recogniser(library.full, library.persons, library.tasks, library.groups)
     fitted = time.perf_counter() - start
     start = time.perf_counter()
-    for sample in library.samples[:100]:
+    for sample in library.full[:100]:
         recognise(record, sample)
     probe = (time.perf_counter() - start) / 100
     _tell("seconds", {"default": {"fit": fitted, "probe": probe}})

@@ -3,15 +3,19 @@ from __future__ import annotations
 from itertools import permutations
 
 import numpy as np
+import pytest
+from scipy.stats import multivariate_normal, multivariate_t
 
 from app.models.cells import cell_means, find_cells
 from app.models.hypotheses import Hypotheses, Kind, fit_hypotheses, shrunk
 
 
 def of_kind(record: Hypotheses, kind: Kind) -> tuple[np.ndarray, np.ndarray]:
-    """Means of the hypotheses of a kind, unwhitened, and their covariance."""
-    back = np.linalg.inv(record.whiteners[kind])
-    return record.means[record.kind == kind] @ back, back.T @ back
+    """Means of the hypotheses of a kind, unwhitened, and the covariance of the last of them."""
+    chosen = np.flatnonzero(record.kind == kind)
+    backs = np.linalg.inv(record.whiteners)[record.form[chosen]]
+    means = np.einsum("hd,hde->he", record.means[chosen], backs)
+    return means, backs[-1].T @ backs[-1]
 
 
 def test_strangers_differ_from_each_person_as_pairs_of_persons_do() -> None:
@@ -46,3 +50,46 @@ def test_a_strangers_task_is_found_where_persons_do_it_in_different_ways() -> No
         stranger[(record.kind == Kind.NEW_PERSON) & (record.task == task)].max() for task in (0, 1)
     )
     assert of_x > of_y
+
+
+def test_densities_are_scipys() -> None:
+    rng = np.random.default_rng(2)
+    who, what = ["a", "a", "b", "b"] * 4, ["x", "y"] * 8
+    points = rng.standard_normal((16, 3)) + np.array([[what[i] == "y"] * 3 for i in range(16)])
+    record = fit_hypotheses(points, find_cells(who, what))
+    probes = 2 * rng.standard_normal((5, 3))
+    gaussian, students = record.log_likelihoods(probes), record.log_likelihoods(probes, 7.0)
+    for h, form in enumerate(record.form):
+        back = np.linalg.inv(record.whiteners[form])
+        mean, shape = record.means[h] @ back, record.spread[h] * back.T @ back
+        exact = multivariate_normal(mean, shape).logpdf(probes)
+        np.testing.assert_allclose(np.diff(gaussian[:, h]), np.diff(exact), atol=1e-9)
+        exact = multivariate_t(mean, shape, df=7.0).logpdf(probes)
+        np.testing.assert_allclose(np.diff(students[:, h]), np.diff(exact), atol=1e-9)
+        both = [multivariate_normal(mean, shape).logpdf(mean) - gaussian_at(record, h, mean)]
+        assert both[0] == pytest.approx(multivariate_normal(np.zeros(3)).logpdf(np.zeros(3)))
+
+
+def gaussian_at(record: Hypotheses, hypothesis: int, point: np.ndarray) -> float:
+    return float(record.log_likelihoods(point[None])[0, hypothesis])
+
+
+def test_a_wave_that_is_uneven_is_not_strange_where_a_walk_would_be() -> None:
+    rng = np.random.default_rng(3)
+    persons, tasks, points = [], [], []
+    for person in "abcd":
+        for task, size in (("walk", 0.1), ("wave", 1.0)):
+            place = rng.normal(scale=5, size=6)
+            persons += [person] * 4
+            tasks += [task] * 4
+            points += list(place + rng.normal(scale=size, size=(4, 6)))
+    record = fit_hypotheses(np.array(points), find_cells(persons, tasks))
+    own = record.kind == Kind.SEEN
+    walk, wave = (np.flatnonzero(own & (record.task == task))[0] for task in (0, 1))
+    back = np.linalg.inv(record.whiteners)
+    off = {
+        name: gaussian_at(record, h, record.means[h] @ back[record.form[h]] + 0.8)
+        - gaussian_at(record, h, record.means[h] @ back[record.form[h]])
+        for name, h in (("walk", walk), ("wave", wave))
+    }
+    assert off["walk"] < 5 * off["wave"] < 0

@@ -125,6 +125,28 @@ def test_fitting_twice_gives_the_same(clips: FactorClips, record: Recogniser) ->
         np.testing.assert_array_equal(array, ours[name])
 
 
+def test_what_only_the_wide_vector_tells_is_told(clips: FactorClips) -> None:
+    """Motion samples are the same of all persons: only what follows them tells them apart."""
+    rng = np.random.default_rng(5)
+    blind = clips.samples.copy()
+    blind[:, :20] = rng.normal(scale=0.05, size=(len(blind), 20))
+    _, who, what = clips.where(clips.takes > 0)
+    _, truth, _ = clips.where(clips.takes == 0)
+    told = [
+        recognise_many(
+            fit_recogniser(rows[clips.takes > 0][:, :end], who, what, sample_length=20),
+            rows[clips.takes == 0][:, :end],
+        )
+        for rows, end in ((blind, WIDTH), (blind, 20))
+    ]
+    right = [
+        np.mean([f.person.candidates[0].label == p for f, p in zip(found, truth, strict=True)])
+        for found in told
+    ]
+    assert right[0] > 0.9
+    assert right[1] < 0.5
+
+
 @pytest.mark.parametrize("labels", [[], [None, None, None], ["a", None, None]])
 def test_too_few_labels_are_refused(labels: list[str | None]) -> None:
     with pytest.raises(NotEnoughLabels):

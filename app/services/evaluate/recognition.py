@@ -19,6 +19,7 @@ from app.services.evaluate.recognition_clips import (
     read_training,
 )
 from app.services.evaluate.recognition_methods import (
+    DEFAULT,
     METHODS,
     RANKING,
     SIGNATURES,
@@ -181,6 +182,8 @@ class _Asking:
         return tuple(judged)
 
     def _seen_by(self, method: str) -> JudgedClips:
+        if method == DEFAULT:
+            return self._clips.in_full()
         return self._clips.in_angles() if method == SIGNATURES else self._clips
 
     def _learners(self, *, quickly: bool) -> Iterator[tuple[str, Method, Stopwatch]]:

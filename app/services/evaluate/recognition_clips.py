@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.errors import NotEnoughLabels
+from app.models.recogniser_views import full_samples
 from app.models.recognition_figures import Clips
 from app.numerics.arrays import FloatArray, IntArray
 from app.services.library import Library
@@ -24,7 +25,7 @@ class JudgedClips:
     samples: (N, 1250) motion samples; persons, tasks: (N,) labels, None where there is none;
     groups: (N,) clips of one recording share a value, and are never on both sides; sources:
     (N,) where they come from, None where nobody knows; unlabelled: clips that were left out;
-    angles: (N, 642) angle samples, None where a clip has none.
+    angles: (N, 642) angle samples, None where a clip has none; wide: (N, 512) wide motion vectors.
     """
 
     samples: FloatArray
@@ -34,6 +35,7 @@ class JudgedClips:
     sources: Labels
     unlabelled: int = 0
     angles: FloatArray | None = None
+    wide: FloatArray | None = None
 
     def __len__(self) -> int:
         return len(self.groups)
@@ -45,6 +47,12 @@ class JudgedClips:
             [labels[i] for i in chosen] for labels in (self.persons, self.tasks, self.groups)
         )
         return Clips(self.samples[index], persons, tasks, groups)
+
+    def in_full(self) -> JudgedClips:
+        """The same by their full samples (N, 1762), if they have wide motion vectors."""
+        if self.wide is None:
+            return self
+        return replace(self, samples=full_samples(self.samples, self.wide))
 
     def in_angles(self) -> JudgedClips:
         """The same by their angle samples. Raises NotEnoughLabels where a clip has none."""
@@ -93,4 +101,5 @@ def judged_clips(training: TrainingSet) -> JudgedClips:
         sources=[training.clips[i].source for i in use],
         unlabelled=len(training) - len(use),
         angles=np.stack(told) if told and len(told) == len(use) else None,
+        wide=training.wide[use] if use else None,
     )

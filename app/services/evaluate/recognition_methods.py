@@ -52,7 +52,8 @@ class Judge(Protocol):
     def __call__(
         self, samples: FloatArray, person: str | None = None, task: str | None = None
     ) -> list[tuple[Guess, Guess]]:
-        """Person and task of each of `samples` (n, 1250), which share what is told of them."""
+        """Person and task of each of `samples` (n, width of what was learned from), which share
+        what is told of them."""
 
 
 Method = Callable[[Clips], Judge]
