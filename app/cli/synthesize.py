@@ -76,7 +76,7 @@ def _made_of(made: Synthesised) -> str:
         return f"{one}: this person did record the task"
     tasks, persons = len(quality.given_tasks), len(quality.given_persons)
     if quality.follows:
-        return f"{tasks} of their tasks, after {quality.follows}: {persons} persons' do not agree"
+        return f"{tasks} of their tasks, after {quality.follows}: takes of this one do not agree"
     return f"{tasks} of their tasks, and {persons} other persons' takes of this one"
 
 

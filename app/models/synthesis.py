@@ -20,7 +20,7 @@ import numpy as np
 from app.analysis.motion_shape import SHAPE_LENGTH
 from app.errors import NotEnoughLabels
 from app.models.cells import Cells, find_cells
-from app.models.synthesis_agreement import AGREED, agreement
+from app.models.synthesis_agreement import agree, agreement
 from app.models.synthesis_basis import weights
 from app.models.synthesis_sides import sides, to_side
 from app.models.synthesis_timing import medoid, together
@@ -220,10 +220,10 @@ def _cell_means(rows: FloatArray, cells: Cells) -> tuple[FloatArray, FloatArray]
     means, agreed = np.empty((len(cells), SHAPE_LENGTH)), np.empty(len(cells))
     for cell, of_cell in enumerate(takes):
         agreed[cell] = agreement(timed[of_cell])
-        if agreed[cell] < AGREED:
-            means[cell] = rows[of_cell[medoid(timed[of_cell] * weights())]]
-        else:
+        if agree(agreed[cell]):
             means[cell] = timed[of_cell].mean(axis=0)
+        else:
+            means[cell] = rows[of_cell[medoid(timed[of_cell] * weights())]]
     return means, agreed
 
 

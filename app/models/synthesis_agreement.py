@@ -19,6 +19,11 @@ gesture have .8 to 1.0, different persons' .5 to .95; dances .0 to .3, and gestu
 another one by each person (the *bye* of eight moods) .1."""
 
 
+def agree(agreement: float | None) -> bool:
+    """Whether takes are the same motion; None, of a single one, is."""
+    return agreement is None or agreement >= AGREED
+
+
 def agreement(shapes: FloatArray) -> float:
     """Share (at most 1.0, about 0.0 for motions that have nothing to do with each other) of the
     movement in motion shapes (n, 1378) that they have in common; 1.0 for a single one.

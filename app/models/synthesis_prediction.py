@@ -12,11 +12,17 @@ from app.analysis.motion_sample import SAMPLES
 from app.analysis.motion_shape import CHANNELS, clearance, mirrored
 from app.errors import NotEnoughLabels
 from app.models.synthesis import Synthesis
-from app.models.synthesis_agreement import AGREED
+from app.models.synthesis_agreement import agree
 from app.models.synthesis_basis import weights
-from app.models.synthesis_solving import solve
-from app.models.synthesis_tensor import known_tensor, own_motions, wanted_motions
-from app.models.synthesis_timing import in_own_time
+from app.models.synthesis_solving import follow, solve
+from app.models.synthesis_tensor import (
+    KnownTensor,
+    WantedMotions,
+    known_tensor,
+    own_motions,
+    wanted_motions,
+)
+from app.models.synthesis_timing import Timed, in_own_time
 from app.numerics.arrays import FloatArray
 
 MOST_TASKS = 24
@@ -32,7 +38,8 @@ TEMPO_SLACK = 0.15
 @dataclass(frozen=True, slots=True)
 class Predicted:
     """shape: (1378,) the motion shape; follows: the person whose motion it follows where those
-    who did the task do not agree; agreement: how far they do, None where there is but one."""
+    who did the task do not agree; agreement: how far they do, of a single person how far their
+    takes do, None of a single take."""
 
     shape: FloatArray
     follows: str | None
@@ -60,22 +67,33 @@ def predict(
     own = own_motions(record, {name: told[name] for name in chosen})
     aim = wanted_motions(record, task, others, own)
     known = known_tensor(record, others, own, aim.timed)
-    followed = None if aim.agreement >= AGREED else aim.most_like_all
-    solution = solve(known.basis, aim.timed.shapes, own.timed.shapes, followed)
-    if followed is None:
-        timing = aim.timed.timing.mean(axis=0)
-        beside = own.timed.timing - known.timing.mean(axis=0)
-        timing = timing + solution.carried * (solution.weights @ beside)
+    follows = None
+    if agree(aim.agreement):
+        shape, timing = _made_of_all(known, aim.timed, own.timed)
     else:
-        timing = aim.timed.timing[followed]
-    shape = _as_one_does_it(solution.shape, aim.timed.shapes)
+        shape, timing = _following(known, aim, own.timed)
+        follows = others[aim.most_like_all]
     if shape[-1] < 0.5:
         shape = in_own_time(shape, timing)
-    return Predicted(
-        shape,
-        None if followed is None else others[followed],
-        aim.agreement if len(others) > 1 else None,
-    )
+    return Predicted(shape, follows, aim.agreement)
+
+
+def _made_of_all(known: KnownTensor, wanted: Timed, own: Timed) -> tuple[FloatArray, FloatArray]:
+    """(1378,) and its timing (32,), which is made of the tasks as the motion is."""
+    solution = solve(known.basis, wanted.shapes, own.shapes)
+    beside = solution.weights @ (own.timing - known.timing.mean(axis=0))
+    timing = wanted.timing.mean(axis=0) + solution.carried * beside
+    return _as_one_does_it(solution.shape, wanted.shapes), timing
+
+
+def _following(
+    known: KnownTensor, wanted: WantedMotions, own: Timed
+) -> tuple[FloatArray, FloatArray]:
+    """(1378,) and timing (32,) of the one most like all."""
+    one = wanted.most_like_all
+    theirs = wanted.timed.shapes[one]
+    shape = follow(known.basis[one], theirs, own.shapes)
+    return _as_one_does_it(shape, theirs[None]), wanted.timed.timing[one]
 
 
 def _as_one_does_it(shape: FloatArray, wanted: FloatArray) -> FloatArray:

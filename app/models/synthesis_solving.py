@@ -10,8 +10,8 @@ nearer to what was left out:
   movements tell of each other: a kick's does not belong into a bow, how one stands in both does;
 - the parts of the body have weights of their own, drawn towards those of the whole;
 - a mirrored task is a task: raising the left hand tells how one raises the right.
-Where the others do not agree on the task, which is theirs each, one of them is followed and only
-the asked person's bearing carried over.
+Where the others do not agree on the task no weights make it of other tasks: one of the others is
+followed, and only the asked person's posture carried over.
 """
 
 from __future__ import annotations
@@ -46,14 +46,9 @@ class Solution:
     carried: float
 
 
-def solve(
-    basis: FloatArray, wanted: FloatArray, own: FloatArray, followed: int | None = None
-) -> Solution:
+def solve(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> Solution:
     """What K persons did and the wanted task by each, (K, T, 1378), (K, 1378), and what the asked
-    person did, (T, 1378): eq. 8 jointly, and the residual carried over.
-
-    followed: of the K persons the one whose motion is taken for the mean.
-    """
+    person did, (T, 1378): eq. 8 jointly, and the residual carried over."""
     scale, tasks = weights(), basis.shape[1]
     both = np.concatenate([basis, _mirrored(basis)], axis=1) * scale  # (K, 2T, d)
     asked = np.concatenate([own, mirrored(own)]) * scale  # (2T, d)
@@ -64,17 +59,23 @@ def solve(
     aim = np.sum([one for _, _, one in by_part], axis=0)
     shared = _ridge(gram, aim, prior, WHOLE_RIDGE)
     found = [(part, _ridge(gram, aim, shared, PART_RIDGE)) for part, gram, aim in by_part]
-    beside = both.mean(axis=0) if followed is None else both[followed]
     made, apart = np.empty_like(target), np.empty(SHAPE_LENGTH)
     for part, w in found:
         made[:, part] = np.matmul(w, both[:, :, part])
-        apart[part] = w @ (asked - beside)[:, part]
+        apart[part] = w @ (asked - both.mean(axis=0))[:, part]
     held, of_each = _held(apart), shared[:tasks] + shared[tasks:]
-    if followed is not None:
-        return Solution((target[followed] + held) / scale, of_each, 0.0)
     carried = min(_explained(made, target) / EXPLAINED, 1.0)
     shape = (target.mean(axis=0) + held + carried * (apart - held)) / scale
     return Solution(shape, of_each, carried)
+
+
+def follow(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> FloatArray:
+    """(1378,) what one person did of the wanted task, (1378,), in the posture of another; of what
+    both did otherwise, (T, 1378) by each. How the whole goes and lasts stays as it is: how one
+    walks is not how one goes about another's dance."""
+    posture = _held((own - basis).mean(axis=0))
+    posture[parts()[-1]] = 0.0
+    return np.asarray(wanted + posture)
 
 
 def effects_only(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> FloatArray:

@@ -35,10 +35,11 @@ class OwnMotions:
 @dataclass(frozen=True, slots=True)
 class WantedMotions:
     """timed: the wanted task by K persons, to the side to which the asked one would do it;
-    agreement: how far they agree; most_like_all: which of them is most like the others."""
+    agreement: how far they agree, of a single person their takes, None of a single take;
+    most_like_all: which of them is most like the others."""
 
     timed: Timed
-    agreement: float
+    agreement: float | None
     most_like_all: int
 
 
@@ -78,7 +79,9 @@ def wanted_motions(
     usual = (shapes[:, -1] >= 0.5) == (np.mean(shapes[:, -1]) >= 0.5)
     of_kind = np.flatnonzero(usual)
     rows = timed.shapes[of_kind]
-    return WantedMotions(timed, agreement(rows), int(of_kind[medoid(rows * weights())]))
+    alone = len(persons) == 1
+    agreed = record.cell_agreement(persons[0], task) if alone else agreement(rows)
+    return WantedMotions(timed, agreed, int(of_kind[medoid(rows * weights())]))
 
 
 def known_tensor(

@@ -10,7 +10,7 @@ import numpy as np
 
 from app.errors import ClipNotReady, NotEnoughLabels, NotFound, Place
 from app.models.synthesis import Synthesis, mean_of_takes
-from app.models.synthesis_agreement import AGREED
+from app.models.synthesis_agreement import agree
 from app.models.synthesis_prediction import Predicted, predict
 from app.numerics.arrays import FloatArray
 from app.services import fields
@@ -75,7 +75,7 @@ def _of_person(model: Synthesis, task: str, person: str) -> Plan:
     seen = model.cell(person, task)
     if seen is not None:
         agreement = model.cell_agreement(person, task)
-        follows = None if agreement is None or agreement >= AGREED else person
+        follows = None if agree(agreement) else person
         found = Predicted(seen, follows, agreement)
         return _plan(model, SynthesisKind.SEEN, person, task, found, own, given, (person,))
     found, others = predict(model, given, task), model.who_did(task)

@@ -70,7 +70,7 @@ def judge(
         record = models.get(tx, fitted.id)
         nearest = clips.get_many(tx, [model.ids[first]]).get(model.ids[first])
         takes = list(clips.get_many(tx, list(plan.takes)).values())
-    expected = _expected(record.meta.get("figures", {}), plan)
+    expected = expected_of(record.meta.get("figures", {}), plan)
     return Quality(
         kind=plan.kind,
         given_persons=plan.given_persons,
@@ -92,18 +92,18 @@ def judge(
     )
 
 
-def _expected(figures: dict[str, Any], plan: Plan) -> dict[str, Any]:
-    """The hits of motions like this one, in the row of the held-out figures for as many given, or
-    the nearest fewer; of rows that have no motion like it, of all."""
+def expected_of(figures: dict[str, Any], plan: Plan) -> dict[str, Any]:
+    """The hits of motions like this one, that followed one take or did not, in the row of the
+    held-out figures for as many given that has any, or the nearest fewer, or else more; where
+    none has, the hits of all."""
     rows = figures.get("held_out", {}).get(plan.kind.value, [])
-    if not rows:
-        return {}
+    like = "averaged" if plan.follows is None else "followed"
+    parted = [{**row, **row[like]} for row in rows if row[like]["trials"]]
     is_new_task = plan.kind is SynthesisKind.NEW_TASK
     given = len(plan.given_persons if is_new_task else plan.given_tasks)
+    rows = parted or rows
     fewer = [row for row in rows if row["given"] <= given]
-    row = fewer[-1] if fewer else rows[0]
-    alike = row["averaged" if plan.follows is None else "followed"]
-    return {**row, **(alike if alike["trials"] else {})}
+    return dict(fewer[-1]) if fewer else dict(rows[0]) if rows else {}
 
 
 def _skate(motion: Motion) -> float:

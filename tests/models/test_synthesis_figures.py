@@ -29,6 +29,24 @@ def test_cells_are_left_out_wholly_and_judged_beside_the_baselines() -> None:
     assert found == held_out_synthesis(record, trials=10)
 
 
+def test_what_followed_one_take_and_what_did_not_are_counted_apart() -> None:
+    clips = invented_shapes()
+    shapes = clips.shapes.copy()
+    alone = np.array([task == "t0" for task in clips.tasks])
+    rng = np.random.default_rng(3)  # to each t0 is something else
+    shapes[alone, :-2] = 3 * rng.normal(size=(alone.sum(), shapes.shape[1] - 2))
+    record = fit_synthesis(shapes, clips.persons, clips.tasks)
+    for row in held_out_synthesis(record, trials=100)[NEW_TASK]:
+        drawn = draw_trials(record, NEW_TASK, row["given"], 100)
+        follows = [made(record, NEW_TASK, trial).follows is not None for trial in drawn]
+        assert all(f for trial, f in zip(drawn, follows, strict=True) if trial.task == "t0")
+        followed, averaged = row["followed"], row["averaged"]
+        assert (followed["trials"], averaged["trials"]) == (sum(follows), len(drawn) - sum(follows))
+        hits = sum(part["hit"] * part["trials"] for part in (followed, averaged))
+        assert hits / row["trials"] == pytest.approx(row["hit"], abs=1e-3)
+        assert followed["hit"] < averaged["hit"]
+
+
 def test_real_takes_are_judged_alike_where_there_are_two() -> None:
     clips = invented_shapes()
     mixed = clips.shapes.copy()

@@ -130,7 +130,7 @@ def test_a_take_gestures_when_the_shape_does() -> None:
 
     def raised(at: float) -> BodyTrack:
         body = np.array(standing(180))
-        body[:, hand, 1] += 0.8 * np.exp(-0.5 * ((np.arange(180) / 30 - at) / 0.4) ** 2)
+        body[:, hand, 1] += 0.8 * np.exp(-0.5 * ((np.arange(180) / 30 - at) / 0.25) ** 2)
         return track_of(body)
 
     take, wanted = raised(2.5), motion_shape(raised(3.2)).astype(np.float64)
