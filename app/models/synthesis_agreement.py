@@ -13,10 +13,11 @@ from app.analysis.motion_shape import CHANNELS
 from app.models.synthesis_basis import weights
 from app.numerics.arrays import FloatArray
 
-AGREED = 0.35
-"""Share of their movement that takes must have in common. Aligned, one person's takes of a
-gesture have .8 to 1.0, different persons' .5 to .95; dances .0 to .3, and gestures that are
-another one by each person (the *bye* of eight moods) .1."""
+AGREED = 0.5
+"""Share of their movement that takes must have in common: most. Aligned, one person's takes of a
+gesture have .8 to 1.0, different persons' .6 to .95; unlike dances .0 to .3, and gestures that are
+another one by each person (the *bye* of eight moods) .1. From .35 to .5 the bench's hits are the
+same."""
 
 
 def agree(agreement: float | None) -> bool:
