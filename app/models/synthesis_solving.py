@@ -54,15 +54,16 @@ def solve(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> Solution:
     asked = np.concatenate([own, mirrored(own)]) * scale  # (2T, d)
     target = wanted * scale
     prior = np.concatenate([np.full(tasks, 1 / tasks), np.zeros(tasks)])
-    by_part = [(part, *_normal(both[:, :, part], target[:, part])) for part in parts()]
-    gram = np.sum([one for _, one, _ in by_part], axis=0)
-    aim = np.sum([one for _, _, one in by_part], axis=0)
+    beside = asked - both.mean(axis=0)
+    split = [(part, np.take(both, part, axis=2)) for part in parts()]
+    normal = [_normal(basis, target[:, part]) for part, basis in split]
+    gram, aim = (np.sum([pair[i] for pair in normal], axis=0) for i in range(2))
     shared = _ridge(gram, aim, prior, WHOLE_RIDGE)
-    found = [(part, _ridge(gram, aim, shared, PART_RIDGE)) for part, gram, aim in by_part]
     made, apart = np.empty_like(target), np.empty(SHAPE_LENGTH)
-    for part, w in found:
-        made[:, part] = np.matmul(w, both[:, :, part])
-        apart[part] = w @ (asked - both.mean(axis=0))[:, part]
+    for (part, basis), (gram, aim) in zip(split, normal, strict=True):
+        w = _ridge(gram, aim, shared, PART_RIDGE)
+        made[:, part] = np.matmul(w, basis)
+        apart[part] = w @ beside[:, part]
     held, of_each = _held(apart), shared[:tasks] + shared[tasks:]
     carried = min(_explained(made, target) / EXPLAINED, 1.0)
     shape = (target.mean(axis=0) + held + carried * (apart - held)) / scale
@@ -100,8 +101,8 @@ def _explained(made: FloatArray, target: FloatArray) -> float:
 
 def _normal(basis: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:
     """(2T, 2T) and (2T,): the normal equations of all persons together."""
-    rows = basis.transpose(1, 0, 2).reshape(basis.shape[1], -1)  # (2T, K d)
-    return rows @ rows.T, rows @ target.ravel()
+    gram = np.matmul(basis, basis.transpose(0, 2, 1)).sum(axis=0)
+    return gram, np.matmul(basis, target[:, :, None]).sum(axis=0)[:, 0]
 
 
 def _ridge(gram: FloatArray, aim: FloatArray, prior: FloatArray, ridge: float) -> FloatArray:
