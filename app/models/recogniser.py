@@ -23,11 +23,11 @@ from app.models.holding_out import Held, rounds
 from app.models.hypotheses import fit_hypotheses
 from app.models.recogniser_views import (
     SAMPLE_DIMENSIONS,
-    WIDE_DIMENSIONS,
     Logs,
     Seen,
     View,
     both_views,
+    wide_dimensions,
 )
 from app.models.recognition import Answer, Recognition, answer, given
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
@@ -103,10 +103,10 @@ def fit_recogniser(
     persons, tasks = [persons[i] for i in use], [tasks[i] for i in use]
     together = [groups[i] if groups is not None else str(i) for i in use]
     rows = both_views(np.asarray(samples)[use], sample_length)
-    sample = principal_axes(rows.sample, SAMPLE_DIMENSIONS)
-    wide = principal_axes(rows.wide, WIDE_DIMENSIONS)
-    points = Seen(sample.project(rows.sample), wide.project(rows.wide))
     cells = find_cells(persons, tasks)
+    sample = principal_axes(rows.sample, SAMPLE_DIMENSIONS)
+    wide = principal_axes(rows.wide, wide_dimensions(len(cells)))
+    points = Seen(sample.project(rows.sample), wide.project(rows.wide))
     return Recogniser(
         cells.persons,
         cells.tasks,
