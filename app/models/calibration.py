@@ -24,7 +24,7 @@ USUAL_FALSE_REJECTION = 0.02
 """Known clips refused where the library is too small to hold anything out as unknown."""
 
 LEAST_USUAL = 20
-"""Clips of both kinds that tell their mean and deviation."""
+"""Clips of both kinds that tell their median and spread."""
 
 LEAST_BELIEF = 1e-9
 """Of being known: of what is surely new the labels still keep their order as candidates."""
@@ -104,25 +104,35 @@ class Calibration:
 
 
 def fit_calibration(
-    evidence: FloatArray, novelty: FloatArray, truth: IntArray, seen: BoolArray | None = None
+    evidence: FloatArray,
+    novelty: FloatArray,
+    truth: IntArray,
+    seen: BoolArray | None = None,
+    imagined: FloatArray | None = None,
 ) -> Calibration:
     """Calibrate on held-out clips; sensible constants where there are none.
 
     seen: (n,) whether the same person at the same task was among the training clips, none if
     not given. Known clips of which that is not true look newer than those that will be asked
-    about, so that the threshold is set, and errors are told, by the others where there are enough.
+    about, so that the threshold is set, and errors are told, by the others where there are enough;
+    else by `imagined`, the (m,) novelties that further takes of what was recorded would have.
     """
     known = truth != NEW
-    usual = known & seen if seen is not None else known
-    enough = seen is not None and min(usual.sum(), (~known).sum()) >= LEAST_USUAL
-    judged = usual if enough else known
-    threshold = (_alike if enough else _threshold)(novelty[judged], novelty[~known])
+    new, around = novelty[~known], novelty[known]
+    judged = novelty[known & seen] if seen is not None else novelty[:0]
+    if len(judged) < LEAST_USUAL and imagined is not None:
+        judged = around = imagined
+    if min(len(judged), len(new)) >= LEAST_USUAL:
+        threshold = _alike(judged, new)
+    else:
+        judged = around = novelty[known]
+        threshold = _threshold(judged, new)
     return Calibration(
         temperature=_temperature(evidence[known], truth[known]),
         threshold=threshold,
-        scale=_scale(novelty - threshold, known),
-        known_novelty=np.sort(novelty[judged]),
-        new_novelty=np.sort(novelty[~known]),
+        scale=_scale(around - threshold, new - threshold),
+        known_novelty=np.sort(judged),
+        new_novelty=np.sort(new),
     )
 
 
@@ -173,11 +183,10 @@ def _alike(known: FloatArray, new: FloatArray) -> float:
     return float((medians * ranges[::-1]).sum() / ranges.sum())
 
 
-def _scale(beyond: FloatArray, known: BoolArray) -> float:
-    """The fall-off under which what held-out clips turned out to be is likeliest."""
-    if known.all() or not known.any():
+def _scale(known: FloatArray, new: FloatArray) -> float:
+    """The fall-off under which what held-out clips turned out to be is likeliest, from their
+    novelties beyond the threshold; both weigh the same."""
+    if not len(known) or not len(new):
         return 1.0
-    weight = np.where(known, 0.5 / known.sum(), 0.5 / (~known).sum())
-    side = np.where(known, -1.0, 1.0)
-    loss = [(weight * np.logaddexp(0, -side * beyond / s)).sum() for s in SCALES]
+    loss = [np.logaddexp(0, known / s).mean() + np.logaddexp(0, -new / s).mean() for s in SCALES]
     return float(SCALES[int(np.argmin(loss))])

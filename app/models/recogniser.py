@@ -18,8 +18,8 @@ import numpy as np
 from app.analysis.motion_sample import SAMPLE_LENGTH
 from app.errors import NotEnoughLabels
 from app.models.calibration import NEW, Calibration, fit_calibration
-from app.models.cells import Cells, find_cells
-from app.models.holding_out import Held, rounds
+from app.models.cells import find_cells
+from app.models.holding_out import MOST_PROBES, Held, rounds
 from app.models.hypotheses import fit_hypotheses
 from app.models.recogniser_views import (
     SAMPLE_DIMENSIONS,
@@ -27,6 +27,8 @@ from app.models.recogniser_views import (
     Seen,
     View,
     both_views,
+    evidence,
+    newness,
     wide_dimensions,
 )
 from app.models.recognition import Answer, Recognition, answer, given
@@ -35,18 +37,27 @@ from app.numerics.principal_axes import principal_axes
 
 RECOGNISER_VERSION = 3
 
+MOSTLY_REPEATED = 0.5
+"""Share of clips beside which there must be another of the same person at the same task for takes
+to count as repeated."""
+
+IMAGINED = 3
+"""Takes of each cell that are imagined, by which novelty is judged where takes are not repeated."""
+
 _Arrays = dict[str, np.ndarray[Any, Any]]
 
 
 @dataclass(frozen=True, slots=True)
 class Recogniser:
     """persons, tasks: sorted labels, to which indices elsewhere refer; sample, wide: the two
-    ways of looking, whose hypotheses are of the same kinds and labels in the same order."""
+    ways of looking, whose hypotheses are of the same kinds and labels in the same order;
+    persons_by_both: whether new persons are told by both (see Logs)."""
 
     persons: tuple[str, ...]
     tasks: tuple[str, ...]
     sample: View
     wide: View
+    persons_by_both: bool
     person_calibration: Calibration
     task_calibration: Calibration
 
@@ -63,6 +74,7 @@ class Recogniser:
         arrays = self.sample.to_arrays("sample") | self.wide.to_arrays("wide")
         meta: dict[str, Any] = {"version": RECOGNISER_VERSION}
         meta |= {"persons": list(self.persons), "tasks": list(self.tasks)}
+        meta["persons_by_both"] = self.persons_by_both
         for name in ("person", "task"):
             calibration: Calibration = getattr(self, f"{name}_calibration")
             found, meta[f"{name}_calibration"] = calibration.to_arrays(name)
@@ -79,6 +91,7 @@ class Recogniser:
             tuple(meta["tasks"]),
             View.from_arrays("sample", arrays),
             View.from_arrays("wide", arrays),
+            bool(meta["persons_by_both"]),
             Calibration.from_arrays("person", arrays, meta["person_calibration"]),
             Calibration.from_arrays("task", arrays, meta["task_calibration"]),
         )
@@ -107,13 +120,14 @@ def fit_recogniser(
     sample = principal_axes(rows.sample, SAMPLE_DIMENSIONS)
     wide = principal_axes(rows.wide, wide_dimensions(len(cells)))
     points = Seen(sample.project(rows.sample), wide.project(rows.wide))
-    return Recogniser(
-        cells.persons,
-        cells.tasks,
+    views = (
         View(sample, fit_hypotheses(points.sample, cells)),
         View(wide, fit_hypotheses(points.wide, cells)),
-        *_calibrations(points, persons, tasks, together, cells),
     )
+    repeated = int(cells.takes[cells.takes > 1].sum())
+    by_both = repeated < MOSTLY_REPEATED * len(use)
+    person, task = _calibrations(points, persons, tasks, together, views, by_both)
+    return Recogniser(cells.persons, cells.tasks, *views, by_both, person, task)
 
 
 def recognise(
@@ -140,25 +154,29 @@ def recognise_many(
     sample, wide = record.sample, record.wide
     points = Seen(sample.axes.project(rows.sample), wide.axes.project(rows.wide))
     h = wide.hypotheses
-    logs = Logs.under(sample.hypotheses, h, points)
+    logs = Logs.under(sample.hypotheses, h, points, persons_by_both=record.persons_by_both)
     logs = logs.without_others(h.person, record.persons, known_person)
     logs = logs.without_others(h.task, record.tasks, known_task)
-    who = _answers(logs, h.person, record.persons, record.person_calibration, known_person)
-    what = _answers(logs, h.task, record.tasks, record.task_calibration, known_task)
+    told = record.persons, record.person_calibration, known_person
+    who = _answers(logs.ranking, logs.new_person, h.person, *told)
+    told = record.tasks, record.task_calibration, known_task
+    what = _answers(logs.ranking, logs.new_task, h.task, *told)
     return [Recognition(person, task) for person, task in zip(who, what, strict=True)]
 
 
 def _answers(
-    logs: Logs,
+    ranking: FloatArray,
+    novelty: FloatArray,
     label: IntArray,
     names: tuple[str, ...],
     calibration: Calibration,
     known: str | None,
 ) -> list[Answer]:
+    """From log densities (n, h) by which labels are ranked and by which is told what is new."""
     if known is not None or not names:
-        return [given(known or "", names)] * len(logs.ranking)
-    new = logs.newness(label)
-    beliefs = calibration.beliefs(logs.evidence(label, len(names)), new)
+        return [given(known or "", names)] * len(ranking)
+    new = newness(novelty, label)
+    beliefs = calibration.beliefs(evidence(ranking, label, len(names)), new)
     beyond = (new - calibration.threshold) / calibration.scale
     return [
         answer(names, row, bool(n <= 0), float(n)) for row, n in zip(beliefs, beyond, strict=True)
@@ -174,30 +192,43 @@ def _calibrations(
     persons: Sequence[str | None],
     tasks: Sequence[str | None],
     groups: Sequence[str],
-    cells: Cells,
+    views: tuple[View, View],
+    persons_by_both: bool,
 ) -> tuple[Calibration, Calibration]:
-    """For persons and for tasks, from rounds that hold out clips, persons and tasks."""
+    """For persons and for tasks, from rounds that hold out clips, persons and tasks, and from
+    further takes as the `views` on all clips imagine them."""
     of_persons, of_tasks = [], []
+    names = [tuple(sorted({label for label in labels if label})) for labels in (persons, tasks)]
     for held, train, probe in rounds(persons, tasks, groups):
         seen = find_cells([persons[i] for i in train], [tasks[i] for i in train])
         sample, h = (fit_hypotheses(part, seen) for part in points.of(train))
-        logs = Logs.under(sample, h, points.of(probe))
+        logs = Logs.under(sample, h, points.of(probe), persons_by_both=persons_by_both)
         who, what = [persons[i] for i in probe], [tasks[i] for i in probe]
         pairs = {(persons[i], tasks[i]) for i in train}
         again = np.array([pair in pairs for pair in zip(who, what, strict=True)], dtype=bool)
         if held is not Held.TASKS:
-            of_persons.append(_held_out(logs, h.person, seen.persons, who, cells.persons, again))
+            new = newness(logs.new_person, h.person)
+            ranked = logs.ranking, h.person, seen.persons
+            of_persons.append(_held_out(*ranked, new, who, names[0], again))
         # A stranger's walk is a walk: persons held out count as known tasks.
-        of_tasks.append(_held_out(logs, h.task, seen.tasks, what, cells.tasks, again))
+        new = newness(logs.new_task, h.task)
+        of_tasks.append(_held_out(logs.ranking, h.task, seen.tasks, new, what, names[1], again))
     # Judged by clips of whom and what were recorded together, at the cost of strangers, whose walk
     # is more often called unknown, though `walk` stays its best candidate.
-    return _calibrated(of_persons, len(cells.persons)), _calibrated(of_tasks, len(cells.tasks))
+    sample, h = (view.hypotheses for view in views)
+    further = Seen(*(each.further_takes(IMAGINED, MOST_PROBES) for each in (sample, h)))
+    imagined = Logs.under(sample, h, further, persons_by_both=persons_by_both)
+    return (
+        _calibrated(of_persons, len(names[0]), newness(imagined.new_person, h.person)),
+        _calibrated(of_tasks, len(names[1]), newness(imagined.new_task, h.task)),
+    )
 
 
 def _held_out(
-    logs: Logs,
+    ranking: FloatArray,
     label: IntArray,
     seen: tuple[str, ...],
+    new: FloatArray,
     truth: Sequence[str | None],
     names: tuple[str, ...],
     again: BoolArray,
@@ -206,23 +237,16 @@ def _held_out(
     has = np.array([bool(name) for name in truth], dtype=bool)
     if not seen or not has.any():
         return _nothing(len(names))
-    logs = logs.of(has)
-    evidence = np.full((int(has.sum()), len(names)), -np.inf)
-    columns = [names.index(name) for name in seen]
-    evidence[:, columns] = logs.evidence(label, len(seen))
+    found = np.full((int(has.sum()), len(names)), -np.inf)
+    found[:, [names.index(name) for name in seen]] = evidence(ranking[has], label, len(seen))
     index = [names.index(name) if name in seen else NEW for name in truth if name]
-    return (
-        evidence,
-        logs.newness(label),
-        np.array(index, dtype=np.int64),
-        again[has],
-    )
+    return found, new[has], np.array(index, dtype=np.int64), again[has]
 
 
-def _calibrated(held: list[_HeldOut], labels: int) -> Calibration:
+def _calibrated(held: list[_HeldOut], labels: int, imagined: FloatArray) -> Calibration:
     parts = zip(_nothing(labels), *held, strict=True)
-    evidence, new, truth, again = (np.concatenate(part) for part in parts)
-    return fit_calibration(evidence, new, truth, again)
+    found, new, truth, again = (np.concatenate(part) for part in parts)
+    return fit_calibration(found, new, truth, again, imagined)
 
 
 def _nothing(labels: int) -> _HeldOut:

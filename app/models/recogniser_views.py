@@ -92,26 +92,33 @@ def both_views(samples: FloatArray, sample_length: int = SAMPLE_LENGTH) -> Seen:
 
 
 class Logs(NamedTuple):
-    """Log densities (n, h) of n clips under the same hypotheses: by `ranking` labels are ranked,
-    by `novelty` is told what is new."""
+    """Log densities (n, h) of n clips under the same hypotheses: by `ranking` labels are ranked;
+    by the others is told whether the person, and whether the task, is new."""
 
     ranking: FloatArray
-    novelty: FloatArray
+    new_person: FloatArray
+    new_task: FloatArray
 
     @classmethod
-    def under(cls, sample: Hypotheses, wide: Hypotheses, points: Seen) -> Logs:
-        """Ranking by the mean of both views, Student's; novelty by the wide one, Gaussian.
+    def under(
+        cls, sample: Hypotheses, wide: Hypotheses, points: Seen, *, persons_by_both: bool
+    ) -> Logs:
+        """Ranking by the mean of both views, Student's; what is new by the wide one, Gaussian.
 
-        On the samples' view takes of one task differ too much to tell what is new.
+        persons_by_both: where takes are hardly repeated, persons are told by both views. Where
+        they are, the samples' view only disturbs, since takes of one task differ much in it.
         """
-        by_sample = sample.log_likelihoods(points.sample, FREEDOM)
-        squares = wide.squares(points.wide)
-        by_wide = wide.log_densities(squares, FREEDOM)
-        return cls((by_sample + by_wide) / 2, wide.log_densities(squares))
+        of_sample, of_wide = sample.squares(points.sample), wide.squares(points.wide)
+        by_sample = sample.log_densities(of_sample, FREEDOM)
+        by_wide = wide.log_densities(of_wide, FREEDOM)
+        person = task = wide.log_densities(of_wide)
+        if persons_by_both:
+            person = (sample.log_densities(of_sample) + task) / 2
+        return cls((by_sample + by_wide) / 2, person, task)
 
     def of(self, index: BoolArray) -> Logs:
         """Of some clips."""
-        return Logs(self.ranking[index], self.novelty[index])
+        return Logs(*(logs[index] for logs in self))
 
     def without_others(self, label: IntArray, names: tuple[str, ...], known: str | None) -> Logs:
         """Without the hypotheses that name another label than the known one.
@@ -124,18 +131,23 @@ class Logs(NamedTuple):
         left = (label == index) | (label == NEW)
         return Logs(*(np.where(left, logs, -np.inf) for logs in self))
 
-    def evidence(self, label: IntArray, labels: int) -> FloatArray:
-        """(n, labels) log of the summed densities of the hypotheses naming each label.
 
-        label: (h,), -1 for new. Each label is named at least once.
-        """
-        order = np.argsort(label, kind="stable")
-        order = order[label[order] >= 0]
-        starts = np.searchsorted(label[order], np.arange(labels))
-        return np.asarray(np.logaddexp.reduceat(self.ranking[:, order], starts, axis=1))
+def evidence(ranking: FloatArray, label: IntArray, labels: int) -> FloatArray:
+    """(n, labels) log of the summed densities of the hypotheses naming each label.
 
-    def newness(self, label: IntArray) -> FloatArray:
-        """(n,) log evidence that the label is a new one, less that it is a known one."""
-        new = label < 0
-        said_new = np.logaddexp.reduce(self.novelty[:, new], axis=1)
-        return np.asarray(said_new - np.logaddexp.reduce(self.novelty[:, ~new], axis=1))
+    ranking: (n, h) log densities; label: (h,), -1 for new. Each label is named at least once.
+    """
+    order = np.argsort(label, kind="stable")
+    order = order[label[order] >= 0]
+    starts = np.searchsorted(label[order], np.arange(labels))
+    return np.asarray(np.logaddexp.reduceat(ranking[:, order], starts, axis=1))
+
+
+def newness(logs: FloatArray, label: IntArray) -> FloatArray:
+    """(n,) log evidence that the label is a new one, less that it is a known one.
+
+    logs: (n, h); label: (h,), -1 for new.
+    """
+    new = label < 0
+    said_new = np.logaddexp.reduce(logs[:, new], axis=1)
+    return np.asarray(said_new - np.logaddexp.reduce(logs[:, ~new], axis=1))

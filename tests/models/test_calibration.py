@@ -111,3 +111,19 @@ def test_one_task_that_is_far_from_all_others_does_not_hide_the_other_new_ones(f
     accepted, rejected = found.error_rates()
     assert accepted <= 0.02
     assert rejected <= 0.02
+
+
+def test_where_no_take_was_repeated_imagined_ones_set_the_threshold() -> None:
+    rng = np.random.default_rng(4)
+    unusual, new = rng.normal(1, 1, 60), rng.normal(6, 2, 60)
+    novelty, truth = np.concatenate([unusual, new]), np.repeat([0, NEW], 60)
+    seen, imagined = np.zeros(120, dtype=bool), rng.normal(-6, 1, 90)
+    evidence = np.zeros((120, 1))
+    found = fit_calibration(evidence, novelty, truth, seen, imagined)
+    assert found.threshold == pytest.approx(-2.0, abs=0.6)
+    np.testing.assert_array_equal(found.known_novelty, np.sort(imagined))
+    without = fit_calibration(evidence, novelty, truth, seen)
+    assert without.threshold > 1.0
+    # nothing new was held out: nothing can be said by imagined takes either
+    none_new = fit_calibration(evidence[:60], unusual, truth[:60], seen[:60], imagined)
+    assert none_new.threshold == fit_calibration(evidence[:60], unusual, truth[:60]).threshold

@@ -93,3 +93,20 @@ def test_a_wave_that_is_uneven_is_not_strange_where_a_walk_would_be() -> None:
         for name, h in (("walk", walk), ("wave", wave))
     }
     assert off["walk"] < 5 * off["wave"] < 0
+
+
+def test_further_takes_are_as_their_cells_scatter() -> None:
+    rng = np.random.default_rng(4)
+    persons, tasks = [p for p in "abc" for _ in range(40)], ["x", "y"] * 60
+    points = rng.normal(size=(120, 3)) * [0.1, 1.0, 0.5] + np.arange(120)[:, None] // 40
+    record = fit_hypotheses(points, find_cells(persons, tasks))
+    takes = record.further_takes(3000, most_cells=100).reshape(6, 3000, 3)
+    seen = np.flatnonzero(record.kind == Kind.SEEN)
+    for h, drawn in zip(seen, takes, strict=True):
+        back = np.linalg.inv(record.whiteners[record.form[h]])
+        truth = record.spread[h] * back.T @ back
+        np.testing.assert_allclose(drawn.mean(axis=0), record.means[h] @ back, atol=0.1)
+        assert np.linalg.norm(np.cov(drawn.T) - truth) < 0.1 * np.linalg.norm(truth)
+    np.testing.assert_array_equal(takes[:1], record.further_takes(3000, 1).reshape(1, 3000, 3))
+    nothing = fit_hypotheses(points, find_cells(persons, [None] * 120))
+    assert nothing.further_takes(3, 100).shape == (0, 3)

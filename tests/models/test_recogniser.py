@@ -76,6 +76,21 @@ def test_one_take_a_cell_is_enough(clips: FactorClips) -> None:
     assert np.mean(right) > 0.9
 
 
+@pytest.mark.parametrize("factor", ["person", "task"])
+def test_what_is_new_is_told_from_one_take_a_cell_too(factor: str) -> None:
+    clips = factor_clips(persons=6, tasks=7)
+    labels = clips.persons if factor == "person" else clips.tasks
+    new = np.array([label.endswith("3") for label in labels])
+    record = fit_recogniser(*clips.where(~new & (clips.takes == 1)))
+    assert record.persons_by_both
+    known = [
+        np.mean([getattr(f, factor).known for f in recognise_many(record, clips.where(asked)[0])])
+        for asked in (~new & (clips.takes != 1), new)
+    ]
+    assert known[0] > 0.9
+    assert known[1] < 0.2
+
+
 def test_libraries_that_lack_labels_answer_what_they_can(clips: FactorClips) -> None:
     samples, who, what = clips.where(clips.takes > 0)
     probe, _, truth = clips.where(clips.takes == 0)
