@@ -39,7 +39,8 @@ _FAR = 1e30
 class Calibration:
     """temperature: divides log evidence; threshold: novelty above it is unknown; scale:
     novelty over which belief in being known falls off; known_novelty, new_novelty: sorted
-    novelties of held-out clips, from which error rates at any threshold follow."""
+    novelties of held-out clips (or imagined ones, see fit_calibration), from which error rates
+    at any threshold follow."""
 
     temperature: float
     threshold: float

@@ -107,7 +107,8 @@ def unknown_figures(record: Recogniser | TensorRecogniser) -> dict[str, dict[str
     and "task", and "curve", from which a false-accept rate can be chosen.
 
     From the clips, persons and tasks that were held out when `record` was fitted; the
-    threshold was chosen on them, so these are a little too good.
+    threshold was chosen on them, so these are a little too good. Where takes were hardly
+    repeated, what is known are further takes as the recogniser imagines them.
     """
     figures: dict[str, dict[str, Any]] = {}
     for name in ("person", "task"):

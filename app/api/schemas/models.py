@@ -22,7 +22,12 @@ class ErrorsInForce(Outgoing):
 
     threshold: float = Field(description="Novelty above which something is called new.")
     false_acceptance: float = Field(ge=0, le=1, description="Of what is new, called known.")
-    false_rejection: float = Field(ge=0, le=1, description="Of what is known, called new.")
+    false_rejection: float = Field(
+        ge=0,
+        le=1,
+        description="Of what is known, called new; where takes were hardly repeated, of further"
+        " takes as the recogniser imagines them.",
+    )
 
     @classmethod
     def of(cls, errors: Errors) -> ErrorsInForce:
