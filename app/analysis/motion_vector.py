@@ -20,6 +20,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
 from app.analysis.frame_features import FEATURES
@@ -82,7 +83,7 @@ def narrow(described: FloatArray) -> FloatArray:
 
 def wide(described: FloatArray) -> FloatArray:
     """(512,) float32 the wide motion vector, from `describe` (3606,)."""
-    return np.asarray(described @ projection(WIDE_DIMENSIONS), dtype=np.float32)
+    return np.asarray(described.astype(np.float32) @ _wide_projection())
 
 
 def course(features: FloatArray) -> FloatArray:
@@ -140,7 +141,13 @@ def log_covariance(features: FloatArray) -> FloatArray:
     return np.asarray((weights * logarithm)[np.triu_indices(count)] * COVARIANCE_SCALE)
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=1)
+def _wide_projection() -> NDArray[np.float32]:
+    """(3606, 512); half the precision, since all of it is read for each clip."""
+    return projection(WIDE_DIMENSIONS).astype(np.float32)
+
+
+@lru_cache(maxsize=1)
 def projection(dimensions: int = DIMENSIONS) -> FloatArray:
     """(3606, dimensions) Gaussian, of variance 1 over `dimensions`; the same for ever.
 
