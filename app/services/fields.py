@@ -17,6 +17,7 @@ from app.motion.units import METRES_PER_UNIT
 
 MAX_TEXT = 300
 """Characters in a name or label."""
+NO_CONTROL = "must not hold control characters"
 MAX_WORDS = 100
 """Words on one clip."""
 MAX_LIMIT = 1000
@@ -45,9 +46,14 @@ def text(field: str, value: str | None) -> str | None:
     tidy = unicodedata.normalize("NFC", value).strip()
     if len(tidy) > MAX_TEXT:
         raise bad_field(field, f"must not be longer than {MAX_TEXT} characters")
-    if any(unicodedata.category(c) in ("Cc", "Cs") for c in tidy):
-        raise bad_field(field, "must not hold control characters")
+    if holds_control(tidy):
+        raise bad_field(field, NO_CONTROL)
     return tidy or None
+
+
+def holds_control(value: str) -> bool:
+    """Whether there is a control character in it, or half of a surrogate pair."""
+    return any(unicodedata.category(c) in ("Cc", "Cs") for c in value)
 
 
 def words(value: str | Iterable[str] | None) -> tuple[str, ...] | None:

@@ -150,6 +150,15 @@ def test_fields_of_a_query(
     assert_problem(answer, 422, "bad_field", location)
 
 
+@pytest.mark.parametrize("typed", ["\0", "a\0b", "a\nb"])
+@pytest.mark.parametrize("path", ["/v1/clips", "/v1/words"])
+def test_what_is_typed_holds_no_control_character(
+    idle: httpx2.Client, path: str, typed: str
+) -> None:
+    # SQLite's LIKE ends at a NUL: it would find every clip
+    assert_problem(idle.get(path, params={"q": typed}), 422, "bad_field", "query.q")
+
+
 def test_a_body_that_is_no_object(idle: httpx2.Client) -> None:
     for body in ("[]", '"x"', "null", "1"):
         headers = {"Content-Type": "application/json"}

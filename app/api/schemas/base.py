@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+
+from app.services import fields
 
 Value = TypeVar("Value")
 
@@ -28,6 +30,15 @@ def _as_list(value: Any) -> Any:
 def _as_words(value: Any) -> Any:
     return value.split() if isinstance(value, str) else value
 
+
+def _without_control(value: str) -> str:
+    if fields.holds_control(value):
+        raise ValueError(fields.NO_CONTROL)
+    return value
+
+
+PartOfName = Annotated[str, Field(max_length=300), AfterValidator(_without_control)]
+"""What was typed of a name; SQLite's LIKE would end at a NUL, and so find everything."""
 
 AnyOf = Annotated[
     list[Annotated[str, Field(min_length=1, max_length=300)]],

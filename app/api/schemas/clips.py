@@ -8,7 +8,15 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field, Json
 
-from app.api.schemas.base import Cursor, FormWords, Incoming, Limit, Outgoing, Seconds
+from app.api.schemas.base import (
+    Cursor,
+    FormWords,
+    Incoming,
+    Limit,
+    Outgoing,
+    PartOfName,
+    Seconds,
+)
 from app.api.schemas.filters import Filter
 from app.api.schemas.jobs import Job
 from app.api.schemas.problem import Problem
@@ -210,7 +218,7 @@ class ClipQuery(Filter):
     """Filters of a list of clips, those of searches among them; all that are given must hold."""
 
     state: ClipState | None = None
-    q: str | None = Field(None, max_length=300, description="Part of the name.")
+    q: PartOfName | None = Field(None, description="Part of the name.")
     sort: Sort = Field("-created_at", description="A leading - turns the order round.")
     limit: Limit = 10
     cursor: Cursor | None = None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.api.schemas.base import Incoming, Outgoing
+from app.api.schemas.base import Incoming, Outgoing, PartOfName
 from app.services.labels import LabelCount
 
 
@@ -38,9 +38,8 @@ class NamedCounts(Outgoing):
 class WordBeginning(Incoming):
     """What was typed of a word."""
 
-    q: str | None = Field(
+    q: PartOfName | None = Field(
         None,
-        max_length=300,
         description="Only words that begin with this, or hold it, else those that it is a form of.",
     )
     limit: int = Field(10, ge=1, le=1000, description="Most completions, with `q`.")
