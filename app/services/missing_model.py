@@ -6,10 +6,15 @@ from typing import Any
 
 from app.errors import ModelBeingFitted, ModelNotFitted
 from app.store import jobs
+from app.store.clip_listing import is_being_analysed_anew
 from app.store.engine import Tx
 from app.store.job_record import OPEN_STATES, JobKind, JobRecord, JobState
 
 WHAT_TO_DO = "Fit the models: POST /v1/models/fit, or `kinedex fit`."
+UPGRADING = (
+    "The models are being fitted anew by themselves, once the clips are analysed anew, as this "
+    "version of Kinedex needs them: ask again when that has ended."
+)
 WHY_REMOVED = (
     "a person whom it held was removed from the library, or recognising people was switched off"
 )
@@ -18,7 +23,8 @@ WHY_REMOVED = (
 def missing_model(tx: Tx, kind: str) -> ModelNotFitted:
     """What to raise for a kind of which no model is in force.
 
-    ModelBeingFitted where a fit waits or runs; else with the reason that the last fit gave.
+    ModelBeingFitted where a fit waits or runs, or will once clips of an earlier analysis are
+    analysed anew; else with the reason that the last fit gave.
     """
     outcome = _last_outcome(tx, kind)
     # What the last fit made is taken away for this reason only.
@@ -34,6 +40,8 @@ def missing_model(tx: Tx, kind: str) -> ModelNotFitted:
         return ModelBeingFitted(f"{what}. {_ask_again(anew, fit)}")
     if "reason" in outcome:
         return ModelNotFitted(f"{what}. {outcome['reason']}")
+    if _is_upgrading(tx):
+        return ModelBeingFitted(f"{what}. {UPGRADING}")
     return ModelNotFitted(f"{what}. {WHAT_TO_DO}")
 
 
@@ -43,7 +51,16 @@ def outdated_model(tx: Tx, kind: str) -> ModelNotFitted:
     fit = _open_fit(tx)
     if fit is not None:
         return ModelBeingFitted(f"{what}. {_ask_again('It is being fitted anew', fit)}")
+    if _is_upgrading(tx):
+        return ModelBeingFitted(f"{what}. {UPGRADING}")
     return ModelNotFitted(f"{what}. {WHAT_TO_DO}")
+
+
+def _is_upgrading(tx: Tx) -> bool:
+    """Whether a worker analyses anew what another version described; it fits after that."""
+    from app.analysis.analyse import ANALYSIS_VERSION
+
+    return is_being_analysed_anew(tx, ANALYSIS_VERSION)
 
 
 def _ask_again(doing: str, fit: JobRecord) -> str:

@@ -71,6 +71,13 @@ def list_ids_of_other_analysis(tx: Tx, version: int) -> tuple[str, ...]:
     return tuple(tx.execute(query.order_by(clips.c.id)).scalars())
 
 
+def is_being_analysed_anew(tx: Tx, version: int) -> bool:
+    """Whether a clip that another analysis than `version` described waits for it, or is at it."""
+    waiting = ClipFilter(state=(ClipState.QUEUED, ClipState.PROCESSING))
+    query = select(clips.c.id).where(condition(waiting), clips.c.analysis_version != version)
+    return tx.execute(query.limit(1)).first() is not None
+
+
 def _sort_of(sort: str) -> tuple[_Sort, bool]:
     name = sort.removeprefix("-")
     if name not in _SORTS:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import pytest
 
 from app.errors import ModelBeingFitted, ModelNotFitted
-from app.services import models
+from app.services import models, reanalysis
+from app.services.demo import DemoClip
 from app.services.library import Library
 from app.store import models as stored
+from tests.services.conftest import upload, work
 
 
 def test_a_model_of_another_version_is_to_be_fitted_again(lib: Library) -> None:
@@ -20,6 +22,31 @@ def test_a_model_of_another_version_is_to_be_fitted_again(lib: Library) -> None:
     job = models.request_fit(lib)
     with pytest.raises(ModelBeingFitted, match=f"another version.* job {job.id} has ended"):
         lib.models.multilinear(lib.store)
+
+
+def test_during_an_upgrade_it_is_said_that_the_fit_follows(
+    lib: Library, some_demo_clips: list[DemoClip], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    meta = {"model": {"version": -1}}
+    with lib.store.write() as tx:
+        stored.save(tx, "multilinear", meta=meta, arrays={}, library_version=1, library_size=2)
+    with monkeypatch.context() as old:
+        old.setattr("app.services.ingest.ANALYSIS_VERSION", 0)
+        old.setattr("app.services.reanalysis.ANALYSIS_VERSION", 0)
+        upload(lib, some_demo_clips[0])
+        work(lib.settings)
+    upload(lib, some_demo_clips[1])  # a new clip alone does not promise a fit
+    with pytest.raises(ModelNotFitted, match="POST /v1/models/fit") as refused:
+        lib.models.multilinear(lib.store)
+    assert not isinstance(refused.value, ModelBeingFitted)
+
+    assert reanalysis.requeue_outdated(lib) == 1
+    for ask, why in (
+        (lib.models.multilinear, "another version"),
+        (lib.models.synthesis, "No synthesis model"),
+    ):
+        with pytest.raises(ModelBeingFitted, match=f"{why}.*anew by themselves.*ask again"):
+            ask(lib.store)
 
 
 def test_without_a_fit_it_is_said_what_to_do(lib: Library) -> None:
