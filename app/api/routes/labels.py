@@ -5,12 +5,25 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
+from starlette.convertors import PathConvertor, register_url_convertor
 
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import refusals
 from app.api.schemas.labels import NamedCounts, WordBeginning
 from app.services import labels, persons, suggestions
 
+
+class LabelConvertor(PathConvertor):
+    """The rest of a path, whatever it holds: labels may hold slashes, also at their end.
+
+    Unlike Starlette's `path` it takes line ends, to be refused as part of a label, and not
+    nothing at all, which is the list's address.
+    """
+
+    regex = "(?s:.+)"
+
+
+register_url_convertor("label", LabelConvertor())
 router = APIRouter(prefix="/v1", tags=["labels"], dependencies=[reads], responses=refusals())
 
 
@@ -20,7 +33,9 @@ def list_persons(lib: Lib) -> NamedCounts:
     return NamedCounts.of(labels.persons(lib))
 
 
-@router.delete("/persons/{name}", status_code=204, dependencies=[writes], responses=refusals(404))
+@router.delete(
+    "/persons/{name:label}", status_code=204, dependencies=[writes], responses=refusals(404)
+)
 def forget_person(lib: Lib, name: Annotated[str, Path(max_length=300)]) -> None:
     """Take a person's label from all clips, and remove every model that holds them at once;
     they are fitted anew in the background, and until then recognition, synthesis and
