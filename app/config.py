@@ -110,7 +110,9 @@ class Settings(BaseSettings):
         """The database's URL, password included: never log it."""
         if self.database_url is not None:
             return self.database_url.get_secret_value()
-        return f"sqlite:///{self.data_dir / 'kinedex.sqlite3'}"
+        from app.store.engine import sqlite_url
+
+        return sqlite_url(self.data_dir / "kinedex.sqlite3")
 
     @property
     def files_dir(self) -> Path:

@@ -40,6 +40,8 @@ _UNUSABLE = frozenset(
 )
 """SQLite's results that tell of the file or its disk rather than of what was asked."""
 
+_IN_URLS = str.maketrans({"%": "%25", "?": "%3F"})
+
 Tx = Connection
 """A running transaction, as `Database.read()` and `Database.write()` give it."""
 
@@ -135,6 +137,12 @@ class Database:
             yield
         finally:
             self._turn.release()
+
+
+def sqlite_url(path: Path) -> str:
+    """The URL of an SQLite database, whatever its path holds."""
+    # Not by SQLAlchemy's URL, which cannot write names that are not UTF-8.
+    return f"sqlite:///{str(path).translate(_IN_URLS)}"
 
 
 def _snapshot_reader(engine: Engine) -> Engine:

@@ -5,7 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from app.services.demo import DemoClip
+from app.store.backup import DATABASE, FILES
 from tests.cli.conftest import Kinedex
 from tests.live import serve, wait_until
 
@@ -25,6 +28,18 @@ def test_a_copy_is_restored_by_running_on_it(kinedex: Kinedex, tmp_path: Path) -
         assert kinedex("export", clip, "-o", str(path), **settings).code == 0
     assert exported[0].read_bytes() == exported[1].read_bytes()
     assert kinedex("recognize", clip, "--json", data_dir=copy).json()["task"]["label"] == "kick"
+
+
+@pytest.mark.parametrize("name", ["a?b", "a%20b", "100%"])
+def test_paths_may_hold_anything(kinedex: Kinedex, tmp_path: Path, name: str) -> None:
+    data_dir, copy = tmp_path / f"d {name}", tmp_path / name
+    assert kinedex("db", "upgrade", data_dir=data_dir).code == 0
+    made = kinedex("backup", str(copy), "--json", data_dir=data_dir).json()
+    assert made["path"] == str(copy)
+    assert {path.name for path in tmp_path.iterdir()} == {data_dir.name, name}
+    assert {path.name for path in copy.iterdir()} == {DATABASE, FILES}
+    again = kinedex("db", "upgrade", data_dir=copy)
+    assert (again.code, "is at revision" in again.out) == (0, True)
 
 
 def test_what_cannot_be_copied_is_said(kinedex: Kinedex, tmp_path: Path) -> None:

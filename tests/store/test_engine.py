@@ -11,7 +11,7 @@ from sqlalchemy import select
 from app.errors import ConfigurationError, DiskFull, StorageError
 from app.store import engine, library
 from app.store.clips import add_or_get
-from app.store.engine import Database
+from app.store.engine import Database, sqlite_url
 from app.store.store import Store
 from app.store.tables import clips
 from tests.store.conftest import new_clip
@@ -114,6 +114,19 @@ def test_a_full_disk_is_told_and_nothing_is_kept(store: Store) -> None:
 def test_a_database_that_cannot_be_shared_is_refused(url: str) -> None:
     with pytest.raises(ConfigurationError):
         Database(url)
+
+
+@pytest.mark.parametrize(
+    "name", ["a?b", "a%20b", "%", "%3F", "a#b@c:d", "k?mode=ro", "é", "d\udcff"]
+)
+def test_a_path_may_hold_anything(tmp_path: Path, name: str) -> None:
+    path = tmp_path / name / name
+    database = Database(sqlite_url(path))
+    with database.write() as tx:
+        tx.exec_driver_sql("CREATE TABLE t (x)")
+    database.close()
+    assert path.is_file()
+    assert [each.name for each in tmp_path.iterdir()] == [name]
 
 
 def test_the_directory_of_the_database_is_made(tmp_path: Path) -> None:
