@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -9,7 +10,7 @@ import typer
 
 from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.settings import settings_of
-from app.errors import ConfigurationError
+from app.errors import BadField, ConfigurationError, Place
 from app.store import schema
 from app.store.backup import DATABASE, back_up
 from app.store.store import Store
@@ -28,6 +29,7 @@ def backup(
     settings = settings_of(context)
     if settings.database_url is None and not (settings.data_dir / DATABASE).is_file():
         raise ConfigurationError(f"There is no library in {settings.data_dir}.")
+    _refuse_inside(settings.data_dir, path)
     schema.check(settings.database)
     store = Store.open(settings.database, settings.files_dir)
     try:
@@ -43,3 +45,10 @@ def backup(
         print_json({"path": str(made.path), "files": made.files, "bytes": made.bytes})
     else:
         typer.echo(f"{made.path}: the database and {made.files} files, {made.bytes} bytes")
+
+
+def _refuse_inside(data_dir: Path, path: Path) -> None:
+    """A copy there would be lost with the library, and be copied with it whenever it is."""
+    if Path(os.path.realpath(data_dir)) in Path(os.path.realpath(path)).parents:
+        message = f"{path} lies in the library itself ({data_dir}): name a folder outside it"
+        raise BadField(f"path: {message}", places=[Place("path", message)])

@@ -53,6 +53,23 @@ def test_what_cannot_be_copied_is_said(kinedex: Kinedex, tmp_path: Path) -> None
     assert kinedex("backup").code == 2
 
 
+def test_a_library_is_not_copied_into_itself(
+    kinedex: Kinedex, data_dir: Path, tmp_path: Path
+) -> None:
+    before = {path.name for path in data_dir.iterdir()}
+    (tmp_path / "link").symlink_to(data_dir)
+    for path in (
+        data_dir / "copy",
+        data_dir / "files" / "new" / "copy",
+        tmp_path / "link" / "copy",
+    ):
+        refused = kinedex("backup", str(path))
+        assert (refused.code, refused.out) == (1, "")
+        assert f"{path} lies in the library itself" in refused.err
+    assert "is there already" in kinedex("backup", str(data_dir)).err
+    assert {path.name for path in data_dir.iterdir()} == before
+
+
 def test_a_library_is_copied_while_it_serves(
     kinedex: Kinedex, clips: list[DemoClip], tmp_path: Path
 ) -> None:
