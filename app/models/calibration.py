@@ -29,6 +29,12 @@ LEAST_USUAL = 20
 LEAST_BELIEF = 1e-9
 """Of being known: of what is surely new the labels still keep their order as candidates."""
 
+TAIL = 0.02
+"""Clips of both kinds that are left out of account where the gap between them is sought."""
+
+WIDE_GAP = 6.0
+"""Interquartile ranges of the known, from which on a gap decides alone."""
+
 CURVE_POINTS = 50
 """Of the curve of false acceptance against false rejection."""
 
@@ -125,6 +131,8 @@ def fit_calibration(
         judged = around = imagined
     if min(len(judged), len(new)) >= LEAST_USUAL:
         threshold = _alike(judged, new)
+        if judged is not imagined:
+            threshold = _in_the_gap(threshold, judged, new)
     else:
         judged = around = novelty[known]
         threshold = _threshold(judged, new)
@@ -178,10 +186,20 @@ def _alike(known: FloatArray, new: FloatArray) -> float:
     that of the new: unlike the least sum of errors it does not hang on a few clips at the
     border, and unlike means not on one task that is far from all others."""
     medians = np.array([float(np.median(part)) for part in (known, new)])
-    ranges = np.array(
-        [max(float(np.subtract(*np.quantile(part, [0.75, 0.25]))), 1e-9) for part in (known, new)]
-    )
+    ranges = np.array([_range(part) for part in (known, new)])
     return float((medians * ranges[::-1]).sum() / ranges.sum())
+
+
+def _in_the_gap(threshold: float, known: FloatArray, new: FloatArray) -> float:
+    """`threshold` moved to the middle of the gap between known and new, the more the wider that
+    is: what lies in it, as a known task that a stranger does, is rather known."""
+    highest, lowest = float(np.quantile(known, 1 - TAIL)), float(np.quantile(new, TAIL))
+    share = (lowest - highest) / (WIDE_GAP * _range(known))
+    return threshold + min(max(share, 0.0), 1.0) * max((lowest + highest) / 2 - threshold, 0.0)
+
+
+def _range(part: FloatArray) -> float:
+    return max(float(np.subtract(*np.quantile(part, [0.75, 0.25]))), 1e-9)
 
 
 def _scale(known: FloatArray, new: FloatArray) -> float:
