@@ -3,7 +3,8 @@
 The turns of its joints start as those of the person's own moments in which the body was held
 most alike (a kernel mean of them), so that what 13 roles do not tell, twists and toes and
 fingers, is as the person does it; then the joints turn until the roles are where they should
-be (`motion.posing`), and once more with the feet held where they stand (`foot_contact`).
+be (`motion.posing`), and once more with the feet held where they stand (`foot_contact`), which
+then lie on the floor (`synthetic_feet`).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from app.models.synthetic_feet import LOWEST_QUANTILE, feet_of, floor_of, on_the_floor, sole_depths
 from app.models.synthetic_motion import Course
 from app.motion.animation import Animation, continuous
 from app.motion.body_frame import ANALYSIS_RATE, BodyTrack, turned
@@ -28,9 +30,6 @@ NEIGHBOURS = 12
 
 SMOOTHING = 1.5
 """Frames (standard deviation): neighbours change from one frame to the next."""
-
-LOWEST_QUANTILE = 0.01
-"""The floor is where the lowest joint goes under in this share of frames."""
 
 _HIPS = SUN_ROLES.index(JointRole.HIPS)
 
@@ -68,7 +67,14 @@ def embody(course: Course, donors: Sequence[Donor]) -> Animation:
         wanted[:, FEET] = planted(there, ANALYSIS_RATE)
         posed = pose_to(posed, joints, wanted)
         reached = posed.positions()
-    floor = np.quantile(reached[:, :, 1].min(axis=1), LOWEST_QUANTILE)
+        soles = feet_of(posed.skeleton, [joints[role] for role in feet])
+        if soles:
+            deep = sole_depths(soles, [donor.animation.positions() for donor in donors])
+            return on_the_floor(_lowered(posed, floor_of(reached, soles, deep)), soles)
+    return _lowered(posed, float(np.quantile(reached[:, :, 1].min(axis=1), LOWEST_QUANTILE)))
+
+
+def _lowered(posed: Animation, floor: float) -> Animation:
     translations = np.array(posed.translations)
     translations[:, 0, 1] -= floor
     return Animation(posed.skeleton, posed.rotations, translations, ANALYSIS_RATE)

@@ -21,7 +21,7 @@ from app.motion.body_frame import ANALYSIS_RATE, body_track
 from app.motion.canonical import canonicalise
 from app.motion.canonical_body import canonical_body
 from app.motion.foot_contact import FEET, skating
-from app.motion.joint_roles import SUN_ROLES
+from app.motion.joint_roles import SUN_ROLES, JointRole
 from app.motion.motion import Motion
 from app.services import clips, models, persons
 from app.services.demo import demo_clips
@@ -97,6 +97,26 @@ def test_the_file_is_the_motion_on_the_persons_own_skeleton(fitted: Library) -> 
     np.testing.assert_allclose(bones[0], bones[1] * (bones[0].sum() / bones[1].sum()), atol=0.05)
     motion = canonicalise(recording, metres_per_unit=0.01)
     np.testing.assert_allclose(motion.positions, made.motion.positions, atol=2e-3)
+
+
+def test_a_made_walk_stands_on_the_floor_as_a_real_one_does(fitted: Library) -> None:
+    made = synthesise(fitted, SynthesisQuery("walk", person="chika")).motion
+    real = load_motion(fitted, clip_of(fitted, "ada", "walk"))
+    lowest = made.positions[:, :, 1].min(axis=1)
+    assert lowest.min() > -1e-3
+    assert np.median(lowest) < 5e-3
+    assert toe_speed(real) < 0.05  # metres per second
+    assert toe_speed(made) < 0.15
+
+
+def toe_speed(motion: Motion) -> float:
+    """Median horizontal speed of the lower of the two toes, m/s."""
+    toes = motion.positions[
+        :, [motion.roles[r] for r in (JointRole.LEFT_TOES, JointRole.RIGHT_TOES)]
+    ]
+    speeds = np.linalg.norm(np.gradient(toes[:, :, [0, 2]], axis=0), axis=-1) * motion.frame_rate
+    lower = toes[:, :, 1].argmin(axis=1)
+    return float(np.median(speeds[np.arange(len(toes)), lower]))
 
 
 def test_what_the_person_did_is_allowed_and_told(fitted: Library) -> None:

@@ -1,0 +1,166 @@
+"""How the feet of a made body lie on the floor.
+
+Thirteen roles tell where the ankles are, not how the feet below them point; what they do in the
+person's other tasks is not what they do here. So the floor is where the standing ankles say,
+and the feet turn about the ankles: their tips stay on the floor from when a foot stands until
+the ankle is too far away for it, and nothing of a foot goes under.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from app.motion.animation import Animation
+from app.motion.foot_contact import LEVEL_PERCENTILE, Stance, stances
+from app.motion.kinematics import forward_kinematics
+from app.motion.posing import ancestors
+from app.motion.rotations import conjugate, identity_quaternions, multiply
+from app.motion.skeleton import Skeleton
+from app.numerics.arrays import FloatArray
+
+GIVING = 0.03
+"""Metres by which an ankle may miss a foot's length to where its tip stands: farther or nearer,
+the tip leaves the floor."""
+
+RELEASE = 2.0
+"""Frames (standard deviation) over which a tip is let go, and comes to stand."""
+
+LOWEST_QUANTILE = 0.01
+"""Hands, knees and all else but feet go under the floor in this share of frames at most."""
+
+
+@dataclass(frozen=True, slots=True)
+class Foot:
+    """An ankle, the joints below it, and which of these is farthest from it: the tip."""
+
+    ankle: int
+    below: list[int]
+    tip: int
+
+
+def feet_of(skeleton: Skeleton, ankles: Sequence[int]) -> list[Foot]:
+    """The feet at the ankles; none where an ankle has nothing below it to turn."""
+    still = identity_quaternions((1, len(skeleton)))
+    rest = forward_kinematics(skeleton, still, skeleton.offsets[None])[0]
+    found = []
+    for ankle in ankles:
+        below = [joint for joint in range(len(skeleton)) if ankle in ancestors(skeleton, joint)]
+        away = np.linalg.norm(rest[below] - rest[ankle], axis=-1)
+        if not below or away.max() < 1e-3:
+            return []
+        found.append(Foot(ankle, below, below[int(np.argmax(away))]))
+    return found
+
+
+def sole_depths(feet: Sequence[Foot], clips: Sequence[FloatArray]) -> FloatArray:
+    """(feet,) metres from each ankle down to the lowest joint of its foot where it stands, the
+    median of real clips, positions (n, joints, 3) each."""
+    deep = [
+        [_level(clip[:, foot.ankle, 1]) - _level(_lowest(clip, foot)) for foot in feet]
+        for clip in clips
+    ]
+    return np.asarray(np.maximum(np.median(deep, axis=0), 0.0))
+
+
+def floor_of(positions: FloatArray, feet: Sequence[Foot], depths: FloatArray) -> float:
+    """Y of the floor, metres: under the foot that stands lowest, if nothing else is lower."""
+    stands = [
+        _level(positions[:, foot.ankle, 1]) - deep for foot, deep in zip(feet, depths, strict=True)
+    ]
+    of_feet = [joint for foot in feet for joint in foot.below]
+    others = np.delete(positions[:, :, 1], of_feet, axis=1).min(axis=1)
+    return float(min(*stands, np.quantile(others, LOWEST_QUANTILE)))
+
+
+def on_the_floor(animation: Animation, feet: Sequence[Foot]) -> Animation:
+    """The animation with its feet turned about the ankles as the floor, Y = 0, wants it."""
+    positions = animation.positions()
+    ankles = np.stack([positions[:, foot.ankle] for foot in feet], axis=1)
+    found = stances(ankles, animation.frame_rate)
+    for side, foot in enumerate(feet):
+        mine = [stance for stance in found if stance.foot == side]
+        tips, sure = _standing_tips(positions, foot, mine)
+        bone = positions[:, foot.tip] - positions[:, foot.ankle]
+        wanted = tips - positions[:, foot.ankle]
+        animation = _turned(animation, foot, _between(bone, wanted, sure))
+        animation = _turned(animation, foot, _upwards(animation.positions(), foot))
+    return animation
+
+
+def _level(heights: FloatArray) -> float:
+    return float(np.percentile(heights, LEVEL_PERCENTILE))
+
+
+def _lowest(positions: FloatArray, foot: Foot) -> FloatArray:
+    return np.asarray(positions[:, foot.below, 1].min(axis=1))
+
+
+def _standing_tips(
+    positions: FloatArray, foot: Foot, mine: Sequence[Stance]
+) -> tuple[FloatArray, FloatArray]:
+    """Where a foot's tip is to stand (n, 3), and how surely it stands there (n,), 0..1."""
+    ankle, n = positions[:, foot.ankle], len(positions)
+    bones = positions[:, foot.tip] - ankle
+    length = float(np.median(np.linalg.norm(bones, axis=-1)))
+    tips, sure = np.array(positions[:, foot.tip]), np.zeros(n)
+    for stance in mine:
+        inside = slice(stance.first, stance.stop)
+        ahead = bones[inside].mean(axis=0) * [1.0, 0.0, 1.0]
+        base = np.median(ankle[inside], axis=0)
+        flat = np.sqrt(max(length**2 - base[1] ** 2, 0.0))
+        tip = base * [1.0, 0.0, 1.0] + ahead / max(np.linalg.norm(ahead), 1e-9) * flat
+        near = np.exp(-(((np.linalg.norm(tip - ankle, axis=-1) - length) / GIVING) ** 2))
+        near[inside] = 1.0
+        # once it has left it stays away
+        near[stance.stop :] = np.minimum.accumulate(near[stance.stop :])
+        near[: stance.first] = np.minimum.accumulate(near[: stance.first][::-1])[::-1]
+        tips = np.where((near > sure)[:, None], tip, tips)
+        sure = np.maximum(sure, near)
+    return tips, np.asarray(gaussian_filter1d(sure, RELEASE, mode="nearest"))
+
+
+def _between(start: FloatArray, end: FloatArray, share: FloatArray) -> FloatArray:
+    """(n, 4) turns of the world by a share (n,) of the way from start (n, 3) to end (n, 3)."""
+    across = np.cross(start, end)
+    sine = np.linalg.norm(across, axis=-1)
+    angle = np.arctan2(sine, (start * end).sum(axis=-1)) * share
+    return _about(across / np.maximum(sine, 1e-9)[:, None], angle)
+
+
+def _upwards(positions: FloatArray, foot: Foot) -> FloatArray:
+    """(n, 4) turns of the world that raise the foot's tip until no joint of it is under."""
+    ankle = positions[:, foot.ankle]
+    bone = positions[:, foot.tip] - ankle
+    ahead = bone * [1.0, 0.0, 1.0]
+    ahead /= np.maximum(np.linalg.norm(ahead, axis=-1, keepdims=True), 1e-9)
+    angle = np.zeros(len(positions))
+    for joint in foot.below:
+        away = positions[:, joint] - ankle
+        forth = (away * ahead).sum(axis=-1)
+        reach = np.maximum(np.hypot(forth, away[:, 1]), 1e-9)
+        least = np.arcsin(np.clip(-ankle[:, 1] / reach, -1.0, 1.0))
+        needed = np.where(forth > 0, least - np.arctan2(away[:, 1], forth), 0.0)
+        angle = np.maximum(angle, needed)
+    return _about(np.cross(ahead, [0.0, 1.0, 0.0]), angle)
+
+
+def _about(axes: FloatArray, angles: FloatArray) -> FloatArray:
+    """(n, 4) turns about unit axes (n, 3)."""
+    return np.concatenate(
+        [np.cos(angles / 2)[:, None], axes * np.sin(angles / 2)[:, None]], axis=-1
+    )
+
+
+def _turned(animation: Animation, foot: Foot, turns: FloatArray) -> Animation:
+    """The ankle turned by turns (n, 4) of the world."""
+    above = identity_quaternions((len(turns),))
+    for joint in ancestors(animation.skeleton, foot.ankle):
+        above = multiply(animation.rotations[:, joint], above)
+    rotations = np.array(animation.rotations)
+    local = multiply(multiply(conjugate(above), turns), above)
+    rotations[:, foot.ankle] = multiply(local, rotations[:, foot.ankle])
+    return replace(animation, rotations=rotations)
