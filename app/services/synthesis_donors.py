@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.analysis.motion_shape import moments_of
+from app.analysis.motion_sample import SAMPLES
+from app.analysis.motion_shape import CHANNELS, moments_of
 from app.errors import ClipNotFound, ClipNotReady, NotEnoughLabels
 from app.models.synthesis import Synthesis
 from app.models.synthetic_body import Donor, same_body
@@ -16,6 +17,7 @@ from app.motion.body_frame import ANALYSIS_RATE, body_track
 from app.motion.canonical_body import on_canonical_body
 from app.motion.joint_roles import JointRole
 from app.motion.motion import Motion
+from app.motion.posed_start import without_posed_start
 from app.numerics.arrays import FloatArray
 from app.services.export import own_animation
 from app.services.library import Library
@@ -55,7 +57,7 @@ def material_of(lib: Library, model: Synthesis, plan: Plan) -> Material:
     donors = same_body([_donor(lib, clip) for clip in own[:MOST_DONORS]])
     take, take_shape = None, None
     if plan.shape[-1] < 0.5:
-        take, take_shape = _detail(lib, takes)
+        take, take_shape = _detail(lib, takes, plan.shape)
     licenses = {clip.license for clip in (*own, *takes)}
     words = set.intersection(*(set(clip.words) for clip in takes))
     return Material(
@@ -79,15 +81,34 @@ def _still_there(lib: Library, clip_ids: list[str]) -> list[ClipRecord]:
     return found
 
 
-def _detail(lib: Library, takes: list[ClipRecord]) -> tuple[FloatArray | None, FloatArray | None]:
+def _detail(
+    lib: Library, takes: list[ClipRecord], wanted: FloatArray
+) -> tuple[FloatArray | None, FloatArray | None]:
     """The take nearest to the wanted motion that does not go round, as moments and as shape."""
     with lib.store.read() as tx:
         shapes = arrays.get_many(tx, [clip.id for clip in takes], SHAPE)
     for clip in takes:
         shape = shapes.get(clip.id)
         if shape is not None and shape[-1] < 0.5:
-            return moments_of(body_track(load_motion(lib, clip))), shape
+            return detail_of(load_motion(lib, clip), shape, wanted)
     return None, None
+
+
+def detail_of(
+    motion: Motion, shape: FloatArray, wanted: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """(n, 43) moments of a take and its shape (1378,), to be led to the wanted shape (1378,).
+
+    A take that begins in a pose which is no part of it is followed from its second frame. Its
+    shape has that pose as first moment, and so may the wanted one, learnt of such takes: there
+    the way to lead is that of the second moment.
+    """
+    moving = without_posed_start(motion)
+    led = np.array(shape, dtype=np.float64)
+    if moving is not motion:
+        own, aim = (whole[:-2].reshape(SAMPLES, CHANNELS) for whole in (led, wanted))
+        own[0] = aim[0] - (aim[1] - own[1])
+    return moments_of(body_track(moving)), led
 
 
 def _donor(lib: Library, clip: ClipRecord) -> Donor:
