@@ -85,10 +85,13 @@ def _complete(headers: MutableHeaders, identity: str) -> None:
 
 
 def _log_line(scope: Scope, status: int, seconds: float) -> None:
-    # The path only: a query string may hold a person's name.
+    # A person's name is not to be kept, least of all of one who is forgotten: it may stand in the
+    # query string, which is left out, and in the path of `/v1/persons/{name}`.
+    name = scope.get("path_params", {}).get("name")
+    path = scope["path"] if name is None else scope["path"].removesuffix(name) + "{name}"
     fields = {
         "method": scope["method"],
-        "path": scope["path"],
+        "path": path,
         "status": status,
         "ms": round(seconds * 1000, 1),
     }

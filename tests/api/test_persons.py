@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from urllib.parse import quote
 
 import httpx2
 import pytest
 
 from tests.api.conftest import assert_problem
+from tests.live import Live
 
 FILE = b"HIERARCHY\nROOT Hips\n{"
 
@@ -38,6 +40,19 @@ def test_a_person_of_any_name_is_forgotten(idle: httpx2.Client, name: str) -> No
         assert idle.get(path).json()["person"] is None
     finally:
         idle.delete(path)
+
+
+def test_the_log_does_not_keep_who_was_to_be_forgotten(idle_service: Live) -> None:
+    with idle_service.client() as client:
+        for name, kept in (("Unheard Of", "one.forgotten"), ("un/heard of/", "two.forgotten")):
+            url = "/v1/persons/" + quote(name, safe="")
+            answer = client.delete(url, headers={"X-Request-Id": kept})
+            assert answer.status_code == 404
+    text = idle_service.log.read_text()
+    lines = [json.loads(line) for line in text.splitlines()]
+    told = {line["path"] for line in lines if line.get("request_id", "").endswith(".forgotten")}
+    assert told == {"/v1/persons/{name}"}
+    assert "heard" not in text.lower()
 
 
 def test_nobody_is_forgotten_by_a_name_that_cannot_be(idle: httpx2.Client) -> None:
