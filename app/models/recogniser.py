@@ -213,8 +213,8 @@ def _calibrations(
         # A stranger's walk is a walk: persons held out count as known tasks.
         new = newness(logs.new_task, h.task)
         of_tasks.append(_held_out(logs.ranking, h.task, seen.tasks, new, what, names[1], again))
-    # Judged by clips of whom and what were recorded together, at the cost of strangers, whose walk
-    # is more often called unknown, though `walk` stays its best candidate.
+    # Judged by clips of whom and what were recorded together, at the cost of strangers: unless a
+    # gap parts new tasks from known ones, their walk is called unknown, with `walk` the best.
     sample, h = (view.hypotheses for view in views)
     further = Seen(*(each.further_takes(IMAGINED, MOST_PROBES) for each in (sample, h)))
     imagined = Logs.under(sample, h, further, persons_by_both=persons_by_both)

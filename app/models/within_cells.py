@@ -4,6 +4,10 @@ One covariance for all cells takes every walk for like and half of the waves for
 of a wave differ in when the hand goes, of a walk hardly at all. So each task has its own, pulled
 towards the pooled one: its size soon, since all d numbers of a take tell of it, its shape later.
 A person may besides be more even than others, at whatever they do: a factor.
+
+Shapes: deviations (n, d), of n takes from the means of their cells, in the coordinates of one
+view. Covariances of classes drawn towards the pooled one are regularised discriminant analysis
+(Friedman 1989, eqs 16-18); size and shape apart, and the factor of persons, are our own.
 """
 
 from __future__ import annotations
@@ -45,7 +49,10 @@ def scatter_within(
     deviations: FloatArray, member: IntArray, cells: Cells, pooled: FloatArray
 ) -> Scatter:
     """From takes' `deviations` (n, d) from the mean of their cells `member` (n,), all of which
-    have both labels; pooled: (d, d) their covariance, positive definite. n > cells."""
+    have both labels; pooled: (d, d) their covariance, n > cells.
+
+    Raises LinAlgError where `pooled` is not positive definite.
+    """
     factor = np.linalg.cholesky(pooled)
     white = np.linalg.solve(factor, deviations.T).T
     # n takes tell of n - 1 deviations
