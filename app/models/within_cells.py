@@ -7,7 +7,7 @@ A person may besides be more even than others, at whatever they do: a factor.
 
 Shapes: deviations (n, d), of n takes from the means of their cells, in the coordinates of one
 view. Covariances of classes drawn towards the pooled one are regularised discriminant analysis
-(Friedman 1989, eqs 16-18); size and shape apart, and the factor of persons, are our own.
+(Friedman 1989); size and shape apart, and the factor of persons, are our own.
 """
 
 from __future__ import annotations
