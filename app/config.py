@@ -95,6 +95,11 @@ class Settings(BaseSettings):
     job_poll_s: float = Field(
         0.25, gt=0, description="Seconds an idle worker waits before it looks for work again."
     )
+    job_retention_days: int = Field(
+        30,
+        ge=0,
+        description="Days after which a job that has ended is removed; 0 keeps all jobs.",
+    )
     refit_growth: float = Field(
         0.1, ge=0, description="Part by which the library must have changed to be fitted again."
     )

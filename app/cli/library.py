@@ -11,11 +11,13 @@ from typing import Annotated, Any
 
 import typer
 
-from app.api.schemas.jobs import Job
+from app.api.schemas.jobs import Job, JobFile
 from app.cli.output import AsJson, print_json, print_table, progress_bar
 from app.cli.settings import open_library
 from app.services import imports, jobs, models
+from app.services.import_plan import MOST_ABSENT
 from app.services.library import Library
+from app.store.import_files import FileOutcome
 from app.store.job_record import JobKind, JobRecord, JobState
 from app.worker.loop import run_worker
 
@@ -45,12 +47,12 @@ def import_clips(
             with working(lib):
                 job = follow(lib, job.id, "analysing")
                 fit_if_due(lib)
-    if as_json:
-        print_json(Job.of(job).model_dump(mode="json"))
-    elif wait:
-        show_import(job)
-    else:
-        typer.echo(f"{job.id}: registered; the worker analyses it.")
+        if as_json:
+            print_json(_document(lib, job))
+        elif wait:
+            show_import(lib, job)
+        else:
+            typer.echo(f"{job.id}: registered; the worker analyses it.")
     if job.state in (JobState.FAILED, JobState.CANCELED):
         raise typer.Exit(FAILURE)
 
@@ -108,21 +110,40 @@ def _open_fit(lib: Library) -> JobRecord | None:
     return next((job for job in recent if job.state not in ENDED), None)
 
 
-def show_import(job: JobRecord) -> None:
+def _document(lib: Library, job: JobRecord) -> dict[str, Any]:
+    """The job as the API has it, its result with every file that is recorded."""
+    document = Job.of(job).model_dump(mode="json")
+    if document["result"] is not None:
+        files = [JobFile.of(file).model_dump(mode="json") for file in jobs.all_files(lib, job.id)]
+        left_out = max(document["result"]["total"] - len(files), 0)
+        document["result"] |= {"files": files, "files_left_out": left_out}
+    return document
+
+
+def show_import(lib: Library, job: JobRecord) -> None:
     """How many files came to what, and every failure with its reason."""
     result = job.result or {}
-    failures = [entry for entry in result.get("files", []) if entry["outcome"] == "failed"]
     if result:
         there = result["ready"] + result["exists"]
         typer.echo(
             f"{there} of {result['total']} files are in the library ({result['ready']} new)."
         )
-    if failures:
-        print_table(
-            ("failed", "why"), [(entry["path"], _reason(entry["error"])) for entry in failures]
-        )
+        _show_failures(lib, job.id, result["absent"])
     if job.error:
         typer.echo(f"kinedex: {job.error['detail']}", err=True)
+
+
+def _show_failures(lib: Library, job_id: str, absent: int) -> None:
+    failures = [
+        (file.path, _reason(file.error))
+        for outcome in (FileOutcome.FAILED, FileOutcome.ABSENT)
+        for file in jobs.all_files(lib, job_id, outcome)
+        if file.error is not None
+    ]
+    if failures:
+        print_table(("failed", "why"), failures)
+    if absent > MOST_ABSENT:
+        typer.echo(f"A manifest names {absent - MOST_ABSENT} more files that are not there.")
 
 
 def _reason(problem: dict[str, Any]) -> str:

@@ -17,6 +17,8 @@ from app.motion.units import METRES_PER_UNIT
 
 MAX_TEXT = 300
 """Characters in a name or label."""
+MAX_PATH = 500
+"""Characters in the path of an imported file: a page's cursor holds one."""
 NO_CONTROL = "must not hold control characters"
 MAX_WORDS = 100
 """Words on one clip."""

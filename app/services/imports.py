@@ -2,39 +2,24 @@
 
 Each file becomes a clip with its own ingest job, in one transaction with the import's record
 of it. An import that is cut off goes on where it stopped, and the same files imported twice
-give the same clips.
+give the same clips. A worker does one import at a time, so a long one lets others go first now
+and then: its job returns to the queue, with its progress.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, replace
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
-from app.errors import (
-    BadContent,
-    Canceled,
-    EmptyFile,
-    KinedexError,
-    LeaseLost,
-    NotFound,
-    StorageError,
-    UnknownFormat,
-)
+from app.errors import BadContent, EmptyFile, NotFound, StorageError, UnknownFormat
 from app.formats.sniff import HEAD_BYTES, is_zip
 from app.services import fields
-from app.services.clips import (
-    BULK_PRIORITY,
-    WORKER_DEATHS,
-    add,
-    check_content,
-    drop_replaced,
-    keep,
-)
+from app.services.clips import WORKER_DEATHS
 from app.services.companions import pair_skeletons
-from app.services.import_plan import Item, plan_import
+from app.services.import_plan import Plan
+from app.services.import_register import Progress, Registering
 from app.services.import_sources import (
     ArchiveLimits,
     SourceFile,
@@ -44,25 +29,22 @@ from app.services.import_sources import (
     single_file,
 )
 from app.services.library import Library
-from app.services.manifest import ManifestRow
-from app.services.recordings import described
+from app.services.manifest_table import ManifestLimits
 from app.store import imports as stored
-from app.store import jobs, keypose_annotations, leases
-from app.store.clip_record import ClipState
-from app.store.clip_record import NewClip as NewRow
-from app.store.engine import Tx
-from app.store.files import Readable, StagedFile
+from app.store import jobs, leases
+from app.store.files import Readable
 from app.store.ids import new_id
-from app.store.imports import ImportOutcome
-from app.store.job_record import ClaimedJob, JobKind, JobRecord, Lease, NewJob
+from app.store.job_record import ClaimedJob, JobKind, JobRecord, NewJob
 
 IMPORT_PRIORITY = 10
+LOWEST_PRIORITY = 20
+"""An import loses a step with each turn: new ones go first, long ones in their order."""
+TURN_S = 5.0
+"""For which an import goes on before it asks whether others wait; no less than it took to read
+the archive's directory, which each turn does anew."""
 OWN_PRIORITY = -1_000_000_000
 """Of an import that this process does itself: no worker may take it first."""
-
-Progress = Callable[[int, int, str], None]
-"""Told after each file: files done, files in all, the file's path."""
-_NOTHING = ManifestRow(line=0)
+WAITING = "waiting for the clips' analyses"
 
 
 def start_import(lib: Library, archive: Readable, filename: str) -> JobRecord:
@@ -94,18 +76,24 @@ def start_import(lib: Library, archive: Readable, filename: str) -> JobRecord:
 def unpack(
     lib: Library, claimed: ClaimedJob, progress: Progress, should_stop: Callable[[], bool]
 ) -> None:
-    """Do a claimed import: register every file, then leave the job to its clips' ingests.
+    """Do a claimed import: register its files, then leave the job to its clips' ingests.
 
+    Where other imports wait, it stops after its turn and gives the job back, to go on later.
     `should_stop` is asked before each file; then Canceled is raised, and what was registered
     stays. Raises BadContent or TooLarge where the archive as a whole cannot be used,
     LeaseLost where the job was given to another worker.
     """
     if claimed.file_sha256 is None:
         raise BadContent("The command that imported these files was interrupted: run it again.")
+    began = time.monotonic()
     archive = lib.store.files.path(claimed.file_sha256)
     with archive_files(archive, _limits(lib)) as files:
-        _register_all(_Doing(lib, claimed.lease), files, progress, should_stop)
-    _leave_to_clips(lib, claimed.lease)
+        doing = Registering(lib, claimed.lease, _plan(lib, files))
+        turn = _Turn(lib, max(TURN_S, time.monotonic() - began))
+        if doing.run(progress, should_stop, turn.is_over):
+            doing.finish(WAITING)
+        else:
+            _give_turn(doing)
 
 
 def import_path(lib: Library, path: Path, progress: Progress | None = None) -> JobRecord:
@@ -115,10 +103,32 @@ def import_path(lib: Library, path: Path, progress: Progress | None = None) -> J
     the clips. Raises NotFound where there is no such path, and as `unpack` does.
     """
     with _sources(lib, path) as files:
-        claimed = _own_job(lib, path)
-        told = progress or (lambda *_: None)
-        _register_all(_Doing(lib, claimed.lease), files, told, lambda: False)
-    return _leave_to_clips(lib, claimed.lease)
+        plan = _plan(lib, files)
+        doing = Registering(lib, _own_job(lib, path).lease, plan)
+        doing.run(progress or (lambda *_: None), lambda: False, lambda: False)
+        return doing.finish(WAITING)
+
+
+class _Turn:
+    """For how long an import may go on while others wait."""
+
+    def __init__(self, lib: Library, seconds: float) -> None:
+        self._lib, self._seconds = lib, seconds
+        self._began = time.monotonic()
+
+    def is_over(self) -> bool:
+        """Whether another import is to go on now; begins another turn where none waits."""
+        if time.monotonic() - self._began < self._seconds:
+            return False
+        self._began = time.monotonic()
+        with self._lib.store.read() as tx:
+            return leases.is_any_claimable(tx, [JobKind.IMPORT])
+
+
+def _give_turn(doing: Registering) -> None:
+    detail = f"{doing.done} of {doing.total} files; others go first"
+    with doing.lib.store.write() as tx:
+        stored.give_turn(tx, doing.lease, doing.done / doing.total, detail, LOWEST_PRIORITY)
 
 
 @contextmanager
@@ -159,123 +169,8 @@ def _own_job(lib: Library, path: Path) -> ClaimedJob:
         return claimed
 
 
-@dataclass(frozen=True, slots=True)
-class _Doing:
-    """An import in hand: the library, the right to its job."""
-
-    lib: Library
-    lease: Lease
-
-    def record(self, tx: Tx, path: str, outcome: ImportOutcome, **values: Any) -> None:
-        """Record a file in the transaction that stores it, and renew the lease there.
-
-        Raises LeaseLost where another worker has the import, Canceled where it is to end; the
-        transaction is then undone.
-        """
-        if leases.heartbeat(tx, self.lease, self.lib.settings.job_lease_s):
-            raise Canceled("The import was canceled.")
-        stored.add_entry(tx, self.lease.job_id, path, outcome, **values)
-
-    def record_problem(self, path: str, problem: KinedexError) -> None:
-        """Record why a file became no clip."""
-        with self.lib.store.write() as tx:
-            self.record(tx, path, ImportOutcome.FAILED, problem=problem.as_problem())
-
-
-def _register_all(
-    doing: _Doing,
-    files: Iterable[SourceFile],
-    progress: Progress,
-    should_stop: Callable[[], bool],
-) -> None:
-    plan = plan_import(files)
-    with doing.lib.store.read() as tx:
-        recorded = stored.recorded_paths(tx, doing.lease.job_id)
-    total = len(plan.items) + len(plan.absent)
-    for done, item in enumerate(plan.items, 1):
-        if should_stop():
-            raise Canceled("The import was stopped.")
-        if item.file.path not in recorded:
-            _register(doing, item)
-        progress(done, total, item.file.path)
-    for path, problem in plan.absent.items():
-        if path not in recorded:
-            doing.record_problem(path, problem)
-
-
-def _register(doing: _Doing, item: Item) -> None:
-    """Store one file as a clip, or record why not; failures of the store are raised."""
-    try:
-        if problem := item.file.problem or item.row.problem:
-            raise problem
-        with item.file.open() as content:
-            _store_file(doing, content, item)
-    except (StorageError, LeaseLost, Canceled):
-        raise
-    except KinedexError as problem:
-        doing.record_problem(item.file.path, problem)
-
-
-def _store_file(doing: _Doing, content: Readable, item: Item) -> None:
-    lib, row, path = doing.lib, item.row, item.file.path
-    with ExitStack() as files:
-        staged = _stage(lib, files, content)
-        is_amc = check_content(staged) == "amc"
-        companion = _staged(lib, files, item.skeleton if is_amc else None)
-        recording = _staged(lib, files, item.sound)
-        heard = {} if recording is None else described(recording, row.audio or "")
-        new = replace(_new_row(path, row, staged, companion), **heard)
-        with lib.store.write() as tx:
-            keep(staged, companion, recording)
-            created = add(tx, new, BULK_PRIORITY)
-            if created.is_new and row.keyposes is not None:
-                keypose_annotations.put(tx, created.clip.id, row.keyposes)
-            is_done = not created.is_new and created.clip.state is ClipState.READY
-            outcome = ImportOutcome.EXISTS if is_done else ImportOutcome.QUEUED
-            doing.record(tx, path, outcome, clip_id=created.clip.id)
-    drop_replaced(lib, created)
-
-
-def _staged(lib: Library, files: ExitStack, source: SourceFile | None) -> StagedFile | None:
-    """A file that goes with a motion, if there is one, for as long as `files` are open."""
-    if source is None:
-        return None
-    if source.problem is not None:
-        raise source.problem
-    return _stage(lib, files, files.enter_context(source.open()))
-
-
-def _stage(lib: Library, files: ExitStack, content: Readable) -> StagedFile:
-    limit = lib.settings.max_upload_bytes
-    return files.enter_context(lib.store.files.stage(content, max_bytes=limit))
-
-
-def _new_row(
-    path: str, row: ManifestRow, staged: StagedFile, skeleton: StagedFile | None
-) -> NewRow:
-    file_name = fields.file_name(path)
-    return NewRow(
-        sha256=staged.sha256,
-        file_name=file_name,
-        file_size=staged.size,
-        name=row.name or fields.stem(file_name),
-        person=row.person,
-        task=row.task,
-        words=row.words or (),
-        license=row.license,
-        source=row.source,
-        skeleton_sha256=None if skeleton is None else skeleton.sha256,
-        frame_rate_override=row.frame_rate,
-        metres_per_unit_override=row.metres_per_unit,
-        audio_offset_override=row.audio_offset,
-        tempo_override=row.tempo,
-        beats_override=row.beats,
-    )
-
-
-def _leave_to_clips(lib: Library, lease: Lease) -> JobRecord:
-    with lib.store.write() as tx:
-        return stored.wait_for_clips(tx, lease, "waiting for the clips' analyses")
+def _plan(lib: Library, files: Iterable[SourceFile]) -> Plan:
+    return Plan(files, ManifestLimits(lib.settings.max_archive_entries))
 
 
 def _limits(lib: Library) -> ArchiveLimits:

@@ -1,95 +1,112 @@
-"""Imports: what became of each file of an archive, and when the import as a whole is done.
+"""Imports: recording what became of each file, and when the import as a whole is done.
 
 An import job unpacks; each clip that it adds has an ingest job of its own. The import is done
-when the last of its clips is.
+when the last of its clips is. Its files are read in `import_files`.
 """
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import Any
 
-from sqlalchemy import RowMapping, func, insert, select, update
+from sqlalchemy import func, insert, select, update
 
+from app.store import import_files, leases, library
 from app.store import jobs as job_repository
-from app.store import leases, library
 from app.store.clip_record import ClipState
 from app.store.engine import Tx
 from app.store.ids import utc_now
+from app.store.import_files import FileOutcome, ImportOutcome
 from app.store.job_record import JobRecord, JobState, Lease
 from app.store.tables import clips, import_entries, jobs
 
-
-class ImportOutcome(StrEnum):
-    """What became of one file when the archive was unpacked."""
-
-    QUEUED = "queued"
-    """Stored as a clip that waits for its analysis (or waited, or failed and waits again)."""
-    EXISTS = "exists"
-    """The same content was in the library."""
-    FAILED = "failed"
-    """Not stored; `problem` says why."""
+COUNTED = (
+    FileOutcome.READY,
+    FileOutcome.EXISTS,
+    FileOutcome.FAILED,
+    FileOutcome.DELETED,
+    FileOutcome.ABSENT,
+)
+"""The outcomes of an import that has ended, as its result counts them."""
+_ABSENT_COUNT = "absent"
+"""Member of an import's payload: how many paths its manifests name in vain."""
+_UNFINISHED = (ClipState.QUEUED.value, ClipState.PROCESSING.value)
+_ADD_ENTRIES = insert(import_entries)
 
 
 @dataclass(frozen=True, slots=True)
-class ImportEntry:
-    """One file of an import. clip_state: None when there is no clip (any more)."""
+class NewEntry:
+    """What became of a file: a clip, or a problem (as RFC 9457 has it)."""
 
     path: str
     outcome: ImportOutcome
-    clip_id: str | None
-    problem: dict[str, Any] | None
-    clip_state: ClipState | None
-    clip_error: dict[str, Any] | None
+    clip_id: str | None = None
+    problem: dict[str, Any] | None = None
 
 
-_UNFINISHED = (ClipState.QUEUED.value, ClipState.PROCESSING.value)
-_ADD_ENTRY = insert(import_entries)
-
-
-def add_entry(
-    tx: Tx,
-    job_id: str,
-    path: str,
-    outcome: ImportOutcome,
-    *,
-    clip_id: str | None = None,
-    problem: dict[str, Any] | None = None,
-) -> None:
-    """Records a file, in the transaction that stores its clip; each path once."""
-    values = {
-        "job_id": job_id,
-        "path": path,
-        "outcome": outcome.value,
-        "clip_id": clip_id,
-        "problem": problem,
-    }
-    tx.execute(_ADD_ENTRY, values)
+def add_entries(tx: Tx, job_id: str, new: Sequence[NewEntry]) -> None:
+    """Records files, a clip's in the transaction that stores it; each path once."""
+    if new:
+        rows = [
+            {
+                "job_id": job_id,
+                "path": entry.path,
+                "outcome": entry.outcome.value,
+                "clip_id": entry.clip_id,
+                "problem": entry.problem,
+            }
+            for entry in new
+        ]
+        tx.execute(_ADD_ENTRIES, rows)
 
 
 def recorded_paths(tx: Tx, job_id: str) -> frozenset[str]:
-    """Files that are recorded already: an import that is tried again passes them over."""
+    """Files that are recorded already: an import that goes on passes them over."""
     query = select(import_entries.c.path).where(import_entries.c.job_id == job_id)
     return frozenset(tx.execute(query).scalars())
 
 
-def entries(tx: Tx, job_id: str) -> tuple[ImportEntry, ...]:
-    """All files of an import, by path."""
-    rows = tx.execute(
-        select(import_entries, clips.c.state, clips.c.error)
-        .outerjoin(clips, clips.c.id == import_entries.c.clip_id)
-        .where(import_entries.c.job_id == job_id)
-        .order_by(import_entries.c.path)
+def waiting_clips(tx: Tx, job_id: str) -> tuple[str, ...]:
+    """The clips of an import that wait for their analysis, or are being analysed."""
+    query = (
+        select(import_entries.c.clip_id)
+        .join(clips, clips.c.id == import_entries.c.clip_id)
+        .where(
+            import_entries.c.job_id == job_id,
+            import_entries.c.outcome == ImportOutcome.QUEUED.value,
+            clips.c.state.in_(_UNFINISHED),
+        )
     )
-    return tuple(_to_entry(row) for row in rows.mappings())
+    return tuple(tx.execute(query).scalars())
 
 
-def wait_for_clips(tx: Tx, lease: Lease, detail: str | None = None) -> JobRecord:
-    """The archive is unpacked: the job needs no worker from here on, and ends with its clips."""
+def give_turn(tx: Tx, lease: Lease, progress: float, detail: str, lowest: int) -> JobRecord:
+    """Back into the queue behind other imports, one step less urgent, but not below `lowest`.
+
+    No attempt is counted, and the progress stays. Raises LeaseLost.
+    """
+    leases.give_back(tx, lease)
+    priority = job_repository.get_row(tx, lease.job_id)["priority"]
+    return _update(
+        tx,
+        lease.job_id,
+        priority=max(priority, min(priority + 1, lowest)),
+        progress=progress,
+        detail=detail,
+    )
+
+
+def wait_for_clips(
+    tx: Tx, lease: Lease, detail: str | None = None, *, absent: int = 0
+) -> JobRecord:
+    """The archive is unpacked: the job needs no worker from here on, and ends with its clips.
+
+    absent: how many paths the manifests name in vain, recorded or not. Raises LeaseLost.
+    """
     parked = leases.park(tx, lease, detail)
+    payload = job_repository.get_row(tx, parked.id)["payload"]
+    _update(tx, parked.id, payload={**payload, _ABSENT_COUNT: absent})
     return settle_if_done(tx, parked.id)
 
 
@@ -126,27 +143,16 @@ def settle_if_done(tx: Tx, job_id: str) -> JobRecord:
         progress=1.0,
         detail=None,
         finished_at=utc_now(),
-        result=summary(entries(tx, job_id)),
+        result=_result(tx, job_id, row["payload"].get(_ABSENT_COUNT)),
     )
 
 
-def summary(files: tuple[ImportEntry, ...]) -> dict[str, Any]:
-    """The `result` of an import: counts by outcome, and each file's outcome with its reason."""
-    lines = [_line(entry) for entry in files]
-    counts = Counter(line["outcome"] for line in lines)
-    return {
-        "total": len(lines),
-        **{name: counts[name] for name in ("ready", "exists", "failed", "deleted")},
-        "files": lines,
-    }
-
-
-def _line(entry: ImportEntry) -> dict[str, Any]:
-    outcome, error = entry.outcome.value, entry.problem
-    if entry.outcome is ImportOutcome.QUEUED:
-        outcome = "deleted" if entry.clip_state is None else entry.clip_state.value
-        error = entry.clip_error
-    return {"path": entry.path, "outcome": outcome, "clip_id": entry.clip_id, "error": error}
+def _result(tx: Tx, job_id: str, absent: int | None) -> dict[str, Any]:
+    """Counts only: an import may hold a hundred thousand files."""
+    found = import_files.count(tx, job_id)
+    counts = {outcome.value: found.get(outcome, 0) for outcome in COUNTED}
+    counts[FileOutcome.ABSENT.value] = absent or counts[FileOutcome.ABSENT.value]
+    return {"total": sum(counts.values()), **counts}
 
 
 def _counts(tx: Tx, job_id: str) -> tuple[int, int]:
@@ -165,14 +171,3 @@ def _counts(tx: Tx, job_id: str) -> tuple[int, int]:
 def _update(tx: Tx, job_id: str, **values: Any) -> JobRecord:
     changed = update(jobs).where(jobs.c.id == job_id).values(**values).returning(jobs)
     return job_repository.to_record(tx.execute(changed).mappings().one())
-
-
-def _to_entry(row: RowMapping) -> ImportEntry:
-    return ImportEntry(
-        path=row["path"],
-        outcome=ImportOutcome(row["outcome"]),
-        clip_id=row["clip_id"],
-        problem=row["problem"],
-        clip_state=None if row["state"] is None else ClipState(row["state"]),
-        clip_error=row["error"],
-    )

@@ -136,10 +136,9 @@ def _settle_one(tx: Tx, abandoned: ClaimedJob) -> JobRecord:
 def _cancel_what_hangs_on(tx: Tx, job: JobRecord, clip_id: str | None) -> None:
     _fail_clip(tx, clip_id, Canceled("The analysis was canceled").as_problem())
     if job.kind is JobKind.IMPORT:
-        for entry in imports.entries(tx, job.id):
-            if entry.outcome is imports.ImportOutcome.QUEUED and entry.clip_id is not None:
-                for job_id in _open_jobs_of(tx, entry.clip_id):
-                    request_cancel(tx, job_id)
+        for waiting in imports.waiting_clips(tx, job.id):
+            for job_id in _open_jobs_of(tx, waiting):
+                request_cancel(tx, job_id)
 
 
 def _fail_clip(tx: Tx, clip_id: str | None, problem: dict[str, Any]) -> None:

@@ -42,7 +42,8 @@ def write_cursor(sort: str, position: Position) -> str:
     """A URL-safe cursor for the page after `position`."""
     value = position.value
     plain = value.isoformat() if isinstance(value, datetime) else value
-    content = json.dumps([sort, plain, position.id], separators=(",", ":"))
+    # Not escaped: a long name of another script than Latin would outgrow MAX_CURSOR_LENGTH.
+    content = json.dumps([sort, plain, position.id], separators=(",", ":"), ensure_ascii=False)
     return base64.urlsafe_b64encode(content.encode()).decode().rstrip("=")
 
 

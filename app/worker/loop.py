@@ -27,6 +27,7 @@ from app.store.clip_record import ClipRecord
 from app.store.engine import Tx
 from app.store.ids import new_id
 from app.store.job_record import ClaimedJob, JobKind
+from app.worker.expiry import Expiry
 from app.worker.running import Running
 from app.worker.starting import Bench
 
@@ -75,12 +76,14 @@ class Worker:
         self._running: list[Running] = []
         self._last_beat = time.monotonic()
         self._last_fit_check = 0.0
+        self._expiry = Expiry(lib)
 
     def run(self, stop: threading.Event, until: Callable[[Library], bool] | None = None) -> None:
         """Work until told to stop, or until `until` holds with nothing left to claim."""
         while not stop.is_set():
             try:
                 self._beat_if_due()
+                self._expiry.remove_if_due()
                 is_idle = not self._take_a_turn()
                 if is_idle and not self._running:
                     if until is not None and until(self.lib):

@@ -89,11 +89,18 @@ def test_an_archive_becomes_clips_and_every_file_is_accounted_for(
         "set/README.md": "failed",
         "set/cut.bvh": "failed",
         "set/empty.bvh": "failed",
-        "set/gone.bvh": "failed",
+        "set/gone.bvh": "absent",
         "set/twin.bvh": "ready",
     }
     assert done.result is not None
-    assert all(f["error"]["detail"] for f in done.result["files"] if f["outcome"] == "failed")
+    assert {name: done.result[name] for name in ("total", "failed", "absent")} == {
+        "total": 7,
+        "failed": 3,
+        "absent": 1,
+    }
+    assert all(
+        f["error"]["detail"] for f in done.result["files"] if f["outcome"] in ("failed", "absent")
+    )
     stored = {clip.name: clip for clip in clips.list_clips(lib).items}
     clip = stored[Path(first.path).stem]
     assert (clip.person, clip.task, clip.words) == (first.person, first.task, first.words)

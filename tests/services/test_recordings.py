@@ -19,7 +19,7 @@ from app.services.demo import DemoClip
 from app.services.demo.dances import Sound, dance
 from app.services.library import Library, ingest_limits
 from app.services.recordings import NewRecording
-from app.store import imports as import_records
+from app.store import import_files
 from app.store.clip_record import ClipRecord, ClipState
 from tests.services.conftest import work
 
@@ -207,9 +207,9 @@ def test_a_manifest_names_recordings(lib: Library, danced: DemoClip) -> None:
     job = imports.start_import(lib, io.BytesIO(archive.getvalue()), "in.zip")
     work(lib.settings)
     with lib.store.read() as tx:
-        entries = {entry.path: entry for entry in import_records.entries(tx, job.id)}
+        entries = {entry.path: entry for entry in import_files.page(tx, job.id).items}
     assert set(entries) == {"in/one.bvh", "in/two.bvh", "in/sound/gone.wav"}
-    gone = entries["in/sound/gone.wav"].problem
+    gone = entries["in/sound/gone.wav"].error
     assert gone is not None
     assert gone["errors"][0]["location"] == "manifest.csv line 3"
     one, two = (clips.get_clip(lib, str(entries[f"in/{n}.bvh"].clip_id)) for n in ("one", "two"))

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from app.errors import LeaseLost
-from app.store import arrays, clips, imports, jobs, leases, library, outcomes, queue
+from app.store import arrays, clips, import_files, imports, jobs, leases, library, outcomes, queue
 from app.store.clip_record import ClipRecord, ClipState
 from app.store.engine import Tx
-from app.store.imports import ImportOutcome
+from app.store.imports import ImportOutcome, NewEntry
 from app.store.job_record import ClaimedJob, JobKind, JobRecord, JobState, NewJob
 from app.store.store import Store
 from tests.store.conftest import facts, new_clip
@@ -167,9 +167,11 @@ def start_import(tx: Tx, *names: str) -> tuple[JobRecord, list[ClipRecord]]:
     added = []
     for name in names:
         clip = add(tx, name)
-        imports.add_entry(tx, job.id, f"{name}.bvh", ImportOutcome.QUEUED, clip_id=clip.id)
+        imports.add_entries(
+            tx, job.id, [NewEntry(f"{name}.bvh", ImportOutcome.QUEUED, clip_id=clip.id)]
+        )
         added.append(clip)
-    imports.add_entry(tx, job.id, "z.txt", ImportOutcome.FAILED, problem=PROBLEM)
+    imports.add_entries(tx, job.id, [NewEntry("z.txt", ImportOutcome.FAILED, problem=PROBLEM)])
     return imports.wait_for_clips(tx, claimed.lease), added
 
 
@@ -190,13 +192,16 @@ def test_an_import_ends_with_the_last_of_its_clips(store: Store) -> None:
         "exists": 0,
         "failed": 2,
         "deleted": 1,
-        "files": [
-            {"path": "a.bvh", "outcome": "ready", "clip_id": good.id, "error": None},
-            {"path": "b.bvh", "outcome": "failed", "clip_id": bad.id, "error": PROBLEM},
-            {"path": "c.bvh", "outcome": "deleted", "clip_id": None, "error": None},
-            {"path": "z.txt", "outcome": "failed", "clip_id": None, "error": PROBLEM},
-        ],
+        "absent": 0,
     }
+    with store.read() as tx:
+        files = import_files.page(tx, job.id).items
+    assert [(f.path, f.outcome, f.clip_id, f.error) for f in files] == [
+        ("a.bvh", "ready", good.id, None),
+        ("b.bvh", "failed", bad.id, PROBLEM),
+        ("c.bvh", "deleted", None, None),
+        ("z.txt", "failed", None, PROBLEM),
+    ]
 
 
 def test_an_import_with_nothing_to_wait_for_ends_at_once(store: Store) -> None:
@@ -217,7 +222,7 @@ def test_an_import_that_waits_is_nobodys_and_never_expires(store: Store) -> None
 def test_an_import_that_is_tried_again_knows_what_it_has_done(store: Store) -> None:
     with store.write() as tx:
         job = jobs.enqueue(tx, NewJob(JobKind.IMPORT))
-        imports.add_entry(tx, job.id, "a.bvh", ImportOutcome.FAILED, problem=PROBLEM)
+        imports.add_entries(tx, job.id, [NewEntry("a.bvh", ImportOutcome.FAILED, problem=PROBLEM)])
         assert imports.recorded_paths(tx, job.id) == {"a.bvh"}
 
 

@@ -201,7 +201,7 @@ def test_a_cancelled_analysis_fails_its_clip_and_says_so(
 ) -> None:
     created = upload(lib, kicks[0])
     assert created.job is not None
-    jobs.cancel_job(lib, created.job.id)
+    jobs.cancel_or_remove(lib, created.job.id)
     work(lib.settings)
     clip = clips.get_clip(lib, created.clip.id)
     assert clip.state is ClipState.FAILED

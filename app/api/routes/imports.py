@@ -32,6 +32,9 @@ async def _form(request: Request) -> UploadFile:
     openapi_extra=body(form=ImportForm, files=FILES, needed=["archive"]),
 )
 def start_import(lib: Lib, archive: Annotated[UploadFile, Depends(_form)]) -> JobStarted:
-    """Store every motion file of a ZIP; `job.result` tells what came of each."""
+    """Store every motion file of a ZIP.
+
+    `job.result` counts what came of them, `GET /v1/jobs/{id}/files` tells it of each.
+    """
     job = imports.start_import(lib, archive.file, archive.filename or "archive.zip")
     return JobStarted(job=Job.of(job))

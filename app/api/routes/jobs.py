@@ -1,4 +1,4 @@
-"""Jobs: list, read, cancel, and follow as server-sent events."""
+"""Jobs: list, read, cancel or delete, and follow as server-sent events."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from collections.abc import AsyncIterator
 from typing import Annotated
 
 import anyio
-from fastapi import APIRouter, Depends, Query, Request
+from fastapi import APIRouter, Depends, Query, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import JobId, refusals
-from app.api.schemas.jobs import Job, JobList, JobQuery
+from app.api.schemas.jobs import Job, JobFile, JobFileList, JobFileQuery, JobList, JobQuery
 from app.errors import JobNotFound
 from app.services import jobs
 from app.services.library import Library
@@ -37,10 +37,36 @@ def get_job(lib: Lib, job_id: JobId) -> Job:
     return Job.of(jobs.get_job(lib, job_id))
 
 
-@router.delete("/{job_id}", status_code=202, dependencies=[writes], responses=refusals(404, 409))
-def cancel_job(lib: Lib, job_id: JobId) -> Job:
-    """Ask a job to stop; one that has ended stays as it is."""
-    return Job.of(jobs.cancel_job(lib, job_id))
+@router.get("/{job_id}/files", dependencies=[reads], responses=refusals(404))
+def list_files(lib: Lib, job_id: JobId, query: Annotated[JobFileQuery, Query()]) -> JobFileList:
+    """What became of each file of an import, by path.
+
+    Of the paths that a manifest names and that are not there, the first 100 are listed; the
+    job's result counts them all. Other jobs have no files.
+    """
+    page = jobs.list_files(lib, job_id, query.outcome, query.limit, query.cursor)
+    return JobFileList(items=[JobFile.of(file) for file in page.items], next=page.next)
+
+
+@router.delete(
+    "/{job_id}",
+    status_code=202,
+    dependencies=[writes],
+    response_model=Job,
+    responses={
+        **refusals(404, 409),
+        202: {"description": "The job was open: it is canceled, or stops soon."},
+        204: {"description": "The job had ended: it is deleted, with the list of its files."},
+    },
+)
+def cancel_or_delete_job(lib: Lib, job_id: JobId) -> Job | Response:
+    """Ask an open job to stop; delete one that has ended. No clip is deleted.
+
+    The newest fit stays (409), because it says what the models know. Ended jobs are also deleted
+    by themselves after some time (`KINEDEX_JOB_RETENTION_DAYS`).
+    """
+    canceled = jobs.cancel_or_remove(lib, job_id)
+    return Response(status_code=204) if canceled is None else Job.of(canceled)
 
 
 def _existing(lib: Lib, job_id: JobId) -> JobRecord:

@@ -7,6 +7,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 from app.services import fields
+from app.store.paging import MAX_CURSOR_LENGTH
 
 Value = TypeVar("Value")
 
@@ -53,6 +54,10 @@ FormWords = Annotated[list[str], BeforeValidator(_as_words, json_schema_input_ty
 Limit = Annotated[int, Field(ge=1, le=1000, description="Most items in one answer.")]
 
 Cursor = Annotated[
-    str, Field(max_length=1000, description="`next` of the answer before; from there on.")
+    str,
+    Field(
+        max_length=MAX_CURSOR_LENGTH,
+        description="`next` of the answer before; from there on.",
+    ),
 ]
 Seconds = Annotated[float, Field(ge=0, le=1e6)]

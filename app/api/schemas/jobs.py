@@ -10,6 +10,7 @@ from pydantic import Field
 from app.api.problems import stored_problem
 from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing
 from app.api.schemas.problem import Problem
+from app.store.import_files import FileOutcome, ImportedFile
 from app.store.job_record import JobKind, JobRecord, JobState
 
 
@@ -24,7 +25,12 @@ class Job(Outgoing):
     created_at: datetime
     started_at: datetime | None
     finished_at: datetime | None
-    result: dict[str, Any] | None = Field(description="What came of it; its members by `kind`.")
+    result: dict[str, Any] | None = Field(
+        description="What came of it; its members by `kind`. Of an import: how many files came to"
+        " what (`total`, `ready`, `exists`, `failed`, `deleted`, `absent`), its first 100 `files`"
+        " (failed ones before others), and how many there are beside them (`files_left_out`);"
+        " `GET .../files` has them all. Lists of jobs leave `files` out."
+    )
     error: Problem | None
 
     @classmethod
@@ -54,6 +60,44 @@ def _result(kept: dict[str, Any] | None) -> dict[str, Any] | None:
 
 def _problem(kept: dict[str, Any] | None) -> dict[str, Any] | None:
     return None if kept is None else stored_problem(kept)
+
+
+class JobFile(Outgoing):
+    """A file of an import."""
+
+    path: str = Field(description="Where it is in the archive or folder.")
+    outcome: FileOutcome = Field(
+        description="queued, processing or ready: the clip's state; failed: no clip, or one that"
+        " cannot be analysed; exists: the library held the content before; deleted: the clip was"
+        " deleted since; absent: a manifest names it, and it is not there."
+    )
+    clip_id: str | None
+    error: Problem | None = Field(description="Why it failed.")
+
+    @classmethod
+    def of(cls, file: ImportedFile) -> JobFile:
+        """A file as it goes over the wire."""
+        return cls(
+            path=file.path,
+            outcome=file.outcome,
+            clip_id=file.clip_id,
+            error=Problem.of(file.error),
+        )
+
+
+class JobFileList(Outgoing):
+    """A page of an import's files, by path."""
+
+    items: list[JobFile]
+    next: str | None
+
+
+class JobFileQuery(Incoming):
+    """Which files of an import are listed, and which page of them."""
+
+    outcome: FileOutcome | None = None
+    limit: Limit = 100
+    cursor: Cursor | None = None
 
 
 class JobList(Outgoing):
