@@ -86,7 +86,9 @@ def _read_manifest(manifest: Manifest, file: SourceFile) -> None:
         with file.open() as content:
             manifest.read(content, file.path.rpartition("/")[0])
     except (Unreadable, TooLarge) as problem:
-        raise type(problem)(f"{file.path}: {problem.detail}", places=problem.places) from problem
+        told = problem.detail.removeprefix(MANIFEST_NAME)
+        detail = f"{file.path}{told}" if told != problem.detail else f"{file.path}: {told}"
+        raise type(problem)(detail, places=problem.places) from problem
 
 
 def _is_manifest(file: SourceFile) -> bool:

@@ -13,7 +13,7 @@ import stat
 import zipfile
 import zlib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path, PurePosixPath
@@ -21,6 +21,7 @@ from types import TracebackType
 from typing import IO, BinaryIO
 
 from app.errors import BadContent, KinedexError, Place, TooLarge, Unreadable
+from app.services.archive_directory import open_zip
 
 _ENCRYPTED = 0x1
 _COMPRESSIONS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)
@@ -89,13 +90,14 @@ def archive_files(archive: BinaryIO | Path, limits: ArchiveLimits) -> Iterator[l
     Raises Unreadable where it is no ZIP, TooLarge where it holds too many entries or would
     unpack to too much. Single bad entries carry their problem.
     """
-    try:
-        opened = zipfile.ZipFile(archive)
-    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as problem:
-        raise Unreadable(f"The archive cannot be read as ZIP: {problem}.") from problem
-    with opened:
+    with ExitStack() as files:
+        file = files.enter_context(archive.open("rb")) if isinstance(archive, Path) else archive
+        try:
+            opened = files.enter_context(open_zip(file, limits.entries))
+        except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as problem:
+            raise Unreadable(f"The archive cannot be read as ZIP: {problem}.") from problem
         entries = [entry for entry in opened.infolist() if not _left_out(entry)]
-        _check_whole(entries, _size(archive), limits)
+        _check_whole(entries, _size(file), limits)
         yield [_archive_file(opened, entry, limits) for entry in entries]
 
 
@@ -184,9 +186,7 @@ def _entry_problem(entry: zipfile.ZipInfo, limits: ArchiveLimits) -> KinedexErro
     return None
 
 
-def _size(archive: BinaryIO | Path) -> int:
-    if isinstance(archive, Path):
-        return archive.stat().st_size
+def _size(archive: BinaryIO) -> int:
     position = archive.tell()
     size = archive.seek(0, os.SEEK_END)
     archive.seek(position)

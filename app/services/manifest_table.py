@@ -176,5 +176,6 @@ def _unreadable(line: int, message: str) -> Unreadable:
 
 
 def _too_large(line: int, message: str) -> TooLarge:
-    place = Place(f"{MANIFEST_NAME} line {max(line, 1)}", message)
-    return TooLarge(f"{MANIFEST_NAME} is too large: {message}.", places=[place])
+    line = max(line, 1)
+    place = Place(f"{MANIFEST_NAME} line {line}", message)
+    return TooLarge(f"{MANIFEST_NAME} is too large: line {line}: {message}.", places=[place])

@@ -143,6 +143,14 @@ def set_failed(tx: Tx, clip_id: str, problem: dict[str, Any]) -> None:
     _enter(tx, clip_id, ClipState.FAILED, error=problem)
 
 
+def fail_waiting(tx: Tx, clip_ids: Collection[str], problem: dict[str, Any]) -> None:
+    """As `set_failed`, of many clips; those that do not wait for an analysis stay as they are."""
+    waiting = clips.c.state.in_([ClipState.QUEUED.value, ClipState.PROCESSING.value])
+    for batch in in_batches(clip_ids):
+        failed = update(clips).where(clips.c.id.in_(batch), waiting)
+        tx.execute(failed.values(state=ClipState.FAILED.value, error=problem))
+
+
 def delete_clip(tx: Tx, clip_id: str) -> ClipRecord:
     """Removes the row with its words and arrays; returns what it was. Raises ClipNotFound.
 

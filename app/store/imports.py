@@ -10,7 +10,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import func, insert, select, update
+from sqlalchemy import bindparam, exists, func, insert, select, update
 
 from app.store import import_files, leases, library
 from app.store import jobs as job_repository
@@ -31,8 +31,22 @@ COUNTED = (
 """The outcomes of an import that has ended, as its result counts them."""
 _ABSENT_COUNT = "absent"
 """Member of an import's payload: how many paths its manifests name in vain."""
+_FILES = "files"
+"""Member of the payload: how many files are recorded."""
 _UNFINISHED = (ClipState.QUEUED.value, ClipState.PROCESSING.value)
 _ADD_ENTRIES = insert(import_entries)
+# From the clips that wait, of which there are few towards the end, not from all files.
+_ANY_UNFINISHED = (
+    select(clips.c.id)
+    .where(
+        clips.c.state.in_(_UNFINISHED),
+        exists().where(
+            import_entries.c.clip_id == clips.c.id,
+            import_entries.c.job_id == bindparam("the_id"),
+        ),
+    )
+    .limit(1)
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,36 +120,46 @@ def wait_for_clips(
     """
     parked = leases.park(tx, lease, detail)
     payload = job_repository.get_row(tx, parked.id)["payload"]
-    _update(tx, parked.id, payload={**payload, _ABSENT_COUNT: absent})
-    return settle_if_done(tx, parked.id)
+    total, waiting = _counts(tx, parked.id)
+    _update(
+        tx,
+        parked.id,
+        payload={**payload, _ABSENT_COUNT: absent, _FILES: total},
+        progress=(total - waiting) / max(total, 1),
+    )
+    return settle_if_done(tx, parked.id, ended=0)
 
 
-def waiting_on(tx: Tx, clip_ids: Collection[str]) -> tuple[str, ...]:
-    """The open import jobs that have one of these clips among theirs."""
+def waiting_on(tx: Tx, clip_ids: Collection[str]) -> dict[str, int]:
+    """The open import jobs that have some of these clips among theirs, with how many."""
     if not clip_ids:
-        return ()
+        return {}
     query = (
-        select(jobs.c.id)
+        select(jobs.c.id, func.count())
         .join(import_entries, import_entries.c.job_id == jobs.c.id)
         .where(
             import_entries.c.clip_id.in_(clip_ids),
             jobs.c.state == JobState.PROCESSING.value,
         )
-        .distinct()
+        .group_by(jobs.c.id)
     )
-    return tuple(tx.execute(query).scalars())
+    return {job_id: int(number) for job_id, number in tx.execute(query)}
 
 
-def settle_if_done(tx: Tx, job_id: str) -> JobRecord:
-    """Ends an unpacked import whose clips are all done; else brings its progress up to date."""
+def settle_if_done(tx: Tx, job_id: str, ended: int) -> JobRecord:
+    """Ends an unpacked import whose clips are all done; else brings its progress up to date.
+
+    ended: how many of its clips have come to their end since the last call.
+    """
     # Where writers overlap, the last two clips must not each see the other as unfinished.
     library.lock(tx)
     row = job_repository.get_row(tx, job_id)
     if row["state"] != JobState.PROCESSING.value or row["owner"] is not None:
         return job_repository.to_record(row)
-    total, waiting = _counts(tx, job_id)
-    if waiting:
-        return _update(tx, job_id, progress=(total - waiting) / total)
+    if tx.execute(_ANY_UNFINISHED, {"the_id": job_id}).first() is not None:
+        # Not counted anew: of a hundred thousand files that takes longer than an analysis.
+        total = row["payload"].get(_FILES) or _counts(tx, job_id)[0]
+        return _update(tx, job_id, progress=min(row["progress"] + ended / total, 1.0))
     return _update(
         tx,
         job_id,

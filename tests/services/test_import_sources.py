@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from app.errors import TooLarge, Unreadable
+from app.services.archive_directory import HEADER_BYTES
 from app.services.import_sources import (
     ArchiveLimits,
     SourceFile,
@@ -94,6 +95,33 @@ def test_a_bomb_is_refused_whole() -> None:
 def test_too_many_entries_are_refused_whole() -> None:
     with pytest.raises(TooLarge, match="too many files"):
         _files(_zip({str(i): b"" for i in range(6)}))
+
+
+def test_a_directory_of_too_many_entries_is_refused_before_it_is_read_whole() -> None:
+    few = _zip(dict.fromkeys([f".hidden/{i}" for i in range(15)], b""))
+    assert _files(few) == []
+    many = _zip(dict.fromkeys([f".hidden/{i}" for i in range(16)], b""))
+    read: list[int] = []
+
+    class Watched(io.BytesIO):
+        def read(self, size: int | None = -1, /) -> bytes:
+            content = super().read(size)
+            read.append(len(content))
+            return content
+
+    with pytest.raises(TooLarge, match="too many files") as refused:
+        _files(Watched(many.getvalue()))
+    assert refused.value.places[0].message.startswith("more than 15 entries")
+    assert max(read) < 16 * HEADER_BYTES
+
+
+def test_a_directory_of_too_long_names_is_refused() -> None:
+    names = [f"{i}/".ljust(60_000, "x") for i in range(4)]
+    assert len(_files(_zip(dict.fromkeys(names, b"")))) == 4
+    names = [f"{i}/".ljust(65_000, "x") for i in range(12)]
+    with pytest.raises(TooLarge) as refused:
+        _files(_zip(dict.fromkeys(names, b"")), ArchiveLimits(20, 50.0, 100))
+    assert "bytes of names" in refused.value.places[0].message
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 and then nothing", b"HIERARCHY"])
