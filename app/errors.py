@@ -12,6 +12,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+MAX_DETAIL = 2000
+MAX_LOCATION = 600
+MAX_MESSAGE = 1000
+"""Characters of what a failure says: it may quote what a client sent."""
+MOST_KEPT_PLACES = 20
+"""Places of a failure that is stored with a clip, a job or a file of an import."""
+
 
 @dataclass(frozen=True, slots=True)
 class Place:
@@ -20,6 +27,15 @@ class Place:
     location: str
     message: str
 
+    def shortened(self) -> Place:
+        """The same with texts that are not too long."""
+        return Place(shortened(self.location, MAX_LOCATION), shortened(self.message, MAX_MESSAGE))
+
+
+def shortened(text: str, most: int) -> str:
+    """A text of at most so many characters; of a longer one the beginning, and a mark."""
+    return text if len(text) <= most else f"{text[: most - 1]}…"
+
 
 class KinedexError(Exception):
     """Something went wrong in Kinedex."""
@@ -27,8 +43,8 @@ class KinedexError(Exception):
     code: ClassVar[str] = "internal"
 
     def __init__(self, detail: str | None = None, *, places: Iterable[Place] = ()) -> None:
-        self.detail = detail or self.title()
-        self.places = tuple(places)
+        self.detail = shortened(detail or self.title(), MAX_DETAIL)
+        self.places = tuple(place.shortened() for place in places)
         super().__init__(self.detail)
 
     @classmethod
@@ -37,12 +53,15 @@ class KinedexError(Exception):
         return (inspect.getdoc(cls) or cls.__name__).splitlines()[0].rstrip(".")
 
     def as_problem(self) -> dict[str, Any]:
-        """The members of an RFC 9457 problem that do not depend on HTTP."""
+        """The members of an RFC 9457 problem that do not depend on HTTP, as it is stored."""
         return {
             "title": self.title(),
             "detail": self.detail,
             "code": self.code,
-            "errors": [{"location": p.location, "message": p.message} for p in self.places],
+            "errors": [
+                {"location": place.location, "message": place.message}
+                for place in self.places[:MOST_KEPT_PLACES]
+            ],
         }
 
     def __reduce__(self) -> tuple[Any, ...]:

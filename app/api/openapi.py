@@ -31,8 +31,12 @@ _DESCRIPTIONS = {
 _EVERYWHERE = (401, 403, 422, 500)
 
 
-ClipId = Annotated[str, Path(openapi_examples={"a clip": {"value": "CLIP_ID"}})]
-JobId = Annotated[str, Path(openapi_examples={"a job": {"value": "JOB_ID"}})]
+LONGEST_ID = 100
+ClipId = Annotated[
+    str, Path(max_length=LONGEST_ID, openapi_examples={"a clip": {"value": "CLIP_ID"}})
+]
+JobId = Annotated[str, Path(max_length=LONGEST_ID, openapi_examples={"a job": {"value": "JOB_ID"}})]
+PairId = Annotated[str, Path(max_length=LONGEST_ID)]
 
 
 def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:

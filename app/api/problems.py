@@ -99,14 +99,14 @@ def problem(
 def problem_of(error: KinedexError) -> dict[str, Any]:
     """A failure as a problem; what went wrong inside is told to the log only."""
     status = status_of(type(error))
-    told = error.as_problem()
+    places = [{"location": p.location, "message": p.message} for p in error.places]
     hidden = status >= 500 and status not in _DETAIL_IS_SAFE
     return problem(
         status,
         error.code,
         error.title() if hidden else error.detail,
         title=error.title(),
-        places=() if hidden else told["errors"],
+        places=() if hidden else places,
     )
 
 

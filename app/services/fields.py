@@ -11,6 +11,7 @@ import unicodedata
 from collections.abc import Iterable, Mapping
 
 from app.errors import BadField, Place
+from app.formats.names import MAX_NAME_LENGTH
 from app.models.word_vocabulary import normalise_word, normalise_words
 from app.motion.joint_roles import JointRole
 from app.motion.units import METRES_PER_UNIT
@@ -20,6 +21,8 @@ MAX_TEXT = 300
 MAX_PATH = 500
 """Characters in the path of an imported file: a page's cursor holds one."""
 NO_CONTROL = "must not hold control characters"
+MAX_JOINT_NAME = MAX_NAME_LENGTH
+"""Characters of a joint's name; no file may have longer ones."""
 MAX_WORDS = 100
 """Words on one clip."""
 MAX_LIMIT = 1000
@@ -111,8 +114,9 @@ def roles(value: Mapping[str, str] | None) -> dict[str, str] | None:
     for role, joint in value.items():
         if role not in known:
             raise bad_field(f"roles.{role}", f"there is no such role; known are {sorted(known)}")
-        if not isinstance(joint, str) or not joint:
-            raise bad_field(f"roles.{role}", "must be the name of a joint")
+        if not isinstance(joint, str) or not 0 < len(joint) <= MAX_JOINT_NAME:
+            message = f"must be the name of a joint, of at most {MAX_JOINT_NAME} characters"
+            raise bad_field(f"roles.{role}", message)
     return dict(value) or None
 
 

@@ -77,7 +77,7 @@ class Registering:
                 continue
             self._register(self.plan.item(file))
             progress(self.done, self.total, file.path)
-            if is_over():
+            if number < self.total and is_over():
                 self.record_problems()
                 return False
         self.record_problems()

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from app.analysis.analyse import ANALYSIS_VERSION, Analysis
 from app.analysis.energy import EnergyMethod
-from app.errors import KinedexError, ModelNotFitted, StorageError
+from app.errors import MAX_MESSAGE, KinedexError, ModelNotFitted, StorageError, shortened
 from app.services.analysis_pool import ChildDied, Order
 from app.services.keypose_frames import named_keyposes
 from app.services.library import Library
@@ -19,6 +19,8 @@ from app.store.clip_record import ClipFacts, ClipRecord, ClipWarning
 from app.store.engine import Tx
 from app.store.job_record import ClaimedJob
 
+MOST_WARNINGS = 50
+"""Of one clip."""
 RETRY_DELAY_S = 5.0
 """Before a failure that may pass is tried again."""
 
@@ -88,7 +90,10 @@ def facts(found: Analysis) -> ClipFacts:
         metres_per_unit=motion.metres_per_unit,
         roles={role.value: motion.names[joint] for role, joint in motion.roles.items()},
         missing_roles=tuple(role.value for role in motion.missing_roles),
-        warnings=tuple(ClipWarning(c.code, c.detail, c.likely) for c in doubts),
+        warnings=tuple(
+            ClipWarning(c.code, shortened(c.detail, MAX_MESSAGE), c.likely)
+            for c in doubts[:MOST_WARNINGS]
+        ),
         analysis_version=ANALYSIS_VERSION,
         audio_offset=found.audio_offset,
     )

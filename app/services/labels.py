@@ -9,6 +9,8 @@ from app.services.library import Library
 from app.services.synthesized import SYNTHESIZED
 from app.store import labels as stored
 from app.store.engine import Tx
+from app.store.labels import LabelKind
+from app.store.paging import Page
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,9 +38,20 @@ def words(lib: Library) -> list[LabelCount]:
     return _counted(lib, stored.words)
 
 
+def page(lib: Library, kind: LabelKind, limit: int, cursor: str | None = None) -> Page[LabelCount]:
+    """One page of the labels of a kind, by name. Raises BadField for a bad cursor."""
+    with lib.store.read() as tx:
+        found = stored.page(tx, kind, SYNTHESIZED, limit, cursor)
+    return Page(tuple(map(_told, found.items)), found.next)
+
+
 def _counted(
     lib: Library, count: Callable[[Tx, str], tuple[stored.Count, ...]]
 ) -> list[LabelCount]:
     with lib.store.read() as tx:
         found = count(tx, SYNTHESIZED)
-    return [LabelCount(one.name, one.others, one.of_source) for one in found]
+    return list(map(_told, found))
+
+
+def _told(one: stored.Count) -> LabelCount:
+    return LabelCount(one.name, one.others, one.of_source)

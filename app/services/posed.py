@@ -69,7 +69,8 @@ def _problem(point: Any) -> str | None:
     if not isinstance(point, list | tuple) or len(point) != 3:
         return expected
     numbers = [isinstance(n, int | float) and not isinstance(n, bool) for n in point]
-    if not all(numbers) or not all(math.isfinite(n) for n in point):
+    # An int may be larger than any float, of which isfinite could not be asked.
+    if not all(numbers) or not all(math.isfinite(n) for n in point if isinstance(n, float)):
         return expected
     return f"farther than {LARGEST:g} m" if max(map(abs, point)) > LARGEST else None
 

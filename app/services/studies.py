@@ -33,6 +33,8 @@ from app.store import studies as stored
 from app.store.paging import Page
 from app.store.studies import Choice, PairRecord, VoteCount
 
+MOST_SEQUENCES = 1000
+"""Sequences that a tally tells one by one; those of one clip can be asked for by themselves."""
 MOST_VOTER = 200
 """Characters of what a page calls a voter."""
 
@@ -190,7 +192,9 @@ def tally(lib: Library, clip_id: str | None = None) -> StudyTally:
     sequences.sort(key=lambda one: (one.name, one.clip_id, one.dimensions))
     left = sum(count.votes for count in counts if count.choice is Choice.LEFT)
     told = sum(count.votes for count in counts if count.choice is not Choice.SAME)
-    return StudyTally(tuple(sequences), _tally(counts), left / told if told else None)
+    return StudyTally(
+        tuple(sequences[:MOST_SEQUENCES]), _tally(counts), left / told if told else None
+    )
 
 
 def _tally(counts: Iterable[VoteCount]) -> Tally:

@@ -9,8 +9,12 @@ from starlette.convertors import PathConvertor, register_url_convertor
 
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import refusals
-from app.api.schemas.labels import NamedCounts, WordBeginning
+from app.api.schemas.labels import LabelPage, NamedCounts, WordBeginning
 from app.services import labels, persons, suggestions
+from app.store.labels import LabelKind
+
+MOST_WORDS, MOST_COMPLETIONS = 1000, 10
+"""Where a client does not say how many."""
 
 
 class LabelConvertor(PathConvertor):
@@ -28,9 +32,10 @@ router = APIRouter(prefix="/v1", tags=["labels"], dependencies=[reads], response
 
 
 @router.get("/persons")
-def list_persons(lib: Lib) -> NamedCounts:
+def list_persons(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
     """Persons and how many clips each has."""
-    return NamedCounts.of(labels.persons(lib))
+    page = labels.page(lib, LabelKind.PERSON, query.limit, query.cursor)
+    return NamedCounts.of(page.items, page.next)
 
 
 @router.delete(
@@ -45,14 +50,16 @@ def forget_person(lib: Lib, name: Annotated[str, Path(max_length=300)]) -> None:
 
 
 @router.get("/tasks")
-def list_tasks(lib: Lib) -> NamedCounts:
+def list_tasks(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
     """Tasks and how many clips each has."""
-    return NamedCounts.of(labels.tasks(lib))
+    page = labels.page(lib, LabelKind.TASK, query.limit, query.cursor)
+    return NamedCounts.of(page.items, page.next)
 
 
 @router.get("/words")
 def list_words(lib: Lib, query: Annotated[WordBeginning, Query()]) -> NamedCounts:
     """Words and how many clips carry each, by name; completions of `q`, the likeliest first."""
     if query.q is None:
-        return NamedCounts.of(labels.words(lib))
-    return NamedCounts.of(suggestions.complete(lib, query.q, query.limit))
+        page = labels.page(lib, LabelKind.WORD, query.limit or MOST_WORDS, query.cursor)
+        return NamedCounts.of(page.items, page.next)
+    return NamedCounts.of(suggestions.complete(lib, query.q, query.limit or MOST_COMPLETIONS))

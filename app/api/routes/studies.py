@@ -8,7 +8,7 @@ from fastapi import APIRouter, Depends, Query, Request, Response
 
 from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
-from app.api.openapi import refusals
+from app.api.openapi import PairId, refusals
 from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.routes.low_dimensional import SVG_ANSWER
 from app.api.schemas.studies import (
@@ -50,7 +50,7 @@ def list_pairs(lib: Lib, query: Annotated[PairsQuery, Query()]) -> PairList:
 
 
 @router.get(PAIRS + "/{pair_id}", dependencies=[reads], responses=refusals(404))
-def get_pair(lib: Lib, pair_id: str) -> Pair:
+def get_pair(lib: Lib, pair_id: PairId) -> Pair:
     """One pair."""
     return Pair.of(studies.get_pair(lib, pair_id))
 
@@ -58,7 +58,7 @@ def get_pair(lib: Lib, pair_id: str) -> Pair:
 @router.delete(
     PAIRS + "/{pair_id}", status_code=204, dependencies=[writes], responses=refusals(404)
 )
-def delete_pair(lib: Lib, pair_id: str) -> None:
+def delete_pair(lib: Lib, pair_id: PairId) -> None:
     """Forget a pair and the votes on it."""
     studies.delete_pair(lib, pair_id)
 
@@ -69,7 +69,7 @@ def delete_pair(lib: Lib, pair_id: str) -> None:
     response_class=Response,
     responses={200: SVG_ANSWER, **refusals(404, 409)},
 )
-def get_pair_animation(lib: Lib, pair_id: str) -> Response:
+def get_pair_animation(lib: Lib, pair_id: PairId) -> Response:
     """The three motions side by side in one time, the original in the middle (fig. 12)."""
     return Response(studies.animation(lib, pair_id), media_type="image/svg+xml")
 
@@ -81,7 +81,7 @@ def get_pair_animation(lib: Lib, pair_id: str) -> Response:
     responses={200: OCTET_ANSWER, **refusals(404, 409)},
 )
 def get_pair_motion(
-    lib: Lib, request: Request, pair_id: str, side: Side, wanted: Annotated[SideQuery, Query()]
+    lib: Lib, request: Request, pair_id: PairId, side: Side, wanted: Annotated[SideQuery, Query()]
 ) -> Response:
     """The motion on a side, as `/motion` gives it: JSON, or octets. Nothing tells what it is."""
     view = studies.motion(lib, pair_id, side, wanted.fps)
@@ -94,7 +94,7 @@ def get_pair_motion(
     dependencies=[writes, Depends(require_json)],
     responses=_BODY_REFUSALS,
 )
-def vote(lib: Lib, pair_id: str, new: NewVote) -> Vote:
+def vote(lib: Lib, pair_id: PairId, new: NewVote) -> Vote:
     """Say which side is nearer to the original."""
     vote_id = studies.vote(lib, pair_id, new.choice, new.voter)
     return Vote(id=vote_id, pair_id=pair_id, choice=new.choice)

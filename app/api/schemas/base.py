@@ -6,6 +6,8 @@ from typing import Annotated, Any, TypeVar
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
+from app.motion.joint_roles import JointRole
+from app.search.filters import LONGEST_LABEL, MOST_LABELS
 from app.services import fields
 from app.store.paging import MAX_CURSOR_LENGTH
 
@@ -42,13 +44,19 @@ PartOfName = Annotated[str, Field(max_length=300), AfterValidator(_without_contr
 """What was typed of a name; SQLite's LIKE would end at a NUL, and so find everything."""
 
 AnyOf = Annotated[
-    list[Annotated[str, Field(min_length=1, max_length=300)]],
+    list[Annotated[str, Field(min_length=1, max_length=LONGEST_LABEL)]],
     BeforeValidator(_as_list, json_schema_input_type=str | list[str]),
-    Field(min_length=1, max_length=100),
+    Field(min_length=1, max_length=MOST_LABELS),
 ]
 """A label, or several of which any will do."""
 
-FormWords = Annotated[list[str], BeforeValidator(_as_words, json_schema_input_type=str)]
+Label = Annotated[str, Field(max_length=fields.MAX_TEXT)]
+"""A name or label of a clip; its other rules are the service's."""
+
+Words = Annotated[list[Label], Field(max_length=fields.MAX_WORDS)]
+"""The words of one clip."""
+
+FormWords = Annotated[Words, BeforeValidator(_as_words, json_schema_input_type=str)]
 """Words of a form, separated by spaces; a phrase is joined by underscores."""
 
 Limit = Annotated[int, Field(ge=1, le=1000, description="Most items in one answer.")]
@@ -60,4 +68,14 @@ Cursor = Annotated[
         description="`next` of the answer before; from there on.",
     ),
 ]
+Id = Annotated[str, Field(min_length=1, max_length=100)]
+"""The id of a clip or the like."""
+Roles = Annotated[
+    dict[
+        Annotated[str, Field(max_length=30)],
+        Annotated[str, Field(min_length=1, max_length=fields.MAX_JOINT_NAME)],
+    ],
+    Field(max_length=len(JointRole)),
+]
+"""Joint names by joint role."""
 Seconds = Annotated[float, Field(ge=0, le=1e6)]

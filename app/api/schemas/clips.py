@@ -12,10 +12,13 @@ from app.api.schemas.base import (
     Cursor,
     FormWords,
     Incoming,
+    Label,
     Limit,
     Outgoing,
     PartOfName,
+    Roles,
     Seconds,
+    Words,
 )
 from app.api.schemas.filters import Filter
 from app.api.schemas.jobs import Job
@@ -25,7 +28,6 @@ from app.services.fields import MAX_KEYPOSES, MAX_OFFSET, TEMPI
 from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord, ClipState
 
-Label = Annotated[str, Field(max_length=300)]
 Sort = Literal[
     "created_at",
     "-created_at",
@@ -166,7 +168,7 @@ class ClipForm(Incoming):
         max_length=30,
         description="m, dm, cm, mm, in, ft, cmu (of CMU's files), or metres per unit.",
     )
-    roles: Json[dict[str, str]] | None = Field(
+    roles: Json[Roles] | None = Field(
         None, description='JSON: joint name by role, as {"hips": "Pelvis"}.'
     )
     stack: Stack | None = None
@@ -185,7 +187,7 @@ class ClipPatch(Incoming):
     name: Label | None = None
     person: Label | None = None
     task: Label | None = None
-    words: list[Label] | None = Field(None, max_length=100)
+    words: Words | None = None
     license: Label | None = None
     source: Label | None = None
     frame_rate: FrameRate | None = Field(

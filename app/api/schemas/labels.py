@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from pydantic import Field
 
-from app.api.schemas.base import Incoming, Outgoing, PartOfName
+from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, PartOfName, Words
 from app.services.labels import LabelCount
 
 
@@ -19,19 +21,20 @@ class NamedCount(Outgoing):
 
 
 class NamedCounts(Outgoing):
-    """All labels of a kind, by name; `next` is always null."""
+    """A page of the labels of a kind, by name."""
 
     items: list[NamedCount]
     next: str | None = None
 
     @classmethod
-    def of(cls, counts: list[LabelCount]) -> NamedCounts:
-        """Labels as they go over the wire."""
+    def of(cls, counts: Iterable[LabelCount], following: str | None = None) -> NamedCounts:
+        """Labels as they go over the wire, with the cursor of the next page."""
         return cls(
+            next=following,
             items=[
                 NamedCount(name=one.name, count=one.recordings, synthesized=one.synthesized)
                 for one in counts
-            ]
+            ],
         )
 
 
@@ -42,7 +45,17 @@ class WordBeginning(Incoming):
         None,
         description="Only words that begin with this, or hold it, else those that it is a form of.",
     )
-    limit: int = Field(10, ge=1, le=1000, description="Most completions, with `q`.")
+    limit: Limit | None = Field(
+        None, description="Default: 10 completions of `q`, or 1,000 words where it is not sent."
+    )
+    cursor: Cursor | None = Field(None, description="`next` of the answer before, without `q`.")
+
+
+class LabelPage(Incoming):
+    """Which page of the labels."""
+
+    limit: Limit = 1000
+    cursor: Cursor | None = None
 
 
 WORD_SCORE = (
@@ -73,8 +86,7 @@ class WordSuggestions(Outgoing):
 class AcceptedWords(Incoming):
     """Which suggestions are right."""
 
-    words: list[str] | None = Field(
+    words: Words | None = Field(
         None,
-        max_length=100,
         description="Words to add to the clip's; by default all suggestions likelier than not.",
     )

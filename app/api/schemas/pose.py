@@ -16,7 +16,7 @@ from app.services import hits as services
 _POINT = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
 Positions = Annotated[
     list[Any],
-    # The service reads them: it can name the joint that is wrong.
+    # The service reads them, no more than 13: it can name the joint that is wrong.
     WithJsonSchema(
         {"type": "array", "items": _POINT, "minItems": len(SUN_ROLES), "maxItems": len(SUN_ROLES)}
     ),

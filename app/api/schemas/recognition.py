@@ -6,8 +6,7 @@ from typing import Literal
 
 from pydantic import ConfigDict, Field
 
-from app.api.schemas.base import Incoming, Outgoing
-from app.api.schemas.clips import Label
+from app.api.schemas.base import Incoming, Label, Outgoing
 from app.api.schemas.labels import WORD_SCORE
 from app.api.schemas.search import ClipId, UploadFields
 from app.models.recognition import Answer as FoundAnswer

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field, Json
 
-from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, Seconds
+from app.api.schemas.base import Cursor, Id, Incoming, Limit, Outgoing, Roles, Seconds
 from app.api.schemas.clips import Clip, FrameRate, Stack
 from app.api.schemas.filters import Filter
 from app.search.methods import Method
@@ -32,7 +32,7 @@ class _MotionOptions(Incoming):
     cursor: Cursor | None = None
 
 
-ClipId = Annotated[str, Field(min_length=1, max_length=100)]
+ClipId = Id
 
 
 class MotionSearch(_MotionOptions):
@@ -68,7 +68,7 @@ class UploadFields(Incoming):
         description="m, dm, cm, mm, in, ft, cmu (of CMU's files), or metres per unit.",
     )
     frame_rate: FrameRate | None = Field(None, description="Overrides what the file declares.")
-    roles: Json[dict[str, str]] | None = Field(
+    roles: Json[Roles] | None = Field(
         None, description='JSON: joint name by role, as {"hips": "Pelvis"}.'
     )
     stack: Stack | None = None

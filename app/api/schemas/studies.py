@@ -7,10 +7,10 @@ from datetime import datetime
 from pydantic import ConfigDict, Field
 
 from app.analysis.low_dimensional import SHOWN
-from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing
+from app.api.schemas.base import Cursor, Id, Incoming, Limit, Outgoing
 from app.services import studies
 from app.services.low_dimensional import MOST_MODEL_CLIPS
-from app.services.studies import MOST_VOTER
+from app.services.studies import MOST_SEQUENCES, MOST_VOTER
 from app.store.studies import Choice, PairRecord
 
 PAIRS = "/v1/studies/low-dimensional/pairs"
@@ -19,11 +19,11 @@ PAIRS = "/v1/studies/low-dimensional/pairs"
 class NewPair(Incoming):
     """What shall be compared."""
 
-    clip_id: str = Field(min_length=1, max_length=100)
+    clip_id: Id
     dimensions: int = Field(
         SHOWN, ge=1, le=10**6, description="Of both versions; up to the poses of the model."
     )
-    model_clips: list[str] = Field(
+    model_clips: list[Id] = Field(
         default_factory=list,
         max_length=MOST_MODEL_CLIPS,
         description="Clips whose poses make the models; default: the clip itself.",
@@ -173,7 +173,10 @@ class SequenceTally(Tally):
 class StudyTally(Outgoing):
     """Table 2 of this library."""
 
-    sequences: list[SequenceTally]
+    sequences: list[SequenceTally] = Field(
+        description=f"The first {MOST_SEQUENCES} by name; ask by `clip_id` for others. The other"
+        " figures are of all."
+    )
     total: Tally
     left_share: float | None = Field(
         ge=0, le=1, description="How often the left side was chosen; one half is fair."

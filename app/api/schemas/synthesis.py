@@ -6,8 +6,8 @@ from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from app.api.schemas.base import Incoming, Outgoing
-from app.api.schemas.clips import Clip, Label
+from app.api.schemas.base import Incoming, Label, Outgoing
+from app.api.schemas.clips import Clip
 from app.api.schemas.jobs import Job
 from app.api.schemas.search import ClipId
 from app.api.schemas.views import Motion, plain
