@@ -47,6 +47,51 @@ def test_an_archive_with_a_manifest(demo_service: Live) -> None:
     ]
 
 
+def test_a_manifest_bomb_fails_at_once_and_lists_of_jobs_stay_small(demo_service: Live) -> None:
+    rows = "".join(f"missing/clip_{i:06d}.bvh,ada,walk\n" for i in range(200_000))
+    content = _zip({"manifest.csv": f"path,person,task\n{rows}".encode()})
+    with demo_service.client() as client:
+        bombs = [client.post("/v1/imports", files={"archive": ("a.zip", content)}) for _ in "123"]
+        for bomb in bombs:
+            job = demo_service.wait_for_job(bomb.json()["job"]["id"])
+            assert (job["state"], job["error"]["code"]) == ("failed", "too_large")
+            place = {"location": "manifest.csv line 100002", "message": "more than 100000 rows"}
+            assert job["error"]["errors"] == [place]
+        assert len(client.get("/v1/jobs", params={"kind": "import"}).content) < 20_000
+
+
+def test_the_files_of_a_large_import_are_paged(demo_service: Live) -> None:
+    names = [f"{i:04d}.bvh" for i in range(250)]
+    rows = "".join(f"gone_{i:06d}.bvh\n" for i in range(300))
+    files = dict.fromkeys(names, b"") | {"manifest.csv": f"path\n{rows}".encode()}
+    with demo_service.client() as client:
+        answer = client.post("/v1/imports", files={"archive": ("a.zip", _zip(files))})
+        job = demo_service.wait_for_job(answer.json()["job"]["id"])
+        counts = {k: v for k, v in job["result"].items() if k != "files"}
+        assert counts == {
+            "total": 550,
+            "ready": 0,
+            "exists": 0,
+            "failed": 250,
+            "deleted": 0,
+            "absent": 300,
+            "files_left_out": 450,
+        }
+        assert len(job["result"]["files"]) == 100
+        (listed,) = client.get("/v1/jobs", params={"kind": "import", "limit": 1}).json()["items"]
+        assert "files" not in listed["result"]
+        path, found, cursor = f"/v1/jobs/{job['id']}/files", [], None
+        while cursor is not None or not found:
+            asked = {"outcome": "failed", "limit": 100} | ({"cursor": cursor} if cursor else {})
+            page = client.get(path, params=asked).json()
+            found += page["items"]
+            cursor = page["next"]
+        assert [line["path"] for line in found] == names
+        assert {line["error"]["code"] for line in found} == {"empty_file"}
+        absent = client.get(path, params={"outcome": "absent", "limit": 1000}).json()
+    assert (len(absent["items"]), absent["next"]) == (100, None)
+
+
 def test_a_zip_of_npy_clips_is_imported_and_is_no_clip(demo_service: Live) -> None:
     array = npy(person(CONVENTIONS["Kinect"], frames=20).positions)
     content = _zip({"walk_01.npy": array, "walk_02.npy": array[:200]})

@@ -70,6 +70,29 @@ def test_the_cursor_of_another_list_is_refused(demo: httpx2.Client) -> None:
     assert_problem(answer, 422, "bad_field", "query.cursor")
 
 
+def test_a_job_that_has_ended_is_deleted(idle_service: Live) -> None:
+    clip = next(demo_clips(["elin"], ["bow"], takes=1))
+    job = idle_service.upload(clip).json()["job"]
+    with idle_service.client() as client:
+        assert client.delete(f"/v1/jobs/{job['id']}").status_code == 202
+        answer = client.delete(f"/v1/jobs/{job['id']}")
+        assert (answer.status_code, answer.content) == (204, b"")
+        assert_problem(client.delete(f"/v1/jobs/{job['id']}"), 404, "job_not_found")
+
+
+def test_the_newest_fit_cannot_be_deleted(demo: httpx2.Client) -> None:
+    fits = demo.get("/v1/jobs", params={"kind": "fit", "state": "succeeded"}).json()["items"]
+    assert_problem(demo.delete(f"/v1/jobs/{fits[0]['id']}"), 409, "conflict")
+
+
+def test_jobs_without_files_have_none_and_unknown_ones_are_not_found(demo: httpx2.Client) -> None:
+    job = demo.get("/v1/jobs", params={"kind": "ingest", "limit": 1}).json()["items"][0]
+    assert demo.get(f"/v1/jobs/{job['id']}/files").json() == {"items": [], "next": None}
+    assert_problem(demo.get("/v1/jobs/none/files"), 404, "job_not_found")
+    answer = demo.get(f"/v1/jobs/{job['id']}/files", params={"outcome": "lost"})
+    assert_problem(answer, 422, "bad_field", "query.outcome")
+
+
 @pytest.mark.slow
 def test_open_streams_do_not_hold_up_a_stop(tmp_path: Path) -> None:
     clip = next(demo_clips(["elin"], ["bow"], takes=1))

@@ -12,8 +12,11 @@ from alembic.migration import MigrationContext
 from sqlalchemy import create_mock_engine, text
 
 from app.errors import DatabaseOutOfDate
-from app.store import clips, schema
+from app.store import clips, import_files, imports, jobs, leases, schema
 from app.store.engine import Database
+from app.store.import_files import ImportOutcome
+from app.store.imports import NewEntry
+from app.store.job_record import JobKind, NewJob
 from app.store.store import Store
 from app.store.tables import metadata
 from tests.store.conftest import AddClip
@@ -63,6 +66,30 @@ def test_an_upgrade_keeps_what_is_there(store: Store, add_clip: AddClip, databas
     assert schema.upgrade(database_url).is_current
     with store.read() as tx:
         assert clips.get(tx, clip.id) == clip
+
+
+def test_an_upgrade_makes_large_results_small_and_keeps_every_file(
+    store: Store, database_url: str
+) -> None:
+    long = "x" * 3000
+    with store.write() as tx:
+        job = jobs.enqueue(tx, NewJob(JobKind.IMPORT))
+        claimed = leases.claim(tx, [JobKind.IMPORT], "worker", 30)
+        assert claimed is not None
+        entries = [NewEntry(path, ImportOutcome.FAILED, problem={}) for path in ("a", long)]
+        imports.add_entries(tx, job.id, entries)
+        result = {"total": 2, "failed": 2, "files": [{"path": long}]}
+        leases.succeed(tx, claimed.lease, result)
+    database = Database(database_url, foreign_keys=False)
+    with database.migrate() as tx:
+        command.downgrade(schema._config(tx), "0005")
+    database.close()
+    schema.upgrade(database_url)
+    with store.read() as tx:
+        assert jobs.get(tx, job.id).result == {"total": 2, "failed": 2, "absent": 0}
+        paths = [file.path for file in import_files.page(tx, job.id).items]
+    assert paths[0] == "a"
+    assert len(paths[1]) <= 500
 
 
 def test_a_newer_database_is_refused(database_url: str) -> None:

@@ -43,10 +43,10 @@ def _without_control(value: str) -> str:
 PartOfName = Annotated[str, Field(max_length=300), AfterValidator(_without_control)]
 """What was typed of a name; SQLite's LIKE would end at a NUL, and so find everything."""
 
+_Filtered = Annotated[str, Field(min_length=1, max_length=LONGEST_LABEL)]
+_SomeFiltered = Annotated[list[_Filtered], Field(min_length=1, max_length=MOST_LABELS)]
 AnyOf = Annotated[
-    list[Annotated[str, Field(min_length=1, max_length=LONGEST_LABEL)]],
-    BeforeValidator(_as_list, json_schema_input_type=str | list[str]),
-    Field(min_length=1, max_length=MOST_LABELS),
+    _SomeFiltered, BeforeValidator(_as_list, json_schema_input_type=_Filtered | _SomeFiltered)
 ]
 """A label, or several of which any will do."""
 
@@ -56,7 +56,8 @@ Label = Annotated[str, Field(max_length=fields.MAX_TEXT)]
 Words = Annotated[list[Label], Field(max_length=fields.MAX_WORDS)]
 """The words of one clip."""
 
-FormWords = Annotated[Words, BeforeValidator(_as_words, json_schema_input_type=str)]
+_JoinedWords = Annotated[str, Field(max_length=fields.MAX_WORDS * (fields.MAX_TEXT + 1))]
+FormWords = Annotated[Words, BeforeValidator(_as_words, json_schema_input_type=_JoinedWords)]
 """Words of a form, separated by spaces; a phrase is joined by underscores."""
 
 Limit = Annotated[int, Field(ge=1, le=1000, description="Most items in one answer.")]
