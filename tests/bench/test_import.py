@@ -47,6 +47,7 @@ class Run:
     """An import that was watched: its job, the clips, CPU and wall seconds, peaks by phase."""
 
     job: dict[str, Any]
+    files: list[dict[str, Any]]
     clips: list[dict[str, Any]]
     wall: float
     cpu: dict[str, float]
@@ -78,7 +79,8 @@ def _watched(product: Product, meter: Meter, archive: Path) -> Run:
     _search(product, clips)
     peaks["search"] = _peaks(meter)
     cpu = {name: after[name] - before[name] for name in after}
-    return Run(job, clips, wall, cpu, peaks)
+    files = product.items(f"/v1/jobs/{job['id']}/files")
+    return Run(job, files, clips, wall, cpu, peaks)
 
 
 def _peaks(meter: Meter) -> dict[str, tuple[int, int, int]]:
@@ -120,7 +122,7 @@ def _search(product: Product, clips: list[dict[str, Any]]) -> None:
 
 
 def test_none_is_lost_and_each_failure_is_explained(run: Run) -> None:
-    files = run.job["result"]["files"]
+    files = run.files
     wanted = {row["path"] for row in manifest()}
     told = Counter(file["path"] for file in files)
     failed = [file for file in files if file["outcome"] == "failed"]

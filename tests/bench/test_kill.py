@@ -42,6 +42,7 @@ class Tally:
     at: list[str] = field(default_factory=list)
     orphans: set[Key] = field(default_factory=set)
     job: dict[str, Any] = field(default_factory=dict)
+    files: list[dict[str, Any]] = field(default_factory=list)
     seconds: float = 0.0
     left_running: list[str] = field(default_factory=list)
 
@@ -60,6 +61,7 @@ def killed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Tally, Path]:
             time.sleep(draw.uniform(0.0, 1.0))
             _kill_worker(product, tally, whole=number % 2 == 1)
         tally.job = product.wait_for_job(job, IMPORT_SECONDS)
+        tally.files = product.items(f"/v1/jobs/{job}/files")
         tally.seconds = time.monotonic() - began
     tally.left_running = [" ".join(p.cmdline()) for p in processes_over(data)]
     return tally, data
@@ -99,7 +101,7 @@ def _database(data: Path) -> sqlite3.Connection:
 
 def test_every_clip_ends_once_whatever_dies(killed: tuple[Tally, Path]) -> None:
     tally, data = killed
-    files = tally.job["result"]["files"]
+    files = tally.files
     outcomes = Counter(file["outcome"] for file in files)
     failures = Counter(file["error"]["code"] for file in files if file["error"])
     print(f"\n{KILLS} kills in {tally.seconds:.0f} s (load {os.getloadavg()[0]:.1f})")

@@ -1,0 +1,61 @@
+"""A worker removes jobs that ended long ago, and logs it; the settings say how long ago."""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sqlalchemy import update
+
+from app.services import imports, jobs
+from app.services.library import Library
+from app.store.ids import utc_now
+from app.store.tables import jobs as table
+from app.worker.expiry import Expiry
+from tests.services.conftest import settings_for
+from tests.services.test_large_imports import archive_of
+
+
+def _library(folder: Path, **settings: Any) -> tuple[Library, str]:
+    """With a job that ended long ago, as far as the clock knows."""
+    lib = Library.open(settings_for(folder, **settings))
+    job = imports.start_import(lib, archive_of([("a.bvh", b"")]), "a.zip")
+    jobs.cancel_or_remove(lib, job.id)
+    long_ago = utc_now().replace(year=2020)
+    with lib.store.write() as tx:
+        tx.execute(update(table).where(table.c.id == job.id).values(finished_at=long_ago))
+    return lib, job.id
+
+
+def test_old_jobs_are_removed_and_that_is_logged(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    lib, _ = _library(tmp_path)
+    with caplog.at_level(logging.INFO, logger="app.worker.expiry"):
+        expiry = Expiry(lib)
+        expiry.remove_if_due()
+    assert jobs.list_jobs(lib).items == ()
+    assert "removed 1 jobs that ended over 30 days ago" in caplog.text
+    lib.close()
+
+
+def test_a_round_is_not_done_again_at_once(tmp_path: Path) -> None:
+    lib, _ = _library(tmp_path / "a")
+    expiry = Expiry(lib)
+    expiry.remove_if_due()
+    job = imports.start_import(lib, archive_of([("b.bvh", b"")]), "b.zip")
+    jobs.cancel_or_remove(lib, job.id)
+    with lib.store.write() as tx:
+        tx.execute(update(table).values(finished_at=utc_now().replace(year=2020)))
+    expiry.remove_if_due()
+    assert [one.id for one in jobs.list_jobs(lib).items] == [job.id]
+    lib.close()
+
+
+def test_no_job_is_removed_where_the_settings_keep_them(tmp_path: Path) -> None:
+    lib, job_id = _library(tmp_path, job_retention_days=0)
+    Expiry(lib).remove_if_due()
+    assert [one.id for one in jobs.list_jobs(lib).items] == [job_id]
+    lib.close()
