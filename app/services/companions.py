@@ -7,8 +7,14 @@ afterwards whether the files are what they are called.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterable
-from pathlib import PurePosixPath
+from posixpath import splitext
+
+MOST_CUTS = 30
+"""Words that are cut off a motion's stem in search of its skeleton's."""
+
+_Folder = tuple[str, ...]
 
 
 def pair_skeletons(paths: Iterable[str]) -> dict[str, str]:
@@ -17,62 +23,78 @@ def pair_skeletons(paths: Iterable[str]) -> dict[str, str]:
     In the AMC's own folder first, then in the folders nearest to it; in each the ASF whose
     stem begins the AMC's stem furthest, else the only one of the AMC's own folder.
     """
-    motions, skeletons = [], []
+    motions, skeletons = [], _Skeletons()
     for path in paths:
-        suffix = PurePosixPath(path).suffix.lower()
+        suffix = splitext(path)[1].lower()
         if suffix == ".amc":
             motions.append(path)
         elif suffix == ".asf":
-            skeletons.append(path)
-    by_folder: dict[str, list[str]] = {}
-    by_stem: dict[str, list[str]] = {}
-    for skeleton in skeletons:
-        by_folder.setdefault(_folder(skeleton), []).append(skeleton)
-        by_stem.setdefault(_stem(skeleton), []).append(skeleton)
-    found = {motion: _skeleton_of(motion, by_folder, by_stem) for motion in motions}
+            skeletons.add(path)
+    skeletons.sort()
+    found = {motion: skeletons.of(motion) for motion in motions}
     return {motion: skeleton for motion, skeleton in found.items() if skeleton is not None}
 
 
-def _skeleton_of(
-    motion: str, by_folder: dict[str, list[str]], by_stem: dict[str, list[str]]
-) -> str | None:
-    beside = by_folder.get(_folder(motion), [])
-    stems = _beginnings(_stem(motion))
-    for stem in stems:
-        named = [skeleton for skeleton in beside if _stem(skeleton) == stem]
-        if named:
-            return named[0]
-    if len(beside) == 1:
-        return beside[0]
-    for stem in stems:
-        if stem in by_stem:
-            return _nearest(motion, by_stem[stem])
-    return None
+class _Skeletons:
+    """The skeletons of an import, found without a walk over all of them: there may be very many,
+    and a motion for each."""
+
+    def __init__(self) -> None:
+        self._in_folder: dict[_Folder, list[str]] = {}
+        self._named: dict[tuple[_Folder, str], str] = {}
+        self._by_stem: dict[str, list[tuple[_Folder, str]]] = {}
+
+    def add(self, path: str) -> None:
+        """Add a skeleton; of two in one folder with one stem the first counts there."""
+        folder, stem = _parts(path)
+        self._in_folder.setdefault(folder, []).append(path)
+        self._named.setdefault((folder, stem), path)
+        self._by_stem.setdefault(stem, []).append((folder, path))
+
+    def sort(self) -> None:
+        """Call it once all are added."""
+        for alike in self._by_stem.values():
+            alike.sort()
+
+    def of(self, motion: str) -> str | None:
+        """The skeleton of a motion, if it is clear."""
+        folder, whole = _parts(motion)
+        stems = _beginnings(whole)
+        for stem in stems:
+            if (folder, stem) in self._named:
+                return self._named[folder, stem]
+        beside = self._in_folder.get(folder, ())
+        if len(beside) == 1:
+            return beside[0]
+        for stem in stems:
+            if stem in self._by_stem:
+                return _nearest(folder, self._by_stem[stem])
+        return None
 
 
 def _beginnings(stem: str) -> list[str]:
     """The stem, and what is left of it where words at its end are cut off, longest first."""
     cuts = [i for i in range(len(stem) - 1, 0, -1) if not stem[i].isalnum()]
-    return [stem] + [stem[:cut] for cut in cuts]
+    return [stem] + [stem[:cut] for cut in cuts[:MOST_CUTS]]
 
 
-def _nearest(motion: str, skeletons: list[str]) -> str | None:
-    """The skeleton that shares most folders with the motion; None where several do."""
-    folders = PurePosixPath(motion).parent.parts
-
-    def shared(skeleton: str) -> int:
-        others = PurePosixPath(skeleton).parent.parts
-        pairs = zip(folders, others, strict=False)
-        return next((i for i, (a, b) in enumerate(pairs) if a != b), min(len(folders), len(others)))
-
-    most = max(map(shared, skeletons))
-    nearest = [skeleton for skeleton in skeletons if shared(skeleton) == most]
+def _nearest(folder: _Folder, sorted_skeletons: list[tuple[_Folder, str]]) -> str | None:
+    """The skeleton that shares most folders with a motion's; None where several do."""
+    # Those that share most stand together in the order, around where the folder would stand.
+    at = bisect_left(sorted_skeletons, (folder, ""))
+    around = sorted_skeletons[max(at - 2, 0) : at + 2]
+    shared = [_shared(folder, other) for other, _ in around]
+    most = max(shared)
+    nearest = [path for (_, path), count in zip(around, shared, strict=True) if count == most]
     return nearest[0] if len(nearest) == 1 else None
 
 
-def _folder(path: str) -> str:
-    return str(PurePosixPath(path).parent)
+def _shared(ours: _Folder, theirs: _Folder) -> int:
+    """How many folders from the top two places have in common."""
+    pairs = zip(ours, theirs, strict=False)
+    return next((i for i, (a, b) in enumerate(pairs) if a != b), min(len(ours), len(theirs)))
 
 
-def _stem(path: str) -> str:
-    return PurePosixPath(path).stem.lower()
+def _parts(path: str) -> tuple[_Folder, str]:
+    folder, _, name = path.rpartition("/")
+    return tuple(folder.split("/")) if folder else (), splitext(name)[0].lower()

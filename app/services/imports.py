@@ -9,7 +9,7 @@ and then: its job returns to the queue, with its progress.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -169,8 +169,9 @@ def _own_job(lib: Library, path: Path) -> ClaimedJob:
         return claimed
 
 
-def _plan(lib: Library, files: Iterable[SourceFile]) -> Plan:
-    return Plan(files, ManifestLimits(lib.settings.max_archive_entries))
+def _plan(lib: Library, files: Sequence[SourceFile]) -> Plan:
+    # A folder of this machine may hold more files than an archive may, and a row for each.
+    return Plan(files, ManifestLimits(max(lib.settings.max_archive_entries, len(files))))
 
 
 def _limits(lib: Library) -> ArchiveLimits:

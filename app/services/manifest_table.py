@@ -15,8 +15,8 @@ from typing import Protocol
 from app.errors import Place, TooLarge, Unreadable
 
 MANIFEST_NAME = "manifest.csv"
-MAX_BYTES = 32 * 2**20
-"""Of all manifests of one import: 100,000 rows of 300 bytes each."""
+MAX_BYTES = 64 * 2**20
+"""Of all manifests of one import: 100,000 rows of 600 bytes each."""
 MAX_COLUMNS = 100
 MAX_ROW = 2**20
 """Characters of one row. Python's csv module takes at most 131,072 in one field of it."""

@@ -120,12 +120,15 @@ def page(
     return Page(shown, write_cursor(BY_PATH, Position(shown[-1].path, "")))
 
 
-def first(tx: Tx, job_id: str, most: int) -> tuple[ImportedFile, ...]:
+def first(tx: Tx, job_id: str, most: int, *, has_problems: bool = True) -> tuple[ImportedFile, ...]:
     """The first files of an import, by path; where there are more than `most`, those that
-    failed or are absent go before the others."""
+    failed or are absent go before the others.
+
+    `has_problems=False` saves the search for them.
+    """
     found = _read(tx, _of(job_id).limit(most + 1))
-    if len(found) <= most:
-        return found
+    if len(found) <= most or not has_problems:
+        return found[:most]
     problems = _read(
         tx, _of(job_id).where(_outcome.in_([each.value for each in PROBLEMS])).limit(most)
     )
