@@ -66,7 +66,18 @@ class Settings(BaseSettings):
     max_frames: int = Field(500_000, ge=1, description="Most frames in one clip.")
     max_joints: int = Field(512, ge=1, description="Most joints in one clip.")
     max_concurrent_uploads: int = Field(
-        16, ge=1, description="Uploads received at once; more are answered 503 with Retry-After."
+        16,
+        ge=1,
+        description="Uploads received at once to store, and as many to search; more are answered "
+        "503 with Retry-After.",
+    )
+    max_connections: int = Field(
+        1000, ge=1, description="Open connections in all; then the longest waiting one is closed."
+    )
+    max_connections_per_address: int = Field(
+        250,
+        ge=1,
+        description="Open connections from one client address (behind a proxy: the proxy's).",
     )
     query_timeout_s: float = Field(
         30.0, gt=0, description="Seconds that analysing an uploaded query may take."

@@ -10,7 +10,6 @@ from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 from fastapi_offline import FastAPIOffline
 
-from app.api.bodies import UploadSlots
 from app.api.docs import STATIC, install_docs
 from app.api.envelope import Envelope
 from app.api.errors import install_handlers
@@ -43,6 +42,7 @@ from app.api.routes import (
 from app.api.schemas.recognition import Recognize
 from app.api.schemas.search import MotionSearch
 from app.api.schemas.synthesis import Synthesize
+from app.api.slow_bodies import SlowBodies
 from app.config import Settings
 from app.services.library import Library
 
@@ -95,7 +95,6 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.settings = settings
     app.state.library = None
     app.state.stopping = False
-    app.state.upload_slots = UploadSlots(settings.max_concurrent_uploads)
     install_handlers(app)
     for module in _ROUTES:
         app.include_router(module.router)
@@ -103,6 +102,7 @@ def create_app(settings: Settings) -> FastAPI:
     describe(app, [MotionSearch, Recognize, Synthesize], lambda: example_ids(app.state.library))
     # The last one added is the outermost.
     app.add_middleware(BodyLimit, settings=settings)
+    app.add_middleware(SlowBodies, settings=settings)
     install_metrics(app)
     app.add_middleware(Envelope)
     return app

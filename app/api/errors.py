@@ -11,6 +11,7 @@ from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 
 from app.api.problems import (
+    RETRY_AFTER_SECONDS,
     NotReadyYet,
     TooBusy,
     problem,
@@ -33,7 +34,6 @@ from app.errors import (
 
 log = logging.getLogger(__name__)
 
-RETRY_AFTER_SECONDS = "1"
 FIT_SECONDS = "5"
 """A fit takes from a second to a minute."""
 
