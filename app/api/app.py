@@ -11,11 +11,13 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi_offline import FastAPIOffline
 
 from app.api.docs import STATIC, install_docs
+from app.api.door import Door
 from app.api.envelope import Envelope
 from app.api.errors import install_handlers
 from app.api.examples import example_ids
 from app.api.limits import BodyLimit
 from app.api.loading import Loading
+from app.api.methods import KnownMethods
 from app.api.metrics import install_metrics
 from app.api.openapi import describe
 from app.api.routes import (
@@ -103,7 +105,9 @@ def create_app(settings: Settings) -> FastAPI:
     # The last one added is the outermost.
     app.add_middleware(BodyLimit, settings=settings)
     app.add_middleware(SlowBodies, settings=settings)
+    app.add_middleware(Door)
     install_metrics(app)
+    app.add_middleware(KnownMethods)
     app.add_middleware(Envelope)
     return app
 

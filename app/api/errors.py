@@ -40,7 +40,7 @@ FIT_SECONDS = "5"
 
 def install_handlers(app: FastAPI) -> None:
     """Answer our failures, the router's and validation's as problems."""
-    app.add_exception_handler(KinedexError, _on_failure)
+    app.add_exception_handler(KinedexError, answer_failure)
     app.add_exception_handler(RequestValidationError, _on_validation)
     app.add_exception_handler(HTTPException, _on_http)
 
@@ -54,7 +54,8 @@ def answer_unexpected(error: Exception) -> Response:
     return respond(problem(500, "internal", "Something went wrong; the log tells what."))
 
 
-async def _on_failure(request: Request, error: Exception) -> Response:
+async def answer_failure(request: Request, error: Exception) -> Response:
+    """A failure of ours as a problem; what went wrong inside is logged."""
     failure = cast(KinedexError, error)
     if isinstance(failure, (BadField, NotFound, Conflict)):
         failure = _located(failure, request)

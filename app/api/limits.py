@@ -7,6 +7,7 @@ from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.media import FORM, media_type
+from app.api.paths import path_of
 from app.api.problems import problem_of, respond
 from app.config import Settings
 from app.errors import TooLarge
@@ -36,7 +37,7 @@ class BodyLimit:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        path = scope["path"].removeprefix(scope.get("root_path", "")).rstrip("/")
+        path = path_of(scope)
         is_form = media_type(Headers(scope=scope)) == FORM
         limit = self._limits.get(path, JSON_BYTES) if is_form else JSON_BYTES
         if _declares_more_than(limit, scope):

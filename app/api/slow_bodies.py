@@ -18,6 +18,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.arrival import Arrival, TooSlow
 from app.api.media import FORM, media_type
+from app.api.paths import path_of
 from app.api.problems import RETRY_AFTER_SECONDS, TooBusy
 from app.api.slots import Slots
 from app.config import Settings
@@ -51,7 +52,7 @@ class SlowBodies:
     def _slots(self, scope: Scope) -> Slots:
         if media_type(Headers(scope=scope)) != FORM:
             return self._small
-        path = scope["path"].removeprefix(scope.get("root_path", "")).rstrip("/")
+        path = path_of(scope)
         return self._stored if path in STORED else self._asked
 
 
