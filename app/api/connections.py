@@ -130,12 +130,13 @@ def room_for_connections(wanted: int, backlog: int) -> int:
 
     backlog: connections that are accepted at once, before any of them is counted.
     """
+    others = backlog + FILES_FOR_OTHERS
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    if soft != hard:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
-    if hard == resource.RLIM_INFINITY:
-        return wanted
-    room = max(1, min(wanted, hard - backlog - FILES_FOR_OTHERS))
+    # Some systems name no limit, and yet refuse to set none.
+    files = wanted + others if hard == resource.RLIM_INFINITY else hard
+    if soft != resource.RLIM_INFINITY and soft < files:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (files, hard))
+    room = max(1, min(wanted, files - others))
     if room < wanted:
-        log.warning("%d connections at most: this process may open only %d files", room, hard)
+        log.warning("%d connections at most: this process may open only %d files", room, files)
     return room

@@ -157,7 +157,7 @@ def _number(field: str, value: float | str | None) -> float | None:
         raise bad_field(field, "must be a number")
     try:
         number = float(value)
-    except (TypeError, ValueError) as problem:
+    except (TypeError, ValueError, OverflowError) as problem:
         raise bad_field(field, "must be a number") from problem
     if not math.isfinite(number):
         raise bad_field(field, "must be a finite number")
