@@ -6,12 +6,14 @@ Secrets are `SecretStr`, so that neither a log line nor a traceback shows them.
 
 from __future__ import annotations
 
+import difflib
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, SecretStr, ValidationError
+from pydantic import Field, SecretStr, ValidationError, ValidationInfo, field_validator
 from pydantic_settings import (
     BaseSettings,
     PydanticBaseSettingsSource,
@@ -24,6 +26,10 @@ from app.errors import ConfigurationError, Place
 ENV_PREFIX = "KINEDEX_"
 CONFIG_FILE_ENV = "KINEDEX_CONFIG_FILE"
 CONFIG_FILE_DEFAULT = "kinedex.toml"
+OTHER_NAMES = frozenset({CONFIG_FILE_ENV, "KINEDEX_DATA_SET"})
+"""What else may be in the environment; the second names the real clips that tests read."""
+HEARTBEATS_IN_LEASE = 2.0
+"""At least, so that one late heartbeat does not give a job to another worker."""
 LOOPBACK_HOSTS = frozenset({"127.0.0.1", "::1", "localhost"})
 MIB = 1024 * 1024
 
@@ -31,7 +37,9 @@ MIB = 1024 * 1024
 class Settings(BaseSettings):
     """All settings; each field's description is its documentation."""
 
-    model_config = SettingsConfigDict(env_prefix=ENV_PREFIX, extra="forbid", frozen=True)
+    model_config = SettingsConfigDict(
+        env_prefix=ENV_PREFIX, extra="forbid", frozen=True, validate_default=True
+    )
 
     data_dir: Path = Field(
         Path("data"), description="Directory of the database, the uploaded files and the demo."
@@ -66,7 +74,18 @@ class Settings(BaseSettings):
     max_frames: int = Field(500_000, ge=1, description="Most frames in one clip.")
     max_joints: int = Field(512, ge=1, description="Most joints in one clip.")
     max_concurrent_uploads: int = Field(
-        16, ge=1, description="Uploads received at once; more are answered 503 with Retry-After."
+        16,
+        ge=1,
+        description="Uploads received at once to store, and as many to search; more are answered "
+        "503 with Retry-After.",
+    )
+    max_connections: int = Field(
+        1000, ge=1, description="Open connections in all; then the longest waiting one is closed."
+    )
+    max_connections_per_address: int = Field(
+        250,
+        ge=1,
+        description="Open connections from one client address (behind a proxy: the proxy's).",
     )
     query_timeout_s: float = Field(
         30.0, gt=0, description="Seconds that analysing an uploaded query may take."
@@ -85,7 +104,9 @@ class Settings(BaseSettings):
         30.0, gt=0, description="Seconds without a heartbeat after which a job is given again."
     )
     job_heartbeat_s: float = Field(
-        5.0, gt=0, description="Seconds between a worker's heartbeats on a job."
+        5.0,
+        gt=0,
+        description="Seconds between a worker's heartbeats on a job; at most half a lease.",
     )
     job_max_attempts: int = Field(
         3,
@@ -109,6 +130,14 @@ class Settings(BaseSettings):
     wordnet: bool = Field(
         True, description="Look words' neighbours up in WordNet at a fit, where it is installed."
     )
+
+    @field_validator("job_heartbeat_s")
+    @classmethod
+    def _beats_within_lease(cls, value: float, others: ValidationInfo) -> float:
+        lease = others.data.get("job_lease_s")
+        if lease is not None and value * HEARTBEATS_IN_LEASE > lease:
+            raise ValueError(f"must be at most half of {ENV_PREFIX}JOB_LEASE_S")
+        return value
 
     @property
     def database(self) -> str:
@@ -152,6 +181,7 @@ def load_settings(**flags: Any) -> Settings:
     named = os.environ.get(CONFIG_FILE_ENV)
     if named is not None and not Path(named).is_file():
         raise ConfigurationError(f"{CONFIG_FILE_ENV} names a file that does not exist: {named}")
+    _refuse_unknown(os.environ)
     try:
         return Settings(**given)
     except ValidationError as error:
@@ -160,11 +190,33 @@ def load_settings(**flags: Any) -> Settings:
         raise ConfigurationError(f"The settings file cannot be read: {error}") from None
 
 
+def _refuse_unknown(environ: Iterable[str]) -> None:
+    """Raises ConfigurationError: a mistyped name would leave its setting at the default."""
+    known = {ENV_PREFIX + name.upper() for name in Settings.model_fields} | OTHER_NAMES
+    ours = (name for name in sorted(environ) if name.upper().startswith(ENV_PREFIX))
+    places = [Place(name, _no_such(name)) for name in ours if name.upper() not in known]
+    if places:
+        raise _refused(places)
+
+
+def _no_such(name: str) -> str:
+    known = [row.env for row in settings_table()]
+    near = difflib.get_close_matches(name.upper(), known, n=1)
+    return "there is no such setting" + (f"; did you mean {near[0]}?" if near else "")
+
+
 def _explained(error: ValidationError) -> ConfigurationError:
-    places = [
-        Place(ENV_PREFIX + ".".join(str(part) for part in item["loc"]).upper(), item["msg"])
-        for item in error.errors(include_input=False, include_url=False, include_context=False)
-    ]
+    found = error.errors(include_input=False, include_url=False, include_context=False)
+    places = []
+    for item in found:
+        name = ENV_PREFIX + ".".join(str(part) for part in item["loc"]).upper()
+        is_unknown = item["type"] == "extra_forbidden"
+        message = item["msg"].removeprefix("Value error, ")
+        places.append(Place(name, _no_such(name) if is_unknown else message))
+    return _refused(places)
+
+
+def _refused(places: list[Place]) -> ConfigurationError:
     detail = "; ".join(f"{place.location}: {place.message}" for place in places)
     return ConfigurationError(f"The settings do not allow this: {detail}", places=places)
 

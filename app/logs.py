@@ -1,23 +1,61 @@
 """Logs as JSON lines, carrying the request's and the job's id.
 
-What is logged never holds a key or a file's content: callers pass names, ids,
-counts and durations. Standard library only, so that API and worker share it.
+What is logged never holds a file's content: callers pass names, ids, counts and durations. Should
+a key come into a line by any way, it is blotted out. Warnings of Python are lines too. Standard
+library only, so that API and worker share it.
 """
 
 from __future__ import annotations
 
 import json
 import logging
+import re
 import sys
 from contextvars import ContextVar
 from datetime import UTC, datetime
 from typing import Any, TextIO
+from urllib.parse import unquote
 
 request_id: ContextVar[str | None] = ContextVar("request_id", default=None)
 """The id of the request that is being answered, None outside of one."""
 
 job_id: ContextVar[str | None] = ContextVar("job_id", default=None)
 """The id of the job that is being done, None outside of one."""
+
+
+KEY = re.compile(r"(?i)kx_[a-z0-9_-]{8,}")
+"""An API key (`app.store.keys`), or the greater part of one; also in another case."""
+_TOKEN = re.compile(r"[A-Za-z0-9_%-]{11,}")
+"""What may be a key whose characters are percent-encoded, once or several times."""
+MOST_ENCODINGS = 8
+"""Times that a key may be percent-encoded; no program decodes so often."""
+BLOT = "[key]"
+
+
+def without_keys(text: str) -> str:
+    """`text` with BLOT in the place of every word that holds an API key."""
+    if "%" not in text and not KEY.search(text):
+        return text
+    return _TOKEN.sub(lambda found: BLOT if _holds_key(found[0]) else found[0], text)
+
+
+def _holds_key(token: str) -> bool:
+    for _ in range(MOST_ENCODINGS):
+        if "%" not in token:
+            break
+        token = unquote(token)
+    return bool(KEY.search(token))
+
+
+def blotted(value: Any) -> Any:
+    """A value of JSON in which no text holds an API key."""
+    if isinstance(value, str):
+        return without_keys(value)
+    if isinstance(value, dict):
+        return {blotted(key): blotted(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [blotted(each) for each in value]
+    return value
 
 
 class JsonFormatter(logging.Formatter):
@@ -36,22 +74,35 @@ class JsonFormatter(logging.Formatter):
         line |= getattr(record, "fields", {})
         if record.exc_info:
             line["exception"] = self.formatException(record.exc_info)
-        return json.dumps(line, default=str)  # ASCII: some readers end lines at U+0085 too
+        # ASCII: some readers end lines at U+0085 too.
+        return json.dumps(blotted(line), default=lambda value: without_keys(str(value)))
 
 
 def configure_logging(level: str = "INFO", stream: TextIO | None = None) -> None:
     """Send every logger's lines to `stream` (standard error) as JSON; replaces other handlers.
 
-    uvicorn's access log is silenced: the API writes its own line a request.
+    uvicorn's access log is silenced: the API writes its own line a request. Warnings become
+    lines of the logger `py.warnings`.
     """
     handler = logging.StreamHandler(stream or sys.stderr)
     handler.setFormatter(JsonFormatter())
     root = logging.getLogger()
     root.handlers = [handler]
-    root.setLevel(level)
+    set_level(level)
     for name in ("uvicorn", "uvicorn.error", "uvicorn.access"):
         logger = logging.getLogger(name)
         logger.handlers = []
         logger.propagate = True
     for name in ("uvicorn.access", "alembic"):
         logging.getLogger(name).setLevel(logging.WARNING)
+    logging.captureWarnings(True)
+
+
+def set_level(level: str) -> None:
+    """The least severity that is logged from now on."""
+    logging.getLogger().setLevel(level)
+
+
+def level_of_process() -> str:
+    """The level that this process logs at, for its children."""
+    return logging.getLevelName(logging.getLogger().getEffectiveLevel())

@@ -60,6 +60,62 @@ def test_wrong_values_are_named_but_not_shown(monkeypatch: pytest.MonkeyPatch) -
     assert "hunter2" not in str(failure.value)
 
 
+@pytest.mark.parametrize(
+    ("name", "suggested"),
+    [
+        ("KINEDEX_REQUIRE_KEY", "KINEDEX_REQUIRE_KEYS"),
+        ("kinedex_require_key", "KINEDEX_REQUIRE_KEYS"),
+        ("KINEDEX_DATADIR", "KINEDEX_DATA_DIR"),
+        ("KINEDEX_CONFIG", "KINEDEX_CONFIG_FILE"),
+        ("KINEDEX_QQQQQQQQQQQQ", None),
+        ("KINEDEX_", None),
+    ],
+)
+def test_an_unknown_variable_is_refused(
+    monkeypatch: pytest.MonkeyPatch, name: str, suggested: str | None
+) -> None:
+    monkeypatch.setenv(name, "secret")
+    with pytest.raises(ConfigurationError, match=f"{name}: there is no such setting") as caught:
+        load_settings()
+    (place,) = caught.value.places
+    assert place.location == name
+    assert (f"did you mean {suggested}?" if suggested else "such setting") in place.message
+    assert "secret" not in str(caught.value)
+
+
+def test_an_unknown_name_in_the_file_is_refused() -> None:
+    Path("kinedex.toml").write_text("require_key = true\n")
+    with pytest.raises(ConfigurationError, match=r"did you mean KINEDEX_REQUIRE_KEYS\?"):
+        load_settings()
+
+
+def test_other_variables_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("mine.toml").write_text("port = 9\n")
+    for name in ("KINEDEX_DATA_SET", "KINEDEXX", "MY_KINEDEX_PORT", "kinedex"):
+        monkeypatch.setenv(name, "x")
+    monkeypatch.setenv("KINEDEX_CONFIG_FILE", "mine.toml")
+    monkeypatch.setenv("kinedex_host", "::1")
+    assert (load_settings().port, load_settings().host) == (9, "::1")
+
+
+@pytest.mark.parametrize(("lease", "beat"), [("30", "31"), ("30", "30"), ("4", "5"), ("9", "4.6")])
+def test_a_heartbeat_must_come_twice_in_a_lease(
+    monkeypatch: pytest.MonkeyPatch, lease: str, beat: str
+) -> None:
+    monkeypatch.setenv("KINEDEX_JOB_LEASE_S", lease)
+    monkeypatch.setenv("KINEDEX_JOB_HEARTBEAT_S", beat)
+    with pytest.raises(ConfigurationError, match="KINEDEX_JOB_HEARTBEAT_S: must be at most half"):
+        load_settings()
+
+
+def test_a_short_lease_alone_is_refused_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("KINEDEX_JOB_LEASE_S", "4")
+    with pytest.raises(ConfigurationError, match="KINEDEX_JOB_HEARTBEAT_S"):
+        load_settings()
+    monkeypatch.setenv("KINEDEX_JOB_HEARTBEAT_S", "2")
+    assert load_settings().job_lease_s == 4
+
+
 def test_the_password_of_the_database_is_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("KINEDEX_DATABASE_URL", "postgresql://me:hunter2@db/kinedex")
     settings = load_settings()

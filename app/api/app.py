@@ -10,13 +10,14 @@ from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 from fastapi_offline import FastAPIOffline
 
-from app.api.bodies import UploadSlots
 from app.api.docs import STATIC, install_docs
+from app.api.door import Door
 from app.api.envelope import Envelope
 from app.api.errors import install_handlers
 from app.api.examples import example_ids
 from app.api.limits import BodyLimit
 from app.api.loading import Loading
+from app.api.methods import KnownMethods
 from app.api.metrics import install_metrics
 from app.api.openapi import describe
 from app.api.routes import (
@@ -43,6 +44,7 @@ from app.api.routes import (
 from app.api.schemas.recognition import Recognize
 from app.api.schemas.search import MotionSearch
 from app.api.schemas.synthesis import Synthesize
+from app.api.slow_bodies import SlowBodies
 from app.config import Settings
 from app.services.library import Library
 
@@ -95,7 +97,6 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.settings = settings
     app.state.library = None
     app.state.stopping = False
-    app.state.upload_slots = UploadSlots(settings.max_concurrent_uploads)
     install_handlers(app)
     for module in _ROUTES:
         app.include_router(module.router)
@@ -103,7 +104,10 @@ def create_app(settings: Settings) -> FastAPI:
     describe(app, [MotionSearch, Recognize, Synthesize], lambda: example_ids(app.state.library))
     # The last one added is the outermost.
     app.add_middleware(BodyLimit, settings=settings)
+    app.add_middleware(SlowBodies, settings=settings)
+    app.add_middleware(Door)
     install_metrics(app)
+    app.add_middleware(KnownMethods)
     app.add_middleware(Envelope)
     return app
 

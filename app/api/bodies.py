@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import errno
 import json
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping
 from typing import Any, TypeVar
 
 from fastapi import Request
@@ -18,7 +17,8 @@ from pydantic import BaseModel, ValidationError
 from starlette.datastructures import FormData, UploadFile
 from starlette.exceptions import HTTPException
 
-from app.api.problems import MalformedBody, TooBusy, UnsupportedMediaType
+from app.api.media import FORM, is_json, media_type
+from app.api.problems import MalformedBody, UnsupportedMediaType
 from app.errors import BadField, DiskFull, Place
 
 MOST_FIELDS = 32
@@ -29,41 +29,18 @@ LONGEST_FIELD = 64 * 2**10
 Model = TypeVar("Model", bound=BaseModel)
 
 
-class UploadSlots:
-    """How many forms may be received at once; used by one event loop only, so no lock."""
-
-    def __init__(self, most: int) -> None:
-        self._free = most
-
-    @contextmanager
-    def one(self) -> Iterator[None]:
-        """Hold a slot for the block. Raises TooBusy where none is free."""
-        if not self._free:
-            raise TooBusy
-        self._free -= 1
-        try:
-            yield
-        finally:
-            self._free += 1
-
-
-def media_type(request: Request) -> str:
-    """The body's media type in lower case without parameters; empty where there is none."""
-    return request.headers.get("content-type", "").partition(";")[0].strip().lower()
-
-
 def require_json(request: Request) -> None:
     """Refuse a body that does not say that it is JSON.
 
     Raises UnsupportedMediaType.
     """
-    if not _is_json(media_type(request)):
+    if not is_json(media_type(request.headers)):
         raise UnsupportedMediaType("This call takes application/json.")
 
 
 def require_json_if_any(request: Request) -> None:
     """As require_json, of a call that may also come without a body."""
-    if media_type(request) or request.headers.get("content-length", "0") != "0":
+    if media_type(request.headers) or request.headers.get("content-length", "0") != "0":
         require_json(request)
 
 
@@ -72,10 +49,10 @@ def is_multipart(request: Request) -> bool:
 
     Raises UnsupportedMediaType where it is neither.
     """
-    kind = media_type(request)
-    if kind != "multipart/form-data" and not _is_json(kind):
+    kind = media_type(request.headers)
+    if kind != FORM and not is_json(kind):
         raise UnsupportedMediaType("This call takes application/json or multipart/form-data.")
-    return kind == "multipart/form-data"
+    return kind == FORM
 
 
 async def read_json(request: Request, model: type[Model]) -> Model:
@@ -93,13 +70,11 @@ async def read_form(
     """A multipart body: its text fields as `model`, and the files among `files` that came.
 
     The files stay open until the request has been answered.
-    Raises UnsupportedMediaType, MalformedBody, BadField, RequestValidationError, DiskFull,
-    TooBusy.
+    Raises UnsupportedMediaType, MalformedBody, BadField, RequestValidationError, DiskFull.
     """
-    if media_type(request) != "multipart/form-data":
+    if media_type(request.headers) != FORM:
         raise UnsupportedMediaType("This call takes multipart/form-data.")
-    with request.app.state.upload_slots.one():
-        form = await _parse(request)
+    form = await _parse(request)
     # FastAPI closes this stack after the answer; the files are temporary ones.
     request.scope["fastapi_middleware_astack"].push_async_callback(form.close)
     texts, uploads = _sort(form, set(files))
@@ -161,9 +136,3 @@ def required(uploads: Mapping[str, UploadFile], name: str) -> UploadFile:
     if name not in uploads:
         raise BadField("A file is missing.", places=[Place(f"body.{name}", "Field required")])
     return uploads[name]
-
-
-def _is_json(kind: str) -> bool:
-    return kind == "application/json" or (
-        kind.startswith("application/") and kind.endswith("+json")
-    )

@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import logging
-import re
 import time
-import uuid
 
-from starlette.datastructures import Headers, MutableHeaders
+from starlette.datastructures import MutableHeaders
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from app.api.access_log import identity_of, log_request
 from app.api.errors import answer_unexpected
 from app.logs import request_id
-from app.store import keys
 
-log = logging.getLogger("app.api.access")
-
-_ACCEPTABLE_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
 SECURITY_HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",
@@ -41,7 +35,7 @@ class Envelope:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        identity = _identity(scope)
+        identity = identity_of(scope)
         mark = request_id.set(identity)
         try:
             await self._answer(scope, receive, send, identity)
@@ -68,31 +62,10 @@ class Envelope:
             if not status:
                 await response(scope, receive, send_with_headers)
         finally:
-            _log_line(scope, status, time.perf_counter() - started)
-
-
-def _identity(scope: Scope) -> str:
-    given = Headers(scope=scope).get("x-request-id", "")
-    # Whoever sends a key in the wrong header must not find it in the log.
-    is_key = given.startswith(f"{keys.PREFIX}_")
-    return given if _ACCEPTABLE_ID.fullmatch(given) and not is_key else uuid.uuid4().hex
+            log_request(scope, status, time.perf_counter() - started)
 
 
 def _complete(headers: MutableHeaders, identity: str) -> None:
     headers["X-Request-Id"] = identity
     for name, value in SECURITY_HEADERS.items():
         headers.setdefault(name, value)
-
-
-def _log_line(scope: Scope, status: int, seconds: float) -> None:
-    # A person's name is not to be kept, least of all of one who is forgotten: it may stand in the
-    # query string, which is left out, and in the path of `/v1/persons/{name}`.
-    name = scope.get("path_params", {}).get("name")
-    path = scope["path"] if name is None else scope["path"].removesuffix(name) + "{name}"
-    fields = {
-        "method": scope["method"],
-        "path": path,
-        "status": status,
-        "ms": round(seconds * 1000, 1),
-    }
-    log.info("request", extra={"fields": fields})

@@ -11,6 +11,7 @@ from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 
 from app.api.problems import (
+    RETRY_AFTER_SECONDS,
     NotReadyYet,
     TooBusy,
     problem,
@@ -33,14 +34,13 @@ from app.errors import (
 
 log = logging.getLogger(__name__)
 
-RETRY_AFTER_SECONDS = "1"
 FIT_SECONDS = "5"
 """A fit takes from a second to a minute."""
 
 
 def install_handlers(app: FastAPI) -> None:
     """Answer our failures, the router's and validation's as problems."""
-    app.add_exception_handler(KinedexError, _on_failure)
+    app.add_exception_handler(KinedexError, answer_failure)
     app.add_exception_handler(RequestValidationError, _on_validation)
     app.add_exception_handler(HTTPException, _on_http)
 
@@ -54,7 +54,8 @@ def answer_unexpected(error: Exception) -> Response:
     return respond(problem(500, "internal", "Something went wrong; the log tells what."))
 
 
-async def _on_failure(request: Request, error: Exception) -> Response:
+async def answer_failure(request: Request, error: Exception) -> Response:
+    """A failure of ours as a problem; what went wrong inside is logged."""
     failure = cast(KinedexError, error)
     if isinstance(failure, (BadField, NotFound, Conflict)):
         failure = _located(failure, request)

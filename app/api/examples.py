@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.api.deps import is_open
+from app.api.callers import is_open
 from app.services.library import Library
 from app.store import clip_listing, jobs
 from app.store.clip_filter import ClipFilter

@@ -6,6 +6,8 @@ from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from app.api.media import FORM, media_type
+from app.api.paths import path_of
 from app.api.problems import problem_of, respond
 from app.config import Settings
 from app.errors import TooLarge
@@ -13,7 +15,7 @@ from app.errors import TooLarge
 FORM_BYTES = 2**20
 """What a form may hold beside its file."""
 JSON_BYTES = 2**20
-"""The largest body of a call that takes no file."""
+"""The largest body that is no form with files."""
 MOST_DRAINED = 16 * 2**20
 """Bytes read and dropped after a refusal: many clients send all before they listen."""
 
@@ -35,8 +37,9 @@ class BodyLimit:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        path = scope["path"].removeprefix(scope.get("root_path", "")).rstrip("/")
-        limit = self._limits.get(path, JSON_BYTES)
+        path = path_of(scope)
+        is_form = media_type(Headers(scope=scope)) == FORM
+        limit = self._limits.get(path, JSON_BYTES) if is_form else JSON_BYTES
         if _declares_more_than(limit, scope):
             await _refuse(limit, scope, receive, send)
         else:

@@ -20,15 +20,18 @@ _DESCRIPTIONS = {
     401: "An API key is needed",
     403: "This API key does not allow that",
     404: "There is no such thing",
+    408: "The body came too slowly",
     409: "The state of things does not allow this; with `Retry-After` where waiting helps",
     413: "The body is larger than the limit",
     415: "Content or media type that is not known here",
     422: "A field is wrong, or a file that cannot be used",
     500: "Something went wrong; the log tells what",
-    503: "The service is starting, or too busy for another upload",
+    503: "The service is starting, or too busy",
     507: "There is no space left; nothing was kept",
 }
 _EVERYWHERE = (401, 403, 422, 500)
+_WITH_A_BODY = (408, 413, 503)
+"""Of every call that has a body; such a call names 413."""
 
 
 LONGEST_ID = 100
@@ -42,12 +45,13 @@ PairId = Annotated[str, Path(max_length=LONGEST_ID)]
 def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """The `responses=` of a route: problems of these statuses and of those that any call has."""
     schema = {"$ref": _REF.format(model="Problem")}
+    with_a_body = _WITH_A_BODY if 413 in statuses else ()
     return {
         status: {
             "description": _DESCRIPTIONS[status],
             "content": {problems.MEDIA_TYPE: {"schema": schema}},
         }
-        for status in sorted({*statuses, *_EVERYWHERE})
+        for status in sorted({*statuses, *_EVERYWHERE, *with_a_body})
     }
 
 

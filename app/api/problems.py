@@ -18,6 +18,7 @@ from app.errors import KinedexError, Place
 
 MEDIA_TYPE = "application/problem+json"
 TYPE_PREFIX = "urn:kinedex:problem:"
+RETRY_AFTER_SECONDS = "1"
 MOST_PLACES = 100
 """Places told in one problem; a form with a thousand wrong fields needs no longer answer."""
 
@@ -29,9 +30,27 @@ class NotReadyYet(KinedexError):
 
 
 class TooBusy(KinedexError):
-    """Too many uploads are being received at once; try again shortly."""
+    """Too many requests are being received at once; try again shortly."""
 
     code = "too_busy"
+
+
+class TooManyConnections(KinedexError):
+    """Too many connections are open; try again shortly."""
+
+    code = "too_many_connections"
+
+
+class RequestTimeout(KinedexError):
+    """The request came too slowly."""
+
+    code = "request_timeout"
+
+
+class UnknownMethod(KinedexError):
+    """This HTTP method is not known here."""
+
+    code = "unknown_method"
 
 
 class MalformedBody(KinedexError):
@@ -51,6 +70,7 @@ STATUSES: dict[type[KinedexError], int] = {
     errors.Unauthorized: 401,
     errors.Forbidden: 403,
     errors.NotFound: 404,
+    RequestTimeout: 408,
     errors.Conflict: 409,
     errors.Canceled: 409,
     errors.TooLarge: 413,
@@ -62,14 +82,21 @@ STATUSES: dict[type[KinedexError], int] = {
     errors.StorageError: 500,
     errors.ConfigurationError: 500,
     KinedexError: 500,
+    UnknownMethod: 501,
     NotReadyYet: 503,
     TooBusy: 503,
+    TooManyConnections: 503,
     errors.DiskFull: 507,
 }
 """HTTP status by failure; a class that is not listed has its nearest ancestor's."""
 
-_ROUTER_CODES = {404: "not_found", 405: "method_not_allowed", 413: "too_large"}
-_DETAIL_IS_SAFE = {503, 507}
+_ROUTER_CODES = {
+    404: "not_found",
+    405: "method_not_allowed",
+    413: "too_large",
+    503: TooBusy.code,
+}
+_DETAIL_IS_SAFE = {501, 503, 507}
 
 
 def status_of(kind: type[KinedexError]) -> int:

@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
+import logging
+import sys
+from functools import partial
 from types import FrameType
+from typing import cast
 
 import uvicorn
 from fastapi import FastAPI
 
 from app.api.app import create_app
+from app.api.connections import Connections, room_for_connections
+from app.api.protocol import GuardedProtocol
 from app.config import Settings, load_settings
-from app.logs import configure_logging
+from app.errors import KinedexError
+from app.json_stderr import json_stderr
+from app.logs import set_level
+
+log = logging.getLogger(__name__)
 
 GRACE_SECONDS = 5
 """How long requests that are being answered may go on after a stop; streams are cut then."""
+BACKLOG = 256
+"""Connections that the kernel holds until they are accepted."""
 
 
 class _Server(uvicorn.Server):
@@ -30,10 +42,18 @@ class _Server(uvicorn.Server):
 
 def run(settings: Settings) -> None:
     """Serve until SIGINT or SIGTERM. Raises ConfigurationError and DatabaseOutOfDate."""
-    configure_logging(settings.log_level.upper())
+    set_level(settings.log_level.upper())
     app = create_app(settings)
+    most = room_for_connections(settings.max_connections, BACKLOG)
+    connections = Connections(most, settings.max_connections_per_address)
+    protocol = partial(GuardedProtocol, connections=connections)
     config = uvicorn.Config(
         app,
+        # uvicorn calls it as it would call the class.
+        http=cast(type[GuardedProtocol], protocol),
+        # No websocket may bypass the limits of our protocol.
+        ws="none",
+        backlog=BACKLOG,
         host=settings.host,
         port=settings.port,
         log_config=None,
@@ -44,5 +64,16 @@ def run(settings: Settings) -> None:
     _Server(config, app).run()
 
 
+def main() -> int:
+    """Serve as the settings of this process say; 1 where they or the database do not allow it."""
+    with json_stderr():
+        try:
+            run(load_settings())
+        except KinedexError as problem:
+            log.critical("the API cannot start: %s", problem.detail)
+            return 1
+    return 0
+
+
 if __name__ == "__main__":
-    run(load_settings())
+    sys.exit(main())

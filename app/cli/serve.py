@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 from app.cli.settings import settings_of
-from app.logs import configure_logging
+from app.json_stderr import json_stderr
+from app.logs import configure_logging, set_level
 from app.services.exposure import refuse_exposure_without_keys, refuse_taken_address
 from app.store import schema
 from app.worker.loop import run_worker
@@ -39,8 +40,9 @@ def serve(
 def worker(context: typer.Context) -> None:
     """Do the queued work, until stopped; any number of workers share one library."""
     settings = settings_of(context)
-    configure_logging(settings.log_level.upper())
     stop = threading.Event()
     for sign in (signal.SIGTERM, signal.SIGINT):
         signal.signal(sign, lambda *_: stop.set())
-    run_worker(settings, stop)
+    with json_stderr():
+        set_level(settings.log_level.upper())
+        run_worker(settings, stop)

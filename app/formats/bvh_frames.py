@@ -17,15 +17,14 @@ from app.formats.decimals import plain_table
 from app.formats.lines import filled_lines
 from app.formats.numbers import check_magnitudes, excerpt, parse_any_numbers
 from app.formats.places import too_large, unreadable
-from app.motion.recording import Caution
+from app.motion.recording import FRAME_RATES, Caution
 from app.numerics.arrays import FloatArray
 
 MAX_FRAMES = 1_000_000
 """More than two hours at 120 Hz."""
 MAX_HEADER_LINE = 200
 """Bytes of the longest header line: patterns cost more than linear time."""
-SLOWEST_RATE = 1.0
-FASTEST_RATE = 2000.0
+SLOWEST_RATE, FASTEST_RATE = FRAME_RATES
 """Hz; a declared rate outside is no rate."""
 NEAR_WHOLE = 1e-4
 """A rate this near to a whole number (relative) was rounded when its period was printed."""

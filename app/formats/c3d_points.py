@@ -15,7 +15,7 @@ from app.formats.c3d_parameters import BLOCK, Numbers, Parameters, read_paramete
 from app.formats.numbers import MAX_MAGNITUDE
 from app.formats.places import too_large, unreadable_at
 from app.formats.solving import MAX_JOINT_FRAMES
-from app.motion.recording import Caution
+from app.motion.recording import FRAME_RATES, Caution
 from app.numerics.arrays import FloatArray
 
 FULL_COUNT = 65535
@@ -158,6 +158,6 @@ def _labels(parameters: Parameters, points: int) -> tuple[str, ...]:
 def _rate(header: _Header, parameters: Parameters) -> float | None:
     said = parameters.get("POINT:RATE")
     for rate in (said.first if said is not None else None, header.rate):
-        if rate is not None and 1.0 <= rate <= 2000.0:
+        if rate is not None and FRAME_RATES[0] <= rate <= FRAME_RATES[1]:
             return float(np.float32(rate))
     return None

@@ -10,21 +10,17 @@ import numpy as np
 
 from app.errors import BadField, NotHuman, Place, Unreadable
 from app.motion.bodies import roles_of_one_body
+from app.motion.extent import check_extent
 from app.motion.frame_rate import judge_frame_rate
 from app.motion.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
 from app.motion.kinematics import joints_by_depth
 from app.motion.motion import Motion
-from app.motion.recording import Caution, Recording
+from app.motion.recording import FRAME_RATES, Caution, Recording
 from app.motion.roles import given_roles
 from app.motion.skeleton import Skeleton
-from app.motion.units import Unit, confirm_unit, judge_unit
+from app.motion.units import SCALES, Unit, confirm_unit, judge_unit
 from app.motion.up_axis import judge_up_axis, to_y_up
 from app.numerics.arrays import FloatArray
-
-FRAME_RATES = (1.0, 2000.0)
-"""Hz; what a client may say."""
-SCALES = (1e-6, 1e3)
-"""Metres per unit; what a client may say."""
 
 
 def canonicalise(
@@ -38,7 +34,8 @@ def canonicalise(
 
     frame_rate (Hz), metres_per_unit and roles (role -> joint name) are what the client
     says; it wins over the file. Raises BadField where that cannot be, NotHuman where
-    essential roles are missing, Unreadable where no frame rate is known.
+    essential roles are missing, Unreadable where no usable frame rate is known, BadContent where
+    the body is beyond human measure.
     """
     names, parents = recording.skeleton.names, recording.skeleton.parents
     rate = _rate_in_force(recording, frame_rate)
@@ -62,7 +59,12 @@ def canonicalise(
         metres_per_unit=unit.metres_per_unit,
         cautions=recording.cautions + others + _axis_caution(recording, up_axis) + unit.cautions,
     )
-    doubts = _roles_caution(missing) + _assumption(recording, frame_rate) + _rate_cautions(motion)
+    doubts = (
+        check_extent(motion)
+        + _roles_caution(missing)
+        + _assumption(recording, frame_rate)
+        + _rate_cautions(motion)
+    )
     return _with_cautions(motion, doubts)
 
 
@@ -76,6 +78,13 @@ def _rate_in_force(recording: Recording, said: float | None) -> float:
         message = reasons[0] if reasons else "expected a frame rate, found none"
         raise Unreadable(
             f"The file does not say its frame rate ({message}); send frame_rate",
+            places=[Place("frame_rate", message)],
+        )
+    least, most = FRAME_RATES
+    if not least <= recording.frame_rate <= most:
+        message = f"expected {least:g} to {most:g} Hz, found {recording.frame_rate:g}"
+        raise Unreadable(
+            f"The file's frame rate cannot be ({message}); send frame_rate",
             places=[Place("frame_rate", message)],
         )
     return recording.frame_rate

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 from app.motion.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
+FRAME_RATES = (1.0, 2000.0)
+"""Hz, the least and the most, whether a client says it or a file."""
+
 
 @dataclass(frozen=True, slots=True)
 class Caution:

@@ -27,6 +27,8 @@ METRES_PER_UNIT: dict[str, float] = {
     "cmu": 0.056444,
 }
 """Names that a client may use; "cmu" is the unit of CMU's ASF/AMC files (1 / .45 inch)."""
+SCALES = (1e-6, 1e3)
+"""Metres per unit, the least and the most that a client may say."""
 TYPICAL_STATURE = 1.7
 """Metres."""
 SMALLEST_STATURE = 1e-6

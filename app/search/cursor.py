@@ -9,13 +9,14 @@ ranked again, it also remembers where that ended.
 from __future__ import annotations
 
 import base64
-import binascii
 import hashlib
 import json
 import math
 from dataclasses import dataclass
 
 from app.errors import BadField, Place
+
+LARGEST_RANK = 10**9
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +64,7 @@ def decode(cursor: str, question: str) -> Position:
         found, rank, distance, clip_id, *told = json.loads(base64.urlsafe_b64decode(padded))
         anchor = _anchor(*told) if told else None
         position = Position(_rank(rank), _distance(distance), _text(clip_id), anchor)
-    except (ValueError, TypeError, binascii.Error) as problem:
+    except (ValueError, TypeError, OverflowError, RecursionError) as problem:
         raise _refused("this is no cursor that was given out") from problem
     if found != question:
         raise _refused("this cursor belongs to another question")
@@ -75,13 +76,13 @@ def _anchor(distance: object, clip_id: object, end: object) -> Anchor:
 
 
 def _rank(value: object) -> int:
-    if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+    if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value <= LARGEST_RANK:
         raise ValueError("rank")
     return value
 
 
 def _distance(value: object) -> float:
-    if not isinstance(value, float | int) or not math.isfinite(value):
+    if not isinstance(value, float | int) or isinstance(value, bool) or not math.isfinite(value):
         raise ValueError("distance")
     return float(value)
 
@@ -89,6 +90,7 @@ def _distance(value: object) -> float:
 def _text(value: object) -> str:
     if not isinstance(value, str):
         raise TypeError("clip id")
+    value.encode()  # Half of a surrogate pair is valid JSON, but no text.
     return value
 
 

@@ -27,9 +27,10 @@ from app.errors import (
     StorageError,
     TooLarge,
 )
+from app.logs import level_of_process
 from app.services.child_processes import (
+    begin_child,
     child_context,
-    die_with_parent,
     limit_memory,
     stderr_silenced,
 )
@@ -243,7 +244,7 @@ def _new_pool(limits: Limits, size: int) -> pebble.ProcessPool:
         max_workers=size,
         max_tasks=TASKS_PER_CHILD,
         initializer=_begin_child,
-        initargs=(limits.memory_mb,),
+        initargs=(limits.memory_mb, level_of_process()),
         context=child_context(),
     )
 
@@ -253,9 +254,9 @@ def _end(pool: pebble.ProcessPool) -> None:
     pool.join()
 
 
-def _begin_child(memory_mb: int) -> None:
-    """Set up a child: die with the parent, and limit the memory."""
-    die_with_parent()
+def _begin_child(memory_mb: int, level: str) -> None:
+    """Set up a child, and limit the memory."""
+    begin_child(level)
     limit_memory(memory_mb)
 
 

@@ -20,11 +20,11 @@ from contextlib import contextmanager
 from multiprocessing.popen_forkserver import Popen
 from multiprocessing.process import BaseProcess
 
+from app.json_stderr import STDERR, log_uncaught
+from app.logs import configure_logging
+
 LIBRARIES = ["app.analysis.analyse", "app.formats.read", "app.motion.canonical"]
 """What the server process imports for its children."""
-
-STDERR = 2
-"""Its file descriptor, whatever `sys.stderr` is."""
 
 _hiding = threading.Lock()
 
@@ -62,6 +62,13 @@ def _main_module_hidden() -> Iterator[None]:
             yield
         finally:
             sys.modules["__main__"] = main
+
+
+def begin_child(level: str) -> None:
+    """What a child does first; level: the least severity that it logs, as its parent does."""
+    die_with_parent()
+    configure_logging(level)
+    log_uncaught()
 
 
 def die_with_parent() -> None:

@@ -14,7 +14,8 @@ from app.errors import BadField, Place
 from app.formats.names import MAX_NAME_LENGTH
 from app.models.word_vocabulary import normalise_word, normalise_words
 from app.motion.joint_roles import JointRole
-from app.motion.units import METRES_PER_UNIT
+from app.motion.recording import FRAME_RATES
+from app.motion.units import METRES_PER_UNIT, SCALES
 
 MAX_TEXT = 300
 """Characters in a name or label."""
@@ -33,8 +34,6 @@ TEMPI = (20.0, 400.0)
 """Beats a minute."""
 MAX_OFFSET = 36_000.0
 """Seconds."""
-MAX_FRAME_RATE = 2000.0
-"""Hz; above any motion capture."""
 
 
 def bad_field(field: str, message: str) -> BadField:
@@ -83,10 +82,11 @@ def queried_words(value: Iterable[str]) -> tuple[str, ...]:
 
 
 def frame_rate(value: float | str | None) -> float | None:
-    """Frames a second, above 0 and not above 2000; an empty string is None."""
+    """Frames a second, from 1 to 2000; an empty string is None."""
     number = _number("frame_rate", value)
-    if number is not None and not 0 < number <= MAX_FRAME_RATE:
-        raise bad_field("frame_rate", f"must be above 0 and at most {MAX_FRAME_RATE:g} Hz")
+    least, most = FRAME_RATES
+    if number is not None and not least <= number <= most:
+        raise bad_field("frame_rate", f"must be from {least:g} to {most:g} Hz")
     return number
 
 
@@ -99,7 +99,7 @@ def metres_per_unit(value: float | str | None) -> float | None:
     except BadField as problem:
         known = ", ".join(METRES_PER_UNIT)
         raise bad_field("unit", f"must be one of {known}, or metres per unit") from problem
-    if number is not None and not 1e-6 <= number <= 1e3:
+    if number is not None and not SCALES[0] <= number <= SCALES[1]:
         raise bad_field("unit", "must be between 0.000001 and 1000 metres")
     return number
 
@@ -163,7 +163,7 @@ def _number(field: str, value: float | str | None) -> float | None:
         raise bad_field(field, "must be a number")
     try:
         number = float(value)
-    except (TypeError, ValueError) as problem:
+    except (TypeError, ValueError, OverflowError) as problem:
         raise bad_field(field, "must be a number") from problem
     if not math.isfinite(number):
         raise bad_field(field, "must be a finite number")

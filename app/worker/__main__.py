@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import logging
 import signal
 import sys
 import threading
 
 from app.config import load_settings
 from app.errors import KinedexError
-from app.logs import configure_logging
+from app.json_stderr import json_stderr
+from app.logs import set_level
 from app.worker.loop import run_worker
+
+log = logging.getLogger(__name__)
 
 
 def main() -> int:
@@ -17,13 +21,14 @@ def main() -> int:
     stop = threading.Event()
     for sign in (signal.SIGTERM, signal.SIGINT):
         signal.signal(sign, lambda *_: stop.set())
-    try:
-        settings = load_settings()
-        configure_logging(settings.log_level.upper())
-        run_worker(settings, stop)
-    except KinedexError as problem:
-        print(f"kinedex worker: {problem.detail}", file=sys.stderr)
-        return 1
+    with json_stderr():
+        try:
+            settings = load_settings()
+            set_level(settings.log_level.upper())
+            run_worker(settings, stop)
+        except KinedexError as problem:
+            log.critical("the worker cannot start: %s", problem.detail)
+            return 1
     return 0
 
 

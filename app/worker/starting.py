@@ -10,9 +10,10 @@ from typing import Any
 import pebble
 
 from app.errors import KinedexError
+from app.logs import level_of_process
 from app.services import imports, ingest
 from app.services.analysis_pool import AnalysisPool
-from app.services.child_processes import child_context, die_with_parent
+from app.services.child_processes import begin_child, child_context
 from app.services.fit_process import fit_in_child
 from app.services.library import Library, ingest_limits
 from app.store.clip_record import ClipRecord
@@ -70,7 +71,8 @@ def _fit_in_process(lib: Library) -> Future[dict[str, Any]]:
     pool = pebble.ProcessPool(
         max_workers=1,
         max_tasks=1,
-        initializer=die_with_parent,
+        initializer=begin_child,
+        initargs=(level_of_process(),),
         context=child_context(),
     )
     future: Future[dict[str, Any]] = pool.schedule(fit_in_child, args=(lib.settings,))

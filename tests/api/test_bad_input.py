@@ -11,6 +11,7 @@ from urllib.parse import urlsplit
 import httpx2
 import pytest
 
+from app.services.manifest import read_manifest
 from tests.api.conftest import assert_problem
 from tests.live import Live
 
@@ -42,6 +43,8 @@ def test_content_that_cannot_be_a_clip(
         ({"frame_rate": "-1"}, "body.frame_rate"),
         ({"frame_rate": "nan"}, "body.frame_rate"),
         ({"frame_rate": "inf"}, "body.frame_rate"),
+        ({"frame_rate": "0.01"}, "body.frame_rate"),
+        ({"frame_rate": "2001"}, "body.frame_rate"),
         ({"unit": "furlong"}, "body.unit"),
         ({"roles": "{"}, "body.roles"),
         ({"roles": "[]"}, "body.roles"),
@@ -55,6 +58,20 @@ def test_content_that_cannot_be_a_clip(
 def test_fields_of_an_upload(idle: httpx2.Client, data: dict[str, str], location: str) -> None:
     files = {"file": ("a.bvh", b"HIERARCHY\nROOT Hips\n{")}
     assert_problem(idle.post("/v1/clips", files=files, data=data), 422, "bad_field", location)
+
+
+@pytest.mark.parametrize("rate", [0.01, 0.999, 2000.1])
+def test_the_same_frame_rates_are_refused_wherever_they_are_said(
+    idle: httpx2.Client, rate: float
+) -> None:
+    files, said = {"file": ("a.bvh", b"HIERARCHY\nROOT Hips\n{")}, {"frame_rate": str(rate)}
+    answers = [idle.post(path, files=files, data=said) for path in ("/v1/clips", SEARCH, RECOGNIZE)]
+    answers.append(idle.patch("/v1/clips/nope", json={"frame_rate": rate}))
+    for answer in answers:
+        assert_problem(answer, 422, "bad_field", "body.frame_rate")
+    (row,) = read_manifest(f"path,fps\na.bvh,{rate}\n".encode()).values()
+    assert row.problem is not None
+    assert "from 1 to 2000 Hz" in row.problem.detail
 
 
 def test_an_upload_without_its_file(idle: httpx2.Client) -> None:
@@ -295,7 +312,7 @@ def test_who_waits_for_a_go_ahead_need_not_send_the_body(idle_service: Live) -> 
     address = urlsplit(idle_service.url)
     with socket.create_connection((address.hostname or "", address.port or 0), timeout=10) as line:
         line.sendall(
-            b"POST /v1/clips HTTP/1.1\r\nHost: x\r\nContent-Type: multipart/form-data\r\n"
+            b"POST /v1/clips HTTP/1.1\r\nHost: localhost\r\nContent-Type: multipart/form-data\r\n"
             b"Content-Length: 99999999999\r\nExpect: 100-continue\r\n\r\n"
         )
         assert line.recv(4096).startswith(b"HTTP/1.1 413")

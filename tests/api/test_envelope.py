@@ -12,9 +12,10 @@ import pytest
 from starlette.requests import ClientDisconnect
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api.bodies import UploadSlots
+from app.api.arrival import Arrival
 from app.api.envelope import Envelope
 from app.api.problems import TooBusy
+from app.api.slots import Slots
 from app.logs import JsonFormatter, request_id
 
 
@@ -71,9 +72,9 @@ def test_who_leaves_is_no_error() -> None:
     assert [json.loads(line)["level"] for line in lines] == ["info"] * len(lines)
 
 
-def test_uploads_at_once_are_counted() -> None:
-    slots = UploadSlots(1)
-    with slots.one(), pytest.raises(TooBusy), slots.one():
+def test_bodies_at_once_are_counted() -> None:
+    slots = Slots(1)
+    with slots.one(Arrival()), pytest.raises(TooBusy), slots.one(Arrival()):
         pass
-    with slots.one():
+    with slots.one(Arrival()):
         pass

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.errors import BadField, NotHuman, Unreadable
+from app.errors import BadContent, BadField, NotHuman, Unreadable
 from app.motion.canonical import canonicalise
 from app.motion.joint_roles import SUN_ROLES, JointRole
 from app.motion.recording import Caution, Recording
@@ -80,6 +80,14 @@ def test_no_frame_rate_is_refused_unless_the_client_knows() -> None:
     assert canonicalise(silent, frame_rate=25).frame_rate == 25
 
 
+@pytest.mark.parametrize("rate", [0.01, 0.99, 2001.0, 1e9])
+def test_a_frame_rate_of_the_file_that_cannot_be_is_refused(rate: float) -> None:
+    with pytest.raises(Unreadable, match="1 to 2000 Hz") as caught:
+        canonicalise(person(frame_rate=rate))
+    assert caught.value.places[0].location == "frame_rate"
+    assert canonicalise(person(frame_rate=rate), frame_rate=25).frame_rate == 25
+
+
 def test_no_arms_are_analysed_as_far_as_it_goes() -> None:
     armless = without(person(CONVENTIONS["MotionBuilder"]), "shoulder", "elbow", "hand")
     motion = canonicalise(armless)
@@ -116,7 +124,7 @@ def test_strange_skeletons_end_in_a_motion_or_our_own_failure(
     )
     try:
         motion = canonicalise(recording)
-    except NotHuman:
+    except BadContent:
         return
     assert np.isfinite(motion.positions).all()
     assert len(set(motion.roles.values())) == len(motion.roles)

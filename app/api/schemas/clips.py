@@ -23,6 +23,7 @@ from app.api.schemas.base import (
 from app.api.schemas.filters import Filter
 from app.api.schemas.jobs import Job
 from app.api.schemas.problem import Problem
+from app.motion.recording import FRAME_RATES
 from app.search.filters import parse_filter
 from app.services.fields import MAX_KEYPOSES, MAX_OFFSET, TEMPI
 from app.store.clip_filter import ClipFilter
@@ -48,7 +49,9 @@ Stack = Annotated[
         " default: the longest. The clip's warning `stack_chosen` lists them.",
     ),
 ]
-FrameRate = Annotated[float, Field(gt=0, le=2000, description="Frames a second.")]
+FrameRate = Annotated[
+    float, Field(ge=FRAME_RATES[0], le=FRAME_RATES[1], description="Frames a second.")
+]
 
 Offset = Annotated[float, Field(ge=-MAX_OFFSET, le=MAX_OFFSET)]
 Tempo = Annotated[float, Field(ge=TEMPI[0], le=TEMPI[1])]

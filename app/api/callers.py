@@ -1,0 +1,64 @@
+"""Who calls: the holder of an API key, or anyone where no key is asked for (DESIGN 12)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fastapi.security.utils import get_authorization_scheme_param
+from starlette.datastructures import Headers
+
+from app.errors import Forbidden, Unauthorized
+from app.services.library import Library
+from app.store import keys
+from app.store.engine import Tx
+from app.store.keys import KeyRole
+
+
+@dataclass(frozen=True, slots=True)
+class Caller:
+    """role: of the valid key that was sent; has_key: whether any key was sent.
+
+    is_free: no key is asked for here, so everything is allowed.
+    """
+
+    role: KeyRole | None
+    has_key: bool
+    is_free: bool
+
+    def require_key(self) -> None:
+        """Raises Unauthorized without a valid key, where one is asked for."""
+        if self.is_free and self.has_key:
+            raise Unauthorized("This key is not valid: there are no API keys here. Send none.")
+        if not self.is_free and self.role is None:
+            raise Unauthorized("This key is not valid." if self.has_key else None)
+
+    def require(self, role: KeyRole) -> None:
+        """Raises Unauthorized without a valid key, Forbidden where its role is too low."""
+        self.require_key()
+        if self.role is not None and not self.role.allows(role):
+            raise Forbidden(f"This needs a key with the role {role.value}.")
+
+
+def who_calls(lib: Library, headers: Headers) -> Caller:
+    """The caller by the key in the headers of a request. Raises StorageError."""
+    given = _given_key(headers)
+    with lib.store.read() as tx:
+        if is_open(lib, tx):
+            return Caller(role=None, has_key=bool(given), is_free=True)
+        key = keys.verify(tx, given) if given else None
+    return Caller(role=None if key is None else key.role, has_key=bool(given), is_free=False)
+
+
+def is_open(lib: Library, tx: Tx) -> bool:
+    """Whether no key is asked for: none was ever made, and only this machine can call."""
+    # A revoked key counts too: revoking the last one must not open the door.
+    settings = lib.settings
+    local = settings.listens_on_loopback and not settings.require_keys
+    return local and not keys.is_any(tx)
+
+
+def _given_key(headers: Headers) -> str:
+    scheme, bearer = get_authorization_scheme_param(headers.get("authorization"))
+    if scheme.lower() == "bearer" and bearer:
+        return bearer
+    return headers.get("x-api-key", "")

@@ -1,0 +1,63 @@
+"""Without API keys, only this machine's own pages and programs may call.
+
+A page of another site, opened in the user's browser, can send requests to 127.0.0.1 too. What
+tells it apart:
+
+- `Host`: a name of the other site can be made to point at this machine (DNS rebinding), and then
+  the browser believes that the answers are that site's. So only loopback's names are taken, each
+  exactly as it is written, with any port, since ports are forwarded.
+- `Origin`: where a browser sends it, it must be the address that was called.
+- `Sec-Fetch-Site`: a browser says whether the request comes from another site. Then only a page
+  may be opened, as one follows a link.
+"""
+
+from __future__ import annotations
+
+import re
+
+from starlette.datastructures import Headers
+from starlette.types import Scope
+
+from app.api.paths import path_of
+from app.errors import Forbidden
+
+_HOST = re.compile(
+    r"(?:localhost|127\.0\.0\.1|\[::1\])(?::(?P<port>[0-9]{1,5}))?", re.ASCII | re.IGNORECASE
+)
+LARGEST_PORT = 65_535
+OWN_SITES = frozenset({"same-origin", "none"})
+"""`none` is the user's own doing: an address that was typed, a bookmark."""
+PAGES = frozenset({"", "/docs"})
+"""What a link on another site may open."""
+
+
+def refuse_other_sites(scope: Scope) -> None:
+    """Raises Forbidden where a request may come from a page of another site."""
+    headers = Headers(scope=scope)
+    host = _own_host(headers)
+    own = f"{scope['scheme']}://{host}"
+    if any(origin.lower() != own for origin in headers.getlist("origin")):
+        raise Forbidden("Without API keys, calls from another site are not answered.")
+    sites = headers.getlist("sec-fetch-site")
+    if not OWN_SITES.issuperset(sites) and not _opens_a_page(scope, headers):
+        raise Forbidden("Without API keys, calls from another site are not answered.")
+
+
+def _own_host(headers: Headers) -> str:
+    hosts = headers.getlist("host")
+    found = _HOST.fullmatch(hosts[0]) if len(hosts) == 1 else None
+    if found is None or not 1 <= int(found["port"] or 1) <= LARGEST_PORT:
+        raise Forbidden(
+            "Without API keys, only this machine's own addresses are answered:"
+            " localhost, 127.0.0.1 and [::1]."
+        )
+    return found[0].lower()
+
+
+def _opens_a_page(scope: Scope, headers: Headers) -> bool:
+    return (
+        scope["method"] in {"GET", "HEAD"}
+        and path_of(scope) in PAGES
+        and headers.getlist("sec-fetch-mode") == ["navigate"]
+        and headers.getlist("sec-fetch-dest") == ["document"]
+    )
