@@ -132,6 +132,12 @@ class AnalysisCrashed(BadContent):
     code = "analysis_crashed"
 
 
+class AnalysisInterrupted(KinedexError):
+    """The analysis process was stopped from outside; ask again shortly."""
+
+    code = "analysis_interrupted"
+
+
 class BadField(KinedexError):
     """A field of the request is wrong."""
 
@@ -218,6 +224,12 @@ class StorageError(KinedexError):
     """The store failed."""
 
     code = "storage"
+
+
+class StoredFileMissing(StorageError):
+    """The stored file of this clip is missing."""
+
+    code = "file_missing"
 
 
 class DiskFull(StorageError):

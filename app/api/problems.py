@@ -64,6 +64,7 @@ STATUSES: dict[type[KinedexError], int] = {
     KinedexError: 500,
     NotReadyYet: 503,
     TooBusy: 503,
+    errors.AnalysisInterrupted: 503,
     errors.DiskFull: 507,
 }
 """HTTP status by failure; a class that is not listed has its nearest ancestor's."""

@@ -26,7 +26,9 @@ LIBRARIES = ["app.analysis.analyse", "app.formats.read", "app.motion.canonical"]
 STDERR = 2
 """Its file descriptor, whatever `sys.stderr` is."""
 
-_hiding = threading.Lock()
+one_at_a_time = threading.RLock()
+"""Held while a child is started or asked how it ended: multiprocessing's own lists of children,
+and its numbers on pipes, are not made for several threads."""
 
 
 class _Process(multiprocessing.context.ForkServerProcess):
@@ -55,7 +57,7 @@ def _main_module_hidden() -> Iterator[None]:
 
     multiprocessing would have each child import it: the whole command line, or the API.
     """
-    with _hiding:
+    with one_at_a_time:
         main = sys.modules["__main__"]
         sys.modules["__main__"] = types.ModuleType("__main__")
         try:

@@ -7,12 +7,10 @@ import threading
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
-import pebble
-
 from app.errors import KinedexError
 from app.services import imports, ingest
 from app.services.analysis_pool import AnalysisPool
-from app.services.child_processes import child_context, die_with_parent
+from app.services.child_pool import ChildPool
 from app.services.fit_process import fit_in_child
 from app.services.library import Library, ingest_limits
 from app.store.clip_record import ClipRecord
@@ -67,18 +65,12 @@ class Bench:
 
 def _fit_in_process(lib: Library) -> Future[dict[str, Any]]:
     """A fit in a process of its own, so that its memory is given back."""
-    pool = pebble.ProcessPool(
-        max_workers=1,
-        max_tasks=1,
-        initializer=die_with_parent,
-        context=child_context(),
-    )
-    future: Future[dict[str, Any]] = pool.schedule(fit_in_child, args=(lib.settings,))
+    pool = ChildPool(1, _prepare_nothing)
+    future = pool.submit(fit_in_child, lib.settings)
     # Ended from a thread of its own: the callback runs in one that the end waits for.
-    future.add_done_callback(lambda _: threading.Thread(target=_end, args=(pool,)).start())
+    future.add_done_callback(lambda _: threading.Thread(target=pool.close).start())
     return future
 
 
-def _end(pool: pebble.ProcessPool) -> None:
-    pool.stop()  # type: ignore[no-untyped-call]
-    pool.join()
+def _prepare_nothing() -> None:
+    """A fit may take what memory there is."""

@@ -6,16 +6,23 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import psutil
 import pytest
 
-from app.errors import AnalysisCrashed, AnalysisTimedOut, KinedexError, TooLarge, Unreadable
-from app.services.analysis_pool import AnalysisPool, ChildDied, Limits, Order
+from app.errors import (
+    AnalysisCrashed,
+    AnalysisInterrupted,
+    AnalysisTimedOut,
+    KinedexError,
+    TooLarge,
+    Unreadable,
+)
+from app.services.analysis_pool import AnalysisPool, Limits, Order
 from app.services.demo import DemoClip
+from tests.live import wait_until
 
 ROOMY = Limits(seconds=60.0, memory_mb=2048, frames=100_000, joints=100)
 
@@ -93,24 +100,31 @@ def test_an_analysis_over_its_memory_fails(some_demo_clips: list[DemoClip]) -> N
 def test_a_killed_child_is_replaced(pool: AnalysisPool, some_demo_clips: list[DemoClip]) -> None:
     small, large = Order(content=some_demo_clips[0].content), _long(some_demo_clips[0], 150)
     pool.analyse(small)
+    used = _cpu_seconds()
     working = pool.submit(Order(content=large))
-    time.sleep(0.3)
+    wait_until(lambda: _cpu_seconds() > used + 0.3, 60.0)
     _kill_children()
-    with pytest.raises(ChildDied):
+    with pytest.raises(AnalysisInterrupted):
         pool.outcome(working)
     assert pool.analyse(small).arrays
-    time.sleep(0.3)
     _kill_children()
-    time.sleep(0.3)
     assert pool.analyse(small).arrays
+
+
+def _children() -> list[psutil.Process]:
+    """All but the server that they are forked from."""
+    servers = psutil.Process().children()
+    return [c for s in servers if "forkserver" in " ".join(s.cmdline()) for c in s.children()]
 
 
 def _kill_children() -> None:
-    """All but the server that they are forked from."""
-    for server in psutil.Process().children():
-        if "forkserver" in " ".join(server.cmdline()):
-            for child in server.children():
-                child.kill()
+    for child in _children():
+        child.kill()
+
+
+def _cpu_seconds() -> float:
+    """What the children have worked."""
+    return sum(sum(child.cpu_times()[:2]) for child in _children())
 
 
 PARENT = """
