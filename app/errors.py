@@ -162,6 +162,12 @@ class JobNotFound(NotFound):
     code = "job_not_found"
 
 
+class StoredFileMissing(NotFound):
+    """A stored file of this clip is missing."""
+
+    code = "file_missing"
+
+
 class Conflict(KinedexError):
     """The state of things does not allow this."""
 
@@ -224,12 +230,6 @@ class StorageError(KinedexError):
     """The store failed."""
 
     code = "storage"
-
-
-class StoredFileMissing(StorageError):
-    """The stored file of this clip is missing."""
-
-    code = "file_missing"
 
 
 class DiskFull(StorageError):

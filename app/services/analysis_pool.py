@@ -42,10 +42,6 @@ TRIES = 2
 """Of an analysis that somebody waits for, where its process is killed from outside."""
 
 
-class ChildDied(AnalysisCrashed):
-    """The analysis process died (out of memory, or killed)."""
-
-
 @dataclass(frozen=True, slots=True)
 class Order:
     """What to analyse: `content`, or the file at `path`; and what the client says of it.
@@ -143,7 +139,7 @@ class AnalysisPool:
                 f"The analysis took longer than {self.limits.seconds:g} s and was stopped."
             ) from late
         except ChildEnded as end:
-            raise _as_failure(end) from end
+            raise end.as_failure() from end
         except MemoryError as hunger:
             raise AnalysisCrashed(
                 f"The analysis needs more memory than its limit of {self.limits.memory_mb} MB."
@@ -171,12 +167,6 @@ class AnalysisPool:
 
     def _new_pool(self) -> ChildPool:
         return ChildPool(self._size, limit_memory, self.limits.memory_mb)
-
-
-def _as_failure(end: ChildEnded) -> KinedexError:
-    if end.is_from_outside:
-        return AnalysisInterrupted(f"The analysis process was stopped from outside ({end.how}).")
-    return ChildDied(f"The analysis process died ({end.how}).")
 
 
 def analyse_order(order: Order, limits: Limits) -> Analysis:

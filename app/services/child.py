@@ -16,6 +16,7 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any, Self
 
+from app.errors import AnalysisCrashed, AnalysisInterrupted, KinedexError
 from app.services.child_processes import child_context, die_with_parent, one_at_a_time
 
 START_TRIES = 5
@@ -28,6 +29,10 @@ UNKNOWN = 255
 FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 """Signals that a process does not raise by its own work."""
 _VMSTAT = Path("/proc/vmstat")
+
+
+class ChildDied(AnalysisCrashed):
+    """The analysis process died by its own work (a crash, or out of memory)."""
 
 
 class ChildEnded(Exception):
@@ -61,6 +66,12 @@ class ChildEnded(Exception):
     def how(self) -> str:
         """The exit code or signal, in words."""
         return _told(self.exit_code)
+
+    def as_failure(self) -> KinedexError:
+        """AnalysisInterrupted where it was killed from outside, else ChildDied."""
+        if self.is_from_outside:
+            return AnalysisInterrupted(f"The process was stopped from outside ({self.how}).")
+        return ChildDied(f"The process died ({self.how}).")
 
 
 @dataclass(frozen=True, slots=True)

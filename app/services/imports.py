@@ -47,12 +47,11 @@ from app.services.library import Library
 from app.services.manifest import ManifestRow
 from app.services.recordings import described
 from app.store import imports as stored
-from app.store import jobs, keypose_annotations, leases
+from app.store import jobs, keypose_annotations, leases, owners
 from app.store.clip_record import ClipState
 from app.store.clip_record import NewClip as NewRow
 from app.store.engine import Tx
 from app.store.files import Readable, StagedFile
-from app.store.ids import new_id
 from app.store.imports import ImportOutcome
 from app.store.job_record import ClaimedJob, JobKind, JobRecord, Lease, NewJob
 
@@ -153,7 +152,7 @@ def _own_job(lib: Library, path: Path) -> ClaimedJob:
     )
     with lib.store.write() as tx:
         created = jobs.enqueue(tx, job)
-        claimed = leases.claim(tx, [JobKind.IMPORT], new_id("import"), lib.settings.job_lease_s)
+        claimed = leases.claim(tx, [JobKind.IMPORT], owners.new_owner("import"))
         if claimed is None or claimed.job.id != created.id:
             raise StorageError("Another import begins at this moment; try again.")
         return claimed
@@ -167,12 +166,12 @@ class _Doing:
     lease: Lease
 
     def record(self, tx: Tx, path: str, outcome: ImportOutcome, **values: Any) -> None:
-        """Record a file in the transaction that stores it, and renew the lease there.
+        """Record a file in the transaction that stores it: that is progress, and a heartbeat.
 
         Raises LeaseLost where another worker has the import, Canceled where it is to end; the
         transaction is then undone.
         """
-        if leases.heartbeat(tx, self.lease, self.lib.settings.job_lease_s):
+        if leases.heartbeat(tx, self.lease, has_progressed=True):
             raise Canceled("The import was canceled.")
         stored.add_entry(tx, self.lease.job_id, path, outcome, **values)
 

@@ -13,6 +13,7 @@ from app.services.analysis_pool import AnalysisPool
 from app.services.child_pool import ChildPool
 from app.services.fit_process import fit_in_child
 from app.services.library import Library, ingest_limits
+from app.store import outcomes
 from app.store.clip_record import ClipRecord
 from app.store.job_record import ClaimedJob, JobKind
 from app.worker.running import Running, RunningFit, RunningIngest, RunningThread
@@ -46,7 +47,10 @@ class Bench:
 
     def _begin_ingest(self, claimed: ClaimedJob, clip: ClipRecord) -> Running:
         try:
-            future = self._analyses.submit(ingest.order_for(self.lib, clip))
+            order = ingest.order_for(self.lib, clip)
+            # What died beside others again and again may have been killed for the others' sake.
+            is_alone = claimed.kills >= outcomes.MOST_KILLS
+            future = self._analyses.submit(order, is_alone=is_alone)
         except KinedexError as problem:
             future = Future()
             future.set_exception(problem)
