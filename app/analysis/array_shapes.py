@@ -30,9 +30,9 @@ SHAPES: Mapping[str, tuple[int | None, ...]] = {
     "window_spans_2s": (None, 2),
     "window_vectors_4s": (None, 125),
     "window_spans_4s": (None, 2),
-    "symbol_means": (30, 26),
-    "symbol_variances": (30, 26),
-    "symbol_transitions": (30, 30),
+    "symbol_means": (None, 26),
+    "symbol_variances": (None, 26),
+    "symbol_transitions": (None, None),
     "beat_times": (None,),
     "beat_facts": (3,),
     "pose_cover": (None, 38),
@@ -41,7 +41,7 @@ SHAPES: Mapping[str, tuple[int | None, ...]] = {
     "segment_vectors": (None, 185),
     "segment_cycles": (None, 3),
 }
-"""None: as many as the motion has."""
+"""None: as many as the motion has, or its symbol."""
 
 
 def is_usable(name: str, array: NDArray[Any]) -> bool:

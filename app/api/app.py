@@ -44,6 +44,7 @@ from app.api.schemas.recognition import Recognize
 from app.api.schemas.search import MotionSearch
 from app.api.schemas.synthesis import Synthesize
 from app.config import Settings
+from app.errors import KinedexError
 from app.services.library import Library
 
 _SUMMARY = "Search human motion by example and by words, and ask who does what."
@@ -95,6 +96,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.settings = settings
     app.state.library = None
     app.state.stopping = False
+    app.state.start_failure = None
     app.state.upload_slots = UploadSlots(settings.max_concurrent_uploads)
     install_handlers(app)
     for module in _ROUTES:
@@ -110,7 +112,11 @@ def create_app(settings: Settings) -> FastAPI:
 
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
-    library = await run_in_threadpool(Library.open, app.state.settings)
+    try:
+        library = await run_in_threadpool(Library.open, app.state.settings)
+    except KinedexError as failure:
+        app.state.start_failure = failure
+        raise
     loading = Loading(library)
     loading.start()
     app.state.library = library

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from types import FrameType
 
 import uvicorn
@@ -10,6 +11,7 @@ from fastapi import FastAPI
 from app.api.app import create_app
 from app.config import Settings, load_settings
 from app.logs import configure_logging
+from app.services.exposure import CANNOT_START, HOPELESS, refuse_taken_address
 
 GRACE_SECONDS = 5
 """How long requests that are being answered may go on after a stop; streams are cut then."""
@@ -29,7 +31,7 @@ class _Server(uvicorn.Server):
 
 
 def run(settings: Settings) -> None:
-    """Serve until SIGINT or SIGTERM. Raises ConfigurationError and DatabaseOutOfDate."""
+    """Serve until SIGINT or SIGTERM. Raises what kept the library from being opened."""
     configure_logging(settings.log_level.upper())
     app = create_app(settings)
     config = uvicorn.Config(
@@ -41,8 +43,25 @@ def run(settings: Settings) -> None:
         server_header=False,
         timeout_graceful_shutdown=GRACE_SECONDS,
     )
-    _Server(config, app).run()
+    try:
+        _Server(config, app).run()
+    except SystemExit:
+        if app.state.start_failure is not None:
+            raise app.state.start_failure from None
+        raise
+
+
+def main() -> int:
+    """Serve until told to stop; CANNOT_START where settings, port or database do not allow it."""
+    try:
+        settings = load_settings()
+        refuse_taken_address(settings)
+        run(settings)
+    except HOPELESS as problem:
+        print(f"kinedex api: {problem.detail}", file=sys.stderr)
+        return CANNOT_START
+    return 0
 
 
 if __name__ == "__main__":
-    run(load_settings())
+    sys.exit(main())

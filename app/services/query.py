@@ -105,7 +105,7 @@ def _ready(tx: Tx, clip_id: str) -> ClipRecord:
     return clip
 
 
-def described(tx: Tx, clip: ClipRecord, names: Sequence[str]) -> Arrays:
+def described(tx: Tx, clip: ClipRecord, names: Sequence[str]) -> dict[str, FloatArray]:
     """Stored arrays of a clip by name. Raises ClipNotReady where this version of Kinedex cannot
     use them, since the clip waits to be analysed again."""
     found = usable_arrays.get_some(tx, clip.id, names)

@@ -7,13 +7,13 @@ import sys
 import threading
 
 from app.config import load_settings
-from app.errors import KinedexError
 from app.logs import configure_logging
+from app.services.exposure import CANNOT_START, HOPELESS
 from app.worker.loop import run_worker
 
 
 def main() -> int:
-    """Work until told to stop; 1 where the settings or the database do not allow it."""
+    """Work until told to stop; CANNOT_START where settings or database do not allow it."""
     stop = threading.Event()
     for sign in (signal.SIGTERM, signal.SIGINT):
         signal.signal(sign, lambda *_: stop.set())
@@ -21,9 +21,9 @@ def main() -> int:
         settings = load_settings()
         configure_logging(settings.log_level.upper())
         run_worker(settings, stop)
-    except KinedexError as problem:
+    except HOPELESS as problem:
         print(f"kinedex worker: {problem.detail}", file=sys.stderr)
-        return 1
+        return CANNOT_START
     return 0
 
 
