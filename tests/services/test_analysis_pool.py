@@ -23,6 +23,7 @@ from app.errors import (
 from app.services.analysis_pool import AnalysisPool, Limits, Order
 from app.services.demo import DemoClip
 from tests.live import wait_until
+from tests.long_clips import busy_children, children_of, repeated
 
 ROOMY = Limits(seconds=60.0, memory_mb=2048, frames=100_000, joints=100)
 
@@ -32,15 +33,6 @@ def pool() -> Iterator[AnalysisPool]:
     opened = AnalysisPool(ROOMY)
     yield opened
     opened.close()
-
-
-def _long(clip: DemoClip, times: int) -> bytes:
-    """The same motion over and over: a large file that is nothing but large."""
-    head, _, frames = clip.content.partition(b"Frame Time")
-    line, _, rows = frames.partition(b"\n")
-    count = rows.count(b"\n") * times
-    head = head[: head.rindex(b"Frames:")] + b"Frames: %d\n" % count
-    return head + b"Frame Time" + line + b"\n" + rows * times
 
 
 def test_an_analysis_comes_back_with_its_arrays(
@@ -84,7 +76,7 @@ def test_an_analysis_over_its_time_is_stopped_and_the_next_one_done(
 ) -> None:
     hasty = AnalysisPool(Limits(0.3, 2048, 10_000_000, 100))
     with pytest.raises(AnalysisTimedOut):
-        hasty.analyse(Order(content=_long(some_demo_clips[0], 150)))
+        hasty.analyse(Order(content=repeated(some_demo_clips[0], 150)))
     with pytest.raises(Unreadable):
         hasty.analyse(Order(content=b"HIERARCHY\n"))
     hasty.close()
@@ -93,16 +85,16 @@ def test_an_analysis_over_its_time_is_stopped_and_the_next_one_done(
 def test_an_analysis_over_its_memory_fails(some_demo_clips: list[DemoClip]) -> None:
     poor = AnalysisPool(Limits(60.0, 420, 10_000_000, 100))
     with pytest.raises(AnalysisCrashed, match=r"memory|died"):
-        poor.analyse(Order(content=_long(some_demo_clips[0], 150)))
+        poor.analyse(Order(content=repeated(some_demo_clips[0], 150)))
     poor.close()
 
 
 def test_a_killed_child_is_replaced(pool: AnalysisPool, some_demo_clips: list[DemoClip]) -> None:
-    small, large = Order(content=some_demo_clips[0].content), _long(some_demo_clips[0], 150)
+    small, large = Order(content=some_demo_clips[0].content), repeated(some_demo_clips[0], 150)
     pool.analyse(small)
-    used = _cpu_seconds()
+    _kill_children()
     working = pool.submit(Order(content=large))
-    wait_until(lambda: _cpu_seconds() > used + 0.3, 60.0)
+    wait_until(lambda: busy_children(psutil.Process()), 60.0)
     _kill_children()
     with pytest.raises(AnalysisInterrupted):
         pool.outcome(working)
@@ -111,20 +103,9 @@ def test_a_killed_child_is_replaced(pool: AnalysisPool, some_demo_clips: list[De
     assert pool.analyse(small).arrays
 
 
-def _children() -> list[psutil.Process]:
-    """All but the server that they are forked from."""
-    servers = psutil.Process().children()
-    return [c for s in servers if "forkserver" in " ".join(s.cmdline()) for c in s.children()]
-
-
 def _kill_children() -> None:
-    for child in _children():
+    for child in children_of(psutil.Process()):
         child.kill()
-
-
-def _cpu_seconds() -> float:
-    """What the children have worked."""
-    return sum(sum(child.cpu_times()[:2]) for child in _children())
 
 
 PARENT = """
