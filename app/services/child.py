@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import multiprocessing.connection
 import os
-import pickle
 import signal
 import time
 import traceback
@@ -22,6 +21,8 @@ from app.services.child_processes import child_context, die_with_parent, one_at_
 START_TRIES = 5
 """The server that forks children may be killed; the next try starts another one."""
 START_PAUSE_S = 0.2
+BEGIN_WITHIN_S = 60.0
+"""For a child to take a task: it may have to import what the task needs first."""
 END_WITHIN_S = 5.0
 """For a child whose pipe is closed to end, and for the server to tell how it ended."""
 UNKNOWN = 255
@@ -113,23 +114,33 @@ class Child:
         self, work: Callable[..., Any], arguments: tuple[Any, ...], seconds: float | None
     ) -> Answer:
         """Have one task done. Raises ChildEnded, and TimeoutError after `seconds`."""
-        kills, had_begun = _memory_kills(), False
         self.tasks += 1
+        self._begin(work, arguments)
+        kills = _memory_kills()
         try:
-            self._pipe.send((work, arguments))
-            self._receive(seconds)
-            had_begun = True
             failure, value = self._receive(seconds)
         except TimeoutError:
             self.kill()
             raise
         except (EOFError, OSError):
-            self._wait_for_end()
-            short = _memory_kills() > kills
-            raise ChildEnded(
-                self._exit_code(), memory_was_short=short, had_begun=had_begun
-            ) from None
+            raise self._as_end(memory_was_short=_memory_kills() > kills) from None
         return Answer(value, failure)
+
+    def _begin(self, work: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+        """Wait until the child has taken the task. Raises ChildEnded."""
+        try:
+            self._pipe.send((work, arguments))
+            self._receive(BEGIN_WITHIN_S)
+        except TimeoutError:
+            self.kill()
+            raise ChildEnded(None, had_begun=False) from None
+        except (EOFError, OSError):
+            raise self._as_end(had_begun=False) from None
+
+    def _as_end(self, *, memory_was_short: bool = False, had_begun: bool = True) -> ChildEnded:
+        self._wait_for_end()
+        code = self._exit_code()
+        return ChildEnded(code, memory_was_short=memory_was_short, had_begun=had_begun)
 
     def _receive(self, seconds: float | None) -> Any:
         if not self._pipe.poll(seconds):
@@ -178,20 +189,21 @@ def _serve(pipe: Connection, prepare: Callable[..., None], arguments: tuple[Any,
         while True:
             work, given = pipe.recv()
             pipe.send("begun")
-            pipe.send_bytes(_answer(work, given))
+            _answer(pipe, work, given)
 
 
-def _answer(work: Callable[..., Any], arguments: tuple[Any, ...]) -> bytes:
-    """(failure, value), pickled; a failure that cannot be pickled becomes a RuntimeError."""
+def _answer(pipe: Connection, work: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+    """Send (failure, value); a failure that cannot be sent becomes a RuntimeError."""
+    # A pipe sends nothing of what it cannot pickle, so that another answer can still be sent.
     try:
-        return pickle.dumps((None, work(*arguments)))
+        pipe.send((None, work(*arguments)))
     except BaseException as failure:  # noqa: BLE001 - it goes to whoever waits for the task
         told = "".join(traceback.format_exception(failure))
         try:
             failure.add_note(told)
-            return pickle.dumps((failure, None))
+            pipe.send((failure, None))
         except Exception:  # noqa: BLE001
-            return pickle.dumps((RuntimeError(told), None))
+            pipe.send((RuntimeError(told), None))
 
 
 def _memory_kills() -> int:

@@ -109,6 +109,7 @@ class ChildPool:
             try:
                 child = self._do(task, child)
             except Exception as failure:  # noqa: BLE001 - whatever it is, the task must end
+                child = None
                 _end(task.future, failure)
             finally:
                 with self._changed:

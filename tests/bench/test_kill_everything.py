@@ -1,8 +1,8 @@
 """SIGKILL of whatever `kinedex serve` runs, 30 times, under uploads and an import.
 
 Run: pytest -m bench -s tests/bench/test_kill_everything.py
-The dice choose: an analysis process, the worker, the API, or a server that forks the analysis
-processes of either. Whatever was acknowledged must be there in the end, and be ready.
+An analysis process, the worker, the API, or a server that forks the analysis processes of
+either. Whatever was acknowledged must be there in the end, and be ready.
 """
 
 from __future__ import annotations
@@ -28,11 +28,19 @@ from app.services.demo import DemoClip, demo_clips
 from tests.bench.processes import child_running
 from tests.bench.product import API, WORKER, Product, serving
 from tests.live import wait_until
-from tests.long_clips import children_of, repeated, server_of
+from tests.long_clips import busy_children, repeated, server_of
 
 pytestmark = pytest.mark.bench
 
-KILLS = 30
+VICTIMS = {
+    "worker's child": 10,
+    "worker": 5,
+    "worker's forkserver": 5,
+    "api": 4,
+    "api's forkserver": 3,
+    "api's child": 3,
+}
+"""How often each is killed, in an order that the dice choose."""
 SEED = 22
 PAUSE_S = (0.3, 2.0)
 """Between two kills."""
@@ -54,24 +62,30 @@ class Tally:
     searches: Counter[int] = field(default_factory=Counter)
 
 
-def _victims(product: Product) -> dict[str, list[psutil.Process]]:
-    found: dict[str, list[psutil.Process]] = {}
-    for name, module in (("api", API), ("worker", WORKER)):
-        process = child_running(product.supervisor, module)
-        if process is not None:
-            server = server_of(process)
-            found[name] = [process]
-            found[f"{name}'s forkserver"] = [] if server is None else [server]
-            found[f"{name}'s child"] = children_of(process)
-    return {name: some for name, some in found.items() if some}
+def _found(product: Product, name: str) -> psutil.Process | None:
+    """A process of that kind, if one runs now; of children one that is at work."""
+    owner, _, part = name.partition("'s ")
+    process = child_running(product.supervisor, API if owner == "api" else WORKER)
+    if process is None or not part:
+        return process
+    if part == "forkserver":
+        return server_of(process)
+    return next(iter(busy_children(process, 0.05)), None)
 
 
-def _kill_one(product: Product, tally: Tally, draw: random.Random) -> None:
-    victims = wait_until(lambda: _victims(product), SETTLE_S)
-    name = draw.choice(sorted(victims))
-    with suppress(psutil.Error):
-        draw.choice(victims[name]).kill()
-        tally.killed[name] += 1
+def _kill_one(product: Product, tally: Tally, name: str) -> None:
+    def is_killed() -> bool:
+        if not product.supervisor.is_running():
+            return True
+        victim = _found(product, name)
+        with suppress(psutil.Error):
+            if victim is not None:
+                victim.kill()
+                tally.killed[name] += 1
+                return True
+        return False
+
+    wait_until(is_killed, SETTLE_S)
 
 
 def _upload_all(product: Product, clips: list[tuple[str, bytes]], tally: Tally) -> None:
@@ -159,11 +173,11 @@ def test_nothing_that_was_acknowledged_is_lost_failed_or_stuck(tmp_path: Path) -
         )
         uploads.start()
         searches.start()
-        for _ in range(KILLS):
+        order = [name for name, times in VICTIMS.items() for _ in range(times)]
+        draw.shuffle(order)
+        for name in order:
             time.sleep(draw.uniform(*PAUSE_S))
-            if not product.supervisor.is_running():
-                break
-            _kill_one(product, tally, draw)
+            _kill_one(product, tally, name)
         survived = product.supervisor.is_running()
         uploads.join(SETTLE_S if survived else 1.0)
         has_settled = survived and _settle(product)

@@ -44,6 +44,10 @@ def _raise(signal_number: int) -> None:
     time.sleep(NET_S)
 
 
+def _unsendable() -> None:
+    raise ValueError(threading.Lock())
+
+
 def _leave(code: int) -> None:
     os._exit(code)
 
@@ -81,6 +85,8 @@ def test_results_and_failures_come_back(pool: ChildPool) -> None:
     with pytest.raises(ZeroDivisionError) as failure:
         pool.submit(divmod, 1, 0).result(NET_S)
     assert "Traceback" in failure.value.__notes__[0]
+    with pytest.raises(RuntimeError, match="Traceback"):
+        pool.submit(_unsendable).result(NET_S)
 
 
 @pytest.mark.parametrize(
