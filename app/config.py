@@ -111,7 +111,7 @@ class Settings(BaseSettings):
     job_max_attempts: int = Field(
         3,
         ge=1,
-        description="Times a file is tried when its analysis process dies, before it is failed.",
+        description="Times a file is tried whose analysis process dies by its own work.",
     )
     job_poll_s: float = Field(
         0.25, gt=0, description="Seconds an idle worker waits before it looks for work again."

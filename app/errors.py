@@ -151,6 +151,12 @@ class AnalysisCrashed(BadContent):
     code = "analysis_crashed"
 
 
+class AnalysisInterrupted(KinedexError):
+    """The analysis process was stopped from outside; ask again shortly."""
+
+    code = "analysis_interrupted"
+
+
 class BadField(KinedexError):
     """A field of the request is wrong."""
 
@@ -173,6 +179,12 @@ class JobNotFound(NotFound):
     """There is no job with this id."""
 
     code = "job_not_found"
+
+
+class StoredFileMissing(NotFound):
+    """A stored file of this clip is missing."""
+
+    code = "file_missing"
 
 
 class Conflict(KinedexError):

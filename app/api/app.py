@@ -46,6 +46,7 @@ from app.api.schemas.search import MotionSearch
 from app.api.schemas.synthesis import Synthesize
 from app.api.slow_bodies import SlowBodies
 from app.config import Settings
+from app.errors import KinedexError
 from app.services.library import Library
 
 _SUMMARY = "Search human motion by example and by words, and ask who does what."
@@ -97,6 +98,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.settings = settings
     app.state.library = None
     app.state.stopping = False
+    app.state.start_failure = None
     install_handlers(app)
     for module in _ROUTES:
         app.include_router(module.router)
@@ -114,7 +116,11 @@ def create_app(settings: Settings) -> FastAPI:
 
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
-    library = await run_in_threadpool(Library.open, app.state.settings)
+    try:
+        library = await run_in_threadpool(Library.open, app.state.settings)
+    except KinedexError as failure:
+        app.state.start_failure = failure
+        raise
     loading = Loading(library)
     loading.start()
     app.state.library = library

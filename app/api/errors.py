@@ -22,6 +22,7 @@ from app.api.problems import (
     status_of,
 )
 from app.errors import (
+    AnalysisInterrupted,
     BadField,
     Conflict,
     DiskFull,
@@ -67,7 +68,7 @@ async def answer_failure(request: Request, error: Exception) -> Response:
 def _headers(failure: KinedexError) -> dict[str, str]:
     if isinstance(failure, Unauthorized):
         return {"WWW-Authenticate": "Bearer"}
-    if isinstance(failure, (NotReadyYet, TooBusy)):
+    if isinstance(failure, (NotReadyYet, TooBusy, AnalysisInterrupted)):
         return {"Retry-After": RETRY_AFTER_SECONDS}
     if isinstance(failure, ModelBeingFitted):
         return {"Retry-After": FIT_SECONDS}

@@ -86,6 +86,7 @@ STATUSES: dict[type[KinedexError], int] = {
     NotReadyYet: 503,
     TooBusy: 503,
     TooManyConnections: 503,
+    errors.AnalysisInterrupted: 503,
     errors.DiskFull: 507,
 }
 """HTTP status by failure; a class that is not listed has its nearest ancestor's."""

@@ -15,9 +15,9 @@ from app.api.app import create_app
 from app.api.connections import Connections, room_for_connections
 from app.api.protocol import GuardedProtocol
 from app.config import Settings, load_settings
-from app.errors import KinedexError
 from app.json_stderr import json_stderr
 from app.logs import set_level
+from app.services.exposure import CANNOT_START, HOPELESS, refuse_taken_address
 
 log = logging.getLogger(__name__)
 
@@ -41,7 +41,7 @@ class _Server(uvicorn.Server):
 
 
 def run(settings: Settings) -> None:
-    """Serve until SIGINT or SIGTERM. Raises ConfigurationError and DatabaseOutOfDate."""
+    """Serve until SIGINT or SIGTERM. Raises what kept the library from being opened."""
     set_level(settings.log_level.upper())
     app = create_app(settings)
     most = room_for_connections(settings.max_connections, BACKLOG)
@@ -61,17 +61,24 @@ def run(settings: Settings) -> None:
         server_header=False,
         timeout_graceful_shutdown=GRACE_SECONDS,
     )
-    _Server(config, app).run()
+    try:
+        _Server(config, app).run()
+    except SystemExit:
+        if app.state.start_failure is not None:
+            raise app.state.start_failure from None
+        raise
 
 
 def main() -> int:
-    """Serve as the settings of this process say; 1 where they or the database do not allow it."""
+    """Serve until told to stop; CANNOT_START where settings, port or database do not allow it."""
     with json_stderr():
         try:
-            run(load_settings())
-        except KinedexError as problem:
+            settings = load_settings()
+            refuse_taken_address(settings)
+            run(settings)
+        except HOPELESS as problem:
             log.critical("the API cannot start: %s", problem.detail)
-            return 1
+            return CANNOT_START
     return 0
 
 

@@ -13,10 +13,6 @@ from app.cli.settings import open_library
 from app.services import reanalysis
 from app.services.library import Library
 from app.store import clip_listing
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipState
-
-WAITING = ClipFilter(state=(ClipState.QUEUED, ClipState.PROCESSING))
 
 
 def reanalyze(
@@ -32,12 +28,13 @@ def reanalyze(
 ) -> None:
     """Analyse clips again from their stored files.
 
-    A worker that starts does this by itself for clips of an earlier version.
+    A worker that starts does this by itself for clips of an earlier version. Clips that are
+    ready stay so, and searches find them, until the new analysis replaces the old one.
     """
     with open_library(context) as lib:
         queued = reanalysis.requeue_outdated(lib)
-        states = [ClipState.READY] * every + [ClipState.FAILED] * failed
-        queued += reanalysis.requeue_in_state(lib, *states) if states else 0
+        queued += reanalysis.requeue_ready(lib) if every else 0
+        queued += reanalysis.requeue_failed(lib) if failed else 0
         if wait and _waiting(lib):
             with working(lib):
                 _follow(lib)
@@ -62,4 +59,4 @@ def _follow(lib: Library) -> None:
 
 def _waiting(lib: Library) -> int:
     with lib.store.read() as tx:
-        return clip_listing.count_clips(tx, WAITING)
+        return clip_listing.count_waiting(tx)

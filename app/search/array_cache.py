@@ -7,7 +7,7 @@ from collections import OrderedDict
 from collections.abc import Iterable, Iterator
 
 from app.numerics.arrays import FloatArray
-from app.store import arrays
+from app.search import usable_arrays
 from app.store.store import Store
 
 _Key = tuple[str, str]
@@ -32,7 +32,7 @@ class ArrayCache:
         return self._bytes
 
     def get_many(self, store: Store, clip_ids: Iterable[str], name: str) -> dict[str, FloatArray]:
-        """One array of many clips, by clip id; those that have none are left out."""
+        """One array of many clips, by clip id; those that have no usable one are left out."""
         found: dict[str, FloatArray] = {}
         missing: list[str] = []
         with self._lock:
@@ -46,7 +46,7 @@ class ArrayCache:
                     found[clip_id] = array
         if missing:
             with store.read() as tx:
-                loaded = arrays.get_many(tx, missing, name)
+                loaded = usable_arrays.get_many(tx, missing, name)
             self._keep(name, loaded, forgotten)
             found |= loaded
         return found

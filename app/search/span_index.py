@@ -15,9 +15,10 @@ import numpy as np
 
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.euclidean import squared_lengths
+from app.search import usable_arrays
 from app.search.labels import Column, Labels, LabelView
 from app.search.rank import IdArray
-from app.store import arrays, index_feed, library
+from app.store import index_feed, library
 from app.store.clip_filter import ClipFilter
 from app.store.engine import Tx
 from app.store.index_feed import IndexedClip
@@ -142,8 +143,8 @@ class SpanIndex:
 
     def _load(self, tx: Tx, clips: Sequence[IndexedClip]) -> None:
         ids = [clip.id for clip in clips]
-        vectors, spans = (arrays.get_many(tx, ids, name) for name in self._names)
-        # a clip of an earlier analysis has none until it is analysed again
+        vectors, spans = (usable_arrays.get_many(tx, ids, name) for name in self._names)
+        # a clip of an earlier analysis may have none of this shape until it is analysed again
         there = [clip for clip in clips if clip.id in vectors and clip.id in spans]
         if there:
             self._rows.add(there, [vectors[c.id] for c in there], [spans[c.id] for c in there])

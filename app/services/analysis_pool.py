@@ -10,30 +10,26 @@ import concurrent.futures
 import logging
 import threading
 from collections.abc import Callable, Mapping
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-import pebble
-
 from app.errors import (
     AnalysisCrashed,
+    AnalysisInterrupted,
     AnalysisTimedOut,
     BadContent,
     ExtraNeeded,
     KinedexError,
     Place,
     StorageError,
+    StoredFileMissing,
     TooLarge,
 )
 from app.logs import level_of_process
-from app.services.child_processes import (
-    begin_child,
-    child_context,
-    limit_memory,
-    stderr_silenced,
-)
+from app.services.child import ChildEnded
+from app.services.child_pool import ChildPool, TaskTimedOut
+from app.services.child_processes import limit_memory, log_like_parent, stderr_silenced
 
 if TYPE_CHECKING:
     from app.analysis.analyse import Analysis
@@ -43,12 +39,8 @@ if TYPE_CHECKING:
 _log = logging.getLogger(__name__)
 _Found = TypeVar("_Found")
 
-TASKS_PER_CHILD = 500
-"""A child is replaced after so many files, in case a library leaks."""
-
-
-class ChildDied(AnalysisCrashed):
-    """The analysis process died (out of memory, or killed)."""
+TRIES = 2
+"""Of an analysis that somebody waits for, where its process is killed from outside."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,58 +86,69 @@ class AnalysisPool:
     def __init__(self, limits: Limits, *, size: int = 1) -> None:
         self.limits = limits
         self._size = size
-        self._pool = _new_pool(limits, size)
         self._lock = threading.Lock()
+        self._pool = self._new_pool()
 
-    def submit(self, order: Order) -> concurrent.futures.Future[Analysis]:
-        """Begin an analysis; `outcome` reads what came of it. Cancelling kills the child."""
-        return self._begin(analyse_order, order)
+    def submit(
+        self, order: Order, *, is_alone: bool = False
+    ) -> concurrent.futures.Future[Analysis]:
+        """Begin an analysis; `outcome` reads what came of it. Cancelling kills the child.
+
+        is_alone: begin when no other analysis of this pool runs, and let none begin meanwhile.
+        """
+        return self._begin(analyse_order, order, is_alone=is_alone)
 
     def analyse(self, order: Order) -> Analysis:
         """Analyse and wait; raises as `outcome` does."""
-        return self.outcome(self.submit(order))
+        return self._wait_for(analyse_order, order)
 
     def read(self, order: Order) -> Recording:
         """Only read the file, and wait; raises as `outcome` does."""
-        return self.outcome(self._begin(read_order, order))
+        return self._wait_for(read_order, order)
+
+    def _wait_for(self, work: Callable[[Order, Limits], _Found], order: Order) -> _Found:
+        """Do it and wait; once more where the process was killed from outside."""
+        for _ in range(TRIES - 1):
+            try:
+                return self.outcome(self._begin(work, order))
+            except AnalysisInterrupted:
+                _log.warning("an analysis process was killed; trying again")
+        return self.outcome(self._begin(work, order))
 
     def _begin(
-        self, work: Callable[[Order, Limits], _Found], order: Order
+        self, work: Callable[[Order, Limits], _Found], order: Order, *, is_alone: bool = False
     ) -> concurrent.futures.Future[_Found]:
         with self._lock:
-            if not self._pool.active:
-                # A pool whose idle children were all killed is broken for good.
-                self._pool = _new_pool(self.limits, self._size)
-            future: concurrent.futures.Future[_Found] = self._pool.schedule(
-                work, args=(order, self.limits), timeout=self.limits.seconds
+            return self._pool.submit(
+                work, order, self.limits, seconds=self.limits.seconds, is_alone=is_alone
             )
-        return future
 
     def outcome(self, future: concurrent.futures.Future[_Found]) -> _Found:
         """What a finished analysis, or reading, came to.
 
         Raises BadContent (or TooLarge) for what the content deserves: AnalysisTimedOut,
-        AnalysisCrashed, and the reader's own failures; ChildDied where the child was killed,
+        AnalysisCrashed, and the reader's own failures; ChildDied where the child died by its
+        own work, AnalysisInterrupted where it was killed from outside, StoredFileMissing or
         StorageError where the file cannot be read, CancelledError after `cancel`.
         """
         try:
             return future.result()
         except KinedexError:
             raise
-        except TimeoutError as late:
+        except TaskTimedOut as late:
             raise AnalysisTimedOut(
                 f"The analysis took longer than {self.limits.seconds:g} s and was stopped."
             ) from late
-        except BrokenProcessPool as death:
-            raise ChildDied("The analysis processes died.") from death
-        except pebble.ProcessExpired as death:
-            raise ChildDied(f"The analysis process died ({_how(death)}).") from death
+        except ChildEnded as end:
+            raise end.as_failure() from end
         except MemoryError as hunger:
             raise AnalysisCrashed(
                 f"The analysis needs more memory than its limit of {self.limits.memory_mb} MB."
             ) from hunger
-        except OSError as missing:
-            raise StorageError("The stored file cannot be read.") from missing
+        except FileNotFoundError as missing:
+            raise StoredFileMissing() from missing
+        except OSError as unreadable:
+            raise StorageError("The stored file cannot be read.") from unreadable
         except Exception as surprise:
             # A defect of ours; the clip must still end, with something to report.
             _log.exception("analysis failed unexpectedly")
@@ -156,12 +159,15 @@ class AnalysisPool:
     def rest(self) -> None:
         """Give back the memory of idle children; the next order starts new ones."""
         with self._lock:
-            _end(self._pool)
-            self._pool = _new_pool(self.limits, self._size)
+            resting, self._pool = self._pool, self._new_pool()
+        resting.close()
 
     def close(self) -> None:
         """Kill the children and wait for them."""
-        _end(self._pool)
+        self._pool.close()
+
+    def _new_pool(self) -> ChildPool:
+        return ChildPool(self._size, _prepare, self.limits.memory_mb, level_of_process())
 
 
 def analyse_order(order: Order, limits: Limits) -> Analysis:
@@ -239,29 +245,7 @@ def _check_size(recording: Recording, limits: Limits) -> None:
             raise TooLarge(f"The motion has more than {most} {noun}.", places=[place])
 
 
-def _new_pool(limits: Limits, size: int) -> pebble.ProcessPool:
-    return pebble.ProcessPool(
-        max_workers=size,
-        max_tasks=TASKS_PER_CHILD,
-        initializer=_begin_child,
-        initargs=(limits.memory_mb, level_of_process()),
-        context=child_context(),
-    )
-
-
-def _end(pool: pebble.ProcessPool) -> None:
-    pool.stop()  # type: ignore[no-untyped-call]
-    pool.join()
-
-
-def _begin_child(memory_mb: int, level: str) -> None:
-    """Set up a child, and limit the memory."""
-    begin_child(level)
+def _prepare(memory_mb: int, level: str) -> None:
+    """What each child does first."""
+    log_like_parent(level)
     limit_memory(memory_mb)
-
-
-def _how(death: pebble.ProcessExpired) -> str:
-    code = getattr(death, "exitcode", None)
-    if isinstance(code, int) and code < 0:
-        return f"killed by signal {-code}"
-    return f"exit code {code}"

@@ -26,7 +26,9 @@ from app.logs import configure_logging
 LIBRARIES = ["app.analysis.analyse", "app.formats.read", "app.motion.canonical"]
 """What the server process imports for its children."""
 
-_hiding = threading.Lock()
+one_at_a_time = threading.RLock()
+"""Held while a child is started or asked how it ended: multiprocessing's own lists of children,
+and its numbers on pipes, are not made for several threads."""
 
 
 class _Process(multiprocessing.context.ForkServerProcess):
@@ -55,7 +57,7 @@ def _main_module_hidden() -> Iterator[None]:
 
     multiprocessing would have each child import it: the whole command line, or the API.
     """
-    with _hiding:
+    with one_at_a_time:
         main = sys.modules["__main__"]
         sys.modules["__main__"] = types.ModuleType("__main__")
         try:
@@ -64,9 +66,8 @@ def _main_module_hidden() -> Iterator[None]:
             sys.modules["__main__"] = main
 
 
-def begin_child(level: str) -> None:
-    """What a child does first; level: the least severity that it logs, as its parent does."""
-    die_with_parent()
+def log_like_parent(level: str) -> None:
+    """Have this child process log lines of JSON; level: the least severity, as its parent logs."""
     configure_logging(level)
     log_uncaught()
 

@@ -29,8 +29,8 @@ UPLOAD_PRIORITY = 10
 BULK_PRIORITY = 20
 """Clips of an import, and clips to be analysed again: lower goes first."""
 WORKER_DEATHS = 30
-"""A clip whose worker dies is tried again so often. It is seldom the clip's doing: content is
-parsed in a child process, whose death is counted by `job_max_attempts`."""
+"""A job whose worker dies is tried again so often, without progress in between. It is seldom the
+clip's doing: content is parsed in a child process, whose own deaths `job_max_attempts` limits."""
 PATCHABLE = (
     *("name", "person", "task", "words", "license", "source", "frame_rate", "stack"),
     *("audio_offset", "tempo", "beats"),

@@ -19,7 +19,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from app.errors import BadContent
+from app.errors import BadContent, StoredFileMissing
 from app.formats.bvh_export import write_animation_bvh
 from app.formats.csv_writer import write_csv
 from app.formats.glb_writer import write_glb
@@ -153,8 +153,8 @@ def own_animation(lib: Library, clip: ClipRecord, motion: Motion, rate: float) -
     if clip.format not in POSITION_FORMATS:
         try:
             recording = lib.pool.read(order_for(lib, clip))
-        except BadContent:
-            recording = None  # readers have changed since; the positions are what counts
+        except (BadContent, StoredFileMissing):
+            recording = None  # the positions are what counts, and they are stored
         animation = animation_of_recording(recording, motion) if recording else None
         if animation is not None:
             return animation.resampled(rate)

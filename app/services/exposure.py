@@ -5,9 +5,15 @@ from __future__ import annotations
 import socket
 
 from app.config import Settings
-from app.errors import ConfigurationError, Place
+from app.errors import ConfigurationError, DatabaseOutOfDate, Place
 from app.store import keys, schema
 from app.store.store import Store
+
+CANNOT_START = 78
+"""Exit code of a process that its settings, its port or its database do not allow to start, so
+that another try would be in vain (EX_CONFIG of sysexits.h)."""
+HOPELESS = (ConfigurationError, DatabaseOutOfDate)
+"""What makes a process end with it."""
 
 
 def refuse_exposure_without_keys(settings: Settings) -> None:

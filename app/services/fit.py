@@ -26,7 +26,7 @@ from app.models.word_figures import held_out_word_figures
 from app.services.annotated import read_annotated
 from app.services.keypose_learning import learn_keyposes
 from app.services.known_clips import known_arrays
-from app.services.model_shelf import ModelKind, holds_persons
+from app.services.model_shelf import SHAPES_FITTED, ModelKind, holds_persons, input_shapes
 from app.services.models import enqueue_fit
 from app.services.synthesis_fit import fit_on
 from app.services.training import TrainingSet, read_training_set
@@ -94,7 +94,12 @@ def _fit_one(store: Store, training: TrainingSet, kind: ModelKind, wordnet: bool
         record = models.save(
             tx,
             kind.value,
-            meta={"model": fit.meta, "figures": fit.figures, "settings": before.settings},
+            meta={
+                "model": fit.meta,
+                "figures": fit.figures,
+                "settings": before.settings,
+                SHAPES_FITTED: input_shapes(),
+            },
             arrays=fit.arrays,
             library_version=training.library_version,
             library_size=len(training),

@@ -102,12 +102,12 @@ class Registering:
             self._problems = []
 
     def _record(self, tx: Tx, *more: NewEntry) -> None:
-        """Record in the caller's transaction, and renew the lease there.
+        """Record in the caller's transaction: that is progress, and a heartbeat.
 
         Raises LeaseLost where another worker has the import, Canceled where it is to end; the
         transaction is then undone.
         """
-        if leases.heartbeat(tx, self.lease, self.lib.settings.job_lease_s):
+        if leases.heartbeat(tx, self.lease, has_progressed=True):
             raise Canceled("The import was canceled.")
         stored.add_entries(tx, self.lease.job_id, [*self._problems, *more])
         self._recorded_at = time.monotonic()

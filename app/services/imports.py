@@ -31,9 +31,8 @@ from app.services.import_sources import (
 from app.services.library import Library
 from app.services.manifest_table import ManifestLimits
 from app.store import imports as stored
-from app.store import jobs, leases
+from app.store import jobs, leases, owners
 from app.store.files import Readable
-from app.store.ids import new_id
 from app.store.job_record import ClaimedJob, JobKind, JobRecord, NewJob
 
 IMPORT_PRIORITY = 10
@@ -163,7 +162,7 @@ def _own_job(lib: Library, path: Path) -> ClaimedJob:
     )
     with lib.store.write() as tx:
         created = jobs.enqueue(tx, job)
-        claimed = leases.claim(tx, [JobKind.IMPORT], new_id("import"), lib.settings.job_lease_s)
+        claimed = leases.claim(tx, [JobKind.IMPORT], owners.new_owner("import"))
         if claimed is None or claimed.job.id != created.id:
             raise StorageError("Another import begins at this moment; try again.")
         return claimed

@@ -8,8 +8,22 @@ from __future__ import annotations
 
 from app.analysis.analyse import ANALYSIS_VERSION, Analysis
 from app.analysis.energy import EnergyMethod
-from app.errors import MAX_MESSAGE, KinedexError, ModelNotFitted, StorageError, shortened
-from app.services.analysis_pool import ChildDied, Order
+from app.errors import (
+    MAX_MESSAGE,
+    AnalysisCrashed,
+    AnalysisInterrupted,
+    AnalysisTimedOut,
+    BadContent,
+    KinedexError,
+    ModelNotFitted,
+    NotFound,
+    StorageError,
+    StoredFileMissing,
+    TooLarge,
+    shortened,
+)
+from app.services.analysis_pool import Order
+from app.services.child import ChildDied
 from app.services.keypose_frames import named_keyposes
 from app.services.library import Library
 from app.services.stored_motion import motion_arrays
@@ -26,21 +40,29 @@ RETRY_DELAY_S = 5.0
 
 
 def order_for(lib: Library, clip: ClipRecord) -> Order:
-    """What to analyse for a clip. Raises NotFound where its file is gone."""
+    """What to analyse for a clip. Raises StoredFileMissing where one of its files is gone."""
     skeleton, audio = clip.skeleton_sha256, clip.audio_sha256
     return Order(
-        path=str(lib.store.files.path(clip.sha256)),
-        skeleton_path=None if skeleton is None else str(lib.store.files.path(skeleton)),
+        path=_place(lib, clip.sha256, "motion file"),
+        skeleton_path=None if skeleton is None else _place(lib, skeleton, "skeleton file"),
         stack=clip.stack_override,
         frame_rate=clip.frame_rate_override,
         metres_per_unit=clip.metres_per_unit_override,
         roles=clip.roles_override,
         thresholds=_thresholds(lib),
-        audio_path=None if audio is None else str(lib.store.files.path(audio)),
+        audio_path=None if audio is None else _place(lib, audio, "recording"),
         beats=clip.beats_override,
         tempo=clip.tempo_override,
         audio_offset=clip.audio_offset_override,
     )
+
+
+def _place(lib: Library, sha256: str, what: str) -> str:
+    try:
+        return str(lib.store.files.path(sha256))
+    except NotFound as missing:
+        told = f"The stored {what} of this clip is missing ({sha256})"
+        raise StoredFileMissing(told) from missing
 
 
 def _thresholds(lib: Library) -> tuple[float, float] | None:
@@ -65,15 +87,37 @@ def finish(tx: Tx, claimed: ClaimedJob, clip: ClipRecord, found: Analysis) -> No
 
 
 def fail(
-    tx: Tx, claimed: ClaimedJob, clip: ClipRecord, problem: KinedexError, max_attempts: int
+    tx: Tx, claimed: ClaimedJob, clip: ClipRecord, problem: KinedexError, max_failures: int
 ) -> None:
-    """Fail the clip for its own reason; only what may pass is tried again. Raises LeaseLost."""
+    """Fail the clip for its own reason; what may pass is tried again. Raises LeaseLost.
+
+    A child that was killed from outside is no failure of the clip.
+    """
     if _is_superseded(tx, clip):
         _leave(tx, claimed, clip)
-    elif _may_pass(problem) and claimed.lease.attempt < max_attempts:
-        outcomes.retry_or_fail(tx, claimed, problem.as_problem(), delay_s=RETRY_DELAY_S)
+    elif isinstance(problem, AnalysisInterrupted):
+        outcomes.retry_after_kill(tx, claimed, _never_left_alone(problem).as_problem())
+    elif isinstance(problem, ChildDied | StorageError):
+        outcomes.retry_or_fail(
+            tx, claimed, problem.as_problem(), delay_s=RETRY_DELAY_S, most=max_failures
+        )
     else:
-        outcomes.fail_job(tx, claimed, problem.as_problem())
+        outcomes.fail_job(tx, claimed, problem.as_problem(), is_verdict=_is_verdict(problem))
+
+
+def _never_left_alone(problem: KinedexError) -> KinedexError:
+    """What a clip ends with whose analysis was killed from outside every time."""
+    return AnalysisCrashed(
+        f"{problem.detail} This happened {outcomes.MOST_KILLS + 1} times, the last time while no"
+        " other file was analyzed here. Find out what stops the process (often a limit on"
+        " memory), then send the file again or run `kinedex reanalyze --failed`."
+    )
+
+
+def _is_verdict(problem: KinedexError) -> bool:
+    """Whether a reader refused the content, so that another try can find nothing else."""
+    is_machine = isinstance(problem, AnalysisCrashed | AnalysisTimedOut)
+    return isinstance(problem, BadContent | TooLarge) and not is_machine
 
 
 def facts(found: Analysis) -> ClipFacts:
@@ -107,8 +151,3 @@ def _is_superseded(tx: Tx, clip: ClipRecord) -> bool:
 def _leave(tx: Tx, claimed: ClaimedJob, clip: ClipRecord) -> None:
     """Leave the clip to the job that was queued when it was changed."""
     leases.succeed(tx, claimed.lease, {"clip_id": clip.id, "superseded": True})
-
-
-def _may_pass(problem: KinedexError) -> bool:
-    """Whether trying again could help: a child that was killed, a store that failed."""
-    return isinstance(problem, ChildDied | StorageError)

@@ -12,13 +12,13 @@ import numpy as np
 from app.errors import ModelNotFitted
 from app.models.learned_metric import INPUTS, Described, LearnedMetric
 from app.numerics.arrays import FloatArray
+from app.search import usable_arrays
 from app.search.methods import Method
 from app.search.near import Near
 from app.services.known_clips import POINTS, read_known
 from app.services.library import Library
 from app.services.model_shelf import ModelKind
 from app.services.query import Arrays
-from app.store import arrays
 from app.store.clip_filter import ClipFilter
 
 KINDS = {
@@ -70,7 +70,7 @@ def rank_by_metric(
 def _project(lib: Library, model: LearnedMetric, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
     """Coordinates by clip id; clips that are gone are left out."""
     with lib.store.read() as tx:
-        found = [arrays.get_many(tx, clip_ids, name) for name in INPUTS]
+        found = [usable_arrays.get_many(tx, clip_ids, name) for name in INPUTS]
     there = [clip_id for clip_id in clip_ids if all(clip_id in part for part in found)]
     if not there:
         return {}

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from app.analysis.array_shapes import SHAPES
 from app.numerics.arrays import FloatArray
 from app.services.missing_model import missing_model, outdated_model
 from app.store import models as stored
@@ -61,6 +62,14 @@ TELLING_UNKNOWN = (ModelKind.RECOGNISER, ModelKind.PERERA)
 """Recognisers that have that setting."""
 
 _WITHOUT_PERSONS = frozenset({ModelKind.WORDS, ModelKind.METRIC_TASK, ModelKind.KEYPOSES})
+
+SHAPES_FITTED = "shapes"
+"""In a model's meta: the shapes of the arrays that it was fitted on."""
+
+
+def input_shapes() -> dict[str, list[int | None]]:
+    """The shapes of arrays that this version's models look at."""
+    return {name: list(shape) for name, shape in SHAPES.items()}
 
 
 def holds_persons(kind: ModelKind) -> bool:
@@ -164,6 +173,10 @@ class ModelShelf:
                 raise missing_model(tx, kind.value)
             record = stored.current(tx, kind.value)
             arrays = stored.load_arrays(tx, record.id)
+        if record.meta.get(SHAPES_FITTED, input_shapes()) != input_shapes():
+            # The worker analyses the clips anew, then fits anew.
+            with store.read() as tx:
+                raise outdated_model(tx, kind.value)
         try:
             model = build(arrays, record.meta["model"])
             fitted = Fitted(record.id, record.version, model, record.settings)

@@ -12,11 +12,11 @@ from app.analysis.analyse import describe_for_search
 from app.errors import BadField, ClipNotFound, ClipNotReady, EmptyFile, Place, TooLarge
 from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
+from app.search import usable_arrays
 from app.services import fields
 from app.services.analysis_pool import Order
 from app.services.library import Library
 from app.services.stored_motion import load_motion
-from app.store import arrays
 from app.store import clips as stored
 from app.store.clip_record import ClipRecord, ClipState
 from app.store.engine import Tx
@@ -105,6 +105,18 @@ def _ready(tx: Tx, clip_id: str) -> ClipRecord:
     return clip
 
 
+def described(tx: Tx, clip: ClipRecord, names: Sequence[str]) -> dict[str, FloatArray]:
+    """Stored arrays of a clip by name. Raises ClipNotReady where this version of Kinedex cannot
+    use them, since the clip waits to be analysed again."""
+    found = usable_arrays.get_some(tx, clip.id, names)
+    missing = [name for name in names if name not in found]
+    if missing:
+        told = "was analyzed by another version of Kinedex and is to be analyzed again"
+        where = Place("clip_id", f"{told}: {', '.join(missing)} cannot be used")
+        raise ClipNotReady(f"The clip {clip.id} {told}; ask again after that.", places=[where])
+    return {name: found[name] for name in names}
+
+
 def _of_clip(lib: Library, question: Question, clip_id: str, names: tuple[str, ...]) -> Answered:
     for name in ("skeleton", "frame_rate", "unit", "roles", "stack"):
         if getattr(question, name) not in (None, ""):
@@ -112,7 +124,7 @@ def _of_clip(lib: Library, question: Question, clip_id: str, names: tuple[str, .
     with lib.store.read() as tx:
         clip = _ready(tx, clip_id)
         if question.start is None and question.end is None:
-            return Answered(arrays.get_named(tx, clip_id, names), clip)
+            return Answered(described(tx, clip, names), clip)
     motion = cut(load_motion(lib, clip), question.start, question.end)
     return Answered(describe_for_search(motion).arrays, clip)
 

@@ -1,7 +1,10 @@
 """Analysing stored clips anew: those of an earlier analysis, failed ones, or all.
 
 A clip's file is kept, so that whatever an analysis finds can be found again by a better one.
-A clip that waits for it is not searchable: vectors of two analyses must not be compared.
+A ready clip stays ready and searchable with the analysis that it has, until the new one replaces
+it in one transaction. So during an upgrade searches go on over analyses of two versions: a hit
+may rest on the older one, and a clip whose older arrays have another shape is left out of the
+index that needs them (`search.rows`, `search.span_index`) until it has been analysed again.
 """
 
 from __future__ import annotations
@@ -20,16 +23,24 @@ BATCH = 200
 
 
 def requeue_outdated(lib: Library) -> int:
-    """Queue the ready clips that another version of the analysis described; how many."""
+    """Queue the ready clips whose analysis is of another version, or older than a change of what
+    it depends on; how many."""
     with lib.store.read() as tx:
-        ids = clip_listing.list_ids_of_other_analysis(tx, ANALYSIS_VERSION)
+        ids = clip_listing.list_outdated_ids(tx, ANALYSIS_VERSION)
     return _requeue(lib, ids)
 
 
-def requeue_in_state(lib: Library, *states: ClipState) -> int:
-    """Queue every clip that is in one of `states`; how many."""
+def requeue_ready(lib: Library) -> int:
+    """Queue every ready clip; how many."""
     with lib.store.read() as tx:
-        ids = clip_listing.list_ids(tx, ClipFilter(state=states))
+        ids = clip_listing.list_ids(tx, ClipFilter(state=(ClipState.READY,)))
+    return _requeue(lib, ids)
+
+
+def requeue_failed(lib: Library) -> int:
+    """Queue every clip whose last analysis failed; how many."""
+    with lib.store.read() as tx:
+        ids = clip_listing.list_unfit_ids(tx)
     return _requeue(lib, ids)
 
 

@@ -14,12 +14,13 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
+from app.search import usable_arrays
 from app.search.index import VECTOR
 from app.search.labels import LabelView
 from app.services import fields
 from app.services.library import Library
 from app.services.word_ranking import clip_points
-from app.store import arrays, clips
+from app.store import clips
 from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord
 
@@ -94,7 +95,7 @@ def _placed(
         return [str(i) for i in every.ids[known]], beside.values[known], axes, fitted.id
     ids = [str(i) for i in every.ids[picked]]
     with lib.store.read() as tx:
-        found = arrays.get_many(tx, ids, VECTOR)
+        found = usable_arrays.get_many(tx, ids, VECTOR)
     there = [clip_id for clip_id in ids if clip_id in found]
     points = np.array([found[clip_id] for clip_id in there], dtype=np.float64)
     if not there:

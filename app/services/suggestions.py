@@ -15,9 +15,8 @@ from app.services import fields, labels
 from app.services.clips import get_clip, update_clip
 from app.services.labels import LabelCount
 from app.services.library import Library
-from app.services.query import ready_clip
+from app.services.query import described, ready_clip
 from app.services.word_ranking import STATISTICS, WORD_MODES
-from app.store import arrays
 from app.store.clip_record import ClipRecord
 
 LIKELY = 0.5
@@ -41,23 +40,23 @@ def suggest(lib: Library, clip_id: str, limit: int = 10, mode: str = "default") 
         raise fields.bad_field("mode", f"must be one of {', '.join(WORD_MODES)}")
     clip = ready_clip(lib, clip_id)
     model = lib.models.words(lib.store).model
-    scores = (_scores_cca if mode == "cca" else _scores)(lib, model, clip_id)
+    scores = (_scores_cca if mode == "cca" else _scores)(lib, model, clip)
     carried = model.vocabulary.label_matrix([clip.words])[0] > 0
     order = np.argsort(-np.where(carried, -1.0, scores), kind="stable")
     found = [(model.vocabulary.words[i], float(scores[i])) for i in order if not carried[i]]
     return tuple(pair for pair in found[:limit] if pair[1] > 0)
 
 
-def _scores(lib: Library, model: LibraryWords, clip_id: str) -> FloatArray:
+def _scores(lib: Library, model: LibraryWords, clip: ClipRecord) -> FloatArray:
     """(V,) of the vocabulary's words."""
     with lib.store.read() as tx:
-        statistics = arrays.get_one(tx, clip_id, STATISTICS)
+        statistics = described(tx, clip, (STATISTICS,))[STATISTICS]
     return np.asarray(model.word_scores(statistics[None])[0])
 
 
-def _scores_cca(lib: Library, model: LibraryWords, clip_id: str) -> FloatArray:
+def _scores_cca(lib: Library, model: LibraryWords, clip: ClipRecord) -> FloatArray:
     with lib.store.read() as tx:
-        stored = {name: arrays.get_one(tx, clip_id, name) for name in SYMBOL_ARRAYS}
+        stored = described(tx, clip, SYMBOL_ARRAYS)
     points = model.space.place([symbol_from_arrays(stored)])
     return np.asarray(model.word_scores_cca(points)[0])
 

@@ -19,13 +19,13 @@ from app.motion.joint_roles import JointRole
 from app.motion.motion import Motion
 from app.motion.posed_start import without_posed_start
 from app.numerics.arrays import FloatArray
+from app.search import usable_arrays
 from app.services.export import own_animation
 from app.services.library import Library
 from app.services.query import ready_clip
 from app.services.stored_motion import load_motion
 from app.services.synthesis_fit import SHAPE
 from app.services.synthesis_plan import Plan
-from app.store import arrays
 from app.store.clip_record import ClipRecord
 
 MOST_DONORS = 5
@@ -86,7 +86,7 @@ def _detail(
 ) -> tuple[FloatArray | None, FloatArray | None]:
     """The take nearest to the wanted motion that does not go round, as moments and as shape."""
     with lib.store.read() as tx:
-        shapes = arrays.get_many(tx, [clip.id for clip in takes], SHAPE)
+        shapes = usable_arrays.get_many(tx, [clip.id for clip in takes], SHAPE)
     for clip in takes:
         shape = shapes.get(clip.id)
         if shape is not None and shape[-1] < 0.5:

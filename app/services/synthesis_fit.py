@@ -9,8 +9,8 @@ import numpy as np
 from app.analysis.motion_shape import SHAPE_LENGTH
 from app.models.synthesis import Synthesis, fit_synthesis
 from app.models.synthesis_figures import held_out_synthesis
+from app.search import usable_arrays
 from app.services.training import TrainingSet
-from app.store import arrays
 from app.store.store import Store
 
 SHAPE = "motion_shape"
@@ -24,7 +24,7 @@ def fit_on(store: Store, training: TrainingSet) -> tuple[Synthesis, dict[str, An
     labels = zip(training.clips, training.persons, training.tasks, strict=True)
     told = [(clip.id, person, task) for clip, person, task in labels if person and task]
     with store.read() as tx:
-        found = arrays.get_many(tx, [clip_id for clip_id, _, _ in told], SHAPE)
+        found = usable_arrays.get_many(tx, [clip_id for clip_id, _, _ in told], SHAPE)
     told = [row for row in told if row[0] in found]  # clips of an older analysis have none
     shapes = np.array([found[clip_id] for clip_id, _, _ in told]).reshape(-1, SHAPE_LENGTH)
     ids, persons, tasks = ([row[column] for row in told] for column in range(3))

@@ -13,11 +13,11 @@ from app.models.synthesis import Synthesis, mean_of_takes
 from app.models.synthesis_agreement import agree
 from app.models.synthesis_prediction import Predicted, predict
 from app.numerics.arrays import FloatArray
+from app.search import usable_arrays
 from app.services import fields
 from app.services.library import Library
 from app.services.query import ready_clips
 from app.services.synthesis_fit import SHAPE
-from app.store import arrays
 from app.store.clip_record import ClipRecord
 
 
@@ -132,7 +132,7 @@ def _by_task(
 ) -> dict[str, FloatArray]:
     """Shapes of the clips by task, but for the wanted one; what several takes come to."""
     with lib.store.read() as tx:
-        shapes = arrays.get_many(tx, [clip.id for clip in found], SHAPE)
+        shapes = usable_arrays.get_many(tx, [clip.id for clip in found], SHAPE)
     by_task: dict[str, list[FloatArray]] = {}
     for clip in found:
         if clip.id not in shapes:

@@ -13,8 +13,9 @@ from app.models.learned_metric import INPUTS, Described
 from app.models.recogniser_views import full_samples
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm import GaussianHMM
+from app.search import usable_arrays
 from app.services.synthesized import SYNTHESIZED, is_synthesized
-from app.store import arrays, clip_listing, clips, library
+from app.store import clip_listing, clips, library
 from app.store.clip_filter import ClipFilter
 from app.store.clip_record import ClipRecord, ClipState
 from app.store.store import Store
@@ -102,10 +103,10 @@ def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
     with store.read() as tx:
         version = library.version(tx)
         ids = sorted(clip_listing.list_ids(tx, wanted))
-        found = {name: arrays.get_many(tx, ids, name) for name in NAMES}
+        found = {name: usable_arrays.get_many(tx, ids, name) for name in NAMES}
         whole = [clip_id for clip_id in ids if all(clip_id in part for part in found.values())]
         records = clips.get_many(tx, whole)
-        angles = arrays.get_many(tx, whole, ANGLES)
+        angles = usable_arrays.get_many(tx, whole, ANGLES)
     whole = [clip_id for clip_id in whole if not is_synthesized(records[clip_id])]
     return TrainingSet(
         library_version=version,

@@ -13,13 +13,13 @@ from app.analysis.motion_symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.library_words import LibraryWords
 from app.models.word_query import WordsAsked
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.search import usable_arrays
 from app.search.beside import Beside
 from app.search.labels import LabelView
 from app.search.rank import Ranking
 from app.services.known_clips import OUTPUTS, POINTS, read_known
 from app.services.library import Library
 from app.services.model_shelf import Fitted
-from app.store import arrays
 from app.store.clip_filter import ClipFilter
 
 STATISTICS = "symbol_statistics"
@@ -148,7 +148,7 @@ def _by_angle(
 def _predict(lib: Library, model: LibraryWords, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
     """(V,) scores of the vocabulary's words by clip id."""
     with lib.store.read() as tx:
-        statistics = arrays.get_many(tx, clip_ids, STATISTICS)
+        statistics = usable_arrays.get_many(tx, clip_ids, STATISTICS)
     if not statistics:
         return {}
     predicted = model.word_scores(np.stack(list(statistics.values())))
@@ -158,7 +158,7 @@ def _predict(lib: Library, model: LibraryWords, clip_ids: Sequence[str]) -> dict
 def _place(lib: Library, model: LibraryWords, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
     """(d,) coordinates in the symbol space by clip id."""
     with lib.store.read() as tx:
-        parts = {name: arrays.get_many(tx, clip_ids, name) for name in SYMBOL_ARRAYS}
+        parts = {name: usable_arrays.get_many(tx, clip_ids, name) for name in SYMBOL_ARRAYS}
     there = [clip_id for clip_id in clip_ids if all(clip_id in part for part in parts.values())]
     symbols = [
         symbol_from_arrays({name: part[clip_id] for name, part in parts.items()})

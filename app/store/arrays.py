@@ -61,12 +61,17 @@ def get_one(tx: Tx, clip_id: str, name: str) -> NDArray[Any]:
 
 def get_named(tx: Tx, clip_id: str, names: Collection[str]) -> dict[str, NDArray[Any]]:
     """Some arrays of a clip by name, read-only, in the order asked for; raises NotFound."""
-    rows = tx.execute(_NAMED, {"the_id": clip_id, "names": list(names)})
-    found = {name: from_blob(dtype, shape, data) for name, dtype, shape, data in rows}
+    found = get_some(tx, clip_id, names)
     for name in names:
         if name not in found:
             raise NotFound(f"The clip {clip_id!r} has no array {name!r}")
     return {name: found[name] for name in names}
+
+
+def get_some(tx: Tx, clip_id: str, names: Collection[str]) -> dict[str, NDArray[Any]]:
+    """As `get_named`, without those that the clip does not have."""
+    rows = tx.execute(_NAMED, {"the_id": clip_id, "names": list(names)})
+    return {name: from_blob(dtype, shape, data) for name, dtype, shape, data in rows}
 
 
 def get_all(tx: Tx, clip_id: str) -> dict[str, NDArray[Any]]:

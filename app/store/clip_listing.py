@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import datetime
 
-from sqlalchemy import ColumnElement, Select, func, select
+from sqlalchemy import ColumnElement, Select, func, or_, select
 
 from app.errors import BadField, Place
 from app.store import clips as clip_repository
 from app.store.clip_filter import ClipFilter, condition
-from app.store.clip_record import ClipRecord, ClipState
+from app.store.clip_record import REANALYSIS_OPEN, ClipRecord, ClipState, Reanalysis
 from app.store.engine import Tx
 from app.store.paging import Page, Position, Value, after, read_cursor, write_cursor
 from app.store.tables import clips
@@ -64,18 +64,43 @@ def list_ids(tx: Tx, wanted: ClipFilter) -> tuple[str, ...]:
     return tuple(tx.execute(select(clips.c.id).where(condition(wanted))).scalars())
 
 
-def list_ids_of_other_analysis(tx: Tx, version: int) -> tuple[str, ...]:
-    """The ids of the ready clips whose arrays are not those of analysis `version`."""
+def list_outdated_ids(tx: Tx, version: int) -> tuple[str, ...]:
+    """The ids of ready clips that are to be analysed again and do not wait for it yet.
+
+    Their arrays are not those of analysis `version`, or a client changed what it depends on.
+    """
     is_other = func.coalesce(clips.c.analysis_version, -1) != version
-    query = select(clips.c.id).where(condition(ClipFilter(state=(ClipState.READY,))), is_other)
+    query = select(clips.c.id).where(
+        clips.c.state == ClipState.READY.value,
+        or_(is_other, clips.c.is_changed),
+        func.coalesce(clips.c.reanalysis, "").not_in(REANALYSIS_OPEN),
+    )
     return tuple(tx.execute(query.order_by(clips.c.id)).scalars())
+
+
+def list_unfit_ids(tx: Tx) -> tuple[str, ...]:
+    """The ids of the clips whose last analysis failed, also of those that were ready before."""
+    is_unfit = or_(
+        clips.c.state == ClipState.FAILED.value, clips.c.reanalysis == Reanalysis.FAILED.value
+    )
+    return tuple(tx.execute(select(clips.c.id).where(is_unfit).order_by(clips.c.id)).scalars())
+
+
+def count_waiting(tx: Tx) -> int:
+    """How many clips wait for an analysis, or are being analysed."""
+    return int(tx.execute(select(func.count()).select_from(clips).where(_WAITS)).scalar_one())
 
 
 def is_being_analysed_anew(tx: Tx, version: int) -> bool:
     """Whether a clip that another analysis than `version` described waits for it, or is at it."""
-    waiting = ClipFilter(state=(ClipState.QUEUED, ClipState.PROCESSING))
-    query = select(clips.c.id).where(condition(waiting), clips.c.analysis_version != version)
+    query = select(clips.c.id).where(_WAITS, clips.c.analysis_version != version)
     return tx.execute(query.limit(1)).first() is not None
+
+
+_WAITS = or_(
+    clips.c.state.in_((ClipState.QUEUED.value, ClipState.PROCESSING.value)),
+    clips.c.reanalysis.in_(REANALYSIS_OPEN),
+)
 
 
 def _sort_of(sort: str) -> tuple[_Sort, bool]:

@@ -23,6 +23,20 @@ class ClipState(StrEnum):
     """Cannot be analysed; `error` says why. Listed, never searched."""
 
 
+class Reanalysis(StrEnum):
+    """Where another analysis of a ready clip stands."""
+
+    QUEUED = "queued"
+    """It waits for a worker."""
+    PROCESSING = "processing"
+    """A worker does it."""
+    FAILED = "failed"
+    """It could not be done: a warning says why."""
+
+
+REANALYSIS_OPEN = (Reanalysis.QUEUED, Reanalysis.PROCESSING)
+
+
 @dataclass(frozen=True, slots=True)
 class ClipWarning:
     """A doubt about a clip: `code` for machines, `detail` for people, `likely` a better value."""
@@ -54,8 +68,9 @@ class ClipRecord:
     seconds, rates in Hz; error: an RFC 9457 problem; *_override: what the client said, which
     wins over what the file says; audio_*: the recording that goes with the motion, its bytes,
     their name and number, audio_offset the time of the motion (s) at which it begins, if known;
-    changed_version: library version of the last change that
-    searches see, 0 while it was never searchable.
+    reanalysis: of a ready clip, where another analysis stands, None where there is none to come;
+    is_changed: whether what the client said has changed since the analysis; changed_version:
+    library version of the last change that searches see, 0 while it was never searchable.
     """
 
     id: str
@@ -95,12 +110,20 @@ class ClipRecord:
     beats_override: tuple[float, ...] | None
     audio_offset: float | None
     analysis_version: int | None
+    reanalysis: Reanalysis | None
+    is_changed: bool
     changed_version: int
 
     @property
     def overrides(self) -> tuple[Any, ...]:
         """What the client said of the file, as named in OVERRIDES: an analysis depends on it."""
         return tuple(getattr(self, name) for name in OVERRIDES)
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether no analysis of it is to come."""
+        is_done = self.state in (ClipState.READY, ClipState.FAILED)
+        return is_done and self.reanalysis not in REANALYSIS_OPEN
 
 
 @dataclass(frozen=True, slots=True)

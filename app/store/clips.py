@@ -11,6 +11,7 @@ from sqlalchemy import RowMapping, bindparam, delete, insert, select, update
 from app.errors import ClipNotFound, Place
 from app.store import library
 from app.store.clip_record import (
+    OVERRIDES,
     Added,
     AddOutcome,
     ClipChanges,
@@ -19,6 +20,7 @@ from app.store.clip_record import (
     ClipState,
     ClipWarning,
     NewClip,
+    Reanalysis,
 )
 from app.store.engine import Tx
 from app.store.ids import new_id, utc_now
@@ -96,6 +98,8 @@ def patch(tx: Tx, clip_id: str, changes: ClipChanges) -> ClipRecord:
     """
     before = get(tx, clip_id)
     values: dict[str, Any] = {key: value for key, value in changes.items() if key != "words"}
+    if any(values[name] != getattr(before, name) for name in OVERRIDES if name in values):
+        values["is_changed"] = True
     if "name" in changes:
         values["name_folded"] = changes["name"].casefold()
     if "words" in changes:
@@ -121,26 +125,49 @@ def forget_person(tx: Tx, person: str) -> tuple[str, ...]:
 
 
 def requeue(tx: Tx, clip_id: str) -> ClipRecord:
-    """Back to queued, for another analysis; not searchable until that is done."""
-    _enter(tx, clip_id, ClipState.QUEUED, error=None)
+    """To be analysed, again or at last. A ready clip stays ready, with the analysis that it has,
+    until the new one replaces it."""
+    if _state_of(tx, clip_id) is ClipState.READY:
+        _set(tx, clip_id, reanalysis=Reanalysis.QUEUED.value)
+    else:
+        _enter(tx, clip_id, ClipState.QUEUED, error=None)
     return get(tx, clip_id)
+
+
+def wait_again(tx: Tx, clip_id: str) -> None:
+    """Nobody works on it any more, and its job waits. Raises ClipNotFound."""
+    clip = get(tx, clip_id)
+    if ClipState.PROCESSING is clip.state or Reanalysis.PROCESSING is clip.reanalysis:
+        requeue(tx, clip_id)
 
 
 def set_processing(tx: Tx, clip_id: str) -> None:
     """A worker has begun."""
     begun = update(clips).where(clips.c.id == clip_id, clips.c.state == ClipState.QUEUED.value)
-    if not tx.execute(begun.values(state=ClipState.PROCESSING.value)).rowcount:
+    if tx.execute(begun.values(state=ClipState.PROCESSING.value)).rowcount:
+        return
+    if _state_of(tx, clip_id) is ClipState.READY:
+        _set(tx, clip_id, reanalysis=Reanalysis.PROCESSING.value)
+    else:
         _enter(tx, clip_id, ClipState.PROCESSING)
 
 
 def set_ready(tx: Tx, clip_id: str, facts: ClipFacts) -> None:
     """Analysed: searchable from this transaction's commit on."""
-    _enter(tx, clip_id, ClipState.READY, error=None, **asdict(facts))
+    done: dict[str, Any] = {"error": None, "reanalysis": None, "is_changed": False}
+    _enter(tx, clip_id, ClipState.READY, **done, **asdict(facts))
 
 
 def set_failed(tx: Tx, clip_id: str, problem: dict[str, Any]) -> None:
     """Cannot be analysed, for the reason given as an RFC 9457 problem."""
-    _enter(tx, clip_id, ClipState.FAILED, error=problem)
+    _enter(tx, clip_id, ClipState.FAILED, error=problem, reanalysis=None)
+
+
+def keep_analysis(tx: Tx, clip_id: str, why: ClipWarning) -> None:
+    """A ready clip could not be analysed again: it keeps what it has, and says why."""
+    others = [warning for warning in get(tx, clip_id).warnings if warning.code != why.code]
+    warnings = [asdict(warning) for warning in (*others, why)]
+    _set(tx, clip_id, reanalysis=Reanalysis.FAILED.value, warnings=warnings)
 
 
 def fail_waiting(tx: Tx, clip_ids: Collection[str], problem: dict[str, Any]) -> None:
@@ -222,6 +249,11 @@ def _enter(tx: Tx, clip_id: str, state: ClipState, **values: Any) -> None:
     tx.execute(_CHANGE, {"the_id": clip_id, "state": state.value, **values})
 
 
+def _set(tx: Tx, clip_id: str, **values: Any) -> None:
+    """Change what no search looks at."""
+    tx.execute(_CHANGE, {"the_id": clip_id, **values})
+
+
 def _state_of(tx: Tx, clip_id: str) -> ClipState:
     """The state alone, for every step of every ingest; raises ClipNotFound."""
     state = tx.execute(_STATE, {"the_id": clip_id}).scalar_one_or_none()
@@ -290,5 +322,7 @@ def to_record(row: RowMapping, words: tuple[str, ...]) -> ClipRecord:
         beats_override=None if row["beats_override"] is None else tuple(row["beats_override"]),
         audio_offset=row["audio_offset"],
         analysis_version=row["analysis_version"],
+        reanalysis=None if row["reanalysis"] is None else Reanalysis(row["reanalysis"]),
+        is_changed=row["is_changed"],
         changed_version=row["changed_version"],
     )

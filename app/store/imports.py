@@ -10,11 +10,11 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import bindparam, exists, func, insert, select, update
+from sqlalchemy import bindparam, exists, func, insert, or_, select, update
 
 from app.store import import_files, leases, library
 from app.store import jobs as job_repository
-from app.store.clip_record import ClipState
+from app.store.clip_record import REANALYSIS_OPEN, ClipState
 from app.store.engine import Tx
 from app.store.ids import utc_now
 from app.store.import_files import FileOutcome, ImportOutcome
@@ -181,7 +181,9 @@ def _result(tx: Tx, job_id: str, absent: int | None) -> dict[str, Any]:
 
 def _counts(tx: Tx, job_id: str) -> tuple[int, int]:
     """How many files, and how many of them have a clip that is still to end."""
-    unfinished = func.count().filter(clips.c.state.in_(_UNFINISHED))
+    unfinished = func.count().filter(
+        or_(clips.c.state.in_(_UNFINISHED), clips.c.reanalysis.in_(REANALYSIS_OPEN))
+    )
     query = (
         select(func.count(), unfinished)
         .select_from(import_entries)

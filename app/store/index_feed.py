@@ -1,7 +1,9 @@
 """What an index takes from the library: labels and one array of each clip, in batches.
 
 Rows are streamed and never become `ClipRecord`s, so that a million clips are loaded in
-seconds and are never held twice.
+seconds and are never held twice. A ready clip that is analysed again is fed with the arrays
+that it has. Those may be of an earlier version of the analysis: an index skips a clip whose array
+has not the shape that it needs.
 """
 
 from __future__ import annotations

@@ -63,7 +63,8 @@ class NewJob:
     """A job to be queued.
 
     priority: lower is taken first; clip_id: the clip it is about; file_sha256: a stored file
-    that must be kept while it is open; payload: its arguments, JSON; dedupe_key: while a job
+    that must be kept while it is open; payload: its arguments, JSON; max_attempts: how often its
+    worker may die, or the store may fail, without progress in between; dedupe_key: while a job
     with this key is queued, no second one is.
     """
 
@@ -87,10 +88,20 @@ class Lease:
 
 @dataclass(frozen=True, slots=True)
 class ClaimedJob:
-    """What a worker gets: the job, the right to it, and its arguments."""
+    """What a worker gets: the job, the right to it, and its arguments.
+
+    What went wrong with it so far, each counted for itself: failures, which are its own (its
+    child process died by its own work) or the store's; kills of its child process from outside;
+    worker_deaths, without progress in between.
+    """
 
     job: JobRecord
     lease: Lease
     clip_id: str | None
     file_sha256: str | None
     payload: dict[str, Any]
+    max_attempts: int
+    failures: int
+    kills: int
+    worker_deaths: int
+    cancel_requested: bool

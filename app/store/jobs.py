@@ -36,6 +36,10 @@ def enqueue(tx: Tx, new: NewJob) -> JobRecord:
         "state": JobState.QUEUED.value,
         "progress": 0.0,
         "attempts": 0,
+        "beats": 0,
+        "failures": 0,
+        "kills": 0,
+        "worker_deaths": 0,
         "cancel_requested": False,
         "created_at": utc_now(),
     }

@@ -1,9 +1,9 @@
 """Leases: one worker at a time has a job, for as long as its heart beats.
 
-A claim counts an attempt and gives a lease; a lease that is not renewed expires and the job can
-be claimed again. Whatever a worker does with a job is guarded by its lease (owner and attempt),
-so one that was thought dead and comes back changes nothing. Nothing here touches clips: `queue`
-and `outcomes` join the two.
+A claim counts an attempt and gives a lease. Whatever a worker does with a job is guarded by its
+lease (owner and attempt), so that a worker that was thought dead and comes back changes nothing.
+No lease has an end on the clock: `abandoned` finds those whose holder is dead. Nothing here
+touches clips: `queue` and `outcomes` join the two.
 """
 
 from __future__ import annotations
@@ -12,7 +12,17 @@ from collections.abc import Collection
 from datetime import datetime, timedelta
 from typing import Any
 
-from sqlalchemy import ColumnElement, RowMapping, Select, and_, bindparam, or_, select, update
+from sqlalchemy import (
+    ColumnElement,
+    RowMapping,
+    Select,
+    Update,
+    and_,
+    bindparam,
+    or_,
+    select,
+    update,
+)
 
 from app.errors import LeaseLost
 from app.store import jobs as job_repository
@@ -21,73 +31,62 @@ from app.store.ids import utc_now
 from app.store.job_record import ClaimedJob, JobKind, JobRecord, JobState, Lease
 from app.store.tables import jobs
 
+LONGEST_DELAY_S = 60.0
+"""No job waits longer for its next try. One that is to wait longer by the clock on the wall is
+due at once: then the clock was set back."""
+
 _ORDER = (jobs.c.priority, jobs.c.created_at, jobs.c.id)
-_FREE: dict[str, Any] = {"owner": None, "lease_until": None}
+_FREE: dict[str, Any] = {"owner": None}
+_PROGRESS: dict[str, Any] = {"failures": 0, "kills": 0, "worker_deaths": 0}
 _NOW = bindparam("now", type_=jobs.c.not_before.type)
+_FAR = bindparam("far", type_=jobs.c.not_before.type)
 
 
 def claim(
-    tx: Tx,
-    kinds: Collection[JobKind],
-    owner: str,
-    lease_s: float,
-    *,
-    now: datetime | None = None,
+    tx: Tx, kinds: Collection[JobKind], owner: str, *, now: datetime | None = None
 ) -> ClaimedJob | None:
-    """Takes the most urgent job that is queued or abandoned; None when there is none."""
+    """Takes the most urgent job that is queued; None when there is none."""
     now = now or utc_now()
-    asked = _asked(kinds, now)
-    found = [
-        row
-        for query in (_FIRST_QUEUED, _FIRST_ABANDONED)
-        if (row := tx.execute(query, asked).mappings().one_or_none())
-    ]
-    if not found:
+    row = tx.execute(_FIRST_QUEUED, _asked(kinds, now)).mappings().one_or_none()
+    if row is None:
         return None
-    row = min(found, key=lambda each: (each["priority"], each["created_at"], each["id"]))
     values = {
         "the_id": row["id"],
         "state": JobState.PROCESSING.value,
         "owner": owner,
-        "lease_until": now + timedelta(seconds=lease_s),
+        "beats": 0,
         "attempts": row["attempts"] + 1,
         "started_at": row["started_at"] or now,
         "not_before": None,
         "dedupe_key": None,  # from now on another of its kind may be queued
     }
-    return _as_claimed(tx.execute(_TAKE, values).mappings().one())
+    return as_claimed(tx.execute(_TAKE, values).mappings().one())
 
 
 def is_any_claimable(tx: Tx, kinds: Collection[JobKind], *, now: datetime | None = None) -> bool:
     """Whether `claim` would find something: cheap, so that an idle worker need not write."""
-    now = now or utc_now()
-    asked = _asked(kinds, now)
-    queries = (_FIRST_QUEUED, _FIRST_EXPIRED)
-    return any(tx.execute(query, asked).first() is not None for query in queries)
-
-
-def exhausted(tx: Tx, *, now: datetime | None = None) -> tuple[ClaimedJob, ...]:
-    """Abandoned jobs that may not be tried again, because of their attempts or a cancellation."""
-    now = now or utc_now()
-    return tuple(_as_claimed(row) for row in tx.execute(_SPENT, {"now": now}).mappings())
+    return tx.execute(_FIRST_DUE, _asked(kinds, now or utc_now())).first() is not None
 
 
 def heartbeat(
     tx: Tx,
     lease: Lease,
-    lease_s: float,
     *,
     progress: float | None = None,
     detail: str | None = None,
-    now: datetime | None = None,
+    has_progressed: bool = False,
 ) -> bool:
-    """Renews the lease and tells how far the work is; True when the job is to be canceled."""
-    values: dict[str, Any] = {"lease_until": (now or utc_now()) + timedelta(seconds=lease_s)}
+    """Shows that the holder lives and how far the work is; True when the job is to be canceled.
+
+    has_progressed: some of the work is done and need not be done again, so that what went wrong
+    before does not count any more.
+    """
+    values: dict[str, Any] = dict(_PROGRESS) if has_progressed else {}
     if progress is not None:
         values["progress"] = min(max(progress, 0.0), 1.0)
     if detail is not None:
         values["detail"] = detail
-    return bool(_change(tx, lease, values)["cancel_requested"])
+    return bool(_changed(tx, _BEAT, lease, values)["cancel_requested"])
 
 
 def succeed(tx: Tx, lease: Lease, result: dict[str, Any] | None = None) -> JobRecord:
@@ -106,25 +105,45 @@ def end_canceled(tx: Tx, lease: Lease) -> JobRecord:
 
 
 def give_back(tx: Tx, lease: Lease) -> JobRecord:
-    """Back into the queue as if it had not been tried: the worker is shutting down."""
-    values = {"state": JobState.QUEUED.value, "attempts": lease.attempt - 1, "progress": 0.0}
+    """Back into the queue: the worker shuts down, or did half and leaves the rest for later."""
+    values = {"state": JobState.QUEUED.value, "progress": 0.0}
     return job_repository.to_record(_change(tx, lease, values | _FREE))
 
 
-def retry_later(tx: Tx, lease: Lease, delay_s: float) -> JobRecord:
-    """Back into the queue for a while; the attempt counts."""
-    later = utc_now() + timedelta(seconds=delay_s)
+def retry_later(tx: Tx, lease: Lease, delay_s: float, **counters: int) -> JobRecord:
+    """Back into the queue for a while, at most LONGEST_DELAY_S.
+
+    counters: new values of `failures` or `kills`.
+    """
+    later = utc_now() + timedelta(seconds=min(delay_s, LONGEST_DELAY_S))
     values = {"state": JobState.QUEUED.value, "not_before": later, "progress": 0.0}
-    return job_repository.to_record(_change(tx, lease, values | _FREE))
+    return job_repository.to_record(_change(tx, lease, values | _FREE | counters))
 
 
 def park(tx: Tx, lease: Lease, detail: str | None = None) -> JobRecord:
-    """The worker is done, the job waits for others: processing, but nobody's, never expiring."""
+    """The worker is done, the job waits for others: processing, but nobody's, never abandoned."""
     return job_repository.to_record(_change(tx, lease, {"detail": detail} | _FREE))
 
 
+def as_claimed(row: RowMapping) -> ClaimedJob:
+    """A row of `jobs` that its owner has, as what a worker gets."""
+    return ClaimedJob(
+        job=job_repository.to_record(row),
+        lease=Lease(row["id"], row["owner"], row["attempts"]),
+        clip_id=row["clip_id"],
+        file_sha256=row["file_sha256"],
+        payload=row["payload"],
+        max_attempts=row["max_attempts"],
+        failures=row["failures"],
+        kills=row["kills"],
+        worker_deaths=row["worker_deaths"],
+        cancel_requested=row["cancel_requested"],
+    )
+
+
 def _asked(kinds: Collection[JobKind], now: datetime) -> dict[str, Any]:
-    return {"kinds": [kind.value for kind in kinds], "now": now}
+    far = now + timedelta(seconds=LONGEST_DELAY_S)
+    return {"kinds": [kind.value for kind in kinds], "now": now, "far": far}
 
 
 def _end(tx: Tx, lease: Lease, state: JobState, **values: Any) -> JobRecord:
@@ -133,21 +152,15 @@ def _end(tx: Tx, lease: Lease, state: JobState, **values: Any) -> JobRecord:
 
 
 def _change(tx: Tx, lease: Lease, values: dict[str, Any]) -> RowMapping:
+    return _changed(tx, _CHANGE, lease, values)
+
+
+def _changed(tx: Tx, change: Update, lease: Lease, values: dict[str, Any]) -> RowMapping:
     held = {"the_id": lease.job_id, "holder": lease.owner, "attempt": lease.attempt}
-    row = tx.execute(_CHANGE, held | values).mappings().one_or_none()
+    row = tx.execute(change, held | values).mappings().one_or_none()
     if row is None:
         raise LeaseLost(f"The job {lease.job_id} is over, or was given to another worker")
     return row
-
-
-def _as_claimed(row: RowMapping) -> ClaimedJob:
-    return ClaimedJob(
-        job=job_repository.to_record(row),
-        lease=Lease(row["id"], row["owner"], row["attempts"]),
-        clip_id=row["clip_id"],
-        file_sha256=row["file_sha256"],
-        payload=row["payload"],
-    )
 
 
 def _first(term: ColumnElement[bool]) -> Select[Any]:
@@ -159,17 +172,11 @@ def _first(term: ColumnElement[bool]) -> Select[Any]:
 # The statements of every claim and every step, made once: making them costs more than running.
 _DUE = and_(
     jobs.c.state == JobState.QUEUED.value,
-    or_(jobs.c.not_before.is_(None), jobs.c.not_before <= _NOW),
+    or_(jobs.c.not_before.is_(None), jobs.c.not_before <= _NOW, jobs.c.not_before > _FAR),
 )
-_EXPIRED = and_(jobs.c.state == JobState.PROCESSING.value, jobs.c.lease_until < _NOW)
-_MAY_TRY_AGAIN = and_(jobs.c.attempts < jobs.c.max_attempts, jobs.c.cancel_requested.is_(False))
-_IS_SPENT = or_(jobs.c.attempts >= jobs.c.max_attempts, jobs.c.cancel_requested)
-
-_FIRST_EXPIRED = _first(_EXPIRED)
+_FIRST_DUE = _first(_DUE)
 # skip_locked: on PostgreSQL workers pass each other; SQLite's writers take turns anyway.
-_FIRST_QUEUED = _first(_DUE).with_for_update(skip_locked=True)
-_FIRST_ABANDONED = _first(and_(_EXPIRED, _MAY_TRY_AGAIN)).with_for_update(skip_locked=True)
-_SPENT = select(jobs).where(_EXPIRED, _IS_SPENT).with_for_update(skip_locked=True)
+_FIRST_QUEUED = _FIRST_DUE.with_for_update(skip_locked=True)
 _TAKE = update(jobs).where(jobs.c.id == bindparam("the_id")).returning(jobs)
 _CHANGE = (
     update(jobs)
@@ -181,3 +188,4 @@ _CHANGE = (
     )
     .returning(jobs)
 )
+_BEAT = _CHANGE.values(beats=jobs.c.beats + 1)

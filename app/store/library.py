@@ -32,8 +32,8 @@ _RAISE = (
 class LibraryChanges:
     """What an index has to do to stand at `version`.
 
-    changed: ids of clips that are ready, to be loaded again; removed: ids to forget (deleted,
-    failed, or queued for another analysis).
+    changed: ids of clips that are ready, to be loaded again; removed: ids to forget (deleted, or
+    failed after a change).
     """
 
     version: int

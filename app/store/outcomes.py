@@ -2,6 +2,10 @@
 
 Every acknowledged clip ends once, as ready or as failed with its reason, whatever happens to
 its job: success, bad content, cancellation, or a worker that dies each time it tries.
+
+A clip that was ready stays ready, with its earlier analysis and a warning, where another
+analysis of it fails. Only the content's own verdict, after a client changed what the analysis
+depends on, makes it failed.
 """
 
 from __future__ import annotations
@@ -12,14 +16,21 @@ from typing import Any
 from numpy.typing import NDArray
 from sqlalchemy import select, update
 
-from app.errors import Canceled, WorkerDied
+from app.errors import Canceled, StoredFileMissing, WorkerDied
 from app.store import arrays as array_repository
-from app.store import clips, imports, jobs, leases
+from app.store import clips, imports, jobs, leases, owners
 from app.store import tables as t
-from app.store.clip_record import ClipFacts, ClipRecord, ClipState
+from app.store.clip_record import ClipFacts, ClipRecord, ClipState, ClipWarning
 from app.store.engine import Tx
 from app.store.ids import utc_now
 from app.store.job_record import ClaimedJob, JobKind, JobRecord, JobState, Lease
+
+MOST_KILLS = 8
+"""A job whose child process is killed from outside so often is tried once more, alone."""
+KILL_DELAY_S = 0.5
+"""Before the first new try; doubled each time."""
+NOT_REANALYSED = "reanalysis_failed"
+"""Code of the warning of a clip that keeps an earlier analysis."""
 
 
 def finish_ingest(
@@ -49,21 +60,49 @@ def settle_imports(tx: Tx, clip_ids: Collection[str]) -> None:
         imports.settle_if_done(tx, job_id, ended)
 
 
-def fail_job(tx: Tx, claimed: ClaimedJob, problem: dict[str, Any]) -> JobRecord:
-    """The job is given up, its clip with it. Raises LeaseLost."""
+def fail_job(
+    tx: Tx, claimed: ClaimedJob, problem: dict[str, Any], *, is_verdict: bool = False
+) -> JobRecord:
+    """The job is given up, its clip with it. Raises LeaseLost.
+
+    is_verdict: the content itself is bad, and no failure of the machine.
+    """
     failed = leases.fail(tx, claimed.lease, problem)
-    _fail_clip(tx, claimed.clip_id, problem)
+    _fail_clip(tx, claimed.clip_id, problem, is_verdict=is_verdict)
     return failed
 
 
 def retry_or_fail(
-    tx: Tx, claimed: ClaimedJob, problem: dict[str, Any], *, delay_s: float
+    tx: Tx,
+    claimed: ClaimedJob,
+    problem: dict[str, Any],
+    *,
+    delay_s: float,
+    most: int | None = None,
 ) -> JobRecord:
-    """For failures that may pass (a full disk): later again, until the attempts are used up."""
-    row = jobs.get_row(tx, claimed.job.id)
-    if claimed.lease.attempt >= row["max_attempts"]:
+    """For failures that may pass (a full disk): later again, until there were too many.
+
+    most: how many failures end the job, by default its `max_attempts`. Raises LeaseLost.
+    """
+    failures = jobs.get_row(tx, claimed.job.id)["failures"] + 1
+    if failures >= (most or claimed.max_attempts):
         return fail_job(tx, claimed, problem)
-    waiting = leases.retry_later(tx, claimed.lease, delay_s)
+    waiting = leases.retry_later(tx, claimed.lease, delay_s, failures=failures)
+    _wait_again(tx, claimed.clip_id)
+    return waiting
+
+
+def retry_after_kill(tx: Tx, claimed: ClaimedJob, problem: dict[str, Any]) -> JobRecord:
+    """Its child process was killed from outside: try again, without counting it as a failure.
+
+    After MOST_KILLS in a row it is tried alone; `problem` is the reason if that fails too.
+    Raises LeaseLost.
+    """
+    kills = jobs.get_row(tx, claimed.job.id)["kills"] + 1
+    if kills > MOST_KILLS:
+        return fail_job(tx, claimed, problem)
+    delay_s = KILL_DELAY_S * 2 ** (kills - 1)
+    waiting = leases.retry_later(tx, claimed.lease, delay_s, kills=kills)
     _wait_again(tx, claimed.clip_id)
     return waiting
 
@@ -91,16 +130,27 @@ def request_cancel(tx: Tx, job_id: str) -> JobRecord:
     job = jobs.to_record(row)
     if not job.is_open:
         return job
-    if row["owner"] is not None:
+    if row["owner"] is not None and not owners.is_gone(row["owner"]):
         return _update_job(tx, job_id, cancel_requested=True)
     canceled = _cancel_now(tx, job_id)
     _cancel_what_hangs_on(tx, job, row["clip_id"])
     return canceled
 
 
-def settle_abandoned(tx: Tx) -> tuple[JobRecord, ...]:
-    """Ends the jobs whose workers died too often, or died after a request to cancel."""
-    return tuple(_settle_one(tx, abandoned) for abandoned in leases.exhausted(tx))
+def recover(tx: Tx, abandoned: ClaimedJob) -> JobRecord:
+    """Puts a job of a dead worker back into the queue, or ends it.
+
+    It ends where that was asked for, and after `max_attempts` deaths without progress. The
+    caller holds it, from `Watch.take`.
+    """
+    if abandoned.cancel_requested:
+        return finish_canceled(tx, abandoned)
+    times = abandoned.worker_deaths
+    if times < abandoned.max_attempts:
+        return give_back(tx, abandoned)
+    often = "The worker died" if times == 1 else f"The worker died {times} times"
+    died = WorkerDied(f"{often} while it worked on this, so it was given up")
+    return fail_job(tx, abandoned, died.as_problem())
 
 
 def remove_clip(tx: Tx, clip_id: str) -> ClipRecord:
@@ -115,22 +165,6 @@ def remove_clip(tx: Tx, clip_id: str) -> ClipRecord:
     for job_id, ended in imports_of_it.items():
         imports.settle_if_done(tx, job_id, ended)
     return gone
-
-
-def _settle_one(tx: Tx, abandoned: ClaimedJob) -> JobRecord:
-    row = jobs.get_row(tx, abandoned.job.id)
-    if row["cancel_requested"]:
-        return finish_canceled(tx, abandoned)
-    times = row["attempts"]
-    return fail_job(
-        tx,
-        abandoned,
-        WorkerDied(
-            f"The worker died {times} times while it worked on this, so it was given up"
-            if times != 1
-            else "The worker died while it worked on this, so it was given up"
-        ).as_problem(),
-    )
 
 
 def _cancel_what_hangs_on(tx: Tx, job: JobRecord, clip_id: str | None) -> None:
@@ -153,15 +187,35 @@ def _cancel_analyses(tx: Tx, clip_ids: list[str]) -> None:
     settle_imports(tx, failed)
 
 
-def _fail_clip(tx: Tx, clip_id: str | None, problem: dict[str, Any]) -> None:
-    if clip_id is not None and clip_id in clips.get_many(tx, [clip_id]):
-        clips.set_failed(tx, clip_id, problem)
-        settle_imports(tx, [clip_id])
+def _fail_clip(
+    tx: Tx, clip_id: str | None, problem: dict[str, Any], *, is_verdict: bool = False
+) -> None:
+    clip = None if clip_id is None else clips.get_many(tx, [clip_id]).get(clip_id)
+    if clip is None:
+        return
+    if clip.state is not ClipState.READY or (is_verdict and clip.is_changed):
+        clips.set_failed(tx, clip.id, problem)
+    else:
+        clips.keep_analysis(tx, clip.id, _why_not_anew(problem))
+    settle_imports(tx, [clip.id])
+
+
+def _why_not_anew(problem: dict[str, Any]) -> ClipWarning:
+    """What a clip says that keeps its earlier analysis."""
+    reason = str(problem.get("detail", "")).rstrip(".")
+    if problem.get("code") != StoredFileMissing.code:
+        told = f"The clip was not analyzed again: {reason}. It keeps its earlier analysis."
+        return ClipWarning(NOT_REANALYSED, told)
+    return ClipWarning(
+        StoredFileMissing.code,
+        f"{reason}. The clip cannot be analyzed again and keeps its earlier analysis. Put the"
+        " file back from a backup, then run `kinedex reanalyze`.",
+    )
 
 
 def _wait_again(tx: Tx, clip_id: str | None) -> None:
-    if clip_id is not None and clips.get(tx, clip_id).state is ClipState.PROCESSING:
-        clips.requeue(tx, clip_id)
+    if clip_id is not None:
+        clips.wait_again(tx, clip_id)
 
 
 def _open_jobs_of(tx: Tx, clip_id: str) -> list[str]:
@@ -180,7 +234,6 @@ def _canceled() -> dict[str, Any]:
         "state": JobState.CANCELED.value,
         "finished_at": utc_now(),
         "owner": None,
-        "lease_until": None,
         "dedupe_key": None,
     }
 

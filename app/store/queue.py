@@ -6,8 +6,9 @@ from collections.abc import Collection
 
 from app.errors import ClipNotFound
 from app.store import clips, leases, outcomes
+from app.store.abandoned import Held, Watch
 from app.store.engine import Tx
-from app.store.job_record import ClaimedJob, JobKind
+from app.store.job_record import ClaimedJob, JobKind, JobRecord
 
 
 def is_work_waiting(tx: Tx, kinds: Collection[JobKind]) -> bool:
@@ -15,13 +16,9 @@ def is_work_waiting(tx: Tx, kinds: Collection[JobKind]) -> bool:
     return leases.is_any_claimable(tx, kinds)
 
 
-def take(tx: Tx, kinds: Collection[JobKind], owner: str, lease_s: float) -> ClaimedJob | None:
-    """The most urgent job, its clip set to processing; None when nothing waits.
-
-    First it ends what dead workers left beyond hope.
-    """
-    outcomes.settle_abandoned(tx)
-    while (claimed := leases.claim(tx, kinds, owner, lease_s)) is not None:
+def take(tx: Tx, kinds: Collection[JobKind], owner: str) -> ClaimedJob | None:
+    """The most urgent job, its clip set to processing; None when nothing waits."""
+    while (claimed := leases.claim(tx, kinds, owner)) is not None:
         if claimed.clip_id is None:
             return claimed
         try:
@@ -31,3 +28,9 @@ def take(tx: Tx, kinds: Collection[JobKind], owner: str, lease_s: float) -> Clai
         else:
             return claimed
     return None
+
+
+def recover(tx: Tx, watch: Watch, abandoned: Collection[Held]) -> tuple[JobRecord, ...]:
+    """Ends, or puts back into the queue, those that are still as `Watch.look` saw them."""
+    taken = [watch.take(tx, held) for held in abandoned]
+    return tuple(outcomes.recover(tx, claimed) for claimed in taken if claimed is not None)

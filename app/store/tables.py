@@ -21,6 +21,7 @@ from sqlalchemy import (
     String,
     Table,
     UniqueConstraint,
+    false,
 )
 from sqlalchemy.types import TypeDecorator
 
@@ -114,6 +115,8 @@ clips = Table(
     _json("warnings"),
     _json("error"),
     Column("analysis_version", Integer),
+    Column("reanalysis", String, index=True),
+    Column("is_changed", Boolean, nullable=False, server_default=false()),
     Column("changed_version", BigInteger, nullable=False, index=True),
     Column("created_at", UtcDateTime, nullable=False, index=True),
 )
@@ -171,7 +174,12 @@ jobs = Table(
     Column("attempts", Integer, nullable=False),
     Column("max_attempts", Integer, nullable=False),
     Column("owner", String),
-    Column("lease_until", UtcDateTime),
+    # Heartbeats of the holder since its claim: others see that it lives by their growing.
+    Column("beats", Integer, nullable=False, server_default="0"),
+    # What went wrong, by whose fault it was: see `job_record.NewJob`.
+    Column("failures", Integer, nullable=False, server_default="0"),
+    Column("kills", Integer, nullable=False, server_default="0"),
+    Column("worker_deaths", Integer, nullable=False, server_default="0"),
     Column("not_before", UtcDateTime),
     Column("cancel_requested", Boolean, nullable=False),
     Column("created_at", UtcDateTime, nullable=False, index=True),

@@ -8,16 +8,16 @@ import sys
 import threading
 
 from app.config import load_settings
-from app.errors import KinedexError
 from app.json_stderr import json_stderr
 from app.logs import set_level
+from app.services.exposure import CANNOT_START, HOPELESS
 from app.worker.loop import run_worker
 
 log = logging.getLogger(__name__)
 
 
 def main() -> int:
-    """Work until told to stop; 1 where the settings or the database do not allow it."""
+    """Work until told to stop; CANNOT_START where settings or database do not allow it."""
     stop = threading.Event()
     for sign in (signal.SIGTERM, signal.SIGINT):
         signal.signal(sign, lambda *_: stop.set())
@@ -26,9 +26,9 @@ def main() -> int:
             settings = load_settings()
             set_level(settings.log_level.upper())
             run_worker(settings, stop)
-        except KinedexError as problem:
+        except HOPELESS as problem:
             log.critical("the worker cannot start: %s", problem.detail)
-            return 1
+            return CANNOT_START
     return 0
 
 

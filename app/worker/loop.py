@@ -1,15 +1,14 @@
 """The worker: claim a job, have it done, settle it; and beat while it lasts.
 
 One thread does it all, so that a worker that hangs stops beating and its jobs go to another.
-What a killed worker had in hand is claimed again when its leases expire. A worker that is
-told to stop gives its jobs back as if they had not been tried.
+What a killed worker had in hand goes back into the queue once another worker sees that it is
+dead. A worker that is told to stop gives its jobs back as if they had not been tried.
 """
 
 from __future__ import annotations
 
 import logging
-import os
-import socket
+import math
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
@@ -22,10 +21,10 @@ from app.errors import LeaseLost, NotFound, StorageError
 from app.logs import job_id
 from app.services import models, persons, reanalysis
 from app.services.library import Library
-from app.store import clips, leases, outcomes, queue
+from app.store import clips, leases, outcomes, owners, queue
+from app.store.abandoned import Watch
 from app.store.clip_record import ClipRecord
 from app.store.engine import Tx
-from app.store.ids import new_id
 from app.store.job_record import ClaimedJob, JobKind
 from app.worker.expiry import Expiry
 from app.worker.running import Running
@@ -39,6 +38,8 @@ FIT_CHECK_S = 2.0
 """Between looks at whether a fit is due, while there is nothing else to do."""
 STOP_WITHIN_S = 10.0
 """For work in hand to end when the worker is told to stop."""
+LOOKS_PER_LEASE = 10
+"""How often in the time of a lease a worker looks at what others hold."""
 STORE_PAUSE_S = 1.0
 """Before the store is tried again after it failed."""
 
@@ -71,10 +72,14 @@ class Worker:
 
     def __init__(self, lib: Library) -> None:
         self.lib = lib
-        self.owner = f"{new_id('worker')}@{socket.gethostname()}:{os.getpid()}"
+        settings = lib.settings
+        self.owner = owners.new_owner("worker")
         self._bench = Bench(lib)
         self._running: list[Running] = []
         self._last_beat = time.monotonic()
+        self._watch = Watch(self.owner, settings.job_lease_s)
+        self._look_s = min(settings.job_heartbeat_s, settings.job_lease_s / LOOKS_PER_LEASE)
+        self._last_look = -math.inf
         self._last_fit_check = 0.0
         self._expiry = Expiry(lib)
 
@@ -84,6 +89,7 @@ class Worker:
             try:
                 self._beat_if_due()
                 self._expiry.remove_if_due()
+                self._recover_if_due()
                 is_idle = not self._take_a_turn()
                 if is_idle and not self._running:
                     if until is not None and until(self.lib):
@@ -152,7 +158,6 @@ class Worker:
                     is_canceled = leases.heartbeat(
                         tx,
                         running.claimed.lease,
-                        settings.job_lease_s,
                         progress=progress,
                         detail=detail,
                     )
@@ -161,6 +166,19 @@ class Worker:
             else:
                 if is_canceled:
                     self._cancel(running)
+
+    def _recover_if_due(self) -> None:
+        """Look for jobs of dead workers; a read, unless there are any."""
+        if time.monotonic() - self._last_look < self._look_s:
+            return
+        self._last_look = time.monotonic()
+        with self.lib.store.read() as tx:
+            abandoned = self._watch.look(tx)
+        if not abandoned:
+            return
+        with self.lib.store.write() as tx:
+            for job in queue.recover(tx, self._watch, abandoned):
+                _log.warning("the worker of job %s is dead; the job is %s", job.id, job.state)
 
     def _cancel(self, running: Running) -> None:
         self._drop(running)
@@ -184,7 +202,7 @@ class Worker:
         held = [running.claimed for running in self._running if running not in without]
         claimed: list[ClaimedJob] = []
         while kinds := self._kinds_with_room([*held, *claimed]):
-            found = queue.take(tx, kinds, self.owner, self.lib.settings.job_lease_s)
+            found = queue.take(tx, kinds, self.owner)
             if found is None:
                 break
             claimed.append(found)

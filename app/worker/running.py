@@ -13,9 +13,10 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from app.analysis.analyse import Analysis
-from app.errors import Canceled, ClipNotFound, KinedexError, StorageError
+from app.errors import AnalysisInterrupted, Canceled, ClipNotFound, KinedexError, StorageError
 from app.services import ingest
 from app.services.analysis_pool import AnalysisPool
+from app.services.child import ChildDied, ChildEnded
 from app.services.library import Library
 from app.store import leases, outcomes
 from app.store.clip_record import ClipRecord
@@ -67,8 +68,8 @@ class RunningIngest:
             try:
                 found = self.pool.outcome(self.future)
             except KinedexError as problem:
-                attempts = self.lib.settings.job_max_attempts
-                ingest.fail(tx, self.claimed, self.clip, problem, attempts)
+                most = self.lib.settings.job_max_attempts
+                ingest.fail(tx, self.claimed, self.clip, problem, most)
             else:
                 ingest.finish(tx, self.claimed, self.clip, found)
         except ClipNotFound:
@@ -129,14 +130,23 @@ def _settle_failure(tx: Tx, claimed: ClaimedJob, future: Future[Any]) -> bool:
         return False
     if isinstance(failure, Canceled):
         return True  # whoever stopped it settles it
-    if not isinstance(failure, KinedexError):
-        _log.error("job %s failed unexpectedly", claimed.job.id, exc_info=failure)
-    problem = failure if isinstance(failure, KinedexError) else KinedexError(_told(failure))
-    if isinstance(problem, StorageError):
+    problem = _as_problem(claimed, failure)
+    if isinstance(problem, AnalysisInterrupted):
+        outcomes.retry_after_kill(tx, claimed, problem.as_problem())
+    elif isinstance(problem, StorageError | ChildDied):
         outcomes.retry_or_fail(tx, claimed, problem.as_problem(), delay_s=RETRY_DELAY_S)
     else:
         outcomes.fail_job(tx, claimed, problem.as_problem())
     return True
+
+
+def _as_problem(claimed: ClaimedJob, failure: BaseException) -> KinedexError:
+    if isinstance(failure, KinedexError):
+        return failure
+    if isinstance(failure, ChildEnded):
+        return failure.as_failure()
+    _log.error("job %s failed unexpectedly", claimed.job.id, exc_info=failure)
+    return KinedexError(_told(failure))
 
 
 def _told(failure: BaseException) -> str:

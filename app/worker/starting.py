@@ -7,15 +7,15 @@ import threading
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
-import pebble
-
 from app.errors import KinedexError
 from app.logs import level_of_process
 from app.services import imports, ingest
 from app.services.analysis_pool import AnalysisPool
-from app.services.child_processes import begin_child, child_context
+from app.services.child_pool import ChildPool
+from app.services.child_processes import log_like_parent
 from app.services.fit_process import fit_in_child
 from app.services.library import Library, ingest_limits
+from app.store import outcomes
 from app.store.clip_record import ClipRecord
 from app.store.job_record import ClaimedJob, JobKind
 from app.worker.running import Running, RunningFit, RunningIngest, RunningThread
@@ -49,7 +49,10 @@ class Bench:
 
     def _begin_ingest(self, claimed: ClaimedJob, clip: ClipRecord) -> Running:
         try:
-            future = self._analyses.submit(ingest.order_for(self.lib, clip))
+            order = ingest.order_for(self.lib, clip)
+            # What died beside others again and again may have been killed for the others' sake.
+            is_alone = claimed.kills >= outcomes.MOST_KILLS
+            future = self._analyses.submit(order, is_alone=is_alone)
         except KinedexError as problem:
             future = Future()
             future.set_exception(problem)
@@ -68,19 +71,8 @@ class Bench:
 
 def _fit_in_process(lib: Library) -> Future[dict[str, Any]]:
     """A fit in a process of its own, so that its memory is given back."""
-    pool = pebble.ProcessPool(
-        max_workers=1,
-        max_tasks=1,
-        initializer=begin_child,
-        initargs=(level_of_process(),),
-        context=child_context(),
-    )
-    future: Future[dict[str, Any]] = pool.schedule(fit_in_child, args=(lib.settings,))
+    pool = ChildPool(1, log_like_parent, level_of_process())
+    future = pool.submit(fit_in_child, lib.settings)
     # Ended from a thread of its own: the callback runs in one that the end waits for.
-    future.add_done_callback(lambda _: threading.Thread(target=_end, args=(pool,)).start())
+    future.add_done_callback(lambda _: threading.Thread(target=pool.close).start())
     return future
-
-
-def _end(pool: pebble.ProcessPool) -> None:
-    pool.stop()  # type: ignore[no-untyped-call]
-    pool.join()

@@ -1,9 +1,9 @@
 """Keeps the processes of one machine running: the API and, unless elsewhere, a worker.
 
-A process that dies is started again, later each time it dies young. One that cannot even
-start (a taken port, an old database) ends the whole. SIGTERM and SIGINT are passed on as
-SIGTERM, and the processes get time to finish; should the supervisor itself be killed, the
-kernel tells them.
+A process that dies is started again, later each time it dies young. One that says that it
+cannot start (a taken port, an old database: exit code CANNOT_START) ends the whole. SIGTERM and
+SIGINT are passed on as SIGTERM, and the processes get time to finish; should the supervisor
+itself be killed, the kernel tells them.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from dataclasses import dataclass, field
 from pydantic import SecretStr
 
 from app.config import ENV_PREFIX, Settings
+from app.services.exposure import CANNOT_START
 
 _log = logging.getLogger(__name__)
 
@@ -31,7 +32,7 @@ WORKER = ("-P", "-m", "app.worker")
 
 POLL_S = 0.2
 STEADY_S = 10.0
-"""A process that ran so long has started well; its next death is the first again."""
+"""A process that ran so long has started well; its next death is its first again."""
 FIRST_DELAY_S, LONGEST_DELAY_S = 0.5, 30.0
 """Before a process that died is started again: doubled each time it dies young."""
 GRACE_S = 15.0
@@ -113,8 +114,8 @@ def _look_after(one: Kept, environ: dict[str, str]) -> int | None:
             one.has_been_steady, one.delay = True, FIRST_DELAY_S
         return None
     one.process = None
-    if not one.has_been_steady and code > 0:
-        _log.error("%s could not start (exit code %d)", one.name, code)
+    if code == CANNOT_START and not one.has_been_steady:
+        _log.error("%s cannot start", one.name)
         return code
     _log.warning("%s died (exit code %d); again in %.1f s", one.name, code, one.delay)
     one.next_start = now + one.delay

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from app.analysis.analyse import analyse, describe_for_search
+from app.analysis.array_shapes import SHAPES, is_usable
 from app.analysis.rhythm import BEAT_ARRAYS
 from app.analysis.windows import WINDOW_SCALES, window_frames
 from app.numerics.arrays import FloatArray
@@ -17,6 +18,16 @@ SEGMENT_TYPES = {
     "segment_spans": (np.float32, 2), "segment_vectors": (np.float16, 185),
     "segment_cycles": (np.int32, 3),
 }  # fmt: skip
+
+
+@pytest.mark.parametrize("body", BODIES.values(), ids=BODIES.keys())
+def test_every_array_has_the_shape_that_comparisons_ask_for(body: FloatArray) -> None:
+    arrays = analyse(motion_of(body)).arrays
+    assert arrays.keys() == SHAPES.keys()
+    for name, array in arrays.items():
+        assert is_usable(name, array), (name, array.shape)
+        assert not is_usable(name, array[None]), name
+    assert not is_usable("features_10hz", arrays["features_10hz"][:, 1:])
 
 
 @pytest.mark.parametrize("body", BODIES.values(), ids=BODIES.keys())

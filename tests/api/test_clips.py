@@ -18,7 +18,7 @@ CLIP_FIELDS = {
     *("id", "name", "state", "format", "sha256", "person", "task", "words", "license"),
     *("source", "frames", "frame_rate", "declared_frame_rate", "duration", "joints"),
     *("roles", "missing_roles", "warnings", "created_at", "error"),
-    *("has_audio", "audio_offset"),
+    *("has_audio", "audio_offset", "reanalysis"),
 }
 JOB_FIELDS = {
     *("id", "kind", "state", "progress", "detail"),

@@ -36,7 +36,7 @@ def test_a_stack_is_picked_at_upload_afterwards_and_for_a_query(demo_service: Li
         assert client.post("/v1/recognize", **_sent("sway")).status_code == 200
         for url in ("/v1/search/motion", "/v1/recognize"):
             assert_problem(client.post(url, **_sent("run")), 422, "bad_field", "body.stack")
-        assert client.patch(path, json={"stack": None}).json()["state"] == "queued"
+        assert client.patch(path, json={"stack": None}).json()["reanalysis"] == "queued"
         assert client.delete(path).status_code == 204
 
 

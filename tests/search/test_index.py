@@ -88,6 +88,10 @@ def test_it_follows_the_library(store: Store, add: Add) -> None:
     with store.write() as tx:
         clips.requeue(tx, late.id)
     index.catch_up(store)
+    assert set(index.candidates(ClipFilter()).ids) == {kept.id, late.id}
+    with store.write() as tx:
+        clips.set_failed(tx, late.id, {"code": "unreadable"})
+    index.catch_up(store)
     assert list(index.candidates(ClipFilter()).ids) == [kept.id]
 
 

@@ -121,12 +121,13 @@ def test_it_follows_the_library(store: Store, add: Add, index: SpanIndex) -> Non
     with store.write() as tx:
         clips.delete_clip(tx, gone)
     add("changed", 7)
-    late, waiting = add("late", 2), add("waiting", 2)
+    late, waiting, bad = add("late", 2), add("waiting", 2), add("bad", 2)
     with store.write() as tx:
-        clips.requeue(tx, waiting)
+        clips.requeue(tx, waiting)  # it stays there until it is analysed again
+        clips.set_failed(tx, bad, {"code": "unreadable"})
     index.catch_up(store)
-    assert told(index.view()) == stored(store, kept, changed, late)
-    assert waiting not in told(index.view())
+    assert told(index.view()) == stored(store, kept, changed, late, waiting)
+    assert bad not in told(index.view())
     assert told(before) == seen
 
 

@@ -6,16 +6,24 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import psutil
 import pytest
 
-from app.errors import AnalysisCrashed, AnalysisTimedOut, KinedexError, TooLarge, Unreadable
-from app.services.analysis_pool import AnalysisPool, ChildDied, Limits, Order
+from app.errors import (
+    AnalysisCrashed,
+    AnalysisInterrupted,
+    AnalysisTimedOut,
+    KinedexError,
+    TooLarge,
+    Unreadable,
+)
+from app.services.analysis_pool import AnalysisPool, Limits, Order
 from app.services.demo import DemoClip
+from tests.live import wait_until
+from tests.long_clips import busy_children, children_of, repeated
 
 ROOMY = Limits(seconds=60.0, memory_mb=2048, frames=100_000, joints=100)
 
@@ -25,15 +33,6 @@ def pool() -> Iterator[AnalysisPool]:
     opened = AnalysisPool(ROOMY)
     yield opened
     opened.close()
-
-
-def _long(clip: DemoClip, times: int) -> bytes:
-    """The same motion over and over: a large file that is nothing but large."""
-    head, _, frames = clip.content.partition(b"Frame Time")
-    line, _, rows = frames.partition(b"\n")
-    count = rows.count(b"\n") * times
-    head = head[: head.rindex(b"Frames:")] + b"Frames: %d\n" % count
-    return head + b"Frame Time" + line + b"\n" + rows * times
 
 
 def test_an_analysis_comes_back_with_its_arrays(
@@ -77,7 +76,7 @@ def test_an_analysis_over_its_time_is_stopped_and_the_next_one_done(
 ) -> None:
     hasty = AnalysisPool(Limits(0.3, 2048, 10_000_000, 100))
     with pytest.raises(AnalysisTimedOut):
-        hasty.analyse(Order(content=_long(some_demo_clips[0], 150)))
+        hasty.analyse(Order(content=repeated(some_demo_clips[0], 150)))
     with pytest.raises(Unreadable):
         hasty.analyse(Order(content=b"HIERARCHY\n"))
     hasty.close()
@@ -86,31 +85,27 @@ def test_an_analysis_over_its_time_is_stopped_and_the_next_one_done(
 def test_an_analysis_over_its_memory_fails(some_demo_clips: list[DemoClip]) -> None:
     poor = AnalysisPool(Limits(60.0, 420, 10_000_000, 100))
     with pytest.raises(AnalysisCrashed, match=r"memory|died"):
-        poor.analyse(Order(content=_long(some_demo_clips[0], 150)))
+        poor.analyse(Order(content=repeated(some_demo_clips[0], 150)))
     poor.close()
 
 
 def test_a_killed_child_is_replaced(pool: AnalysisPool, some_demo_clips: list[DemoClip]) -> None:
-    small, large = Order(content=some_demo_clips[0].content), _long(some_demo_clips[0], 150)
+    small, large = Order(content=some_demo_clips[0].content), repeated(some_demo_clips[0], 150)
     pool.analyse(small)
-    working = pool.submit(Order(content=large))
-    time.sleep(0.3)
     _kill_children()
-    with pytest.raises(ChildDied):
+    working = pool.submit(Order(content=large))
+    wait_until(lambda: busy_children(psutil.Process()), 60.0)
+    _kill_children()
+    with pytest.raises(AnalysisInterrupted):
         pool.outcome(working)
     assert pool.analyse(small).arrays
-    time.sleep(0.3)
     _kill_children()
-    time.sleep(0.3)
     assert pool.analyse(small).arrays
 
 
 def _kill_children() -> None:
-    """All but the server that they are forked from."""
-    for server in psutil.Process().children():
-        if "forkserver" in " ".join(server.cmdline()):
-            for child in server.children():
-                child.kill()
+    for child in children_of(psutil.Process()):
+        child.kill()
 
 
 PARENT = """

@@ -14,7 +14,7 @@ from app.services.clips import NewClip
 from app.services.demo import DemoClip
 from app.services.find import MotionQuery
 from app.services.library import Library
-from app.store.clip_record import ClipState
+from app.store.clip_record import ClipState, Reanalysis
 from app.store.job_record import JobState
 from tests.services.conftest import settings_for, upload, work
 
@@ -112,11 +112,16 @@ def test_another_frame_rate_has_the_clip_analysed_again_under_its_id(
     asked = MotionQuery(other.id, method=Method.VECTOR)
     far = find.find_motion(lib, asked).items[0].distance
     queued = clips.update_clip(lib, clip.id, {"frame_rate": 15.0, "task": "stroll"})
-    assert (queued.id, queued.state) == (clip.id, ClipState.QUEUED)
-    assert find.find_motion(lib, asked).items == ()
+    assert (queued.id, queued.state, queued.reanalysis) == (
+        clip.id,
+        ClipState.READY,
+        Reanalysis.QUEUED,
+    )
+    assert find.find_motion(lib, asked).items[0].distance == far
     work(lib.settings)
     after = clips.get_clip(lib, clip.id)
     assert (after.state, after.frame_rate, after.task) == (ClipState.READY, 15.0, "stroll")
+    assert after.reanalysis is None
     assert after.declared_frame_rate == before.declared_frame_rate
     assert before.duration is not None
     assert before.frame_rate is not None

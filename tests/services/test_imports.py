@@ -14,6 +14,7 @@ from app.services import clips, imports, jobs
 from app.services.demo import DemoClip
 from app.services.library import Library
 from app.store import queue
+from app.store.abandoned import Watch
 from app.store.job_record import ClaimedJob, JobKind, JobState
 from tests.services.conftest import settings_for, work
 
@@ -69,7 +70,7 @@ def _outcomes(result: dict[str, Any] | None) -> dict[str, str]:
 
 def _claim(lib: Library) -> ClaimedJob:
     with lib.store.write() as tx:
-        claimed = queue.take(tx, [JobKind.IMPORT], "test", 60.0)
+        claimed = queue.take(tx, [JobKind.IMPORT], "test")
     assert claimed is not None
     return claimed
 
@@ -148,7 +149,9 @@ def test_an_import_given_to_another_worker_stores_nothing_more(
 ) -> None:
     imports.start_import(lib, _zip(entries), "set.zip")
     with lib.store.write() as tx:
-        old = queue.take(tx, [JobKind.IMPORT], "old", -1.0)
+        old = queue.take(tx, [JobKind.IMPORT], "old")
+        watch = Watch("watcher", 0.0)  # by it the worker "old" is dead
+        queue.recover(tx, watch, watch.look(tx))
     assert old is not None
     _claim(lib)
     with pytest.raises(LeaseLost):

@@ -20,7 +20,7 @@ from app.services.demo.dances import Sound, dance
 from app.services.library import Library, ingest_limits
 from app.services.recordings import NewRecording
 from app.store import import_files
-from app.store.clip_record import ClipRecord, ClipState
+from app.store.clip_record import ClipRecord, ClipState, Reanalysis
 from tests.services.conftest import work
 
 
@@ -117,7 +117,7 @@ def test_what_is_told_goes_before_what_is_heard(lib: Library, danced: DemoClip) 
     assert np.median(np.diff(found.times)) == pytest.approx(1.2, abs=0.05)
     clips.update_clip(lib, clip.id, {"tempo": None})
     assert keyposes.view(lib, ready(lib, sent).id).found.beats.source == "audio"
-    assert clips.remove_recording(lib, clip.id).state is ClipState.QUEUED
+    assert clips.remove_recording(lib, clip.id).reanalysis is Reanalysis.QUEUED
     clip = ready(lib, sent)
     assert keyposes.view(lib, clip.id).found.beats.source == "motion"
     assert clip.audio_offset is None

@@ -13,7 +13,7 @@ from app.services.clips import NewClip
 from app.services.find import MotionQuery
 from app.services.library import Library
 from app.services.recognise import RecogniseQuery
-from app.store.clip_record import ClipRecord, ClipState
+from app.store.clip_record import ClipRecord, ClipState, Reanalysis
 from tests.formats.fbx_takes import person_takes
 from tests.formats.samples import bvh
 from tests.services.conftest import settings_for, work
@@ -51,7 +51,7 @@ def test_another_is_picked_afterwards_and_null_returns(lib: Library) -> None:
     assert (clip.state, clip.frames) == (ClipState.READY, 31)
     assert clips.update_clip(lib, clip.id, {"stack": " bow "}).state is ClipState.READY
     queued = clips.update_clip(lib, clip.id, {"stack": None})
-    assert (queued.state, queued.stack_override) == (ClipState.QUEUED, None)
+    assert (queued.reanalysis, queued.stack_override) == (Reanalysis.QUEUED, None)
     assert worked(lib, clip.id).frames == 61
     clips.update_clip(lib, clip.id, {"stack": "bow"})
     assert worked(lib, clip.id).frames == 31

@@ -49,7 +49,8 @@ def test_only_what_changed_since_and_in_the_order_of_the_changes(
     assert [clip.id for clip in _told(store, 0)] == [clip.id for clip in made]
     with store.write() as tx:
         clips.patch(tx, made[3].id, {"task": "run"})
-        clips.requeue(tx, made[1].id)
+        clips.set_failed(tx, made[1].id, {"code": "unreadable"})
+        clips.requeue(tx, made[2].id)  # it stays as it is until it is analysed
         clips.delete_clip(tx, made[0].id)
     assert [(c.id, c.is_ready) for c in _told(store, before)] == [
         (made[3].id, True),

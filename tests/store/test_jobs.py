@@ -29,7 +29,7 @@ def test_a_fit_is_queued_once_but_may_follow_one_that_runs(store: Store, add_job
     first = add_job(JobKind.FIT, dedupe_key="fit")
     assert add_job(JobKind.FIT, dedupe_key="fit") == first
     with store.write() as tx:
-        leases.claim(tx, [JobKind.FIT], "worker", 30)
+        leases.claim(tx, [JobKind.FIT], "worker")
     second = add_job(JobKind.FIT, dedupe_key="fit")
     assert second.id != first.id
     assert add_job(JobKind.FIT, dedupe_key="fit") == second
@@ -40,7 +40,7 @@ def test_the_open_job_of_a_clip(store: Store, add_job: AddJob) -> None:
     add_job(clip_id="other")
     with store.write() as tx:
         assert jobs.open_for_clip(tx, "clip") == job
-        claimed = leases.claim(tx, [JobKind.INGEST], "worker", 30)
+        claimed = leases.claim(tx, [JobKind.INGEST], "worker")
         assert claimed is not None
         leases.succeed(tx, claimed.lease)
         assert jobs.open_for_clip(tx, "clip") is None

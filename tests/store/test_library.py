@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from app.errors import ClipNotFound
 from app.store import clips, library, outcomes
-from app.store.clip_record import ClipState
+from app.store.clip_record import ClipState, ClipWarning
 from app.store.engine import Tx
 from app.store.store import Store
 from tests.store.conftest import ON_ONE_STORE, AddClip, facts, new_clip
@@ -25,7 +25,6 @@ Change = Callable[[Tx, str], object]
         (lambda tx, clip_id: clips.patch(tx, clip_id, {"person": "ben"}), True),
         (lambda tx, clip_id: clips.patch(tx, clip_id, {"words": ("run",)}), True),
         (lambda tx, clip_id: clips.set_ready(tx, clip_id, facts()), True),
-        (lambda tx, clip_id: clips.requeue(tx, clip_id), False),
         (lambda tx, clip_id: clips.set_failed(tx, clip_id, PROBLEM), False),
         (lambda tx, clip_id: clips.delete_clip(tx, clip_id), False),
     ],
@@ -40,6 +39,19 @@ def test_a_change_of_a_ready_clip_is_told(
         told = library.changed_since(tx, before)
     assert told.version == before + 1
     assert (told.changed, told.removed) == (((clip.id,), ()) if is_there else ((), (clip.id,)))
+
+
+def test_waiting_for_another_analysis_changes_nothing_that_a_search_sees(
+    store: Store, add_clip: AddClip
+) -> None:
+    clip = add_clip("walk", ready=True)
+    with store.write() as tx:
+        before = library.version(tx)
+        clips.requeue(tx, clip.id)
+        clips.set_processing(tx, clip.id)
+        clips.keep_analysis(tx, clip.id, ClipWarning("reanalysis_failed", "it is gone"))
+        assert library.version(tx) == before
+        assert clips.get(tx, clip.id).state is ClipState.READY
 
 
 def test_what_was_never_searchable_is_not_told(store: Store, add_clip: AddClip) -> None:

@@ -4,38 +4,28 @@ from __future__ import annotations
 
 from datetime import timedelta
 
-import numpy as np
 import pytest
 
 from app.errors import LeaseLost
-from app.store import arrays, clips, import_files, imports, jobs, leases, library, outcomes, queue
+from app.store import (
+    arrays,
+    clips,
+    import_files,
+    imports,
+    jobs,
+    leases,
+    library,
+    outcomes,
+    owners,
+    queue,
+)
 from app.store.clip_record import ClipRecord, ClipState
 from app.store.engine import Tx
 from app.store.imports import ImportOutcome, NewEntry
 from app.store.job_record import ClaimedJob, JobKind, JobRecord, JobState, NewJob
 from app.store.store import Store
-from tests.store.conftest import facts, new_clip
-
-ALL = tuple(JobKind)
-PROBLEM = {"code": "unreadable", "detail": "line 3"}
-FOUND = {"motion_vector": np.ones(128, np.float32)}
-
-
-def add(tx: Tx, name: str, **job: int) -> ClipRecord:
-    """A clip with its ingest job, as an upload makes them."""
-    clip = clips.add_or_get(tx, new_clip(name)).clip
-    jobs.enqueue(tx, NewJob(JobKind.INGEST, clip_id=clip.id, **job))
-    return clip
-
-
-def take(tx: Tx, lease_s: float = 30) -> ClaimedJob:
-    claimed = queue.take(tx, ALL, "worker", lease_s)
-    assert claimed is not None
-    return claimed
-
-
-def states(tx: Tx, clip: ClipRecord, claimed: ClaimedJob) -> tuple[ClipState, JobState]:
-    return clips.get(tx, clip.id).state, jobs.get(tx, claimed.job.id).state
+from tests.store.conftest import facts
+from tests.store.queued import ALL, FOUND, PROBLEM, add, die, states, take
 
 
 def test_a_taken_clip_is_processing_and_then_ready(store: Store) -> None:
@@ -51,7 +41,7 @@ def test_a_taken_clip_is_processing_and_then_ready(store: Store) -> None:
         assert states(tx, clip, claimed) == (ClipState.READY, JobState.SUCCEEDED)
         assert library.changed_since(tx, 0).changed == (clip.id,)
         assert arrays.get_one(tx, clip.id, "motion_vector").shape == (128,)
-        assert queue.take(tx, ALL, "worker", 30) is None
+        assert queue.take(tx, ALL, "worker") is None
 
 
 def test_bad_content_fails_both(store: Store) -> None:
@@ -66,7 +56,8 @@ def test_bad_content_fails_both(store: Store) -> None:
 def test_a_worker_that_lost_its_lease_changes_nothing(store: Store) -> None:
     with store.write() as tx:
         clip = add(tx, "walk")
-        late = take(tx, lease_s=-1)
+        late = take(tx)
+        die(tx)
         current = take(tx)
     for settle in (
         lambda tx: outcomes.finish_ingest(tx, late.lease, clip.id, facts(), FOUND),
@@ -85,9 +76,8 @@ def test_a_clip_that_kills_its_workers_is_given_up(store: Store) -> None:
     with store.write() as tx:
         clip = add(tx, "poison", max_attempts=3)
         for _ in range(3):
-            claimed = take(tx, lease_s=-1)
-        assert queue.is_work_waiting(tx, ALL)
-        assert queue.take(tx, ALL, "worker", 30) is None
+            claimed = take(tx)
+            die(tx)
         assert not queue.is_work_waiting(tx, ALL)
         error = clips.get(tx, clip.id).error
         assert states(tx, clip, claimed) == (ClipState.FAILED, JobState.FAILED)
@@ -109,9 +99,9 @@ def test_what_may_pass_is_tried_again_and_then_given_up(store: Store) -> None:
 def test_a_worker_told_to_stop_gives_its_clip_back(store: Store) -> None:
     with store.write() as tx:
         clip = add(tx, "walk", max_attempts=1)
-        outcomes.give_back(tx, claimed := take(tx))
-        assert states(tx, clip, claimed) == (ClipState.QUEUED, JobState.QUEUED)
-        assert take(tx).lease.attempt == 1
+        for _ in range(3):
+            outcomes.give_back(tx, claimed := take(tx))
+            assert states(tx, clip, claimed) == (ClipState.QUEUED, JobState.QUEUED)
 
 
 def test_cancel_a_queued_job(store: Store) -> None:
@@ -123,7 +113,7 @@ def test_cancel_a_queued_job(store: Store) -> None:
         failed = clips.get(tx, clip.id)
         assert failed.error is not None
         assert (failed.state, failed.error["code"]) == (ClipState.FAILED, "canceled")
-        assert queue.take(tx, ALL, "worker", 30) is None
+        assert queue.take(tx, ALL, "worker") is None
 
 
 def test_cancel_a_job_that_runs(store: Store) -> None:
@@ -131,7 +121,7 @@ def test_cancel_a_job_that_runs(store: Store) -> None:
         clip = add(tx, "walk")
         claimed = take(tx)
         assert outcomes.request_cancel(tx, claimed.job.id).state is JobState.PROCESSING
-        assert leases.heartbeat(tx, claimed.lease, 30)
+        assert leases.heartbeat(tx, claimed.lease)
         outcomes.finish_canceled(tx, claimed)
         assert states(tx, clip, claimed) == (ClipState.FAILED, JobState.CANCELED)
         over = jobs.get(tx, claimed.job.id)
@@ -141,9 +131,9 @@ def test_cancel_a_job_that_runs(store: Store) -> None:
 def test_cancel_a_job_whose_worker_died(store: Store) -> None:
     with store.write() as tx:
         clip = add(tx, "walk")
-        claimed = take(tx, lease_s=-1)
-        outcomes.request_cancel(tx, claimed.job.id)
-        outcomes.settle_abandoned(tx)
+        claimed = take(tx)
+        assert outcomes.request_cancel(tx, claimed.job.id).state is JobState.PROCESSING
+        die(tx)
         assert states(tx, clip, claimed) == (ClipState.FAILED, JobState.CANCELED)
 
 
@@ -154,7 +144,7 @@ def test_a_removed_clip_ends_its_job(store: Store) -> None:
         for each in (clip, waiting):
             outcomes.remove_clip(tx, each.id)
         assert jobs.get(tx, running.job.id).state is JobState.CANCELED
-        assert queue.take(tx, ALL, "worker", 30) is None
+        assert queue.take(tx, ALL, "worker") is None
     with pytest.raises(LeaseLost), store.write() as tx:
         outcomes.finish_ingest(tx, running.lease, clip.id, facts(), FOUND)
 
@@ -215,8 +205,9 @@ def test_an_import_that_waits_is_nobodys_and_never_expires(store: Store) -> None
         job, _ = start_import(tx, "a")
         take(tx)
         far = job.created_at + timedelta(days=9)
-        assert leases.claim(tx, [JobKind.IMPORT], "worker", 30, now=far) is None
-        assert all(each.job.kind is not JobKind.IMPORT for each in leases.exhausted(tx, now=far))
+        assert leases.claim(tx, [JobKind.IMPORT], "worker", now=far) is None
+        die(tx)
+        assert jobs.get(tx, job.id).state is JobState.PROCESSING
 
 
 def test_an_import_that_is_tried_again_knows_what_it_has_done(store: Store) -> None:
@@ -233,7 +224,37 @@ def test_cancelling_an_import_cancels_what_waits(store: Store) -> None:
         assert outcomes.request_cancel(tx, job.id).state is JobState.CANCELED
         assert clips.get(tx, waiting.id).state is ClipState.FAILED
         assert clips.get(tx, running.id).state is ClipState.PROCESSING
-        assert leases.heartbeat(tx, claimed.lease, 30)
+        assert leases.heartbeat(tx, claimed.lease)
         outcomes.finish_canceled(tx, claimed)
         assert clips.get(tx, running.id).state is ClipState.FAILED
         assert jobs.get(tx, job.id).state is JobState.CANCELED
+
+
+def test_a_child_killed_from_outside_does_not_count_and_is_given_up_in_the_end(
+    store: Store,
+) -> None:
+    with store.write() as tx:
+        clip = add(tx, "walk", max_attempts=1)
+        for number in range(1, outcomes.MOST_KILLS + 1):
+            claimed = take_whenever(tx)
+            outcomes.retry_after_kill(tx, claimed, PROBLEM)
+            assert states(tx, clip, claimed) == (ClipState.QUEUED, JobState.QUEUED)
+            assert jobs.get_row(tx, claimed.job.id)["kills"] == number
+        outcomes.retry_after_kill(tx, take_whenever(tx), PROBLEM)
+        assert states(tx, clip, claimed) == (ClipState.FAILED, JobState.FAILED)
+
+
+def take_whenever(tx: Tx) -> ClaimedJob:
+    """As `take`, though a retry is to wait."""
+    tx.exec_driver_sql("UPDATE jobs SET not_before = NULL")
+    return take(tx)
+
+
+def test_the_job_of_a_process_that_is_gone_is_canceled_at_once(store: Store) -> None:
+    dead = f"{owners.new_owner('worker')}1"  # another process has its number now
+    with store.write() as tx:
+        clip = add(tx, "walk")
+        claimed = queue.take(tx, ALL, dead)
+        assert claimed is not None
+        assert outcomes.request_cancel(tx, claimed.job.id).state is JobState.CANCELED
+        assert clips.get(tx, clip.id).state is ClipState.FAILED

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
+import sqlite3
 import subprocess
 import sys
 import threading
@@ -15,6 +17,7 @@ import psutil
 import pytest
 
 from app.config import Settings
+from app.services.exposure import CANNOT_START
 from app.worker import supervisor
 from app.worker.supervisor import Kept, environment, keep_running
 
@@ -56,10 +59,23 @@ def test_a_process_that_is_killed_is_started_again_and_ended_with_the_rest(
 
 
 def test_a_process_that_cannot_start_ends_the_whole(tmp_path: Path) -> None:
-    hopeless = Kept("hopeless", ("-c", "import sys, time; time.sleep(1); sys.exit(3)"))
+    ending = f"import sys, time; time.sleep(1); sys.exit({CANNOT_START})"
+    hopeless = Kept("hopeless", ("-c", ending))
     log = tmp_path / "pids"
-    assert keep_running([_kept(log), hopeless], dict(os.environ), threading.Event()) == 3
+    assert keep_running([_kept(log), hopeless], dict(os.environ), threading.Event()) == CANNOT_START
     assert not any(psutil.pid_exists(pid) for pid in _pids(log))
+
+
+@pytest.mark.parametrize("code", [1, 2, 3, 255])
+def test_one_that_crashes_young_is_started_again(code: int) -> None:
+    one = Kept("crasher", ("-c", f"import sys; sys.exit({code})"))
+    for _ in range(2):
+        one.next_start = 0.0
+        assert supervisor._look_after(one, dict(os.environ)) is None
+        assert one.process is not None
+        one.process.wait()
+        assert supervisor._look_after(one, dict(os.environ)) is None
+    assert one.process is None
 
 
 def test_one_that_dies_young_waits_longer_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -73,6 +89,39 @@ def test_one_that_dies_young_waits_longer_each_time(monkeypatch: pytest.MonkeyPa
         delays.append(one.delay)
         assert supervisor._look_after(one, dict(os.environ)) is None
     assert delays == [0.5, 1.0, 2.0]
+
+
+def _database_of_another_version(folder: Path) -> None:
+    folder.mkdir()
+    with sqlite3.connect(folder / "kinedex.sqlite3") as database:
+        database.execute("CREATE TABLE alembic_version (version_num VARCHAR(32) NOT NULL)")
+        database.execute("INSERT INTO alembic_version VALUES ('9999')")
+    database.close()
+
+
+@pytest.mark.parametrize("arguments", [supervisor.API, supervisor.WORKER], ids=["api", "worker"])
+def test_a_database_of_another_version_cannot_be_started_on(
+    arguments: tuple[str, ...], tmp_path: Path
+) -> None:
+    _database_of_another_version(tmp_path / "data")
+    environ = os.environ | {"KINEDEX_DATA_DIR": str(tmp_path / "data"), "KINEDEX_PORT": "0"}
+    ended = subprocess.run(
+        [sys.executable, *arguments], env=environ, capture_output=True, text=True, check=False
+    )
+    assert (ended.returncode, "newer Kinedex" in ended.stderr) == (CANNOT_START, True)
+
+
+def test_a_taken_port_cannot_be_listened_on(tmp_path: Path) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        environ = os.environ | {
+            "KINEDEX_DATA_DIR": str(tmp_path / "data"),
+            "KINEDEX_PORT": str(taken.getsockname()[1]),
+        }
+        command = [sys.executable, *supervisor.API]
+        ended = subprocess.run(command, env=environ, capture_output=True, text=True, check=False)
+    assert (ended.returncode, "cannot listen" in ended.stderr) == (CANNOT_START, True)
 
 
 SUPERVISOR = """
@@ -125,5 +174,5 @@ def test_a_folder_named_app_where_it_is_started_does_not_matter(
         text=True,
         check=False,
     )
-    assert ended.returncode != 0
+    assert ended.returncode == CANNOT_START
     assert "KINEDEX_PORT" in ended.stderr

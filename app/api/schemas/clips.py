@@ -27,7 +27,7 @@ from app.motion.recording import FRAME_RATES
 from app.search.filters import parse_filter
 from app.services.fields import MAX_KEYPOSES, MAX_OFFSET, TEMPI
 from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipRecord, ClipState
+from app.store.clip_record import ClipRecord, ClipState, Reanalysis
 
 Sort = Literal[
     "created_at",
@@ -99,6 +99,11 @@ class Clip(Outgoing):
         " long a beat is, and with what probability it is right."
     )
     error: Problem | None = Field(description="Why the clip is `failed`, else null.")
+    reanalysis: Reanalysis | None = Field(
+        description="Where another analysis of a ready clip stands, after a change of the clip or"
+        " of Kinedex: null once it is done. Until then the clip is searched by its earlier"
+        " analysis. After `failed` it keeps that, and a warning says why."
+    )
 
     @classmethod
     def of(cls, record: ClipRecord) -> Clip:
@@ -129,6 +134,7 @@ class Clip(Outgoing):
             has_audio=record.audio_sha256 is not None,
             audio_offset=_offset(record),
             error=Problem.of(record.error),
+            reanalysis=record.reanalysis,
         )
 
 

@@ -1,0 +1,28 @@
+"""Arrays of clips that this version of the analysis can use.
+
+A clip that waits for another analysis after an upgrade keeps its older arrays. Those of another
+shape are left out here, so that a comparison goes on without that clip.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any
+
+from numpy.typing import NDArray
+
+from app.analysis.array_shapes import is_usable
+from app.store import arrays
+from app.store.engine import Tx
+
+
+def get_some(tx: Tx, clip_id: str, names: Collection[str]) -> dict[str, NDArray[Any]]:
+    """Those of the named arrays of a clip that are there and usable, by name."""
+    found = arrays.get_some(tx, clip_id, names)
+    return {name: array for name, array in found.items() if is_usable(name, array)}
+
+
+def get_many(tx: Tx, clip_ids: Collection[str], name: str) -> dict[str, NDArray[Any]]:
+    """One array of many clips by clip id; clips without a usable one are left out."""
+    found = arrays.get_many(tx, clip_ids, name)
+    return {clip_id: array for clip_id, array in found.items() if is_usable(name, array)}

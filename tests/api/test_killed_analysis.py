@@ -1,0 +1,91 @@
+"""An uploaded query whose analysis process is killed: tried again, then 503, never 500."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import httpx2
+import psutil
+import pytest
+
+from app.services.demo import DemoClip
+from tests.api.conftest import assert_problem
+from tests.live import Live, serve
+from tests.long_clips import busy_children, children_of, repeated, server_of
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
+    with serve(tmp_path_factory.mktemp("killed") / "data") as live:
+        yield live
+
+
+@pytest.fixture
+def api(service: Live) -> psutil.Process:
+    """The process that answers."""
+    for child in psutil.Process().children():
+        told = child.environ().get("KINEDEX_DATA_DIR")
+        if told == str(service.data_dir) and "app.api.server" in child.cmdline():
+            return child
+    raise LookupError
+
+
+@contextmanager
+def _killing(find: Callable[[], list[psutil.Process]], times: int) -> Iterator[list[int]]:
+    """Kills what `find` finds, so many processes; tells which."""
+    stop, killed = threading.Event(), list[int]()
+
+    def hunt() -> None:
+        while not stop.wait(0.01) and len(killed) < times:
+            for process in find():
+                if process.pid not in killed and len(killed) < times:
+                    process.kill()
+                    killed.append(process.pid)
+
+    thread = threading.Thread(target=hunt)
+    thread.start()
+    try:
+        yield killed
+    finally:
+        stop.set()
+        thread.join()
+
+
+def _ask(service: Live, url: str, content: bytes) -> httpx2.Response:
+    with service.client() as client:
+        return client.post(url, files={"file": ("long.bvh", content)})
+
+
+def test_one_kill_costs_only_time(service: Live, api: psutil.Process, take: DemoClip) -> None:
+    with _killing(lambda: busy_children(api), 1) as killed:
+        answer = _ask(service, "/v1/search/motion", repeated(take, 60))
+    assert len(killed) == 1
+    assert answer.status_code == 200, answer.text
+
+
+@pytest.mark.parametrize("url", ["/v1/search/motion", "/v1/recognize"])
+def test_kill_after_kill_is_told_with_when_to_ask_again(
+    service: Live, api: psutil.Process, take: DemoClip, url: str
+) -> None:
+    with _killing(lambda: busy_children(api), 1000) as killed:
+        answer = _ask(service, url, repeated(take, 60))
+    assert len(killed) >= 2
+    assert_problem(answer, 503, "analysis_interrupted")
+    assert answer.headers["retry-after"].isdigit()
+    assert _ask(service, "/v1/search/motion", take.content).status_code == 200
+
+
+def test_a_killed_server_of_children_ends_no_request(
+    service: Live, api: psutil.Process, take: DemoClip
+) -> None:
+    assert _ask(service, "/v1/search/motion", take.content).status_code == 200
+    for _ in range(2):
+        server = server_of(api)
+        assert server is not None
+        for child in children_of(api):
+            child.kill()
+        server.kill()
+        assert _ask(service, "/v1/search/motion", take.content).status_code == 200
+    assert api.is_running()

@@ -1,0 +1,236 @@
+"""Deaths that are not the clip's own, and clocks that jump, fail no clip."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import timedelta
+from pathlib import Path
+
+import psutil
+import pytest
+
+from app.config import Settings
+from app.services import analysis_pool, clips, jobs, models
+from app.services.demo import DemoClip, demo_clips
+from app.services.library import Library
+from app.store import ids, leases, outcomes
+from app.store.clip_record import ClipRecord, ClipState
+from app.store.job_record import JobState
+from app.worker.loop import Worker, run_worker
+from tests.live import wait_until
+from tests.long_clips import busy_children, children_of, repeated, server_of
+from tests.services.conftest import settings_for, upload
+
+NET_S = 120.0
+
+
+@pytest.fixture
+def lib(tmp_path: Path) -> Iterator[Library]:
+    opened = Library.open(settings_for(tmp_path, job_lease_s=2.0, job_heartbeat_s=0.2))
+    yield opened
+    opened.close()
+
+
+@pytest.fixture(scope="session")
+def kicks() -> list[DemoClip]:
+    return list(demo_clips(tasks=("kick",), takes=2))
+
+
+@pytest.fixture(scope="session")
+def long_clip(kicks: list[DemoClip]) -> DemoClip:
+    clip = kicks[0]
+    return DemoClip(**{**_fields(clip), "path": "long.bvh", "content": repeated(clip, 60)})
+
+
+def _fields(clip: DemoClip) -> dict[str, object]:
+    return {name: getattr(clip, name) for name in clip.__dataclass_fields__}
+
+
+@contextmanager
+def _worker(settings: Settings) -> Iterator[psutil.Process]:
+    """A worker process; it must live to the end."""
+    environ = os.environ | {
+        "KINEDEX_DATA_DIR": str(settings.data_dir),
+        "KINEDEX_JOB_LEASE_S": str(settings.job_lease_s),
+        "KINEDEX_JOB_HEARTBEAT_S": str(settings.job_heartbeat_s),
+        "KINEDEX_ANALYSIS_PROCESSES": str(settings.analysis_processes),
+        "KINEDEX_LOG_LEVEL": "error",
+    }
+    process = subprocess.Popen([sys.executable, "-m", "app.worker"], env=environ)
+    try:
+        yield psutil.Process(process.pid)
+        assert process.poll() is None
+    finally:
+        process.kill()
+        process.wait()
+
+
+@contextmanager
+def _worker_thread(settings: Settings) -> Iterator[None]:
+    stop = threading.Event()
+    thread = threading.Thread(target=run_worker, args=(settings, stop))
+    thread.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        thread.join()
+
+
+def _all(lib: Library) -> list[ClipRecord]:
+    return list(clips.list_clips(lib, limit=1000).items)
+
+
+def _wait_until_ended(lib: Library) -> None:
+    wait_until(lambda: all(clip.is_settled for clip in _all(lib)), NET_S)
+
+
+def _states(lib: Library) -> set[ClipState]:
+    return {clip.state for clip in _all(lib)}
+
+
+def _kill_busy(parent: psutil.Process) -> None:
+    (child, *_) = wait_until(lambda: busy_children(parent), NET_S)
+    child.kill()
+    wait_until(lambda: not child.is_running(), NET_S)
+
+
+@pytest.mark.slow
+def test_more_kills_of_its_child_than_attempts_fail_no_clip(
+    lib: Library, long_clip: DemoClip
+) -> None:
+    created = upload(lib, long_clip)
+    with _worker(lib.settings) as worker:
+        for _ in range(lib.settings.job_max_attempts + 1):
+            _kill_busy(worker)
+        _wait_until_ended(lib)
+    assert _states(lib) == {ClipState.READY}
+    assert created.job is not None
+    assert jobs.get_job(lib, created.job.id).state is JobState.SUCCEEDED
+
+
+def test_after_many_kills_a_clip_is_tried_alone_and_then_given_up(
+    lib: Library, long_clip: DemoClip, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(outcomes, "MOST_KILLS", 1)
+    alone: list[bool] = []
+    submit = analysis_pool.AnalysisPool.submit
+
+    def watched(pool: object, order: object, *, is_alone: bool = False) -> object:
+        alone.append(is_alone)
+        return submit(pool, order, is_alone=is_alone)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(analysis_pool.AnalysisPool, "submit", watched)
+    clip = upload(lib, long_clip).clip
+    with _worker_thread(lib.settings):
+        for _ in range(2):
+            _kill_busy(psutil.Process())
+        _wait_until_ended(lib)
+    assert alone == [False, True]
+    failed = clips.get_clip(lib, clip.id)
+    assert failed.error is not None
+    assert failed.error["code"] == "analysis_crashed"
+    assert "stopped from outside" in failed.error["detail"]
+
+
+def test_a_child_that_dies_by_its_own_work_counts(
+    lib: Library, long_clip: DemoClip, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.services.ingest.RETRY_DELAY_S", 0.0)
+    clip = upload(lib, long_clip).clip
+    with _worker_thread(lib.settings):
+        for _ in range(lib.settings.job_max_attempts):
+            (child, *_) = wait_until(lambda: busy_children(psutil.Process()), NET_S)
+            child.send_signal(signal.SIGSEGV)
+            wait_until(lambda dead=child: not dead.is_running(), NET_S)
+        _wait_until_ended(lib)
+    failed = clips.get_clip(lib, clip.id)
+    assert failed.error is not None
+    assert (failed.error["code"], "signal 11" in failed.error["detail"]) == (
+        "analysis_crashed",
+        True,
+    )
+
+
+def test_killing_the_server_of_a_workers_children_ends_nothing(
+    lib: Library, kicks: list[DemoClip]
+) -> None:
+    for clip in kicks:
+        upload(lib, clip)
+    with _worker(lib.settings) as worker:
+        for _ in range(2):
+            # As soon as there is one: within the first seconds of the worker.
+            server = wait_until(lambda: server_of(worker), NET_S)
+            children = children_of(worker)
+            for process in (server, *children):
+                process.kill()
+            wait_until(lambda old=server: server_of(worker) not in (None, old), NET_S)
+        _wait_until_ended(lib)
+    assert _states(lib) == {ClipState.READY}
+
+
+@pytest.mark.slow
+def test_a_fit_whose_child_is_killed_is_done_again(lib: Library, kicks: list[DemoClip]) -> None:
+    for clip in kicks[:4]:
+        upload(lib, clip)
+    with _worker(lib.settings):
+        _wait_until_ended(lib)
+    job = models.request_fit(lib)
+    with _worker(lib.settings) as worker:
+        _kill_busy(worker)
+        wait_until(lambda: not jobs.get_job(lib, job.id).is_open, NET_S)
+    assert jobs.get_job(lib, job.id).state is JobState.SUCCEEDED
+
+
+@pytest.mark.parametrize("jump", [timedelta(hours=1), timedelta(hours=-1)], ids=str)
+def test_a_clock_that_jumps_while_clips_are_analysed_fails_none(
+    lib: Library,
+    kicks: list[DemoClip],
+    long_clip: DemoClip,
+    monkeypatch: pytest.MonkeyPatch,
+    jump: timedelta,
+) -> None:
+    for clip in (long_clip, *kicks[:3]):
+        upload(lib, clip)
+    with _worker_thread(lib.settings):
+        wait_until(lambda: busy_children(psutil.Process()), NET_S)
+        _move_clock(monkeypatch, jump)
+        _wait_until_ended(lib)
+    assert _states(lib) == {ClipState.READY}
+
+
+def _move_clock(monkeypatch: pytest.MonkeyPatch, jump: timedelta) -> None:
+    """In this process, wherever durations were once measured by it."""
+    real, now = time.time, ids.utc_now
+    monkeypatch.setattr(time, "time", lambda: real() + jump.total_seconds())
+    for module in (leases, outcomes):
+        monkeypatch.setattr(module, "utc_now", lambda: now() + jump)
+
+
+@pytest.mark.parametrize("is_canceled", [False, True])
+def test_what_a_worker_held_whose_clock_was_ahead_is_free_within_a_lease(
+    lib: Library, kicks: list[DemoClip], monkeypatch: pytest.MonkeyPatch, is_canceled: bool
+) -> None:
+    created = upload(lib, kicks[0])
+    assert created.job is not None
+    job_id = created.job.id
+    with monkeypatch.context() as ahead:
+        _move_clock(ahead, timedelta(hours=1))
+        # Its name tells nothing, as that of a worker on another machine.
+        ahead.setattr("app.store.owners.new_owner", lambda prefix: f"{prefix}@elsewhere")
+        held = Worker(lib)
+        held._take_a_turn()
+        held._bench.close()  # dead, as far as the store knows
+    if is_canceled:
+        jobs.cancel_job(lib, job_id)
+    with _worker(lib.settings):
+        wait_until(lambda: not jobs.get_job(lib, job_id).is_open, NET_S)
+    wanted = JobState.CANCELED if is_canceled else JobState.SUCCEEDED
+    assert jobs.get_job(lib, job_id).state is wanted
