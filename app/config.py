@@ -68,6 +68,11 @@ class Settings(BaseSettings):
     max_concurrent_uploads: int = Field(
         16, ge=1, description="Uploads received at once; more are answered 503 with Retry-After."
     )
+    request_timeout_s: float = Field(
+        30.0,
+        gt=0,
+        description="Seconds a call may wait and work before it ends as 503 `deadline_exceeded`.",
+    )
     query_timeout_s: float = Field(
         30.0, gt=0, description="Seconds that analysing an uploaded query may take."
     )

@@ -6,6 +6,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import version
 
+import anyio
 from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 from fastapi_offline import FastAPIOffline
@@ -15,6 +16,7 @@ from app.api.docs import STATIC, install_docs
 from app.api.envelope import Envelope
 from app.api.errors import install_handlers
 from app.api.examples import example_ids
+from app.api.gates import Gates
 from app.api.limits import BodyLimit
 from app.api.loading import Loading
 from app.api.metrics import install_metrics
@@ -95,6 +97,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.settings = settings
     app.state.library = None
     app.state.stopping = False
+    app.state.gates = Gates.of(settings.request_timeout_s)
     app.state.upload_slots = UploadSlots(settings.max_concurrent_uploads)
     install_handlers(app)
     for module in _ROUTES:
@@ -110,6 +113,7 @@ def create_app(settings: Settings) -> FastAPI:
 
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    anyio.to_thread.current_default_thread_limiter().total_tokens = app.state.gates.threads
     library = await run_in_threadpool(Library.open, app.state.settings)
     loading = Loading(library)
     loading.start()

@@ -12,6 +12,8 @@ from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.errors import answer_unexpected
+from app.api.pieces import CutOff
+from app.api.problems import CLIENT_LEFT
 from app.logs import request_id
 from app.store import keys
 
@@ -26,8 +28,6 @@ SECURITY_HEADERS = {
     "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'; base-uri 'none'",
 }
 """Sent with every answer; an answer that needs another policy sets its own."""
-LEFT = 499
-"""Logged, in nginx's way, where the client left before it had sent its body."""
 
 
 class Envelope:
@@ -62,7 +62,10 @@ class Envelope:
         try:
             await self.app(scope, receive, send_with_headers)
         except ClientDisconnect:
-            status = LEFT
+            status = CLIENT_LEFT
+        except CutOff as cut:
+            # The server closes the connection, so that the client sees an unfinished answer.
+            status = cut.status
         except Exception as error:  # noqa: BLE001 - the last net: nothing may pass it
             response = answer_unexpected(error)
             if not status:

@@ -23,6 +23,7 @@ from app.api.problems import (
 from app.errors import (
     BadField,
     Conflict,
+    DeadlineExceeded,
     DiskFull,
     KinedexError,
     ModelBeingFitted,
@@ -36,6 +37,10 @@ log = logging.getLogger(__name__)
 RETRY_AFTER_SECONDS = "1"
 FIT_SECONDS = "5"
 """A fit takes from a second to a minute."""
+
+
+_PASSING = (NotReadyYet, TooBusy, DeadlineExceeded)
+"""Nothing is wrong inside: it may well be different the next time."""
 
 
 def install_handlers(app: FastAPI) -> None:
@@ -58,7 +63,7 @@ async def _on_failure(request: Request, error: Exception) -> Response:
     failure = cast(KinedexError, error)
     if isinstance(failure, (BadField, NotFound, Conflict)):
         failure = _located(failure, request)
-    if status_of(type(failure)) >= 500 and not isinstance(failure, (NotReadyYet, TooBusy)):
+    if status_of(type(failure)) >= 500 and not isinstance(failure, _PASSING):
         log.error("failure: %s", failure.detail, exc_info=failure)
     return respond(problem_of(failure), _headers(failure))
 
@@ -66,7 +71,7 @@ async def _on_failure(request: Request, error: Exception) -> Response:
 def _headers(failure: KinedexError) -> dict[str, str]:
     if isinstance(failure, Unauthorized):
         return {"WWW-Authenticate": "Bearer"}
-    if isinstance(failure, (NotReadyYet, TooBusy)):
+    if isinstance(failure, _PASSING):
         return {"Retry-After": RETRY_AFTER_SECONDS}
     if isinstance(failure, ModelBeingFitted):
         return {"Retry-After": FIT_SECONDS}

@@ -29,9 +29,15 @@ class NotReadyYet(KinedexError):
 
 
 class TooBusy(KinedexError):
-    """Too many uploads are being received at once; try again shortly."""
+    """The service is too busy; try again shortly."""
 
     code = "too_busy"
+
+
+class ReaderTooSlow(KinedexError):
+    """The client reads the answer too slowly."""
+
+    code = "reader_too_slow"
 
 
 class MalformedBody(KinedexError):
@@ -46,11 +52,15 @@ class UnsupportedMediaType(KinedexError):
     code = "unsupported_media_type"
 
 
+CLIENT_LEFT = 499
+"""Logged, in nginx's way, where the client left before it was answered; nobody gets it."""
+
 STATUSES: dict[type[KinedexError], int] = {
     MalformedBody: 400,
     errors.Unauthorized: 401,
     errors.Forbidden: 403,
     errors.NotFound: 404,
+    ReaderTooSlow: 408,
     errors.Conflict: 409,
     errors.Canceled: 409,
     errors.TooLarge: 413,
@@ -62,8 +72,10 @@ STATUSES: dict[type[KinedexError], int] = {
     errors.StorageError: 500,
     errors.ConfigurationError: 500,
     KinedexError: 500,
+    errors.ClientLeft: CLIENT_LEFT,
     NotReadyYet: 503,
     TooBusy: 503,
+    errors.DeadlineExceeded: 503,
     errors.DiskFull: 507,
 }
 """HTTP status by failure; a class that is not listed has its nearest ancestor's."""

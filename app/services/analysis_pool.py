@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import pebble
 
+from app.deadline import result_of
 from app.errors import (
     AnalysisCrashed,
     AnalysisTimedOut,
@@ -125,10 +126,11 @@ class AnalysisPool:
 
         Raises BadContent (or TooLarge) for what the content deserves: AnalysisTimedOut,
         AnalysisCrashed, and the reader's own failures; ChildDied where the child was killed,
-        StorageError where the file cannot be read, CancelledError after `cancel`.
+        StorageError where the file cannot be read, CancelledError after `cancel`. Where the work
+        at hand should not go on (ClientLeft, DeadlineExceeded) the child is killed.
         """
         try:
-            return future.result()
+            return result_of(future)
         except KinedexError:
             raise
         except TimeoutError as late:

@@ -10,6 +10,7 @@ from fastapi import APIRouter, Depends, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
+from app.api.admission import changes, follow, quick
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import JobId, refusals
 from app.api.schemas.jobs import Job, JobList, JobQuery
@@ -24,20 +25,22 @@ POLL_SECONDS = 0.25
 """Between two looks at a job that is being followed."""
 
 
-@router.get("", dependencies=[reads], responses=refusals())
+@router.get("", dependencies=[reads, quick], responses=refusals())
 def list_jobs(lib: Lib, query: Annotated[JobQuery, Query()]) -> JobList:
     """Jobs, the newest first."""
     page = jobs.list_jobs(lib, query.kind, query.state, query.limit, query.cursor)
     return JobList(items=[Job.of(job) for job in page.items], next=page.next)
 
 
-@router.get("/{job_id}", dependencies=[reads], responses=refusals(404))
+@router.get("/{job_id}", dependencies=[reads, quick], responses=refusals(404))
 def get_job(lib: Lib, job_id: JobId) -> Job:
     """One job."""
     return Job.of(jobs.get_job(lib, job_id))
 
 
-@router.delete("/{job_id}", status_code=202, dependencies=[writes], responses=refusals(404, 409))
+@router.delete(
+    "/{job_id}", status_code=202, dependencies=[writes, changes], responses=refusals(404, 409)
+)
 def cancel_job(lib: Lib, job_id: JobId) -> Job:
     """Ask a job to stop; one that has ended stays as it is."""
     return Job.of(jobs.cancel_job(lib, job_id))
@@ -50,7 +53,7 @@ def _existing(lib: Lib, job_id: JobId) -> JobRecord:
 
 @router.get(
     "/{job_id}/events",
-    dependencies=[reads],
+    dependencies=[reads, Depends(_existing), follow],
     response_class=EventSourceResponse,
     responses=refusals(404),
 )

@@ -7,6 +7,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 from app.services import fields
+from app.services.frame_rates import LEAST_FPS, MOST_FPS
 
 Value = TypeVar("Value")
 
@@ -56,3 +57,6 @@ Cursor = Annotated[
     str, Field(max_length=1000, description="`next` of the answer before; from there on.")
 ]
 Seconds = Annotated[float, Field(ge=0, le=1e6)]
+
+Fps = Annotated[float, Field(ge=LEAST_FPS, le=MOST_FPS)]
+"""Frames a second that a motion is resampled to."""
