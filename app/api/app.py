@@ -57,7 +57,7 @@ are; where you read `CLIP_ID`, reload this page once there is a clip.
 Times are ISO 8601 in UTC, durations seconds. Lists are `{"items": [...], "next": cursor}`.
 Every failure is a problem (RFC 9457, `application/problem+json`).
 """
-_ROUTES = (
+ROUTES = (
     clips,
     clip_views,
     keyposes,
@@ -100,7 +100,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.gates = Gates.of(settings.request_timeout_s)
     app.state.upload_slots = UploadSlots(settings.max_concurrent_uploads)
     install_handlers(app)
-    for module in _ROUTES:
+    for module in ROUTES:
         app.include_router(module.router)
     install_docs(app)
     describe(app, [MotionSearch, Recognize, Synthesize], lambda: example_ids(app.state.library))

@@ -11,7 +11,6 @@ import asyncio
 import logging
 import time
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import suppress
 
 from fastapi import Response
 from fastapi.concurrency import run_in_threadpool
@@ -76,12 +75,12 @@ class Pieces(Response):
     async def _answer(self, sending: _Sending, slot: Slot, deadline: Deadline) -> None:
         await slot.take(again=True)
         piece = await self._next()
-        await sending.start(self.status_code, self.raw_headers)
         try:
+            await sending.start(self.status_code, self.raw_headers)
             turn_ends = time.monotonic() + TURN_SECONDS
             while piece is not None:
                 for part in _parts(piece):
-                    await sending.send(part)
+                    await sending.part(part)
                     deadline.restart()  # how long the client reads is not our time
                     deadline.check()
                 if time.monotonic() > turn_ends:
@@ -110,14 +109,17 @@ class _Sending:
         self._waited = 0.0
 
     async def start(self, status: int, headers: list[tuple[bytes, bytes]]) -> None:
-        await self._send({"type": "http.response.start", "status": status, "headers": headers})
+        await self._message({"type": "http.response.start", "status": status, "headers": headers})
+
+    async def part(self, part: bytes) -> None:
+        await self._message({"type": "http.response.body", "body": part, "more_body": True})
+        self._sent += len(part)
 
     async def end(self) -> None:
-        await self._send({"type": "http.response.body", "body": b"", "more_body": False})
+        await self._message({"type": "http.response.body", "body": b"", "more_body": False})
 
-    async def send(self, part: bytes) -> None:
+    async def _message(self, message: Message) -> None:
         """Raises ReaderTooSlow."""
-        message: Message = {"type": "http.response.body", "body": part, "more_body": True}
         sending = asyncio.ensure_future(self._send(message))
         began = time.monotonic()
         try:
@@ -132,12 +134,8 @@ class _Sending:
                 )
             sending.result()
         finally:
-            if not sending.done():
-                sending.cancel()
-                with suppress(asyncio.CancelledError):
-                    await sending
+            sending.cancel()
         self._waited += time.monotonic() - began
-        self._sent += len(part)
 
 
 def _parts(piece: bytes) -> Iterator[bytes]:
