@@ -13,7 +13,8 @@ from app.errors import TooLarge
 FORM_BYTES = 2**20
 """What a form may hold beside its file."""
 JSON_BYTES = 2**20
-"""The largest body of a call that takes no file."""
+"""The largest body of a call that takes no file, and the largest JSON: while it is parsed,
+nothing else is answered."""
 MOST_DRAINED = 16 * 2**20
 """Bytes read and dropped after a refusal: many clients send all before they listen."""
 
@@ -36,11 +37,15 @@ class BodyLimit:
             await self.app(scope, receive, send)
             return
         path = scope["path"].removeprefix(scope.get("root_path", "")).rstrip("/")
-        limit = self._limits.get(path, JSON_BYTES)
+        limit = JSON_BYTES if _is_json(scope) else self._limits.get(path, JSON_BYTES)
         if _declares_more_than(limit, scope):
             await _refuse(limit, scope, receive, send)
         else:
             await self.app(scope, _counted(limit, receive), send)
+
+
+def _is_json(scope: Scope) -> bool:
+    return "json" in Headers(scope=scope).get("content-type", "").lower()
 
 
 def _declares_more_than(limit: int, scope: Scope) -> bool:

@@ -168,3 +168,9 @@ def test_more_frames_than_a_call_may_make_are_refused(
     answer = client.get(f"/v1/clips/{library[1][0]}/motion?fps=1000")
     assert_problem(answer, 422, "bad_field", "query.fps")
     assert "more than 500000 frames" in answer.json()["detail"]
+
+
+def test_a_json_body_is_never_as_large_as_a_file(client: httpx2.Client) -> None:
+    for path in ("/v1/search/motion", "/v1/recognize"):
+        answer = client.post(path, json={"clip_id": "x" * 2_000_000})
+        assert_problem(answer, 413, "too_large")

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,7 +14,15 @@ from pathlib import Path
 import psutil
 import pytest
 
-from app.errors import AnalysisCrashed, AnalysisTimedOut, KinedexError, TooLarge, Unreadable
+from app.deadline import Deadline, within
+from app.errors import (
+    AnalysisCrashed,
+    AnalysisTimedOut,
+    ClientLeft,
+    KinedexError,
+    TooLarge,
+    Unreadable,
+)
 from app.services.analysis_pool import AnalysisPool, ChildDied, Limits, Order
 from app.services.demo import DemoClip
 
@@ -70,6 +79,19 @@ def test_frames_and_joints_are_limited(some_demo_clips: list[DemoClip]) -> None:
         tight.analyse(Order(content=some_demo_clips[0].content))
     assert refused.value.places[0].location == "frames"
     tight.close()
+
+
+def test_an_analysis_that_nobody_waits_for_is_stopped_and_the_next_one_done(
+    some_demo_clips: list[DemoClip],
+) -> None:
+    pool = AnalysisPool(Limits(600.0, 2048, 10_000_000, 100))
+    content = _long(some_demo_clips[0], 400)
+    with within(Deadline(60.0)) as deadline:
+        threading.Timer(0.3, deadline.abandon).start()
+        with pytest.raises(ClientLeft):
+            pool.analyse(Order(content=content))
+    assert pool.analyse(Order(content=some_demo_clips[0].content)).motion.frames > 1
+    pool.close()
 
 
 def test_an_analysis_over_its_time_is_stopped_and_the_next_one_done(
