@@ -87,6 +87,11 @@ class Settings(BaseSettings):
         ge=1,
         description="Open connections from one client address (behind a proxy: the proxy's).",
     )
+    request_timeout_s: float = Field(
+        30.0,
+        gt=0,
+        description="Seconds a call may wait and work before it ends as 503 `deadline_exceeded`.",
+    )
     query_timeout_s: float = Field(
         30.0, gt=0, description="Seconds that analysing an uploaded query may take."
     )

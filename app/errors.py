@@ -245,6 +245,18 @@ class Canceled(KinedexError):
     code = "canceled"
 
 
+class DeadlineExceeded(KinedexError):
+    """The call took longer than it may."""
+
+    code = "deadline_exceeded"
+
+
+class ClientLeft(KinedexError):
+    """The client left before it was answered."""
+
+    code = "client_left"
+
+
 class StorageError(KinedexError):
     """The store failed."""
 

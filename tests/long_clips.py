@@ -1,49 +1,75 @@
-"""Large files that are nothing but large, and the child processes that are busy with them."""
+"""Ready clips so long that comparing two of them never ends: what overload is tested with."""
 
 from __future__ import annotations
 
-from contextlib import suppress
+import json
+from pathlib import Path
+from typing import Any
 
-import psutil
+import numpy as np
+from sqlalchemy import insert, update
 
-from app.services.demo import DemoClip
+from app.analysis.analyse import ANALYSIS_VERSION
+from app.config import Settings
+from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
+from app.store import arrays, schema
+from app.store import tables as t
+from app.store.index_feed import IndexedClip
+from app.store.store import Store
+from tests.bench.large_library import clip_row
+from tests.bodies import walking
 
-BUSY_S = 0.3
-"""CPU time after which a child is in the middle of its analysis."""
-
-
-def repeated(clip: DemoClip, times: int) -> bytes:
-    """The same motion over and over."""
-    head, _, frames = clip.content.partition(b"Frame Time")
-    line, _, rows = frames.partition(b"\n")
-    count = rows.count(b"\n") * times
-    head = head[: head.rindex(b"Frames:")] + b"Frames: %d\n" % count
-    return head + b"Frame Time" + line + b"\n" + rows * times
-
-
-def server_of(parent: psutil.Process) -> psutil.Process | None:
-    """The process that forks a process's children."""
-    with suppress(psutil.Error):
-        for child in parent.children():
-            with suppress(psutil.Error):
-                if "multiprocessing.forkserver" in " ".join(child.cmdline()):
-                    return child
-    return None
+FRAMES = 60_000
+"""Their positions are more than a connection holds that nobody reads."""
+COMPARED = 150_000
+"""Numbers of a clip's secondary vector: warping two takes minutes."""
+COUNT = 3
 
 
-def children_of(parent: psutil.Process) -> list[psutil.Process]:
-    """The analysis processes of a process."""
-    with suppress(psutil.Error):
-        server = server_of(parent)
-        return [] if server is None else server.children()
-    return []
+def long_library(data_dir: Path) -> list[str]:
+    """Write COUNT ready clips into a new library, and return their ids."""
+    settings = Settings(data_dir=data_dir)
+    data_dir.mkdir(parents=True, exist_ok=True)
+    schema.prepare(settings.database)
+    store = Store.open(settings.database, settings.files_dir)
+    names = [role.value for role in SUN_ROLES]
+    changes = {"roles": {n: n for n in names}, "frames": FRAMES, "joints": len(names)}
+    clips = [_indexed(number) for number in range(1, COUNT + 1)]
+    with store.write() as tx:
+        for number, clip in enumerate(clips, 1):
+            tx.execute(insert(t.clips), [clip_row(number, clip) | changes])
+            arrays.put_many(tx, clip.id, _arrays(number), version=ANALYSIS_VERSION)
+        tx.execute(update(t.library).values(version=COUNT))
+    store.close()
+    return [clip.id for clip in clips]
 
 
-def busy_children(parent: psutil.Process, seconds: float = BUSY_S) -> list[psutil.Process]:
-    """Those that have worked for so long."""
-    found = []
-    for child in children_of(parent):
-        with suppress(psutil.Error):
-            if sum(child.cpu_times()[:2]) >= seconds:
-                found.append(child)
-    return found
+def _indexed(number: int) -> IndexedClip:
+    return IndexedClip(
+        id=f"clip_{number:020x}",
+        is_ready=True,
+        person="ada",
+        task="walk",
+        license=None,
+        source=None,
+        duration=FRAMES / 30,
+        words=frozenset(),
+        array=None,
+    )
+
+
+def _arrays(number: int) -> dict[str, Any]:
+    rng = np.random.default_rng(number)
+    body = walking(FRAMES / 30)[:FRAMES].astype(np.float32)
+    return {
+        "motion_vector": rng.normal(size=128).astype(np.float32),
+        "features_10hz": rng.normal(size=(100, 82)).astype(np.float32),
+        "msv_rho": rng.normal(size=13).astype(np.float32),
+        "msv_epsilon": rng.normal(size=COMPARED).astype(np.float32),
+        "role_positions": body,
+        "positions": body,
+        "parents": np.array(SUN_PARENTS, dtype=np.int32),
+        "joint_names": np.frombuffer(
+            json.dumps([role.value for role in SUN_ROLES]).encode(), dtype=np.uint8
+        ),
+    }

@@ -6,6 +6,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import version
 
+import anyio
 from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 from fastapi_offline import FastAPIOffline
@@ -15,6 +16,7 @@ from app.api.door import Door
 from app.api.envelope import Envelope
 from app.api.errors import install_handlers
 from app.api.examples import example_ids
+from app.api.gates import Gates
 from app.api.limits import BodyLimit
 from app.api.loading import Loading
 from app.api.methods import KnownMethods
@@ -58,7 +60,7 @@ are; where you read `CLIP_ID`, reload this page once there is a clip.
 Times are ISO 8601 in UTC, durations seconds. Lists are `{"items": [...], "next": cursor}`.
 Every failure is a problem (RFC 9457, `application/problem+json`).
 """
-_ROUTES = (
+ROUTES = (
     clips,
     clip_views,
     keyposes,
@@ -99,8 +101,9 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.library = None
     app.state.stopping = False
     app.state.start_failure = None
+    app.state.gates = Gates.of(settings.request_timeout_s)
     install_handlers(app)
-    for module in _ROUTES:
+    for module in ROUTES:
         app.include_router(module.router)
     install_docs(app)
     describe(app, [MotionSearch, Recognize, Synthesize], lambda: example_ids(app.state.library))
@@ -116,6 +119,7 @@ def create_app(settings: Settings) -> FastAPI:
 
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    anyio.to_thread.current_default_thread_limiter().total_tokens = app.state.gates.threads
     try:
         library = await run_in_threadpool(Library.open, app.state.settings)
     except KinedexError as failure:

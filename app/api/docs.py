@@ -10,6 +10,8 @@ from fastapi import FastAPI, Request
 from fastapi.openapi.docs import get_swagger_ui_html
 from fastapi.responses import HTMLResponse
 
+from app.api.admission import at_once
+
 STATIC = "/static-offline-docs"
 _INLINE_SCRIPT = re.compile(rb"<script>(.*?)</script>", re.DOTALL)
 
@@ -17,7 +19,7 @@ _INLINE_SCRIPT = re.compile(rb"<script>(.*?)</script>", re.DOTALL)
 def install_docs(app: FastAPI) -> None:
     """Serve the page; its scripts and styles are mounted by fastapi-offline."""
 
-    @app.get("/docs", include_in_schema=False)
+    @app.get("/docs", include_in_schema=False, dependencies=[at_once])
     async def docs(request: Request) -> HTMLResponse:
         return _page(app.title, str(request.scope.get("root_path", "")).rstrip("/"))
 

@@ -10,6 +10,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.access_log import identity_of, log_request
 from app.api.errors import answer_unexpected
+from app.api.pieces import CutOff
+from app.api.problems import CLIENT_LEFT
 from app.logs import request_id
 
 SECURITY_HEADERS = {
@@ -20,8 +22,6 @@ SECURITY_HEADERS = {
     "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'; base-uri 'none'",
 }
 """Sent with every answer; an answer that needs another policy sets its own."""
-LEFT = 499
-"""Logged, in nginx's way, where the client left before it had sent its body."""
 
 
 class Envelope:
@@ -56,7 +56,10 @@ class Envelope:
         try:
             await self.app(scope, receive, send_with_headers)
         except ClientDisconnect:
-            status = LEFT
+            status = CLIENT_LEFT
+        except CutOff as cut:
+            # The server closes the connection, so that the client sees an unfinished answer.
+            status = cut.status
         except Exception as error:  # noqa: BLE001 - the last net: nothing may pass it
             response = answer_unexpected(error)
             if not status:

@@ -25,6 +25,7 @@ from app.errors import (
     AnalysisInterrupted,
     BadField,
     Conflict,
+    DeadlineExceeded,
     DiskFull,
     KinedexError,
     ModelBeingFitted,
@@ -37,6 +38,10 @@ log = logging.getLogger(__name__)
 
 FIT_SECONDS = "5"
 """A fit takes from a second to a minute."""
+
+
+_PASSING = (NotReadyYet, TooBusy, DeadlineExceeded, AnalysisInterrupted)
+"""Nothing is wrong inside: it may well be different the next time."""
 
 
 def install_handlers(app: FastAPI) -> None:
@@ -60,7 +65,7 @@ async def answer_failure(request: Request, error: Exception) -> Response:
     failure = cast(KinedexError, error)
     if isinstance(failure, (BadField, NotFound, Conflict)):
         failure = _located(failure, request)
-    if status_of(type(failure)) >= 500 and not isinstance(failure, (NotReadyYet, TooBusy)):
+    if status_of(type(failure)) >= 500 and not isinstance(failure, _PASSING):
         log.error("failure: %s", failure.detail, exc_info=failure)
     return respond(problem_of(failure), _headers(failure))
 
@@ -68,7 +73,7 @@ async def answer_failure(request: Request, error: Exception) -> Response:
 def _headers(failure: KinedexError) -> dict[str, str]:
     if isinstance(failure, Unauthorized):
         return {"WWW-Authenticate": "Bearer"}
-    if isinstance(failure, (NotReadyYet, TooBusy, AnalysisInterrupted)):
+    if isinstance(failure, _PASSING):
         return {"Retry-After": RETRY_AFTER_SECONDS}
     if isinstance(failure, ModelBeingFitted):
         return {"Retry-After": FIT_SECONDS}

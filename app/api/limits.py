@@ -15,7 +15,7 @@ from app.errors import TooLarge
 FORM_BYTES = 2**20
 """What a form may hold beside its file."""
 JSON_BYTES = 2**20
-"""The largest body that is no form with files."""
+"""The largest body that is no form with files: while JSON is parsed, nothing else is answered."""
 MOST_DRAINED = 16 * 2**20
 """Bytes read and dropped after a refusal: many clients send all before they listen."""
 

@@ -7,6 +7,7 @@ from fastapi.responses import PlainTextResponse
 from prometheus_client import CollectorRegistry
 from prometheus_fastapi_instrumentator import Instrumentator
 
+from app.api.admission import quick
 from app.api.deps import reads
 from app.api.openapi import refusals
 
@@ -21,7 +22,7 @@ def install_metrics(app: FastAPI) -> None:
     instrumentator.expose(
         app,
         tags=["service"],
-        dependencies=[reads],
+        dependencies=[reads, quick],
         response_class=PlainTextResponse,
-        responses={status: refusals()[status] for status in (401, 403)},
+        responses={status: refusals()[status] for status in (401, 403, 503)},
     )

@@ -26,11 +26,12 @@ _DESCRIPTIONS = {
     415: "Content or media type that is not known here",
     422: "A field is wrong, or a file that cannot be used",
     500: "Something went wrong; the log tells what",
-    503: "The service is starting, or too busy",
+    503: "The service is starting or too busy, or the call took longer than its time limit; with "
+    "`Retry-After`",
     507: "There is no space left; nothing was kept",
 }
-_EVERYWHERE = (401, 403, 422, 500)
-_WITH_A_BODY = (408, 413, 503)
+_EVERYWHERE = (401, 403, 422, 500, 503)
+_WITH_A_BODY = (408, 413)
 """Of every call that has a body; such a call names 413."""
 
 

@@ -30,7 +30,7 @@ class NotReadyYet(KinedexError):
 
 
 class TooBusy(KinedexError):
-    """Too many requests are being received at once; try again shortly."""
+    """The service is too busy; try again shortly."""
 
     code = "too_busy"
 
@@ -53,6 +53,12 @@ class UnknownMethod(KinedexError):
     code = "unknown_method"
 
 
+class ReaderTooSlow(KinedexError):
+    """The client reads the answer too slowly."""
+
+    code = "reader_too_slow"
+
+
 class MalformedBody(KinedexError):
     """The body cannot be read as what its Content-Type says."""
 
@@ -65,12 +71,16 @@ class UnsupportedMediaType(KinedexError):
     code = "unsupported_media_type"
 
 
+CLIENT_LEFT = 499
+"""Logged, in nginx's way, where the client left before it was answered; nobody gets it."""
+
 STATUSES: dict[type[KinedexError], int] = {
     MalformedBody: 400,
     errors.Unauthorized: 401,
     errors.Forbidden: 403,
     errors.NotFound: 404,
     RequestTimeout: 408,
+    ReaderTooSlow: 408,
     errors.Conflict: 409,
     errors.Canceled: 409,
     errors.TooLarge: 413,
@@ -83,10 +93,12 @@ STATUSES: dict[type[KinedexError], int] = {
     errors.ConfigurationError: 500,
     KinedexError: 500,
     UnknownMethod: 501,
+    errors.ClientLeft: CLIENT_LEFT,
     NotReadyYet: 503,
     TooBusy: 503,
     TooManyConnections: 503,
     errors.AnalysisInterrupted: 503,
+    errors.DeadlineExceeded: 503,
     errors.DiskFull: 507,
 }
 """HTTP status by failure; a class that is not listed has its nearest ancestor's."""

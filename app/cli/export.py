@@ -28,7 +28,10 @@ def export(
         ExportFormat | None, typer.Option(help="Default: by the ending of --output, else bvh.")
     ] = None,
     fps: Annotated[
-        float | None, typer.Option(help="Resampled by time; default: the clip's rate.")
+        float | None,
+        typer.Option(
+            help="Resampled by time to 1 to 1000 frames a second; default: the clip's rate."
+        ),
     ] = None,
     skeleton: Annotated[
         ExportSkeleton, typer.Option(help="The clip's own joints, or one body for all clips.")

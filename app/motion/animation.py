@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from app.deadline import check
 from app.motion.kinematics import forward_kinematics, joints_by_depth
 from app.motion.resampling import resample
 from app.motion.rotations import (
@@ -89,6 +90,7 @@ def animation_of_rotations(
     world = np.array(rotations, dtype=np.float64)
     translations = positions.astype(np.float64)
     for joints in joints_by_depth(skeleton.parents)[1:]:
+        check()
         parents = skeleton.parents[joints]
         world[:, joints] = multiply(world[:, parents], world[:, joints])
         bones = positions[:, joints].astype(np.float64) - positions[:, parents]
@@ -141,6 +143,7 @@ def _solve_block(skeleton: Skeleton, bones: FloatArray) -> FloatArray:
     world = identity_quaternions((frames, joints))
     local = identity_quaternions((frames, joints))
     for joint in range(joints):
+        check()
         parent = int(skeleton.parents[joint])
         above = world[:, parent] if parent >= 0 else identity_quaternions((frames,))
         children = skeleton.children(joint)

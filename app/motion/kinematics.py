@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from app.deadline import check
 from app.motion.rotations import multiply, rotate
 from app.motion.skeleton import Skeleton
 from app.numerics.arrays import FloatArray, IntArray
@@ -25,6 +26,7 @@ def forward_kinematics(
     positions = np.array(translations, dtype=np.float64)
     turned = np.array(rotations, dtype=np.float64)
     for joints in joints_by_depth(skeleton.parents)[1:]:
+        check()
         parents = skeleton.parents[joints]
         above = turned[:, parents]
         positions[:, joints] = positions[:, parents] + rotate(above, positions[:, joints])

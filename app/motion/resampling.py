@@ -3,15 +3,20 @@
 Between samples we read a cubic Hermite curve with Catmull-Rom tangents: a straight line
 would cut the crests of fast movement at 24 Hz and make clips depend on their frame rate.
 Before decimation a windowed-sinc low-pass (flat to about 12 Hz of 30) keeps what the
-lower rate cannot carry from folding down into it.
+lower rate cannot carry from folding down into it. It grows with the ratio of the rates; where
+they are FAR_APART only what is read is filtered, so that the cost grows with the clip's length
+alone, whatever rate is asked for. Long clips are worked on in blocks.
 Shapes: (frames, ...) in, (samples, ...) out. Any unit.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from scipy.ndimage import convolve1d
 
+from app.deadline import check
 from app.numerics.arrays import FloatArray
 
 LOW_PASS_REACH = 4.0
@@ -19,6 +24,12 @@ LOW_PASS_REACH = 4.0
 
 FAR_APART = 8.0
 """Frames between moments from which on only what they read is filtered."""
+
+NUMBERS_AT_ONCE = 2_000_000
+"""Of one block: bounds memory, and how long it takes."""
+
+AROUND = 4
+"""Frames that a moment is read from: those beside it, and what their tangents look at."""
 
 _ROUNDING = 1e-6
 
@@ -34,17 +45,20 @@ def resample(samples: FloatArray, from_rate: float, to_rate: float) -> FloatArra
     if from_rate == to_rate or len(samples) < 2:
         return np.array(samples)
     count = int(np.floor((len(samples) - 1) / from_rate * to_rate + _ROUNDING)) + 1
-    smooth = low_pass(samples, from_rate / to_rate)
-    return sample_at(smooth, np.arange(count) * (from_rate / to_rate))
+    return _at_steps(samples, from_rate / to_rate, count)
 
 
 def resample_to(samples: FloatArray, count: int) -> FloatArray:
     """Read `samples` (frames, ...) at `count` evenly spaced times, both ends included."""
     if len(samples) < 2:
         return np.repeat(samples, count, axis=0)
-    step = (len(samples) - 1) / max(count - 1, 1)
+    return _at_steps(samples, (len(samples) - 1) / max(count - 1, 1), count)
+
+
+def _at_steps(samples: FloatArray, step: float, count: int) -> FloatArray:
+    """`count` samples, `step` frames apart from the first on, of what their rate can carry."""
     times = np.arange(count) * step
-    if step < FAR_APART:
+    if step < FAR_APART or len(samples) < AROUND:
         return sample_at(low_pass(samples, step), times)
     return _few_of_low_pass(samples, step, times)
 
@@ -58,13 +72,16 @@ def sample_at(samples: FloatArray, times: FloatArray) -> FloatArray:
     if last < 1:
         return np.repeat(samples, len(times), axis=0)
     times = np.clip(times, 0, last)
-    left = np.minimum(times.astype(np.int64), last - 1)
-    u = (times - left).reshape(-1, *(1,) * (samples.ndim - 1)).astype(samples.dtype)
     slopes = _tangents(samples)
-    start, end = samples[left], samples[left + 1]
-    rise = end - start
-    bend = (slopes[left] - rise) * (1 - u) + (rise - slopes[left + 1]) * u
-    return np.asarray(start + u * rise + u * (1 - u) * bend)
+    read = np.empty((len(times), *samples.shape[1:]), dtype=samples.dtype)
+    for some in _blocks(read):
+        left = np.minimum(times[some].astype(np.int64), last - 1)
+        u = (times[some] - left).reshape(-1, *(1,) * (samples.ndim - 1)).astype(samples.dtype)
+        start, end = samples[left], samples[left + 1]
+        rise = end - start
+        bend = (slopes[left] - rise) * (1 - u) + (rise - slopes[left + 1]) * u
+        read[some] = start + u * rise + u * (1 - u) * bend
+    return read
 
 
 def low_pass(samples: FloatArray, ratio: float) -> FloatArray:
@@ -77,7 +94,11 @@ def low_pass(samples: FloatArray, ratio: float) -> FloatArray:
         return samples
     kernel = _sinc(ratio)
     reach = len(kernel) // 2
-    return np.asarray(convolve1d(_continued(samples, reach), kernel, axis=0)[reach:-reach])
+    continued, smooth = _continued(samples, reach), np.empty_like(samples)
+    for some in _blocks(samples):
+        around = continued[some.start : some.stop + 2 * reach]
+        smooth[some] = convolve1d(around, kernel, axis=0)[reach : len(around) - reach]
+    return smooth
 
 
 def _few_of_low_pass(samples: FloatArray, ratio: float, times: FloatArray) -> FloatArray:
@@ -86,15 +107,26 @@ def _few_of_low_pass(samples: FloatArray, ratio: float, times: FloatArray) -> Fl
     A whole clip through a filter that grows with it would cost the square of its length.
     """
     kernel, last = _sinc(ratio), len(samples) - 1
-    continued = _continued(samples, len(kernel) // 2)
-    read = np.empty((len(times), *samples.shape[1:]), dtype=samples.dtype)
+    continued = _continued(samples, len(kernel) // 2).reshape(-1, samples[0].size)
+    # Row r is the kernel r frames later: together they filter the frames around a moment.
+    kernels = np.zeros((AROUND, len(kernel) + AROUND - 1))
+    for row in range(AROUND):
+        kernels[row, row : row + len(kernel)] = kernel
+    read = np.empty((len(times), samples[0].size), dtype=samples.dtype)
     for number, time in enumerate(np.clip(times, 0, last)):
-        # Four frames: those around the moment, and what their tangents look at.
-        first = min(max(int(time) - 1, 0), last - 3)
-        around = (continued[f : f + len(kernel)] for f in range(first, first + 4))
-        smooth = np.array([np.tensordot(kernel, part, axes=1) for part in around])
+        check()
+        first = min(max(int(time) - 1, 0), last + 1 - AROUND)
+        smooth = kernels @ continued[first : first + kernels.shape[1]]
         read[number] = sample_at(smooth, np.array([time - first]))[0]
-    return read
+    return read.reshape(len(times), *samples.shape[1:])
+
+
+def _blocks(samples: FloatArray) -> Iterator[slice]:
+    """`samples` (frames, ...) in blocks of frames; between two of them the work may stop."""
+    frames = max(1, NUMBERS_AT_ONCE // max(1, samples[:1].size))
+    for first in range(0, len(samples), frames):
+        check()
+        yield slice(first, min(first + frames, len(samples)))
 
 
 def _sinc(ratio: float) -> FloatArray:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
+from app.deadline import check
 from app.numerics.arrays import FloatArray, IntArray
 
 CELLS_AT_ONCE = 1 << 16
@@ -32,6 +33,7 @@ def max_cross_correlations(query: FloatArray, candidates: Sequence[FloatArray]) 
     values = np.zeros(len(lengths))
     if len(query):
         for chosen in _batches(lengths, len(query)):
+            check()
             values[chosen] = _by_transform(query, [candidates[i] for i in chosen])
     return values
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.deadline import check
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.hmm import GaussianHMM, log_likelihood, sample
 
@@ -49,6 +50,7 @@ def expected_path_divergences(
         block = targets[first : first + BLOCK]
         stack = _stack(block, states)
         for row, source in enumerate(sources):
+            check()
             _put(stack, len(block), source)
             scores = _scores(source, stack)
             found[row, first : first + len(block)] = scores[-1] - scores[:-1]

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.deadline import check
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 DECIMALS = 9
@@ -69,6 +70,7 @@ def nearest(
     search = _Search(query, count, least, _longest(blocks))
     first = 0
     for block, mask in zip(blocks, masks, strict=True):
+        check()
         search.look(block, mask, first)
         first += len(block)
     rows = search.found()
@@ -89,6 +91,7 @@ def squared_distances(blocks: Sequence[Block], query: FloatArray) -> tuple[Float
     found = np.empty(sum(len(block) for block in blocks), dtype=np.float32)
     first = 0
     for block in blocks:
+        check()
         values = found[first : first + len(block)]
         np.matmul(block.vectors, query, out=values)
         values *= -2.0

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.deadline import check
 from app.numerics.arrays import FloatArray
 
 MAX_ITERATIONS = 200
@@ -65,6 +66,7 @@ def symmetric_rank1(
     weights = [_weight(volume, rho, epsilon)]
     change, converged = np.inf, False
     while not converged and len(weights) <= max_iterations:
+        check()
         before = rho
         if change <= smallest_change:
             # Lambda stands still and rho does not: it swings between two vectors, as power

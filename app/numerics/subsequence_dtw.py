@@ -24,6 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.deadline import check
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.euclidean import squared_distances, squared_lengths
 
@@ -165,6 +166,7 @@ def _accumulate(
     older[:] = 0.0
     before, other = np.full(columns, np.inf, np.float32), np.empty(columns - 2, np.float32)
     for row, cost in enumerate(_cost_rows(query, laid, firsts)):
+        check()
         here, best = cost[2:], now[2:]
         np.add(older[1:-1], here, out=best)
         np.add(cost[1:-1], here, out=other)

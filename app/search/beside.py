@@ -54,6 +54,8 @@ class RowsBeside:
         self._labels: Labels | None = None
         self._values = Column(np.float32)
         self._there = Column(np.bool_)
+        self._kept: dict[str, FloatArray] = {}
+        self._kept_for = 0
         self._lock = threading.Lock()
 
     def of(
@@ -69,20 +71,26 @@ class RowsBeside:
         model: id of the model that `compute` and what is `known` are of.
         """
         ids, alive = clips.ids, clips.alive
-        kept: dict[str, FloatArray] = {}
         with self._lock:
             if (self._model, self._labels) != (model, clips.labels):
                 # Only now: what is known was so before any of these clips could change.
-                kept = dict(zip(*known(), strict=True))
+                self._kept = dict(zip(*known(), strict=True))
+                self._kept_for = len(ids)
                 self._model, self._labels = model, clips.labels
                 self._values = Column(np.float32, (width,))
                 self._there = Column(np.bool_)
-            for start in range(len(self._there), len(ids), BATCH):
-                batch = slice(start, start + BATCH)
+            while (start := len(self._there)) < len(ids):
+                # What is known holds for the clips that were there then, not for later ones. It
+                # is kept until they are done: a request may stop half-way, when its time is up.
+                kept = self._kept if start < self._kept_for else {}
+                stop = min(start + BATCH, self._kept_for if kept else len(ids))
+                batch = slice(start, stop)
                 missing = [i for i in ids[batch][alive[batch]] if i not in kept]
                 found = ChainMap(kept, dict(compute(missing)) if missing else {})
                 nothing = np.zeros(width)
                 self._values.extend(np.stack([found.get(i, nothing) for i in ids[batch]]))
                 self._there.extend([i in found for i in ids[batch]])
+            if len(self._there) >= self._kept_for:
+                self._kept = {}
             values, there = self._values.view()[: len(ids)], self._there.view()[: len(ids)]
             return Beside(values, there, self._values)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.deadline import check
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.nearest import DECIMALS
 from app.search.cursor import Position
@@ -62,6 +63,7 @@ class Bounded:
         """The first `limit` clips behind a position."""
         self._look(self._least <= (-1.0 if after is None else after.distance))
         while True:
+            check()
             page = self._so_far().page(after, limit + 1)
             if len(page.ids) <= limit:
                 missing = limit + 1 - len(page.ids)

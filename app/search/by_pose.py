@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.pose_cover import POSE_WIDTH, pose_vectors
+from app.deadline import check
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.nearest import squared_distances
 from app.search.cursor import Position
@@ -25,6 +26,9 @@ POSES = Layout("pose_cover", POSE_WIDTH, told=2, several=True)
 POSITIONS = "role_positions"
 AT_ONCE = 64
 """Clips looked into at a time."""
+
+FRAMES_AT_ONCE = 100_000
+"""Poses that are compared at a time."""
 
 _RADIUS = 1
 
@@ -97,12 +101,21 @@ class PoseRanking:
         if not there:
             return []
         ends = np.cumsum([len(loaded[clip_id]) for clip_id in there])
-        distances = pose_distances(np.concatenate([loaded[i] for i in there]), self._query)
+        distances = self._distances(np.concatenate([loaded[i] for i in there]))
         return [
             PoseHit(clip_id, place)
             for clip_id, own in zip(there, np.split(distances, ends[:-1]), strict=True)
             for place in pose_places(own, self._places)
         ]
+
+    def _distances(self, positions: FloatArray) -> FloatArray:
+        """(n,) of all poses, some at a time: between them the work may stop."""
+        found = np.empty(len(positions))
+        for first in range(0, len(positions), FRAMES_AT_ONCE):
+            check()
+            some = slice(first, first + FRAMES_AT_ONCE)
+            found[some] = pose_distances(positions[some], self._query)
+        return found
 
 
 def pose_distances(positions: FloatArray, query: FloatArray) -> FloatArray:

@@ -16,6 +16,7 @@ from app.analysis.motion_volume import (
     cross_correlations,
     warping_distances,
 )
+from app.deadline import check
 from app.numerics.arrays import FloatArray
 from app.numerics.dtw import dtw_distances
 from app.search.methods import Method
@@ -51,6 +52,7 @@ def distances_to(
     names, compare = _COMPARISONS[method]
     found = np.full(len(clip_ids), np.inf)
     for start in range(0, len(clip_ids), BATCH):
+        check()
         loaded = [load(clip_ids[start : start + BATCH], name) for name in names]
         there = [
             row

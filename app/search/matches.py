@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.frame_features import WARPING_RATE
+from app.deadline import check
 from app.numerics.arrays import FloatArray
 from app.numerics.subsequence_dtw import subsequence_dtw
 from app.search.distances import FEATURES, Loader
@@ -49,6 +50,7 @@ def matches_in(
     found: list[Candidates] = [_none(ids)]
     numbers = list(dict.fromkeys(region.clip for region in allowed))
     for some in _together(numbers, seconds):
+        check()
         features = load([str(ids[number]) for number in some], FEATURES)
         found.append(_matches(ids, [r for r in allowed if r.clip in some], piece, features))
     return together(found)

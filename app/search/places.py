@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from app.deadline import check
 from app.numerics.arrays import FloatArray, IntArray
 from app.search.cursor import Position
 from app.search.rank import DECIMALS, IdArray
@@ -83,6 +84,7 @@ def places(
 def _merged(found: Candidates) -> Iterator[Place]:
     taken: dict[int, _Taken] = {}
     for index in _nearest_first(found):
+        check()
         owner = int(found.owners[index])
         start, end = float(found.starts[index]), float(found.ends[index])
         if taken.setdefault(owner, _Taken()).take(start, end):

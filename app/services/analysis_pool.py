@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from app.deadline import result_of
 from app.errors import (
     AnalysisCrashed,
     AnalysisInterrupted,
@@ -129,10 +130,11 @@ class AnalysisPool:
         Raises BadContent (or TooLarge) for what the content deserves: AnalysisTimedOut,
         AnalysisCrashed, and the reader's own failures; ChildDied where the child died by its
         own work, AnalysisInterrupted where it was killed from outside, StoredFileMissing or
-        StorageError where the file cannot be read, CancelledError after `cancel`.
+        StorageError where the file cannot be read, CancelledError after `cancel`. Where the
+        work at hand should not go on (ClientLeft, DeadlineExceeded) the child is killed.
         """
         try:
-            return future.result()
+            return result_of(future)
         except KinedexError:
             raise
         except TaskTimedOut as late:

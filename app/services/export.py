@@ -11,7 +11,6 @@ positions; its bones change their length, on the canonical body they do not.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -25,12 +24,15 @@ from app.formats.csv_writer import write_csv
 from app.formats.glb_writer import write_glb
 from app.formats.npz_writer import write_npz
 from app.motion.animation import Animation, animation_of_positions
+from app.motion.body_frame import ANALYSIS_RATE
 from app.motion.canonical_body import on_canonical_body
 from app.motion.file_rotations import animation_of_recording
+from app.motion.joint_roles import SUN_ROLES
 from app.motion.motion import Motion
 from app.motion.resampling import resample
 from app.numerics.arrays import FloatArray, IntArray
 from app.services import fields
+from app.services.frame_rates import wanted_rate
 from app.services.ingest import order_for
 from app.services.library import Library
 from app.services.low_dimensional import Reduction, as_motion, reduce
@@ -40,7 +42,6 @@ from app.store.clip_record import ClipRecord
 
 _Kind = TypeVar("_Kind", bound=StrEnum)
 
-MAX_FPS = 1000.0
 POSITION_FORMATS = frozenset({"c3d", "npy"})
 """Formats that hold no rotations: their bytes need not be read again."""
 
@@ -100,14 +101,15 @@ def export(
     wanted = _choice("format", ExportFormat, format)
     body = _choice("skeleton", ExportSkeleton, skeleton)
     clip = ready_clip(lib, clip_id)
-    rate = _rate(lib, clip, fps)
+    source = clip.frame_rate or 1.0 if reduction is None else ANALYSIS_RATE
+    joints = clip.joints or 0 if reduction is None else len(SUN_ROLES)
+    rate = wanted_rate(lib, clip, fps, source=source, joints=joints)
     ending = "-canonical" if body is ExportSkeleton.CANONICAL else ""
     if reduction is None:
         motion = load_motion(lib, clip)
     else:
         found = reduce(lib, clip, reduction)
         motion = as_motion(found, clip)
-        rate = motion.frame_rate if fps is None else rate
         ending = f"-{found.basis.value}-{found.dimensions}dim{ending}"
     if body is ExportSkeleton.CANONICAL:
         blocks = _of_animation(wanted, on_canonical_body(_resampled(motion, rate)), clip)
@@ -128,16 +130,6 @@ def _choice(field: str, kind: type[_Kind], value: str) -> _Kind:
         return kind(value)
     except ValueError:
         raise fields.bad_field(field, f"must be one of {', '.join(kind)}") from None
-
-
-def _rate(lib: Library, clip: ClipRecord, fps: float | None) -> float:
-    if fps is None:
-        return clip.frame_rate or 1.0
-    if not (math.isfinite(fps) and 0 < fps <= MAX_FPS):
-        raise fields.bad_field("fps", f"must be above 0 and at most {MAX_FPS:g}")
-    if fps * (clip.duration or 0.0) > max(lib.settings.max_frames, clip.frames or 0):
-        raise fields.bad_field("fps", f"would make more than {lib.settings.max_frames} frames")
-    return fps
 
 
 def _resampled(motion: Motion, rate: float) -> Motion:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -18,6 +17,7 @@ from app.analysis.low_dimensional import (
     uniform_frames,
 )
 from app.analysis.plausibility import Plausibility, judge_poses
+from app.deadline import check
 from app.errors import NotEnoughKeyposes, Place
 from app.motion.body_frame import ANALYSIS_RATE, BodyTrack, body_track
 from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES, JointRole
@@ -25,11 +25,12 @@ from app.motion.motion import Motion
 from app.motion.resampling import resample
 from app.numerics.arrays import FloatArray, IntArray
 from app.services import fields
+from app.services.frame_rates import wanted_rate
 from app.services.keypose_frames import keypose_frames
 from app.services.library import Library
 from app.services.query import ready_clip, ready_clips
 from app.services.stored_motion import load_motion
-from app.services.views import MAX_FPS, MotionView
+from app.services.views import MotionView
 from app.store.clip_record import ClipRecord
 
 FEWEST_POSES = 2
@@ -156,6 +157,7 @@ def keyposes_of(lib: Library, clip: ClipRecord, model_clips: Sequence[str] = ())
     found: Keyposes = {}
     clips = ready_clips(lib, model_clips, "model_clips") or {clip.id: clip}
     for clip_id, of_model in clips.items():
+        check()
         track = body_track(load_motion(lib, of_model))
         found[clip_id] = keypose_frames(lib, clip_id, track).tolist()
     return found
@@ -163,14 +165,7 @@ def keyposes_of(lib: Library, clip: ClipRecord, model_clips: Sequence[str] = ())
 
 def frame_rate(lib: Library, clip: ClipRecord, fps: float | None) -> float:
     """`fps`, or 30 Hz. Raises BadField where that makes no motion, or one that is too long."""
-    if fps is None:
-        return ANALYSIS_RATE
-    if not (math.isfinite(fps) and 0 < fps <= MAX_FPS):
-        raise fields.bad_field("fps", f"must be above 0 and at most {MAX_FPS:g}")
-    if fps * (clip.duration or 0.0) > lib.settings.max_frames:
-        message = f"would make more than {lib.settings.max_frames} frames"
-        raise fields.bad_field("fps", message)
-    return fps
+    return wanted_rate(lib, clip, fps, source=ANALYSIS_RATE, joints=len(SUN_ROLES))
 
 
 def as_motion(found: Reduced, clip: ClipRecord) -> Motion:
@@ -211,6 +206,7 @@ def _model_poses(
     asked = tuple(wanted.keyposes or wanted.model_clips)
     clips = ready_clips(lib, asked, "model_clips") or {clip.id: clip}
     for clip_id, of_model in clips.items():
+        check()
         found = track
         if clip_id != clip.id:
             found = body_track(load_motion(lib, of_model))

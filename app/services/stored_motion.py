@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from app.deadline import check
 from app.motion.joint_roles import JointRole
 from app.motion.motion import Motion
 from app.services.library import Library
@@ -40,6 +41,7 @@ def load_motion(lib: Library, clip: ClipRecord) -> Motion:
 
 def read_motion(tx: Tx, clip: ClipRecord) -> Motion:
     """As `load_motion`, in the caller's transaction."""
+    check()  # who reads many, and works on each, may stop here
     positions, parents, text = (
         arrays.get_one(tx, clip.id, name) for name in (POSITIONS, PARENTS, JOINT_NAMES)
     )

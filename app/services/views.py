@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,13 +12,13 @@ from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.motion.resampling import resample
 from app.numerics.arrays import FloatArray
 from app.services import fields
+from app.services.frame_rates import wanted_rate
 from app.services.library import Library
 from app.services.query import ready_clip
 from app.services.stored_motion import load_motion
 from app.services.thumbnail import thumbnail
 from app.store import arrays
 
-MAX_FPS = 1000.0
 CONVERGENCE = "msv_convergence"
 
 
@@ -61,17 +60,18 @@ def motion(lib: Library, clip_id: str, fps: float | None = None, joints: str = "
     """
     if joints not in ("all", "roles"):
         raise fields.bad_field("joints", "must be all or roles")
-    if fps is not None and not (math.isfinite(fps) and 0 < fps <= MAX_FPS):
-        raise fields.bad_field("fps", f"must be above 0 and at most {MAX_FPS:g}")
-    stored = load_motion(lib, ready_clip(lib, clip_id))
+    clip = ready_clip(lib, clip_id)
+    count = len(SUN_ROLES) if joints == "roles" else clip.joints or 0
+    rate = wanted_rate(lib, clip, fps, source=clip.frame_rate or 1.0, joints=count)
+    stored = load_motion(lib, clip)
     names, parents, positions = stored.names, tuple(stored.parents.tolist()), stored.positions
     if joints == "roles":
         names, parents = tuple(role.value for role in SUN_ROLES), SUN_PARENTS
         positions = stored.role_positions()
-    if fps is not None and fps != stored.frame_rate:
-        positions = resample(positions, stored.frame_rate, fps)
+    if rate != stored.frame_rate:
+        positions = resample(positions, stored.frame_rate, rate)
     positions = np.ascontiguousarray(positions, dtype=np.float32)
-    return MotionView(fps or stored.frame_rate, names, parents, positions)
+    return MotionView(rate, names, parents, positions)
 
 
 def descriptor(lib: Library, clip_id: str) -> DescriptorView:

@@ -24,7 +24,7 @@ from app.errors import ConfigurationError, DiskFull, StorageError
 
 BUSY_TIMEOUT_S = 30.0
 POOL_SIZE = 8
-POOL_OVERFLOW = 56  # above the 40 threads that FastAPI runs, so that a reader never waits
+POOL_OVERFLOW = 56  # above the 58 threads that the API runs, so that a reader never waits
 WRITES_OPTION = "kinedex_writes"
 MIGRATION_LOCK = 0x6B696E65  # "kine": any number that no one else locks
 

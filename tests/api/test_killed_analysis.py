@@ -12,8 +12,8 @@ import pytest
 
 from app.services.demo import DemoClip
 from tests.api.conftest import assert_problem
+from tests.busy_processes import busy_children, children_of, repeated, server_of
 from tests.live import Live, serve
-from tests.long_clips import busy_children, children_of, repeated, server_of
 
 
 @pytest.fixture(scope="module")

@@ -102,14 +102,14 @@ def fill(store: Store, count: int, names: Sequence[str] | None = None) -> None:
     clips = enumerate(many_clips(count), 1)
     while batch := list(itertools.islice(clips, AT_ONCE)):
         with store.write() as tx:
-            tx.execute(insert(t.clips), [_row(number, made) for number, (_, made) in batch])
+            tx.execute(insert(t.clips), [clip_row(number, made) for number, (_, made) in batch])
             tx.execute(insert(t.clip_words), list(_word_rows(made for _, (_, made) in batch)))
             rows = [row for _, (sample, made) in batch for row in _array_rows(sample, made, names)]
             tx.execute(insert(t.clip_arrays), rows)
             tx.execute(update(t.library).values(version=batch[-1][0]))
 
 
-def _row(number: int, clip: IndexedClip) -> dict[str, Any]:
+def clip_row(number: int, clip: IndexedClip) -> dict[str, Any]:
     return {
         "id": clip.id,
         "content_key": f"{number:064x}",

@@ -27,8 +27,8 @@ import pytest
 from app.services.demo import DemoClip, demo_clips
 from tests.bench.processes import child_running
 from tests.bench.product import API, WORKER, Product, serving
+from tests.busy_processes import busy_children, repeated, server_of
 from tests.live import wait_until
-from tests.long_clips import busy_children, repeated, server_of
 
 pytestmark = pytest.mark.bench
 

@@ -7,7 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from app.deadline import Deadline, within
+from app.errors import ClientLeft
+from app.motion import resampling
 from app.motion.resampling import low_pass, resample, resample_to, sample_at
+from app.numerics.arrays import FloatArray
 
 
 @given(frames=st.integers(1, 400), source=st.floats(5, 240), target=st.floats(5, 240))
@@ -84,3 +88,53 @@ def test_few_moments_of_many_frames_are_read_as_from_the_whole(
     found = resample_to(samples, count)
     assert found.dtype == kind
     np.testing.assert_allclose(found, whole, atol=1e-5 if single else 1e-12)
+
+
+def naive_resample(samples: FloatArray, ratio: float, count: int) -> FloatArray:
+    """The whole clip through the whole filter, frame by frame, then read."""
+    reach = int(np.ceil(resampling.LOW_PASS_REACH * ratio))
+    offsets = np.arange(-reach, reach + 1)
+    kernel = np.sinc(offsets / ratio) * np.cos(0.5 * np.pi * offsets / (reach + 1)) ** 2
+    around = np.pad(samples, [(reach, reach), (0, 0)], mode="reflect", reflect_type="odd")
+    smooth = [kernel / kernel.sum() @ around[i : i + 2 * reach + 1] for i in range(len(samples))]
+    return sample_at(np.array(smooth), np.arange(count) * ratio)
+
+
+@given(frames=st.integers(2, 300), ratio=st.floats(1.01, 400.0))
+@settings(max_examples=60, deadline=None)
+def test_any_ratio_of_rates_gives_what_the_naive_twin_gives(frames: int, ratio: float) -> None:
+    samples = np.random.default_rng(frames).normal(size=(frames, 2))
+    found = resample(samples, ratio, 1.0)
+    np.testing.assert_allclose(found, naive_resample(samples, ratio, len(found)), atol=1e-9)
+
+
+def test_a_filter_that_reaches_far_never_passes_over_the_whole_clip(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    taps: list[int] = []
+
+    def counted(samples: FloatArray, kernel: FloatArray, axis: int) -> FloatArray:
+        taps.append(len(kernel))
+        return samples
+
+    monkeypatch.setattr(resampling, "convolve1d", counted)
+    samples = np.zeros((20_000, 3))
+    for rate in (1.0, 5.0, 60.0, 100.0, 500.0, 999.0):
+        resample(samples, 1000.0, rate)
+    assert max(taps) <= 2 * resampling.LOW_PASS_REACH * resampling.FAR_APART + 1
+
+
+def test_blocks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    samples = np.random.default_rng(0).normal(size=(500, 4, 3)).astype(np.float32)
+    whole = [resample(samples, 120.0, rate) for rate in (30.0, 100.0, 240.0)]
+    monkeypatch.setattr(resampling, "NUMBERS_AT_ONCE", 200)
+    for rate, expected in zip((30.0, 100.0, 240.0), whole, strict=True):
+        np.testing.assert_array_equal(resample(samples, 120.0, rate), expected)
+
+
+def test_a_long_clip_can_be_given_up_between_blocks() -> None:
+    with within(Deadline()) as deadline:
+        deadline.abandon()
+        for rate in (1.0, 30.0, 500.0):
+            with pytest.raises(ClientLeft):
+                resample(np.zeros((100, 3)), 120.0, rate)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from app.deadline import Deadline, within
+from app.errors import ClientLeft
 from app.numerics import dtw
 from app.numerics.arrays import FloatArray
 from app.numerics.dtw import dtw_distance, dtw_distances
@@ -54,6 +58,53 @@ def test_many_batches_give_what_one_gives(monkeypatch: pytest.MonkeyPatch) -> No
     at_once = dtw_distances(query, candidates)
     monkeypatch.setattr(dtw, "CELLS_AT_ONCE", 500)
     np.testing.assert_allclose(dtw_distances(query, candidates), at_once, rtol=1e-5)
+
+
+@given(
+    n=st.integers(1, 40),
+    m=st.integers(1, 40),
+    rows=st.integers(1, 9),
+    dimensions=st.sampled_from([1, 3]),
+    seed=st.integers(0, 10_000),
+)
+@settings(max_examples=100, deadline=None)
+def test_a_long_pair_in_strips_equals_the_naive_twin(
+    n: int, m: int, rows: int, dimensions: int, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    a, b = rng.normal(size=(n, dimensions)), rng.normal(size=(m, dimensions))
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(dtw, "CELLS_AT_ONCE", 1)
+        patched.setattr(dtw, "FEWEST_ROWS", rows)
+        patched.setattr(dtw, "MOST_ROWS", rows)
+        found = dtw_distance(a, b, per_step=False)
+    assert found == pytest.approx(naive_dtw(a, b), rel=1e-4, abs=1e-6)
+
+
+def test_strips_of_one_dimension_change_no_bit() -> None:
+    rng = np.random.default_rng(5)
+    a, b = rng.normal(size=2600), rng.normal(size=700)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(dtw, "CELLS_AT_ONCE", 10**9)
+        whole = dtw_distance(a, b)
+    assert dtw_distance(a, b) == whole
+
+
+def test_a_long_pair_takes_memory_as_it_is_long_and_not_its_square() -> None:
+    a, b = np.sin(np.arange(40_000) / 50), np.sin(np.arange(400) / 50)
+    tracemalloc.start()
+    dtw_distance(a, b)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 16 * 2**20, "the table of costs alone has 64 MB"
+
+
+def test_the_work_stops_between_two_steps_when_nobody_waits_for_it() -> None:
+    a, b = np.zeros(20_000), np.zeros(20_000)
+    abandoned = Deadline()
+    abandoned.abandon()
+    with within(abandoned), pytest.raises(ClientLeft):
+        dtw_distance(a, b)
 
 
 def test_what_a_pair_costs_does_not_depend_on_what_it_is_computed_beside() -> None:

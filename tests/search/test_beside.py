@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pytest
 
+from app.errors import ClientLeft
 from app.numerics.arrays import FloatArray
 from app.search import beside as beside_module
 from app.search.beside import RowsBeside
@@ -47,6 +48,29 @@ def test_rows_stand_in_the_order_of_the_index() -> None:
     assert later.values.tolist() == [[3, 0], [1, 0], [2, 0]]
     assert later.series is found.series
     assert model.asked == [["3", "1"], ["2"]]
+
+
+def test_a_request_that_stops_half_way_leaves_the_rest_to_the_next_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(beside_module, "BATCH", 2)
+    labels, rows, model = labels_of(*"123456"), RowsBeside(), Model(stamp=7.0)
+    told = np.array([[9.0, 9.0], [9.0, 9.0]])
+
+    def stops(clip_ids: Sequence[str]) -> Mapping[str, FloatArray]:
+        if "4" in clip_ids:
+            raise ClientLeft
+        return model(clip_ids)
+
+    with pytest.raises(ClientLeft):
+        rows.of(labels.view(), "m", 2, stops, lambda: (["3", "5"], told))
+    put(labels, "5")  # what was known of it holds no more
+    found = rows.of(labels.view(), "m", 2, model)
+    by_id = dict(zip(labels.view().ids.tolist(), found.values.tolist(), strict=True))
+    assert by_id == {
+        "1": [1, 7], "2": [2, 7], "3": [9, 9], "4": [4, 7], "6": [6, 7], "5": [5, 7]
+    }  # fmt: skip
+    assert model.asked == [["1", "2"], ["4"], ["6"], ["5"]]
 
 
 def test_a_clip_of_which_nothing_can_be_computed_is_not_there() -> None:

@@ -6,24 +6,27 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
 import psutil
 import pytest
 
+from app.deadline import Deadline, within
 from app.errors import (
     AnalysisCrashed,
     AnalysisInterrupted,
     AnalysisTimedOut,
+    ClientLeft,
     KinedexError,
     TooLarge,
     Unreadable,
 )
 from app.services.analysis_pool import AnalysisPool, Limits, Order
 from app.services.demo import DemoClip
+from tests.busy_processes import busy_children, children_of, repeated
 from tests.live import wait_until
-from tests.long_clips import busy_children, children_of, repeated
 
 ROOMY = Limits(seconds=60.0, memory_mb=2048, frames=100_000, joints=100)
 
@@ -69,6 +72,19 @@ def test_frames_and_joints_are_limited(some_demo_clips: list[DemoClip]) -> None:
         tight.analyse(Order(content=some_demo_clips[0].content))
     assert refused.value.places[0].location == "frames"
     tight.close()
+
+
+def test_an_analysis_that_nobody_waits_for_is_stopped_and_the_next_one_done(
+    some_demo_clips: list[DemoClip],
+) -> None:
+    pool = AnalysisPool(Limits(600.0, 2048, 10_000_000, 100))
+    content = repeated(some_demo_clips[0], 400)
+    with within(Deadline(60.0)) as deadline:
+        threading.Timer(0.3, deadline.abandon).start()
+        with pytest.raises(ClientLeft):
+            pool.analyse(Order(content=content))
+    assert pool.analyse(Order(content=some_demo_clips[0].content)).motion.frames > 1
+    pool.close()
 
 
 def test_an_analysis_over_its_time_is_stopped_and_the_next_one_done(

@@ -24,8 +24,8 @@ from app.store import ids, leases, outcomes
 from app.store.clip_record import ClipRecord, ClipState
 from app.store.job_record import JobState
 from app.worker.loop import Worker, run_worker
+from tests.busy_processes import busy_children, children_of, repeated, server_of
 from tests.live import wait_until
-from tests.long_clips import busy_children, children_of, repeated, server_of
 from tests.services.conftest import settings_for, upload
 
 NET_S = 120.0

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
+from app.api.admission import heavy
 from app.api.deps import Lib, reads
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.views import (
@@ -14,9 +15,7 @@ from app.api.schemas.views import (
     MotionQueryParameters,
 )
 from app.api.streams import OCTETS, as_json, as_octets, wants_octets
-from app.errors import BadField, Place
-from app.services import clips, views
-from app.services.library import Library
+from app.services import views
 
 router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
 
@@ -32,6 +31,7 @@ OCTET_ANSWER = {"content": {OCTETS: _OCTETS}, "headers": {"X-Shape": _SHAPE}}
 @router.get(
     "/motion",
     response_model=Motion,
+    dependencies=[heavy],
     responses={
         200: OCTET_ANSWER,
         **refusals(404, 409),
@@ -41,19 +41,11 @@ def get_motion(
     lib: Lib, request: Request, clip_id: ClipId, wanted: Annotated[MotionQueryParameters, Query()]
 ) -> Response:
     """Joint positions: JSON, or little-endian float32 for `Accept: application/octet-stream`."""
-    _check_length(lib, clip_id, wanted.fps)
     view = views.motion(lib, clip_id, wanted.fps, wanted.joints)
     return as_octets(view) if wants_octets(request) else as_json(view)
 
 
-def _check_length(lib: Library, clip_id: str, fps: float | None) -> None:
-    most = lib.settings.max_frames
-    if fps is not None and fps * (clips.get_clip(lib, clip_id).duration or 0.0) > most:
-        places = [Place("query.fps", f"would make more than {most} frames")]
-        raise BadField("The motion would be too long.", places=places)
-
-
-@router.get("/descriptor", responses=refusals(404, 409))
+@router.get("/descriptor", dependencies=[heavy], responses=refusals(404, 409))
 def get_descriptor(lib: Lib, clip_id: ClipId) -> Descriptor:
     """What the clip is compared by."""
     return Descriptor.of(views.descriptor(lib, clip_id))
@@ -61,6 +53,7 @@ def get_descriptor(lib: Lib, clip_id: ClipId) -> Descriptor:
 
 @router.get(
     "/thumbnail.svg",
+    dependencies=[heavy],
     response_class=Response,
     responses={
         200: {

@@ -10,6 +10,7 @@ from fastapi.responses import FileResponse
 from starlette.background import BackgroundTask
 from starlette.datastructures import UploadFile
 
+from app.api.admission import changes, quick
 from app.api.bodies import read_form, require_json, required
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import ClipId, body, refusals
@@ -37,7 +38,7 @@ async def _form(request: Request) -> tuple[ClipForm, dict[str, UploadFile]]:
 @router.post(
     "",
     status_code=202,
-    dependencies=[writes],
+    dependencies=[writes, Depends(_form), changes],  # let in when the form has come
     responses={
         200: {"model": ClipCreated, "description": "The same bytes were stored before."},
         **refusals(400, 413, 415, 503, 507),
@@ -89,14 +90,14 @@ def _recording(uploads: dict[str, UploadFile]) -> NewRecording | None:
     return None if sent is None else NewRecording(sent.file, sent.filename or "audio")
 
 
-@router.get("", dependencies=[reads], responses=refusals())
+@router.get("", dependencies=[reads, quick], responses=refusals())
 def list_clips(lib: Lib, query: Annotated[ClipQuery, Query()]) -> ClipList:
     """The clips that pass every filter; repeat a label parameter to mean any of its values."""
     page = clips.list_clips(lib, query.as_filter(), query.sort, query.limit, query.cursor)
     return ClipList(items=[Clip.of(clip) for clip in page.items], next=page.next)
 
 
-@router.get("/{clip_id}", dependencies=[reads], responses=refusals(404))
+@router.get("/{clip_id}", dependencies=[reads, quick], responses=refusals(404))
 def get_clip(lib: Lib, clip_id: ClipId) -> Clip:
     """One clip."""
     return Clip.of(clips.get_clip(lib, clip_id))
@@ -104,7 +105,7 @@ def get_clip(lib: Lib, clip_id: ClipId) -> Clip:
 
 @router.patch(
     "/{clip_id}",
-    dependencies=[writes, Depends(require_json)],
+    dependencies=[writes, Depends(require_json), changes],
     responses=refusals(400, 404, 409, 413, 415),
 )
 def update_clip(lib: Lib, clip_id: ClipId, patch: ClipPatch) -> Clip:
@@ -112,7 +113,9 @@ def update_clip(lib: Lib, clip_id: ClipId, patch: ClipPatch) -> Clip:
     return Clip.of(clips.update_clip(lib, clip_id, patch.model_dump(exclude_unset=True)))
 
 
-@router.delete("/{clip_id}", status_code=204, dependencies=[writes], responses=refusals(404))
+@router.delete(
+    "/{clip_id}", status_code=204, dependencies=[writes, changes], responses=refusals(404)
+)
 def delete_clip(lib: Lib, clip_id: ClipId) -> None:
     """Forget a clip, its file and all that was computed from it."""
     clips.delete_clip(lib, clip_id)
@@ -120,7 +123,7 @@ def delete_clip(lib: Lib, clip_id: ClipId) -> None:
 
 @router.get(
     "/{clip_id}/file",
-    dependencies=[reads],
+    dependencies=[reads, quick],
     response_class=FileResponse,
     responses={
         200: {"content": {"application/octet-stream": {}}, "description": "The original bytes."},
@@ -134,7 +137,7 @@ def get_file(lib: Lib, clip_id: ClipId) -> FileResponse:
 
 @router.get(
     "/{clip_id}/audio",
-    dependencies=[reads],
+    dependencies=[reads, quick],
     response_class=FileResponse,
     responses={
         200: {"content": {"application/octet-stream": {}}, "description": "The original bytes."},
@@ -146,7 +149,7 @@ def get_audio(lib: Lib, clip_id: ClipId) -> FileResponse:
     return _attachment(clips.open_recording(lib, clip_id), clip_id)
 
 
-@router.delete("/{clip_id}/audio", dependencies=[writes], responses=refusals(404))
+@router.delete("/{clip_id}/audio", dependencies=[writes, changes], responses=refusals(404))
 def delete_audio(lib: Lib, clip_id: ClipId) -> Clip:
     """Forget the recording that goes with a clip; the clip is analysed again."""
     return Clip.of(clips.remove_recording(lib, clip_id))

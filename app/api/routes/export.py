@@ -8,8 +8,10 @@ from urllib.parse import quote
 from fastapi import APIRouter, Query, Response
 from fastapi.responses import StreamingResponse
 
+from app.api.admission import heavy
 from app.api.deps import Lib, reads
 from app.api.openapi import ClipId, refusals
+from app.api.pieces import Pieces
 from app.api.schemas.export import ExportQuery
 from app.services.export import ExportFormat, export
 
@@ -44,6 +46,7 @@ little, so joints have six channels, unless `skeleton=canonical`.
 @router.get(
     "/export",
     response_class=StreamingResponse,
+    dependencies=[heavy],
     description=DESCRIPTION,
     responses={
         200: {
@@ -66,8 +69,8 @@ def get_export(lib: Lib, clip_id: ClipId, wanted: Annotated[ExportQuery, Query()
         skeleton=wanted.skeleton,
         reduction=wanted.reduction_if_any(),
     )
-    return StreamingResponse(
-        iter(file.blocks),
+    return Pieces(
+        file.blocks,
         media_type=MEDIA_TYPES[wanted.format],
         headers={"Content-Disposition": attachment(file.file_name)},
     )

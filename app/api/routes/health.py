@@ -5,29 +5,37 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 from fastapi.responses import RedirectResponse
 
+from app.api.admission import OwnThreads, at_once
 from app.api.deps import Lib
 from app.api.openapi import refusals
 from app.api.problems import NotReadyYet
 from app.api.schemas.health import Alive, Ready
+from app.services.library import Library
 
 router = APIRouter(tags=["service"])
 
+_threads = OwnThreads(2)
 
-@router.get("/", include_in_schema=False)
-def root(request: Request) -> RedirectResponse:
+
+@router.get("/", include_in_schema=False, dependencies=[at_once])
+async def root(request: Request) -> RedirectResponse:
     """To the documentation, until there are pages."""
     return RedirectResponse(str(request.scope.get("root_path", "")).rstrip("/") + "/docs")
 
 
-@router.get("/livez")
-def livez() -> Alive:
-    """The process answers. Needs no key."""
+@router.get("/livez", dependencies=[at_once])
+async def livez() -> Alive:
+    """The process answers, however busy its threads are. Needs no key."""
     return Alive()
 
 
-@router.get("/readyz", responses={503: refusals(503)[503]})
-def readyz(lib: Lib) -> Ready:
+@router.get("/readyz", dependencies=[at_once], responses={503: refusals(503)[503]})
+async def readyz(lib: Lib) -> Ready:
     """200 once the index is loaded, 503 before. Needs no key."""
+    return await _threads.run(lambda: _look(lib))
+
+
+def _look(lib: Library) -> Ready:
     if not lib.index.is_loaded:
         raise NotReadyYet
     return Ready(library_version=lib.index.version, clips=len(lib.index))

@@ -7,6 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Request
 from starlette.datastructures import UploadFile
 
+from app.api.admission import changes
 from app.api.bodies import read_form, required
 from app.api.deps import Lib, writes
 from app.api.openapi import body, refusals
@@ -27,7 +28,7 @@ async def _form(request: Request) -> UploadFile:
 @router.post(
     "",
     status_code=202,
-    dependencies=[writes],
+    dependencies=[writes, Depends(_form), changes],
     responses=refusals(400, 413, 415, 503, 507),
     openapi_extra=body(form=ImportForm, files=FILES, needed=["archive"]),
 )

@@ -10,6 +10,7 @@ from fastapi import APIRouter, Depends, Query, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
+from app.api.admission import changes, follow, quick
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import JobId, refusals
 from app.api.schemas.jobs import Job, JobFile, JobFileList, JobFileQuery, JobList, JobQuery
@@ -24,20 +25,20 @@ POLL_SECONDS = 0.25
 """Between two looks at a job that is being followed."""
 
 
-@router.get("", dependencies=[reads], responses=refusals())
+@router.get("", dependencies=[reads, quick], responses=refusals())
 def list_jobs(lib: Lib, query: Annotated[JobQuery, Query()]) -> JobList:
     """Jobs, the newest first."""
     page = jobs.list_jobs(lib, query.kind, query.state, query.limit, query.cursor)
     return JobList(items=[Job.of(job) for job in page.items], next=page.next)
 
 
-@router.get("/{job_id}", dependencies=[reads], responses=refusals(404))
+@router.get("/{job_id}", dependencies=[reads, quick], responses=refusals(404))
 def get_job(lib: Lib, job_id: JobId) -> Job:
     """One job."""
     return Job.of(jobs.get_job(lib, job_id))
 
 
-@router.get("/{job_id}/files", dependencies=[reads], responses=refusals(404))
+@router.get("/{job_id}/files", dependencies=[reads, quick], responses=refusals(404))
 def list_files(lib: Lib, job_id: JobId, query: Annotated[JobFileQuery, Query()]) -> JobFileList:
     """What became of each file of an import, by path.
 
@@ -51,7 +52,7 @@ def list_files(lib: Lib, job_id: JobId, query: Annotated[JobFileQuery, Query()])
 @router.delete(
     "/{job_id}",
     status_code=202,
-    dependencies=[writes],
+    dependencies=[writes, changes],
     response_model=Job,
     responses={
         **refusals(404, 409),
@@ -76,7 +77,7 @@ def _existing(lib: Lib, job_id: JobId) -> JobRecord:
 
 @router.get(
     "/{job_id}/events",
-    dependencies=[reads],
+    dependencies=[reads, Depends(_existing), follow],
     response_class=EventSourceResponse,
     responses=refusals(404),
 )

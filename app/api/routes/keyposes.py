@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query
 
+from app.api.admission import heavy
 from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import ClipId, refusals
@@ -31,7 +32,7 @@ and the next fit's thresholds are made of; `GET` shows them beside the found one
 """
 
 
-@router.get("", dependencies=[reads], responses=refusals(404, 409), description=_FOUND)
+@router.get("", dependencies=[reads, heavy], responses=refusals(404, 409), description=_FOUND)
 def get_keyposes(lib: Lib, clip_id: ClipId, wanted: Annotated[KeyposeQuery, Query()]) -> Keyposes:
     """A clip's keyposes."""
     return Keyposes.of(
@@ -41,7 +42,7 @@ def get_keyposes(lib: Lib, clip_id: ClipId, wanted: Annotated[KeyposeQuery, Quer
 
 @router.put(
     "",
-    dependencies=[writes, Depends(require_json)],
+    dependencies=[writes, Depends(require_json), heavy],
     responses=refusals(400, 404, 413, 415),
     description=_NAMED,
 )
@@ -50,7 +51,7 @@ def name_keyposes(lib: Lib, clip_id: ClipId, named: NamedKeyposes) -> KeyposesNa
     return KeyposesNamed(times=list(keyposes.name_keyposes(lib, clip_id, named.times)))
 
 
-@router.delete("", status_code=204, dependencies=[writes], responses=refusals(404))
+@router.delete("", status_code=204, dependencies=[writes, heavy], responses=refusals(404))
 def forget_named_keyposes(lib: Lib, clip_id: ClipId) -> None:
     """Take away what was named: the found keyposes count again."""
     keyposes.name_keyposes(lib, clip_id, ())

@@ -7,6 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query
 from starlette.convertors import PathConvertor, register_url_convertor
 
+from app.api.admission import changes, quick
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import refusals
 from app.api.schemas.labels import LabelPage, NamedCounts, WordBeginning
@@ -31,7 +32,7 @@ register_url_convertor("label", LabelConvertor())
 router = APIRouter(prefix="/v1", tags=["labels"], dependencies=[reads], responses=refusals())
 
 
-@router.get("/persons")
+@router.get("/persons", dependencies=[quick])
 def list_persons(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
     """Persons and how many clips each has."""
     page = labels.page(lib, LabelKind.PERSON, query.limit, query.cursor)
@@ -39,7 +40,10 @@ def list_persons(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
 
 
 @router.delete(
-    "/persons/{name:label}", status_code=204, dependencies=[writes], responses=refusals(404)
+    "/persons/{name:label}",
+    status_code=204,
+    dependencies=[writes, changes],
+    responses=refusals(404),
 )
 def forget_person(lib: Lib, name: Annotated[str, Path(max_length=300)]) -> None:
     """Take a person's label from all clips, and remove every model that holds them at once;
@@ -49,14 +53,14 @@ def forget_person(lib: Lib, name: Annotated[str, Path(max_length=300)]) -> None:
     persons.forget_person(lib, name)
 
 
-@router.get("/tasks")
+@router.get("/tasks", dependencies=[quick])
 def list_tasks(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
     """Tasks and how many clips each has."""
     page = labels.page(lib, LabelKind.TASK, query.limit, query.cursor)
     return NamedCounts.of(page.items, page.next)
 
 
-@router.get("/words")
+@router.get("/words", dependencies=[quick])
 def list_words(lib: Lib, query: Annotated[WordBeginning, Query()]) -> NamedCounts:
     """Words and how many clips carry each, by name; completions of `q`, the likeliest first."""
     if query.q is None:

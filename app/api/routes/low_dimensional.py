@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
+from app.api.admission import heavy
 from app.api.deps import Lib, reads
 from app.api.openapi import ClipId, refusals
 from app.api.routes.clip_views import OCTET_ANSWER
@@ -47,6 +48,7 @@ SVG_ANSWER = {
     "/low-dimensional",
     response_model=LowDimensional,
     description=DESCRIPTION,
+    dependencies=[heavy],
     responses={200: OCTET_ANSWER, **refusals(404, 409)},
 )
 def get_low_dimensional(
@@ -62,6 +64,7 @@ def get_low_dimensional(
 
 @router.get(
     "/animation.svg",
+    dependencies=[heavy],
     response_class=Response,
     responses={200: SVG_ANSWER, **refusals(404, 409)},
 )

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path
 
+from app.api.admission import changes, quick
 from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import refusals
@@ -17,7 +18,7 @@ from app.services.errors_in_force import errors_in_force
 router = APIRouter(prefix="/v1/models", tags=["models"])
 
 
-@router.get("", dependencies=[reads], responses=refusals())
+@router.get("", dependencies=[reads, quick], responses=refusals())
 def list_models(lib: Lib) -> ModelList:
     """The current model of each kind, with the library's size at the fit and held-out figures."""
     return ModelList(
@@ -28,7 +29,7 @@ def list_models(lib: Lib) -> ModelList:
 
 @router.patch(
     "/{model_id}",
-    dependencies=[writes, Depends(require_json)],
+    dependencies=[writes, Depends(require_json), changes],
     responses=refusals(400, 404, 413, 415),
 )
 def update_model(
@@ -39,7 +40,7 @@ def update_model(
     return Model.of(record, errors_in_force(lib, record))
 
 
-@router.post("/fit", status_code=202, dependencies=[writes], responses=refusals(409))
+@router.post("/fit", status_code=202, dependencies=[writes, changes], responses=refusals(409))
 def request_fit(lib: Lib) -> JobStarted:
     """Fit all models again in the background; searches go on with the old ones meanwhile."""
     return JobStarted(job=Job.of(models.request_fit(lib)))

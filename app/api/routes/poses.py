@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Depends
 
+from app.api.admission import heavy
 from app.api.bodies import require_json
 from app.api.deps import Lib, reads
 from app.api.openapi import refusals
@@ -16,7 +17,7 @@ router = APIRouter(prefix="/v1/search", tags=["search"])
 
 @router.post(
     "/pose",
-    dependencies=[reads, Depends(require_json)],
+    dependencies=[reads, Depends(require_json), heavy],
     responses=refusals(400, 404, 409, 413, 415),
 )
 def search_pose(lib: Lib, query: PoseSearch) -> PoseHits:

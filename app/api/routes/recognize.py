@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Request
 
+from app.api.admission import heavy
 from app.api.bodies import is_multipart, read_form, read_json
 from app.api.deps import Lib, reads
 from app.api.openapi import body, refusals
@@ -49,7 +50,7 @@ async def _query(request: Request) -> RecogniseQuery:
 
 @router.post(
     "",
-    dependencies=[reads],
+    dependencies=[reads, Depends(_query), heavy],  # let in when a form has come
     responses=refusals(400, 404, 409, 413, 415, 503, 507),
     openapi_extra=body(model=Recognize, examples=_EXAMPLES, form=RecognizeForm, files=QUERY_FILES),
 )

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Request
 
+from app.api.admission import heavy
 from app.api.bodies import is_multipart, read_form, read_json, require_json
 from app.api.deps import Lib, reads
 from app.api.openapi import body, refusals
@@ -84,7 +85,7 @@ async def _uploaded_query(request: Request) -> MotionQuery:
 
 @router.post(
     "/motion",
-    dependencies=[reads],
+    dependencies=[reads, Depends(_motion_query), heavy],  # let in when a form has come
     responses=refusals(400, 404, 409, 413, 415, 503, 507),
     openapi_extra=body(
         model=MotionSearch,
@@ -104,7 +105,7 @@ def search_motion(lib: Lib, query: Annotated[MotionQuery, Depends(_motion_query)
 
 @router.post(
     "/words",
-    dependencies=[reads, Depends(require_json)],
+    dependencies=[reads, Depends(require_json), heavy],
     responses=refusals(400, 409, 413, 415),
 )
 def search_words(lib: Lib, query: WordSearch) -> WordHits:

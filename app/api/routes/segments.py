@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
+from app.api.admission import heavy
 from app.api.deps import Lib, reads
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.segments import SegmentList
@@ -12,7 +13,7 @@ from app.services.segments import list_segments
 router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
 
 
-@router.get("/segments", responses=refusals(404, 409))
+@router.get("/segments", dependencies=[heavy], responses=refusals(404, 409))
 def get_segments(lib: Lib, clip_id: ClipId) -> SegmentList:
     """What is danced from each keypose to the next, and the sequences that repeat themselves.
 

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
+from app.api.admission import heavy
 from app.api.deps import Lib, reads
 from app.api.openapi import refusals
 from app.api.schemas.space import SpaceMap, SpaceQuery
@@ -14,7 +15,7 @@ from app.services import space
 router = APIRouter(prefix="/v1/space", tags=["search"], dependencies=[reads])
 
 
-@router.get("", responses=refusals(409))
+@router.get("", dependencies=[heavy], responses=refusals(409))
 def get_space(lib: Lib, query: Annotated[SpaceQuery, Query()]) -> SpaceMap:
     """Every ready clip as a point of the plane or of space, near to what it is like."""
     dimensions = int(query.dimensions)

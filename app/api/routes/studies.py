@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 
+from app.api.admission import changes, heavy, quick
 from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import PairId, refusals
@@ -34,7 +35,10 @@ _BODY_REFUSALS = refusals(400, 404, 409, 413, 415)
 
 
 @router.post(
-    PAIRS, status_code=201, dependencies=[writes, Depends(require_json)], responses=_BODY_REFUSALS
+    PAIRS,
+    status_code=201,
+    dependencies=[writes, Depends(require_json), heavy],
+    responses=_BODY_REFUSALS,
 )
 def draw_pair(lib: Lib, new: NewPair) -> Pair:
     """Draw a pair to be compared: the clip drawn from as many dimensions of its keyposes and of
@@ -42,21 +46,21 @@ def draw_pair(lib: Lib, new: NewPair) -> Pair:
     return Pair.of(studies.draw_pair(lib, new.clip_id, new.dimensions, new.model_clips))
 
 
-@router.get(PAIRS, dependencies=[reads], responses=refusals())
+@router.get(PAIRS, dependencies=[reads, quick], responses=refusals())
 def list_pairs(lib: Lib, query: Annotated[PairsQuery, Query()]) -> PairList:
     """Pairs, the newest first."""
     page = studies.list_pairs(lib, query.limit, query.cursor)
     return PairList(items=[Pair.of(pair) for pair in page.items], next=page.next)
 
 
-@router.get(PAIRS + "/{pair_id}", dependencies=[reads], responses=refusals(404))
+@router.get(PAIRS + "/{pair_id}", dependencies=[reads, quick], responses=refusals(404))
 def get_pair(lib: Lib, pair_id: PairId) -> Pair:
     """One pair."""
     return Pair.of(studies.get_pair(lib, pair_id))
 
 
 @router.delete(
-    PAIRS + "/{pair_id}", status_code=204, dependencies=[writes], responses=refusals(404)
+    PAIRS + "/{pair_id}", status_code=204, dependencies=[writes, changes], responses=refusals(404)
 )
 def delete_pair(lib: Lib, pair_id: PairId) -> None:
     """Forget a pair and the votes on it."""
@@ -65,7 +69,7 @@ def delete_pair(lib: Lib, pair_id: PairId) -> None:
 
 @router.get(
     PAIRS + "/{pair_id}/animation.svg",
-    dependencies=[reads],
+    dependencies=[reads, heavy],
     response_class=Response,
     responses={200: SVG_ANSWER, **refusals(404, 409)},
 )
@@ -76,7 +80,7 @@ def get_pair_animation(lib: Lib, pair_id: PairId) -> Response:
 
 @router.get(
     PAIRS + "/{pair_id}/{side}",
-    dependencies=[reads],
+    dependencies=[reads, heavy],
     response_model=Motion,
     responses={200: OCTET_ANSWER, **refusals(404, 409)},
 )
@@ -91,7 +95,7 @@ def get_pair_motion(
 @router.post(
     PAIRS + "/{pair_id}/votes",
     status_code=201,
-    dependencies=[writes, Depends(require_json)],
+    dependencies=[writes, Depends(require_json), changes],
     responses=_BODY_REFUSALS,
 )
 def vote(lib: Lib, pair_id: PairId, new: NewVote) -> Vote:
@@ -100,7 +104,9 @@ def vote(lib: Lib, pair_id: PairId, new: NewVote) -> Vote:
     return Vote(id=vote_id, pair_id=pair_id, choice=new.choice)
 
 
-@router.get("/v1/studies/low-dimensional/tally", dependencies=[reads], responses=refusals(404))
+@router.get(
+    "/v1/studies/low-dimensional/tally", dependencies=[reads, quick], responses=refusals(404)
+)
 def get_tally(lib: Lib, query: Annotated[TallyQuery, Query()]) -> StudyTally:
     """The votes as in Table 2: how many found the keyposes' motion nearer to the original."""
     return StudyTally.of(studies.tally(lib, query.clip_id))

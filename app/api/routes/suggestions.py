@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Query
 
+from app.api.admission import heavy
 from app.api.bodies import require_json_if_any
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import ClipId, refusals
@@ -22,7 +23,7 @@ Mode = Annotated[
 Most = Annotated[int, Query(ge=1, le=suggestions.MOST_SUGGESTED)]
 
 
-@router.get("", dependencies=[reads], responses=refusals(404, 409))
+@router.get("", dependencies=[reads, heavy], responses=refusals(404, 409))
 def suggest_words(
     lib: Lib, clip_id: ClipId, limit: Most = 10, mode: Mode = "default"
 ) -> WordSuggestions:
@@ -32,7 +33,7 @@ def suggest_words(
 
 @router.post(
     "/accept",
-    dependencies=[writes, Depends(require_json_if_any)],
+    dependencies=[writes, Depends(require_json_if_any), heavy],
     responses=refusals(400, 404, 409, 413, 415),
 )
 def accept_words(lib: Lib, clip_id: ClipId, accepted: AcceptedWords | None = None) -> Clip:

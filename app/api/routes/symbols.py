@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request, Response
 
+from app.api.admission import heavy
 from app.api.deps import Lib, reads
 from app.api.openapi import ClipId, refusals
 from app.api.routes.clip_views import OCTET_ANSWER
-from app.api.schemas.symbols import SymbolMotion
-from app.api.streams import as_octets, wants_octets
+from app.api.schemas.symbols import SymbolMotion, channels_json
+from app.api.streams import as_json, as_octets, wants_octets
 from app.services import symbol_motion
 
 router = APIRouter(tags=["clips"], dependencies=[reads])
@@ -17,10 +18,13 @@ router = APIRouter(tags=["clips"], dependencies=[reads])
 @router.get(
     "/v1/clips/{clip_id}/symbol/motion",
     response_model=SymbolMotion,
+    dependencies=[heavy],
     responses={200: OCTET_ANSWER, **refusals(404, 409)},
 )
-def get_symbol_motion(lib: Lib, request: Request, clip_id: ClipId) -> Response | SymbolMotion:
+def get_symbol_motion(lib: Lib, request: Request, clip_id: ClipId) -> Response:
     """The mean trajectory of the clip's motion symbol, as channels with their spread and as a
     motion of the 13 joint roles; only the motion for `Accept: application/octet-stream`."""
     view = symbol_motion.symbol_motion(lib, clip_id)
-    return as_octets(view.motion) if wants_octets(request) else SymbolMotion.of(view)
+    if wants_octets(request):
+        return as_octets(view.motion)
+    return as_json(view.motion, {"states": view.states}, behind=channels_json(view))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Depends, Request, Response
 
+from app.api.admission import heavy
 from app.api.bodies import require_json
 from app.api.deps import Lib, writes
 from app.api.openapi import refusals
@@ -33,7 +34,7 @@ learns from it. `Accept: application/octet-stream` gives the positions alone.
     "",
     response_model=Synthesis,
     description=DESCRIPTION,
-    dependencies=[writes, Depends(require_json)],
+    dependencies=[writes, Depends(require_json), heavy],
     responses={
         200: OCTET_ANSWER,
         201: {"description": "Stored as a clip.", "model": Synthesis},

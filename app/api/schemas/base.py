@@ -9,6 +9,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 from app.motion.joint_roles import JointRole
 from app.search.filters import LONGEST_LABEL, MOST_LABELS
 from app.services import fields
+from app.services.frame_rates import LEAST_FPS, MOST_FPS
 from app.store.paging import MAX_CURSOR_LENGTH
 
 Value = TypeVar("Value")
@@ -80,3 +81,6 @@ Roles = Annotated[
 ]
 """Joint names by joint role."""
 Seconds = Annotated[float, Field(ge=0, le=1e6)]
+
+Fps = Annotated[float, Field(ge=LEAST_FPS, le=MOST_FPS)]
+"""Frames a second that a motion is resampled to."""

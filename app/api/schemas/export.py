@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from app.api.schemas.base import Fps
 from app.api.schemas.low_dimensional import ReductionFields
-from app.services.export import MAX_FPS, ExportFormat, ExportSkeleton
+from app.services.export import ExportFormat, ExportSkeleton
 
 
 class ExportQuery(ReductionFields):
@@ -14,9 +15,7 @@ class ExportQuery(ReductionFields):
     format: ExportFormat = Field(
         description="BVH (centimetres), GLB (glTF 2.0), NPZ (NumPy) or CSV; metres but for BVH."
     )
-    fps: float | None = Field(
-        None, gt=0, le=MAX_FPS, description="Resampled by time; default: the clip's own rate."
-    )
+    fps: Fps | None = Field(None, description="Resampled by time; default: the clip's own rate.")
     skeleton: ExportSkeleton = Field(
         ExportSkeleton.OWN,
         description="The clip's own joints, or one body of 18 joints that all clips play on.",

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from app.analysis.low_dimensional import Basis
 from app.analysis.plausibility import Fault, Implausible, Plausibility
-from app.api.schemas.base import Incoming, Outgoing, Seconds
+from app.api.schemas.base import Fps, Incoming, Outgoing, Seconds
 from app.api.schemas.views import Motion, Point, plain
 from app.errors import BadField, Place
 from app.motion.body_frame import ANALYSIS_RATE
@@ -71,8 +71,8 @@ class LowDimensionalQuery(ReductionFields):
         le=10**6,
         description="K', from 1 to as many as the model has poses; default: 3.",
     )
-    fps: float | None = Field(
-        None, gt=0, le=1000, description="Resampled by time; default: 30, at which it is made."
+    fps: Fps | None = Field(
+        None, description="Resampled by time; default: 30, at which it is made."
     )
 
 

@@ -7,7 +7,7 @@ from datetime import datetime
 from pydantic import ConfigDict, Field
 
 from app.analysis.low_dimensional import SHOWN
-from app.api.schemas.base import Cursor, Id, Incoming, Limit, Outgoing
+from app.api.schemas.base import Cursor, Fps, Id, Incoming, Limit, Outgoing
 from app.services import studies
 from app.services.low_dimensional import MOST_MODEL_CLIPS
 from app.services.studies import MOST_SEQUENCES, MOST_VOTER
@@ -82,8 +82,8 @@ class PairsQuery(Incoming):
 class SideQuery(Incoming):
     """How a motion of a pair is wanted."""
 
-    fps: float | None = Field(
-        None, gt=0, le=1000, description="Resampled by time; default: 30, at which it is made."
+    fps: Fps | None = Field(
+        None, description="Resampled by time; default: 30, at which it is made."
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from pydantic import Field
 
 from app.analysis.symbol_features import CHANNELS
@@ -26,18 +28,14 @@ class SymbolMotion(Motion):
     states: int = Field(description="States of the hidden Markov model.")
     channels: list[Channel]
 
-    @classmethod
-    def of(cls, view: SymbolMotionView) -> SymbolMotion:
-        """A generated motion as it goes over the wire."""
-        found = view.generated
-        return cls(
-            frame_rate=found.rate,
-            joint_names=list(view.motion.joint_names),
-            parents=list(view.motion.parents),
-            positions=plain(found.positions),
-            states=view.states,
-            channels=[
-                Channel(name=name, mean=plain(mean), spread=plain(spread))
-                for name, mean, spread in zip(CHANNELS, found.means.T, found.spreads.T, strict=True)
-            ],
-        )
+
+def channels_json(view: SymbolMotionView) -> Iterator[str]:
+    """The member `channels` as JSON, a channel at a time: a long clip has a million numbers."""
+    found = view.generated
+    yield ', "channels": ['
+    for number, (name, mean, spread) in enumerate(
+        zip(CHANNELS, found.means.T, found.spreads.T, strict=True)
+    ):
+        channel = Channel(name=name, mean=plain(mean), spread=plain(spread))
+        yield ("," if number else "") + channel.model_dump_json()
+    yield "]"

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from app.api.schemas.base import Incoming, Outgoing
+from app.api.schemas.base import Fps, Incoming, Outgoing
 from app.numerics.rank1 import MAX_ITERATIONS
 from app.services.views import DescriptorView
 
@@ -18,9 +18,7 @@ Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 class MotionQueryParameters(Incoming):
     """How a clip's motion is wanted."""
 
-    fps: float | None = Field(
-        None, gt=0, le=1000, description="Resampled by time; default: the clip's own rate."
-    )
+    fps: Fps | None = Field(None, description="Resampled by time; default: the clip's own rate.")
     joints: Literal["all", "roles"] = Field(
         "all", description="All joints, or the 13 of Sun's figure 2 in its order."
     )

@@ -1,0 +1,49 @@
+"""Large files that are nothing but large, and the child processes that are busy with them."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+
+import psutil
+
+from app.services.demo import DemoClip
+
+BUSY_S = 0.3
+"""CPU time after which a child is in the middle of its analysis."""
+
+
+def repeated(clip: DemoClip, times: int) -> bytes:
+    """The same motion over and over."""
+    head, _, frames = clip.content.partition(b"Frame Time")
+    line, _, rows = frames.partition(b"\n")
+    count = rows.count(b"\n") * times
+    head = head[: head.rindex(b"Frames:")] + b"Frames: %d\n" % count
+    return head + b"Frame Time" + line + b"\n" + rows * times
+
+
+def server_of(parent: psutil.Process) -> psutil.Process | None:
+    """The process that forks a process's children."""
+    with suppress(psutil.Error):
+        for child in parent.children():
+            with suppress(psutil.Error):
+                if "multiprocessing.forkserver" in " ".join(child.cmdline()):
+                    return child
+    return None
+
+
+def children_of(parent: psutil.Process) -> list[psutil.Process]:
+    """The analysis processes of a process."""
+    with suppress(psutil.Error):
+        server = server_of(parent)
+        return [] if server is None else server.children()
+    return []
+
+
+def busy_children(parent: psutil.Process, seconds: float = BUSY_S) -> list[psutil.Process]:
+    """Those that have worked for so long."""
+    found = []
+    for child in children_of(parent):
+        with suppress(psutil.Error):
+            if sum(child.cpu_times()[:2]) >= seconds:
+                found.append(child)
+    return found
