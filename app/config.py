@@ -95,6 +95,11 @@ class Settings(BaseSettings):
     job_poll_s: float = Field(
         0.25, gt=0, description="Seconds an idle worker waits before it looks for work again."
     )
+    quarantine_days: float = Field(
+        30.0,
+        gt=0,
+        description="Days that files which the database does not name are kept in the quarantine.",
+    )
     refit_growth: float = Field(
         0.1, ge=0, description="Part by which the library must have changed to be fitted again."
     )

@@ -113,10 +113,12 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     library = await run_in_threadpool(Library.open, app.state.settings)
     loading = Loading(library)
     loading.start()
+    library.health.start()
     app.state.library = library
     try:
         yield
     finally:
         app.state.library = None
         await run_in_threadpool(loading.stop)
+        await run_in_threadpool(library.health.stop)
         await run_in_threadpool(library.close)

@@ -28,6 +28,12 @@ class NotReadyYet(KinedexError):
     code = "not_ready"
 
 
+class Unhealthy(NotReadyYet):
+    """The service cannot do its work: its store is out of order."""
+
+    code = "unhealthy"
+
+
 class TooBusy(KinedexError):
     """Too many uploads are being received at once; try again shortly."""
 

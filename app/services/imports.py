@@ -30,7 +30,6 @@ from app.services.clips import (
     WORKER_DEATHS,
     add,
     check_content,
-    drop_replaced,
     keep,
 )
 from app.services.companions import pair_skeletons
@@ -233,7 +232,6 @@ def _store_file(doing: _Doing, content: Readable, item: Item) -> None:
             is_done = not created.is_new and created.clip.state is ClipState.READY
             outcome = ImportOutcome.EXISTS if is_done else ImportOutcome.QUEUED
             doing.record(tx, path, outcome, clip_id=created.clip.id)
-    drop_replaced(lib, created)
 
 
 def _staged(lib: Library, files: ExitStack, source: SourceFile | None) -> StagedFile | None:

@@ -29,5 +29,4 @@ def list_jobs(
 
 def cancel_job(lib: Library, job_id: str) -> JobRecord:
     """Ask a job to stop; one that has ended stays as it is. Raises JobNotFound."""
-    with lib.store.write() as tx:
-        return outcomes.request_cancel(tx, job_id)
+    return lib.store.write_even_when_full(lambda tx: outcomes.request_cancel(tx, job_id))

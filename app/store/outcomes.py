@@ -14,7 +14,7 @@ from sqlalchemy import select, update
 
 from app.errors import Canceled, WorkerDied
 from app.store import arrays as array_repository
-from app.store import clips, imports, jobs, leases
+from app.store import clips, imports, jobs, leases, removals
 from app.store import tables as t
 from app.store.clip_record import ClipFacts, ClipRecord, ClipState
 from app.store.engine import Tx
@@ -106,7 +106,7 @@ def settle_abandoned(tx: Tx) -> tuple[JobRecord, ...]:
 def remove_clip(tx: Tx, clip_id: str) -> ClipRecord:
     """Deletes a clip; its jobs are canceled, imports do not wait for it any more.
 
-    Returns what it was; afterwards give its files to `Store.drop_unreferenced`.
+    Its files are removed once the transaction is committed. Returns what it was.
     """
     imports_of_it = imports.waiting_on(tx, [clip_id])
     gone = clips.delete_clip(tx, clip_id)
@@ -114,6 +114,7 @@ def remove_clip(tx: Tx, clip_id: str) -> ClipRecord:
         _cancel_now(tx, job_id)  # a worker that has it will find its lease lost
     for job_id in imports_of_it:
         imports.settle_if_done(tx, job_id)
+    removals.record(tx, (gone.sha256, gone.skeleton_sha256, gone.audio_sha256))
     return gone
 
 
