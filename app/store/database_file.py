@@ -7,6 +7,7 @@ what is written afterwards goes where nobody finds it again; so each transaction
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from pathlib import Path
 
 from app.errors import DatabaseGone
@@ -31,9 +32,16 @@ class DatabaseFile:
         file was opened before.
         """
         if self._opened is None:
-            os.close(os.open(self.path, os.O_RDWR | os.O_CREAT, 0o600))
-            self._opened = self.path.stat()
+            # Only a file that is new may be opened here: closing one that SQLite has open in this
+            # process would release SQLite's locks on it.
+            with suppress(FileExistsError):
+                os.close(os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600))
+            self.watch()
         self.check()
+
+    def watch(self) -> None:
+        """Remembers which file it is; from now on any other is refused. Raises OSError."""
+        self._opened = self.path.stat()
 
     def check(self) -> None:
         """Raises DatabaseGone unless the file that was opened still has its name."""

@@ -20,7 +20,7 @@ from sqlalchemy import Connection, Engine, create_engine, event, func, select
 from sqlalchemy.engine import URL, make_url
 from sqlalchemy.exc import ArgumentError, DBAPIError
 
-from app.errors import ConfigurationError, DatabaseDamaged, DiskFull, StorageError
+from app.errors import ConfigurationError, DatabaseDamaged, DatabaseGone, DiskFull, StorageError
 from app.store import integrity
 from app.store.database_file import DatabaseFile
 from app.store.folders import make_private
@@ -90,6 +90,14 @@ class Database:
                 tx.execute(select(func.pg_advisory_xact_lock(MIGRATION_LOCK)))
             yield tx
 
+    def watch_file(self) -> None:
+        """From now on, another file in the place of this one is refused. Raises DatabaseGone."""
+        if self.file is not None:
+            try:
+                self.file.watch()
+            except OSError as error:
+                raise DatabaseGone() from error
+
     def erase_traces(self) -> None:
         """Writes the log of changes into the database and empties it, as far as no one reads it.
 
@@ -109,7 +117,11 @@ class Database:
         """What is wrong with an SQLite database (see `integrity`); () for any other."""
         if not self._is_sqlite:
             return ()
-        connection = self.engine.raw_connection()
+        try:
+            with self._storage_failures():
+                connection = self.engine.raw_connection()
+        except DatabaseDamaged as problem:  # too much so to be opened
+            return (problem.detail,)
         try:
             return integrity.find_damage(connection.driver_connection, quick=quick)  # type: ignore[arg-type]
         finally:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import errno
 import hashlib
 import os
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -18,14 +17,13 @@ from pathlib import Path
 from typing import BinaryIO, Protocol
 
 from app.errors import BadField, DiskFull, NotFound, Place, StorageError, TooLarge
-from app.store.checked import Checked
+from app.store.checked import SHA256, Checked
 from app.store.folders import make_private_synced, sync_folder
 from app.store.id_file import read_id
 from app.store.locked_file import create_locked, remove_if_abandoned
 from app.store.quarantine import FOLDER, Quarantine
 
 CHUNK_BYTES = 1024 * 1024
-SHA256 = re.compile(r"[0-9a-f]{64}")
 NO_SPACE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 
 

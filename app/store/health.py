@@ -16,6 +16,8 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+from sqlalchemy.exc import SQLAlchemyError
+
 from app.errors import DatabaseDamaged, DatabaseGone, Place, StorageError
 from app.store import library
 from app.store.ids import new_id
@@ -29,7 +31,7 @@ WRITE_EVERY_S = 5.0
 """Between two attempts to write."""
 CHECK_EVERY_S = 6 * 3600.0
 """Between two looks at all pages of the database."""
-CHECK_AGAIN_S = 30.0
+CHECK_AGAIN_S = 10.0
 """The same, while it is damaged."""
 LOOK_S = 1.0
 """Between two looks at whether a request met damage."""
@@ -52,7 +54,7 @@ class Health:
         self._told: tuple[Place, ...] = ()
 
     def start(self) -> None:
-        """Begin to check the database's pages in the background."""
+        """Begin to check the database's pages in the background, and to keep a reserve."""
         self._thread.start()
 
     def stop(self) -> None:
@@ -73,11 +75,9 @@ class Health:
         try:
             with self._store.read() as tx:
                 found = library.library_id(tx)
-        except DatabaseGone as problem:
+        except (DatabaseGone, DatabaseDamaged) as problem:
             return (Place(DATABASE, problem.title()),)
-        except DatabaseDamaged as problem:
-            return (Place(DATABASE, problem.title()),)
-        except StorageError:
+        except (StorageError, SQLAlchemyError):
             return (Place(DATABASE, "cannot be read"),)
         if self._is_damaged or self._store.database.damage is not None:
             return (Place(DATABASE, DatabaseDamaged.title()),)
@@ -110,6 +110,7 @@ class Health:
             is_met = self._store.database.damage is not None and not self._is_damaged
             if is_met or time.monotonic() >= next_check:
                 self._check_once()
+                self._store.make_reserve()
                 pause = CHECK_AGAIN_S if self._is_damaged else CHECK_EVERY_S
                 next_check = time.monotonic() + pause
             self._stop.wait(LOOK_S)

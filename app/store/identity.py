@@ -39,8 +39,10 @@ def prepare(database_url: str, files_dir: Path) -> str:
     Raises LibraryMismatch where files and database do not belong together, before anything is
     changed; DatabaseOutOfDate; StorageError.
     """
-    refuse_files_without_database(database_url, files_dir)
-    schema.prepare(database_url)
+    if not is_database_there(database_url):
+        _refuse_files(database_url, files_dir)
+        schema.upgrade(database_url)
+    schema.check(database_url)
     return _checked(database_url, files_dir, writes=True)
 
 
@@ -52,8 +54,11 @@ def check(database_url: str, files_dir: Path) -> str:
 
 def refuse_files_without_database(database_url: str, files_dir: Path) -> None:
     """Raises LibraryMismatch where a new database would be made for a folder that is in use."""
-    if is_database_there(database_url):
-        return
+    if not is_database_there(database_url):
+        _refuse_files(database_url, files_dir)
+
+
+def _refuse_files(database_url: str, files_dir: Path) -> None:
     files = FileStore(files_dir)
     if _read_id(files_dir) is None and next(iter(files), None) is None:
         return

@@ -32,7 +32,10 @@ class Store:
 
         library_id: what they found; without it, files are taken to be the right ones.
         """
-        return cls(Database(database_url), FileStore(files_dir, library_id))
+        database = Database(database_url)
+        if library_id is not None:
+            database.watch_file()
+        return cls(database, FileStore(files_dir, library_id))
 
     def read(self) -> AbstractContextManager[Tx]:
         """A transaction that sees one snapshot."""

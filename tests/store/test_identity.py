@@ -111,7 +111,7 @@ def test_a_library_that_never_had_a_clip_is_missed_too(tmp_path: Path) -> None:
 def test_two_libraries_cannot_share_a_folder(tmp_path: Path) -> None:
     open_library(tmp_path, "one.sqlite3").close()
     schema.upgrade(sqlite_url(tmp_path / "two.sqlite3"))
-    with pytest.raises(LibraryMismatch, match="two.sqlite3 is the database of the library"):
+    with pytest.raises(LibraryMismatch, match=r"two\.sqlite3 is the database of the library"):
         open_library(tmp_path, "two.sqlite3")
     open_library(tmp_path, "one.sqlite3").close()
 
