@@ -114,18 +114,16 @@ class Database:
                 connection.close()
 
     def find_damage(self, *, quick: bool = False) -> tuple[str, ...]:
-        """What is wrong with an SQLite database (see `integrity`); () for any other."""
-        if not self._is_sqlite:
+        """What is wrong with an SQLite database (see `integrity`); () for any other.
+
+        Raises DatabaseGone, StorageError.
+        """
+        if self.file is None:
             return ()
-        try:
-            with self._storage_failures():
-                connection = self.engine.raw_connection()
-        except DatabaseDamaged as problem:  # too much so to be opened
-            return (problem.detail,)
-        try:
-            return integrity.find_damage(connection.driver_connection, quick=quick)  # type: ignore[arg-type]
-        finally:
-            connection.close()
+        self.file.check()
+        # A connection of its own: those in use would show the pages that they remember.
+        with closing(sqlite3.connect(self.file.path, timeout=BUSY_TIMEOUT_S)) as connection:
+            return integrity.find_damage(connection, quick=quick)
 
     def check_copyable(self) -> None:
         """Raises ConfigurationError unless the database is a file (SQLite's), for `copy_to`."""

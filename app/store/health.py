@@ -2,8 +2,8 @@
 
 What costs little is looked at each time it is asked: which file has the database's name, and
 whether it can be read; which library the folder of files belongs to. Whether something can be
-written is tried again after WRITE_EVERY_S. All pages of the database are read in the background,
-at the start, from time to time, and after a request met damage.
+written is tried again after WRITE_EVERY_S. All pages of the database are read in the background:
+at the start, when its file was changed, from time to time, and after a request met damage.
 """
 
 from __future__ import annotations
@@ -30,9 +30,11 @@ LEAST_FREE = 4 * 2**20
 WRITE_EVERY_S = 5.0
 """Between two attempts to write."""
 CHECK_EVERY_S = 6 * 3600.0
-"""Between two looks at all pages of the database."""
+"""Between two looks at all pages of a database that did not change."""
 CHECK_AGAIN_S = 10.0
-"""The same, while it is damaged."""
+"""The same, least, when its file was changed, or is damaged."""
+WORK_SHARE = 50
+"""Such a look is repeated after so many times the time that it took."""
 LOOK_S = 1.0
 """Between two looks at whether a request met damage."""
 STOP_WITHIN_S = 1.0
@@ -49,6 +51,8 @@ class Health:
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._check_pages, name="check-pages", daemon=True)
         self._is_damaged = False
+        self._checked_at = -CHECK_EVERY_S
+        self._checked_change, self._check_took = -1, 0.0
         self._room: tuple[Place, ...] = ()
         self._room_until = 0.0
         self._told: tuple[Place, ...] = ()
@@ -105,17 +109,23 @@ class Health:
         return [folder for folder in folders if folder.is_dir()]
 
     def _check_pages(self) -> None:
-        next_check = time.monotonic()
         while not self._stop.is_set():
-            is_met = self._store.database.damage is not None and not self._is_damaged
-            if is_met or time.monotonic() >= next_check:
+            if self._is_check_due():
                 self._check_once()
                 self._store.make_reserve()
-                pause = CHECK_AGAIN_S if self._is_damaged else CHECK_EVERY_S
-                next_check = time.monotonic() + pause
             self._stop.wait(LOOK_S)
 
+    def _is_check_due(self) -> bool:
+        if self._store.database.damage is not None and not self._is_damaged:
+            return True
+        since = time.monotonic() - self._checked_at
+        if since < max(CHECK_AGAIN_S, WORK_SHARE * self._check_took):
+            return False
+        is_changed = self._last_change() != self._checked_change
+        return self._is_damaged or is_changed or since >= CHECK_EVERY_S
+
     def _check_once(self) -> None:
+        began, self._checked_change = time.monotonic(), self._last_change()
         with suppress(StorageError):  # gone or locked: the next look tells
             damage = self._store.database.find_damage(quick=True)
             if damage:
@@ -123,6 +133,16 @@ class Health:
             self._is_damaged = bool(damage)
             if not damage:
                 self._store.database.damage = None
+        self._checked_at = time.monotonic()
+        self._check_took = self._checked_at - began
+
+    def _last_change(self) -> int:
+        """When the database's file was changed; a bad disk changes no time, but others do."""
+        file = self._store.database.file
+        try:
+            return 0 if file is None else file.path.stat().st_mtime_ns
+        except OSError:
+            return 0
 
 
 def _room_troubles(folders: list[Path]) -> tuple[Place, ...]:
