@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Self, TypeVar
@@ -65,7 +65,8 @@ class Store:
         except DiskFull:
             if self._reserve is None or not self._reserve.give_up():
                 raise
-            self.erase_traces()
+            with suppress(StorageError):  # it may help, by what the log gives back
+                self.erase_traces()
             with self.write() as tx:
                 return work(tx)
         finally:
