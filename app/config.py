@@ -126,6 +126,11 @@ class Settings(BaseSettings):
         ge=0,
         description="Days after which a job that has ended is removed; 0 keeps all jobs.",
     )
+    quarantine_days: float = Field(
+        30.0,
+        gt=0,
+        description="Days that files which the database does not name are kept in the quarantine.",
+    )
     refit_growth: float = Field(
         0.1, ge=0, description="Part by which the library must have changed to be fitted again."
     )

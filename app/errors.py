@@ -269,6 +269,24 @@ class DiskFull(StorageError):
     code = "disk_full"
 
 
+class DatabaseGone(StorageError):
+    """The database's file was deleted or replaced; put it back, or restart Kinedex."""
+
+    code = "database_gone"
+
+
+class DatabaseDamaged(StorageError):
+    """The database is damaged."""
+
+    code = "database_damaged"
+
+
+class FileDamaged(StorageError):
+    """The stored file is damaged: its bytes are not those that were stored."""
+
+    code = "file_damaged"
+
+
 class DatabaseOutOfDate(StorageError):
     """The database is of another version; run `kinedex db upgrade`."""
 
@@ -291,6 +309,12 @@ class ConfigurationError(KinedexError):
     """The settings do not allow this."""
 
     code = "configuration"
+
+
+class LibraryMismatch(ConfigurationError):
+    """The database and the folder of files do not belong together."""
+
+    code = "library_mismatch"
 
 
 class ExtraNeeded(KinedexError):

@@ -127,10 +127,12 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         raise
     loading = Loading(library)
     loading.start()
+    library.health.start()
     app.state.library = library
     try:
         yield
     finally:
         app.state.library = None
         await run_in_threadpool(loading.stop)
+        await run_in_threadpool(library.health.stop)
         await run_in_threadpool(library.close)

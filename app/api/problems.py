@@ -29,6 +29,12 @@ class NotReadyYet(KinedexError):
     code = "not_ready"
 
 
+class Unhealthy(NotReadyYet):
+    """The service cannot do its work: its store is out of order."""
+
+    code = "unhealthy"
+
+
 class TooBusy(KinedexError):
     """The service is too busy; try again shortly."""
 

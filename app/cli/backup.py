@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import os
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from app.cli.output import AsJson, print_json, progress_bar
-from app.cli.settings import settings_of
-from app.errors import BadField, ConfigurationError, Place
-from app.store import schema
-from app.store.backup import DATABASE, back_up
-from app.store.store import Store
+from app.cli.settings import open_store, settings_of
+from app.errors import BadField, Place
+from app.store.backup import back_up
 
 
 def backup(
@@ -26,25 +28,27 @@ def backup(
     The copy is a data directory: to restore it, start Kinedex with KINEDEX_DATA_DIR set to it, or
     to a copy of it. It holds everything, also keys (hashed) and what is deleted later.
     """
-    settings = settings_of(context)
-    if settings.database_url is None and not (settings.data_dir / DATABASE).is_file():
-        raise ConfigurationError(f"There is no library in {settings.data_dir}.")
-    _refuse_inside(settings.data_dir, path)
-    schema.check(settings.database)
-    store = Store.open(settings.database, settings.files_dir)
-    try:
-        with progress_bar() as bar:
-            task = bar.add_task("copying", total=None)
-            made = back_up(
-                store, path, lambda done, total: bar.update(task, completed=done, total=total)
-            )
-            bar.update(task, completed=1, total=1)
-    finally:
-        store.close()
+    _refuse_inside(settings_of(context).data_dir, path)
+    with open_store(context) as store, _ended_by_sigterm(), progress_bar() as bar:
+        task = bar.add_task("copying", total=None)
+        made = back_up(
+            store, path, lambda done, total: bar.update(task, completed=done, total=total)
+        )
+        bar.update(task, completed=1, total=1)
     if as_json:
         print_json({"path": str(made.path), "files": made.files, "bytes": made.bytes})
     else:
         typer.echo(f"{made.path}: the database and {made.files} files, {made.bytes} bytes")
+
+
+@contextmanager
+def _ended_by_sigterm() -> Iterator[None]:
+    """Lets SIGTERM end the block as an exception does, so that half a copy is removed."""
+    before = signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _refuse_inside(data_dir: Path, path: Path) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import typer
 
 from app.cli.settings import settings_of
-from app.store import schema
+from app.store import identity, schema
+from app.store.folders import make_private
 
 program = typer.Typer(help="The database.", no_args_is_help=True)
 
@@ -14,6 +15,23 @@ program = typer.Typer(help="The database.", no_args_is_help=True)
 def upgrade(context: typer.Context) -> None:
     """Bring the database to this version's schema, making it where there is none."""
     settings = settings_of(context)
-    settings.data_dir.mkdir(parents=True, exist_ok=True)
+    make_private(settings.data_dir)
+    identity.refuse_files_without_database(settings.database, settings.files_dir)
     state = schema.upgrade(settings.database)
     typer.echo(f"The database is at revision {state.current}.")
+
+
+@program.command("adopt-files")
+def adopt_files(context: typer.Context) -> None:
+    """Say that the folder of files belongs to the database, where Kinedex refuses to believe it.
+
+    Run it only when you are sure. Files that the database does not name are moved to the
+    quarantine by the next worker, and are removed after the retention.
+    """
+    settings = settings_of(context)
+    found = identity.adopt(settings.database, settings.files_dir)
+    typer.echo(
+        f"{settings.files_dir} belongs to this database now. Of the files that it names, "
+        f"{found.present} are there and {found.missing} are missing; {found.unknown} others go "
+        "to the quarantine."
+    )

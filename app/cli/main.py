@@ -23,6 +23,7 @@ from app.cli import (
     reanalyze,
     serve,
     synthesize,
+    verify,
 )
 from app.cli.settings import remember
 from app.errors import ClipNotFound, KinedexError
@@ -48,6 +49,7 @@ program.command("synthesize")(synthesize.synthesize)
 program.command("fit")(fit.fit)
 program.command("export")(export.export)
 program.command("backup")(backup.backup)
+program.command("verify")(verify.verify)
 program.add_typer(evaluate.program, name="evaluate")
 program.add_typer(keys.program, name="keys")
 program.add_typer(db.program, name="db")

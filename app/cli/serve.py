@@ -12,7 +12,7 @@ from app.cli.settings import settings_of
 from app.json_stderr import json_stderr
 from app.logs import configure_logging, set_level
 from app.services.exposure import refuse_exposure_without_keys, refuse_taken_address
-from app.store import schema
+from app.store import identity
 from app.worker.loop import run_worker
 from app.worker.supervisor import supervise
 
@@ -31,7 +31,7 @@ def serve(
     """Serve the API and do the work, until stopped; each process is restarted if it dies."""
     settings = settings_of(context, host=host, port=port)
     configure_logging(settings.log_level.upper())
-    schema.prepare(settings.database)
+    identity.prepare(settings.database, settings.files_dir)
     refuse_exposure_without_keys(settings)
     refuse_taken_address(settings)
     raise typer.Exit(supervise(settings, with_worker))

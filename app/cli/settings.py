@@ -9,7 +9,10 @@ from typing import Any
 import typer
 
 from app.config import Settings, load_settings
+from app.errors import ConfigurationError
 from app.services.library import Library
+from app.store import identity
+from app.store.store import Store
 
 
 def remember(context: typer.Context, **flags: Any) -> None:
@@ -20,6 +23,23 @@ def remember(context: typer.Context, **flags: Any) -> None:
 def settings_of(context: typer.Context, **flags: Any) -> Settings:
     """The settings in force; a flag of None counts as not given. Raises ConfigurationError."""
     return load_settings(**{**(context.obj or {}), **flags})
+
+
+@contextmanager
+def open_store(context: typer.Context) -> Iterator[Store]:
+    """The store of a library that is there already, closed at the end; nothing is made.
+
+    Raises ConfigurationError, LibraryMismatch, DatabaseOutOfDate, StorageError.
+    """
+    settings = settings_of(context)
+    if not identity.is_database_there(settings.database):
+        raise ConfigurationError(f"There is no library in {settings.data_dir}.")
+    library_id = identity.check(settings.database, settings.files_dir)
+    store = Store.open(settings.database, settings.files_dir, library_id)
+    try:
+        yield store
+    finally:
+        store.close()
 
 
 @contextmanager

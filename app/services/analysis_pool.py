@@ -31,6 +31,7 @@ from app.logs import level_of_process
 from app.services.child import ChildEnded
 from app.services.child_pool import ChildPool, TaskTimedOut
 from app.services.child_processes import limit_memory, log_like_parent, stderr_silenced
+from app.store.checked import read_whole
 
 if TYPE_CHECKING:
     from app.analysis.analyse import Analysis
@@ -206,7 +207,7 @@ def _listen(path: Path) -> tuple[Onsets | None, tuple[Caution, ...]]:
     from app.formats.audio import read_audio
     from app.motion.recording import Caution
 
-    content = path.read_bytes()
+    content = read_whole(path)
     try:
         with stderr_silenced():
             sound = read_audio(content)
@@ -226,14 +227,14 @@ def _listen(path: Path) -> tuple[Onsets | None, tuple[Caution, ...]]:
 def read_order(order: Order, limits: Limits) -> Recording:
     """Read one file, here and now (runs in the child).
 
-    Raises BadContent for what cannot be read, TooLarge beyond the limits.
+    Raises BadContent for what cannot be read, TooLarge beyond the limits, FileDamaged.
     """
     from app.formats.read import read_recording
 
-    content = order.content if order.content is not None else Path(order.path or "").read_bytes()
+    content = order.content if order.content is not None else read_whole(Path(order.path or ""))
     skeleton = order.skeleton
     if order.skeleton_path is not None:
-        skeleton = Path(order.skeleton_path).read_bytes()
+        skeleton = read_whole(Path(order.skeleton_path))
     recording = read_recording(content, skeleton, order.stack)
     _check_size(recording, limits)
     return recording

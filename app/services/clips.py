@@ -15,7 +15,7 @@ from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
 from app.services import fields
 from app.services.library import Library
 from app.services.recordings import NewRecording, described, stage
-from app.store import clip_listing, jobs, outcomes
+from app.store import clip_listing, jobs, outcomes, removals
 from app.store import clips as stored
 from app.store.clip_filter import ClipFilter
 from app.store.clip_record import Added, ClipChanges, ClipRecord
@@ -76,8 +76,6 @@ class Created:
     clip: ClipRecord
     job: JobRecord | None
     is_new: bool
-    replaced_audio: str | None = None
-    """SHA-256 of a recording that may be dropped once the transaction is committed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,9 +118,7 @@ def create_clip(
             heard = described(sound, recording.filename)
         with lib.store.write() as tx:
             keep(staged, companion, sound)
-            created = add(tx, replace(row(staged, companion), **heard))
-    drop_replaced(lib, created)
-    return created
+            return add(tx, replace(row(staged, companion), **heard))
 
 
 def keep(*files: StagedFile | None) -> None:
@@ -132,19 +128,17 @@ def keep(*files: StagedFile | None) -> None:
             file.keep()
 
 
-def drop_replaced(lib: Library, created: Created) -> None:
-    """Remove a recording that the clip no longer has, after the transaction."""
-    if created.replaced_audio is not None:
-        lib.store.drop_unreferenced([created.replaced_audio])
-
-
 def add(tx: Tx, row: NewRow, priority: int = UPLOAD_PRIORITY) -> Created:
-    """Add a kept file's clip and queue its analysis, in the caller's transaction."""
+    """Add a kept file's clip and queue its analysis, in the caller's transaction.
+
+    A recording that it replaces is removed once that is committed.
+    """
     added: Added = stored.add_or_get(tx, row)
     if not added.needs_analysis:
         return Created(added.clip, None, is_new=False)
     job = enqueue_ingest(tx, added.clip.id, priority)
-    return Created(added.clip, job, is_new=True, replaced_audio=added.replaced_audio)
+    removals.record(tx, [added.replaced_audio])
+    return Created(added.clip, job, is_new=True)
 
 
 def check_content(staged: StagedFile) -> str:
@@ -235,26 +229,21 @@ def update_clip(lib: Library, clip_id: str, changes: Mapping[str, Any]) -> ClipR
 
 
 def delete_clip(lib: Library, clip_id: str) -> None:
-    """Remove a clip with all that was derived from it, and its file. Raises ClipNotFound."""
-    with lib.store.write() as tx:
-        gone = outcomes.remove_clip(tx, clip_id)
-    files = (gone.sha256, gone.skeleton_sha256, gone.audio_sha256)
-    lib.store.drop_unreferenced([sha256 for sha256 in files if sha256 is not None])
+    """Remove a clip with all that was derived from it, and its files. Raises ClipNotFound."""
+    lib.store.write_even_when_full(lambda tx: outcomes.remove_clip(tx, clip_id))
 
 
 def open_file(lib: Library, clip_id: str) -> StoredFile:
-    """The original bytes of a clip, whatever its state. Raises ClipNotFound."""
+    """The original bytes of a clip, whatever its state. Raises ClipNotFound, FileDamaged."""
     clip = get_clip(lib, clip_id)
-    return StoredFile(lib.store.files.path(clip.sha256), clip.file_name, clip.file_size)
+    return StoredFile(lib.store.files.checked_path(clip.sha256), clip.file_name, clip.file_size)
 
 
 def open_recording(lib: Library, clip_id: str) -> StoredFile:
-    """The bytes of a clip's recording. Raises ClipNotFound, NotFound where it has none."""
+    """The bytes of a clip's recording. Raises as `open_file`, NotFound where it has none."""
     clip = get_clip(lib, clip_id)
-    sha256 = _recording_of(clip)
-    return StoredFile(
-        lib.store.files.path(sha256), clip.audio_name or "audio", clip.audio_size or 0
-    )
+    path = lib.store.files.checked_path(_recording_of(clip))
+    return StoredFile(path, clip.audio_name or "audio", clip.audio_size or 0)
 
 
 def remove_recording(lib: Library, clip_id: str) -> ClipRecord:
@@ -262,13 +251,15 @@ def remove_recording(lib: Library, clip_id: str) -> ClipRecord:
     nothing = ClipChanges(
         audio_sha256=None, audio_name=None, audio_size=None, audio_offset_override=None
     )
-    with lib.store.write() as tx:
+
+    def remove(tx: Tx) -> ClipRecord:
         sha256 = _recording_of(stored.get(tx, clip_id))
         stored.patch(tx, clip_id, nothing)
+        removals.record(tx, [sha256])
         enqueue_ingest(tx, clip_id, BULK_PRIORITY)
-        after = stored.requeue(tx, clip_id)
-    lib.store.drop_unreferenced([sha256])
-    return after
+        return stored.requeue(tx, clip_id)
+
+    return lib.store.write_even_when_full(remove)
 
 
 def _recording_of(clip: ClipRecord) -> str:

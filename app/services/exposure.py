@@ -6,7 +6,7 @@ import socket
 
 from app.config import Settings
 from app.errors import ConfigurationError, DatabaseOutOfDate, Place
-from app.store import keys, schema
+from app.store import identity, keys
 from app.store.store import Store
 
 CANNOT_START = 78
@@ -19,13 +19,13 @@ HOPELESS = (ConfigurationError, DatabaseOutOfDate)
 def refuse_exposure_without_keys(settings: Settings) -> None:
     """Raises ConfigurationError when the service would listen off loopback with no key made.
 
-    Raises DatabaseOutOfDate too, since it has to look into the database.
+    Raises DatabaseOutOfDate and LibraryMismatch too, since it has to look into the database.
     """
     if settings.listens_on_loopback:
         return
+    identity.prepare(settings.database, settings.files_dir)
     store = Store.open(settings.database, settings.files_dir)
     try:
-        schema.prepare(settings.database)
         with store.read() as tx:
             is_guarded = keys.is_any_valid(tx)
     finally:

@@ -14,7 +14,7 @@ from dataclasses import replace
 from app.errors import Canceled, KinedexError, LeaseLost, StorageError
 from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
 from app.services import fields
-from app.services.clips import BULK_PRIORITY, add, check_content, drop_replaced, keep
+from app.services.clips import BULK_PRIORITY, add, check_content, keep
 from app.services.import_plan import Item, Plan
 from app.services.import_sources import SourceFile
 from app.services.library import Library
@@ -148,7 +148,6 @@ class Registering:
                 outcome = ImportOutcome.EXISTS if is_done else ImportOutcome.QUEUED
                 self._record(tx, NewEntry(path, outcome, clip_id=created.clip.id))
         self._problems = []
-        drop_replaced(lib, created)
 
     def _priority(self) -> int:
         """Of the analysis of the file in hand: a large import must not hold up a small one."""

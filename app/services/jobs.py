@@ -76,11 +76,14 @@ def cancel_or_remove(lib: Library, job_id: str) -> JobRecord | None:
 
     Raises JobNotFound, Conflict for the newest fit.
     """
-    with lib.store.write() as tx:
-        if stored.get(tx, job_id).is_open:
-            return outcomes.request_cancel(tx, job_id)
-        ended_jobs.remove(tx, job_id)
-        return None
+    return lib.store.write_even_when_full(lambda tx: _cancel_or_remove(tx, job_id))
+
+
+def _cancel_or_remove(tx: Tx, job_id: str) -> JobRecord | None:
+    if stored.get(tx, job_id).is_open:
+        return outcomes.request_cancel(tx, job_id)
+    ended_jobs.remove(tx, job_id)
+    return None
 
 
 def remove_old_jobs(lib: Library) -> int:

@@ -17,7 +17,9 @@ from app.search.projected_index import ProjectedIndex
 from app.search.span_index import SpanIndex
 from app.services.analysis_pool import AnalysisPool, Limits
 from app.services.model_shelf import METRICS, ModelKind, ModelShelf
-from app.store import schema
+from app.store import identity
+from app.store.folders import warn_if_open
+from app.store.health import Health
 from app.store.store import Store
 
 ARRAY_CACHE_BYTES = 128 * 2**20
@@ -28,6 +30,7 @@ ARRAY_CACHE_BYTES = 128 * 2**20
 class Library:
     """What every service call gets; one for each process, safe to share between threads.
 
+    health: whether the store can do its work; whoever serves starts it.
     word_scores, symbol_points: what the word models make of the clips in the index.
     pool analyses uploaded queries; a worker has a pool of its own. segments: what lies between
     the keyposes of all clips, loaded by the first search that asks. windows: the windows of all
@@ -37,6 +40,7 @@ class Library:
 
     settings: Settings
     store: Store
+    health: Health
     index: VectorIndex
     arrays: ArrayCache
     models: ModelShelf
@@ -52,14 +56,19 @@ class Library:
     def open(cls, settings: Settings, *, prepare: bool = True) -> Self:
         """Open the library that the settings name, making it where there is none.
 
-        Raises DatabaseOutOfDate. `prepare=False` never writes.
+        Raises DatabaseOutOfDate; LibraryMismatch where its files are not those of its database.
+        `prepare=False` never writes.
         """
-        (schema.prepare if prepare else schema.check)(settings.database)
+        look = identity.prepare if prepare else identity.check
+        library_id = look(settings.database, settings.files_dir)
+        warn_if_open(settings.data_dir)
         kept = ArrayCache(ARRAY_CACHE_BYTES)
         index = VectorIndex(on_change=kept.forget)
+        store = Store.open(settings.database, settings.files_dir, library_id)
         return cls(
             settings=settings,
-            store=Store.open(settings.database, settings.files_dir),
+            store=store,
+            health=Health(store),
             index=index,
             arrays=kept,
             models=ModelShelf(),

@@ -16,6 +16,7 @@ from app.services.library import Library
 from app.services.model_shelf import ModelKind, holds_persons
 from app.services.models import enqueue_fit
 from app.store import clips, labels, models
+from app.store.engine import Tx
 from app.store.job_record import JobRecord
 
 _log = logging.getLogger(__name__)
@@ -27,16 +28,19 @@ def forget_person(lib: Library, name: str) -> JobRecord:
     Raises NotFound where no clip carries the person, BadField.
     """
     person = fields.text("name", name) or ""
-    with lib.store.write() as tx:
-        if person not in labels.person_names(tx):
-            raise NotFound(
-                "No clip carries this person.", places=[Place("path.name", "is not in the library")]
-            )
-        clips.forget_person(tx, person)
-        models.remove(tx, _HOLDING_PERSONS)
-        job = enqueue_fit(tx)
+    job = lib.store.write_even_when_full(lambda tx: _forget(tx, person))
     lib.store.erase_traces()
     return job
+
+
+def _forget(tx: Tx, person: str) -> JobRecord:
+    if person not in labels.person_names(tx):
+        raise NotFound(
+            "No clip carries this person.", places=[Place("path.name", "is not in the library")]
+        )
+    clips.forget_person(tx, person)
+    models.remove(tx, _HOLDING_PERSONS)
+    return enqueue_fit(tx)
 
 
 def remove_person_models(lib: Library) -> bool:

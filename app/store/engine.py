@@ -20,7 +20,10 @@ from sqlalchemy import Connection, Engine, create_engine, event, func, select
 from sqlalchemy.engine import URL, make_url
 from sqlalchemy.exc import ArgumentError, DBAPIError
 
-from app.errors import ConfigurationError, DiskFull, StorageError
+from app.errors import ConfigurationError, DatabaseDamaged, DatabaseGone, DiskFull, StorageError
+from app.store import integrity
+from app.store.database_file import DatabaseFile
+from app.store.folders import make_private
 
 BUSY_TIMEOUT_S = 30.0
 POOL_SIZE = 8
@@ -32,8 +35,6 @@ _UNUSABLE = frozenset(
     {
         sqlite3.SQLITE_READONLY,
         sqlite3.SQLITE_CANTOPEN,
-        sqlite3.SQLITE_NOTADB,
-        sqlite3.SQLITE_CORRUPT,
         sqlite3.SQLITE_IOERR,
         sqlite3.SQLITE_PERM,
     }
@@ -51,7 +52,12 @@ class Database:
 
     def __init__(self, url: str, *, foreign_keys: bool = True) -> None:
         """Connects lazily. `foreign_keys=False` is for migrations, which rebuild tables."""
-        self.engine = _open_engine(url, foreign_keys=foreign_keys)
+        parsed = _parsed(url)
+        self.file = database_file(parsed)
+        """The file of an SQLite database; None where the database is a server's."""
+        self.damage: str | None = None
+        """What a transaction said of damage, until somebody who has looked clears it."""
+        self.engine = _open_engine(parsed, self.file, foreign_keys=foreign_keys)
         self._is_sqlite = self.engine.dialect.name == "sqlite"
         self._reader = self.engine if self._is_sqlite else _snapshot_reader(self.engine)
         self._writer = self.engine.execution_options(**{WRITES_OPTION: True})
@@ -60,8 +66,11 @@ class Database:
 
     @contextmanager
     def read(self) -> Iterator[Tx]:
-        """A transaction that sees one snapshot; nothing written in it is kept."""
-        with _storage_failures(), self._reader.connect() as connection:
+        """A transaction that sees one snapshot; nothing written in it is kept.
+
+        Raises DatabaseGone, DatabaseDamaged, StorageError, as `write` does too.
+        """
+        with self._storage_failures(), self._reader.connect() as connection:
             yield connection
 
     @contextmanager
@@ -70,7 +79,7 @@ class Database:
 
         Do not nest. Raises DiskFull, or StorageError when the lock is not had in time.
         """
-        with self._my_turn(), _storage_failures(), self._writer.begin() as connection:
+        with self._my_turn(), self._storage_failures(), self._writer.begin() as connection:
             yield connection
 
     @contextmanager
@@ -81,19 +90,40 @@ class Database:
                 tx.execute(select(func.pg_advisory_xact_lock(MIGRATION_LOCK)))
             yield tx
 
+    def watch_file(self) -> None:
+        """From now on, another file in the place of this one is refused. Raises DatabaseGone."""
+        if self.file is not None:
+            try:
+                self.file.watch()
+            except OSError as error:
+                raise DatabaseGone() from error
+
     def erase_traces(self) -> None:
         """Writes the log of changes into the database and empties it, as far as no one reads it.
 
         SQLite's; what is deleted is overwritten there (secure_delete). Elsewhere the
-        database's own vacuuming does it.
+        database's own vacuuming does it. It also gives back the disk space of that log.
         """
         if not self._is_sqlite:
             return
-        connection = self.engine.raw_connection()
-        try:
-            connection.cursor().execute("PRAGMA wal_checkpoint(TRUNCATE)")
-        finally:
-            connection.close()
+        with self._storage_failures():
+            connection = self.engine.raw_connection()
+            try:
+                connection.cursor().execute("PRAGMA wal_checkpoint(TRUNCATE)")
+            finally:
+                connection.close()
+
+    def find_damage(self, *, quick: bool = False) -> tuple[str, ...]:
+        """What is wrong with an SQLite database (see `integrity`); () for any other.
+
+        Raises DatabaseGone, StorageError.
+        """
+        if self.file is None:
+            return ()
+        self.file.check()
+        # A connection of its own: those in use would show the pages that they remember.
+        with closing(sqlite3.connect(self.file.path, timeout=BUSY_TIMEOUT_S)) as connection:
+            return integrity.find_damage(connection, quick=quick)
 
     def check_copyable(self) -> None:
         """Raises ConfigurationError unless the database is a file (SQLite's), for `copy_to`."""
@@ -127,6 +157,22 @@ class Database:
         self.engine.dispose()
 
     @contextmanager
+    def _storage_failures(self) -> Iterator[None]:
+        """Failures of the database as ours; its file is looked at first."""
+        if self.file is not None:
+            self.file.check()
+        try:
+            yield
+        except (DBAPIError, sqlite3.Error) as error:
+            cause = error.orig if isinstance(error, DBAPIError) else error
+            failure = _as_storage_error(cause)
+            if failure is None:
+                raise
+            if isinstance(failure, DatabaseDamaged):
+                self.damage = failure.detail
+            raise failure from error
+
+    @contextmanager
     def _my_turn(self) -> Iterator[None]:
         if not self._is_sqlite:
             yield
@@ -149,11 +195,22 @@ def _snapshot_reader(engine: Engine) -> Engine:
     return engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
 
 
-def _open_engine(url: str, *, foreign_keys: bool) -> Engine:
+def database_file(url: URL | str) -> DatabaseFile | None:
+    """The file of an SQLite database that is there or is to be made; None for any other."""
+    parsed = _parsed(url)
+    if parsed.get_backend_name() != "sqlite" or "uri" in parsed.query or not parsed.database:
+        return None
+    return DatabaseFile(Path(parsed.database))
+
+
+def _parsed(url: URL | str) -> URL:
     try:
-        parsed = make_url(url)
+        return make_url(url)
     except ArgumentError as error:
         raise ConfigurationError("KINEDEX_DATABASE_URL is not a database URL") from error
+
+
+def _open_engine(parsed: URL, file: DatabaseFile | None, *, foreign_keys: bool) -> Engine:
     # allow_nan: JSON has no NaN; hide_parameters: no content of rows in logs and tracebacks.
     common: dict[str, Any] = {
         "json_serializer": _to_json,
@@ -162,7 +219,7 @@ def _open_engine(url: str, *, foreign_keys: bool) -> Engine:
         "max_overflow": POOL_OVERFLOW,
     }
     if parsed.get_backend_name() == "sqlite":
-        return _open_sqlite(parsed, common, foreign_keys=foreign_keys)
+        return _open_sqlite(parsed, file, common, foreign_keys=foreign_keys)
     try:
         return create_engine(parsed, pool_pre_ping=True, **common)
     except (ArgumentError, ImportError) as error:
@@ -175,13 +232,21 @@ def _to_json(value: object) -> str:
     return json.dumps(value, allow_nan=False, ensure_ascii=False)
 
 
-def _open_sqlite(url: URL, common: dict[str, Any], *, foreign_keys: bool) -> Engine:
+def _open_sqlite(
+    url: URL, file: DatabaseFile | None, common: dict[str, Any], *, foreign_keys: bool
+) -> Engine:
     if not url.database or url.database == ":memory:":
         raise ConfigurationError(
             "SQLite in memory is not shared by processes: give KINEDEX_DATABASE_URL a file"
         )
     _make_folder(Path(url.database).parent)
     engine = create_engine(url, connect_args={"timeout": BUSY_TIMEOUT_S}, **common)
+
+    @event.listens_for(engine, "do_connect")
+    def _look_first(*_: object) -> None:
+        # SQLite would make a new file where the opened one was moved away.
+        if file is not None:
+            _open_file(file)
 
     @event.listens_for(engine, "connect")
     def _prepare(connection: sqlite3.Connection, _record: object) -> None:
@@ -201,10 +266,19 @@ def _open_sqlite(url: URL, common: dict[str, Any], *, foreign_keys: bool) -> Eng
 
 def _make_folder(folder: Path) -> None:
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        make_private(folder)
     except OSError as error:
         raise ConfigurationError(
             f"The folder {folder} of the database cannot be made: {error.strerror}"
+        ) from error
+
+
+def _open_file(file: DatabaseFile) -> None:
+    try:
+        file.open()
+    except OSError as error:
+        raise StorageError(
+            f"The database {file.path} cannot be opened: {error.strerror}"
         ) from error
 
 
@@ -221,23 +295,16 @@ def _ensure_wal(connection: sqlite3.Connection) -> None:
             time.sleep(0.01)
 
 
-@contextmanager
-def _storage_failures() -> Iterator[None]:
-    try:
-        yield
-    except DBAPIError as error:
-        failure = _as_storage_error(error)
-        if failure is None:
-            raise
-        raise failure from error
-
-
-def _as_storage_error(error: DBAPIError) -> StorageError | None:
-    code = getattr(error.orig, "sqlite_errorcode", None)
+def _as_storage_error(error: BaseException | None) -> StorageError | None:
+    code = getattr(error, "sqlite_errorcode", None)
     if code in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR_SHMSIZE):
         return DiskFull()
-    if code is not None and code & 0xFF in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
+    if code is None:
+        return None
+    if code & 0xFF in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB):
+        return DatabaseDamaged(f"The database is damaged: {error}")
+    if code & 0xFF in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
         return StorageError("The database stayed locked by another writer")
-    if code is not None and code & 0xFF in _UNUSABLE:
-        return StorageError(f"The database cannot be used: {error.orig}")
+    if code & 0xFF in _UNUSABLE:
+        return StorageError(f"The database cannot be used: {error}")
     return None

@@ -10,9 +10,6 @@ from __future__ import annotations
 import errno
 import hashlib
 import os
-import re
-import shutil
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -20,11 +17,13 @@ from pathlib import Path
 from typing import BinaryIO, Protocol
 
 from app.errors import BadField, DiskFull, NotFound, Place, StorageError, TooLarge
-from app.store.ids import new_id
+from app.store.checked import SHA256, Checked
+from app.store.folders import make_private_synced, sync_folder
+from app.store.id_file import read_id
+from app.store.locked_file import create_locked, remove_if_abandoned
+from app.store.quarantine import FOLDER, Quarantine
 
 CHUNK_BYTES = 1024 * 1024
-STALE_AFTER_S = 24 * 3600.0
-SHA256 = re.compile(r"[0-9a-f]{64}")
 NO_SPACE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 
 
@@ -51,9 +50,9 @@ class StagedFile:
         Call it in the write transaction that adds the row which refers to it.
         """
         with _disk_failures():
-            _make_synced(self.final.parent)
+            make_private_synced(self.final.parent)
             self.temporary.replace(self.final)
-            sync_directory(self.final.parent)
+            sync_folder(self.final.parent)
 
     def open(self) -> BinaryIO:
         """The staged bytes, to look at before they are kept."""
@@ -63,9 +62,28 @@ class StagedFile:
 class FileStore:
     """A directory of files by SHA-256; any number of processes may share it."""
 
-    def __init__(self, root: Path) -> None:
+    def __init__(self, root: Path, library_id: str | None = None) -> None:
+        """library_id: of the library whose files these are; None does not ask."""
         self.root = root
+        self.library_id = library_id
+        self.quarantine = Quarantine(root / FOLDER)
         self._temporaries = root / "tmp"
+        self._checked = Checked()
+
+    def check_identity(self) -> None:
+        """Raises StorageError where the folder is not, or no more, that of the library.
+
+        A disk that is not mounted leaves an empty folder: nothing may be stored there.
+        """
+        if self.library_id is None:
+            return
+        with _disk_failures():
+            found = read_id(self.root)
+        if found != self.library_id:
+            raise StorageError(
+                f"The folder {self.root} is not the one of this library: it holds "
+                f"{found or 'no id'}, and {self.library_id} is expected"
+            )
 
     @contextmanager
     def stage(self, content: Readable, *, max_bytes: int | None = None) -> Iterator[StagedFile]:
@@ -73,45 +91,67 @@ class FileStore:
 
         Raises TooLarge beyond `max_bytes` and DiskFull; then nothing is left.
         """
+        self.check_identity()
         with _disk_failures():
-            _make_synced(self._temporaries)
-        temporary = self._temporaries / new_id("up")
+            make_private_synced(self._temporaries)
+            temporary, file = create_locked(self._temporaries, "up")
         try:
             with _disk_failures():
-                sha256, size = _write_synced(temporary, content, max_bytes)
+                sha256, size = _write_synced(file, content, max_bytes)
+            # Open, and so locked, to the end: a sweep lets it be.
             yield StagedFile(sha256, size, temporary, self._place(sha256))
         finally:
+            with suppress(OSError):  # a full disk has been told already
+                file.close()
             temporary.unlink(missing_ok=True)
 
     def path(self, sha256: str) -> Path:
-        """Where the file is; raises NotFound when the store does not have it."""
+        """Where the file is; raises NotFound when the store does not have it.
+
+        One that went to the quarantine by mistake is brought back.
+        """
         place = self._place(sha256)
-        if not place.is_file():
+        if not place.is_file() and not self.bring_back(sha256):
             raise NotFound(f"The file {sha256} is not in the store")
         return place
+
+    def has(self, sha256: str) -> bool:
+        """Whether the store has the file, the quarantine included."""
+        return self._place(sha256).is_file() or (self.quarantine.folder / sha256).is_file()
 
     def open(self, sha256: str) -> BinaryIO:
         """The file, for reading; raises NotFound."""
         return self.path(sha256).open("rb")
 
+    def checked_path(self, sha256: str) -> Path:
+        """As `path`, of a file whose bytes are those that were stored; raises FileDamaged too."""
+        path = self.path(sha256)
+        with _disk_failures():
+            self._checked.check(path)
+        return path
+
     def remove(self, sha256: str) -> None:
-        """Removes the file, if there; `Store.drop_unreferenced` knows whether it may."""
-        self._place(sha256).unlink(missing_ok=True)
+        """Removes the file, if there, also from the quarantine; `removals` knows whether it may."""
+        with _disk_failures():
+            self._place(sha256).unlink(missing_ok=True)
+            self.quarantine.remove(sha256)
 
-    def remove_stale_temporaries(self, older_than_s: float = STALE_AFTER_S) -> int:
-        """Removes what uploads left that were cut off by a crash; returns how many."""
-        removed = 0
-        for path in self._temporaries.glob("up_*"):
-            with suppress(FileNotFoundError):
-                if time.time() - path.stat().st_mtime >= older_than_s:
-                    path.unlink()
-                    removed += 1
-        return removed
+    def set_aside(self, sha256: str) -> None:
+        """Moves the file, if there, to the quarantine."""
+        place = self._place(sha256)
+        if place.is_file():
+            with _disk_failures():
+                self.quarantine.take(place)
 
-    def free_bytes(self) -> int:
-        """Space left for this process's user."""
-        self.root.mkdir(parents=True, exist_ok=True)
-        return shutil.disk_usage(self.root).free
+    def bring_back(self, sha256: str) -> bool:
+        """Moves the file back from the quarantine; whether it was there and is missing no more."""
+        with _disk_failures():
+            return self.quarantine.give_back(self._place(sha256))
+
+    def remove_abandoned_temporaries(self) -> int:
+        """Removes what uploads left whose process died; returns how many."""
+        left = [*self._temporaries.glob("up_*"), *self.root.glob("id_*")]
+        return sum(remove_if_abandoned(path, Path.unlink) for path in left)
 
     def __iter__(self) -> Iterator[str]:
         """The SHA-256 of every file in the store."""
@@ -126,36 +166,17 @@ class FileStore:
         return self.root / sha256[:2] / sha256[2:4] / sha256
 
 
-def _write_synced(path: Path, content: Readable, max_bytes: int | None) -> tuple[str, int]:
+def _write_synced(file: BinaryIO, content: Readable, max_bytes: int | None) -> tuple[str, int]:
     digest, size = hashlib.sha256(), 0
-    with path.open("xb") as file:
-        while chunk := content.read(CHUNK_BYTES):
-            size += len(chunk)
-            if max_bytes is not None and size > max_bytes:
-                raise TooLarge(f"The content is larger than the limit of {max_bytes} bytes")
-            digest.update(chunk)
-            file.write(chunk)
-        file.flush()
-        os.fsync(file.fileno())
+    while chunk := content.read(CHUNK_BYTES):
+        size += len(chunk)
+        if max_bytes is not None and size > max_bytes:
+            raise TooLarge(f"The content is larger than the limit of {max_bytes} bytes")
+        digest.update(chunk)
+        file.write(chunk)
+    file.flush()
+    os.fsync(file.fileno())
     return digest.hexdigest(), size
-
-
-def _make_synced(directory: Path) -> None:
-    """Makes a directory with its parents, each synced into the one above it."""
-    if directory.is_dir():
-        return
-    _make_synced(directory.parent)
-    directory.mkdir(exist_ok=True)
-    sync_directory(directory.parent)
-
-
-def sync_directory(directory: Path) -> None:
-    """Sees to it that what a directory holds by which name is on disk."""
-    descriptor = os.open(directory, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
 
 
 @contextmanager

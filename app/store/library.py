@@ -19,6 +19,7 @@ ONLY_ROW = 1
 
 # Made once: every step of every ingest asks these.
 _VERSION = select(library.c.version).where(library.c.id == ONLY_ROW)
+_LIBRARY_ID = select(library.c.library_id).where(library.c.id == ONLY_ROW)
 _VERSION_TO_CHANGE = _VERSION.with_for_update()
 _RAISE = (
     update(library)
@@ -44,6 +45,11 @@ class LibraryChanges:
 def version(tx: Tx) -> int:
     """The library's version; one cheap query."""
     return int(tx.execute(_VERSION).scalar_one())
+
+
+def library_id(tx: Tx) -> str:
+    """The id that the library was given when it was made."""
+    return str(tx.execute(_LIBRARY_ID).scalar_one())
 
 
 def lock(tx: Tx) -> None:

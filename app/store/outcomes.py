@@ -18,7 +18,7 @@ from sqlalchemy import select, update
 
 from app.errors import Canceled, StoredFileMissing, WorkerDied
 from app.store import arrays as array_repository
-from app.store import clips, imports, jobs, leases, owners
+from app.store import clips, imports, jobs, leases, owners, removals
 from app.store import tables as t
 from app.store.clip_record import ClipFacts, ClipRecord, ClipState, ClipWarning
 from app.store.engine import Tx
@@ -156,7 +156,7 @@ def recover(tx: Tx, abandoned: ClaimedJob) -> JobRecord:
 def remove_clip(tx: Tx, clip_id: str) -> ClipRecord:
     """Deletes a clip; its jobs are canceled, imports do not wait for it any more.
 
-    Returns what it was; afterwards give its files to `Store.drop_unreferenced`.
+    Its files are removed once the transaction is committed. Returns what it was.
     """
     imports_of_it = imports.waiting_on(tx, [clip_id])
     gone = clips.delete_clip(tx, clip_id)
@@ -164,6 +164,7 @@ def remove_clip(tx: Tx, clip_id: str) -> ClipRecord:
         _cancel_now(tx, job_id)  # a worker that has it will find its lease lost
     for job_id, ended in imports_of_it.items():
         imports.settle_if_done(tx, job_id, ended)
+    removals.record(tx, (gone.sha256, gone.skeleton_sha256, gone.audio_sha256))
     return gone
 
 

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from contextlib import AbstractContextManager
+import logging
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
+from typing import Self, TypeVar
 
-from app.store import references
+from app.errors import DiskFull, StorageError
+from app.store import removals
 from app.store.engine import Database, Tx
 from app.store.files import FileStore
+from app.store.reserve import Reserve
+
+_log = logging.getLogger(__name__)
+_Result = TypeVar("_Result")
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,36 +27,67 @@ class Store:
     files: FileStore
 
     @classmethod
-    def open(cls, database_url: str, files_dir: Path) -> Self:
-        """Opens without looking at the schema: `schema.prepare` or `schema.check` do that."""
-        return cls(Database(database_url), FileStore(files_dir))
+    def open(cls, database_url: str, files_dir: Path, library_id: str | None = None) -> Self:
+        """Opens without looking: `identity.prepare` or `identity.check` do that.
+
+        library_id: what they found; without it, files are taken to be the right ones.
+        """
+        database = Database(database_url)
+        if library_id is not None:
+            database.watch_file()
+        return cls(database, FileStore(files_dir, library_id))
 
     def read(self) -> AbstractContextManager[Tx]:
         """A transaction that sees one snapshot."""
         return self.database.read()
 
-    def write(self) -> AbstractContextManager[Tx]:
-        """A transaction that is committed durably at the end of the block; do not nest."""
-        return self.database.write()
+    @contextmanager
+    def write(self) -> Iterator[Tx]:
+        """A transaction that is committed durably at the end of the block; do not nest.
 
-    def drop_unreferenced(self, sha256s: Collection[str]) -> None:
-        """Removes those of the files that no clip and no open job refers to.
-
-        Within a write transaction, so that no one adds a clip with the same bytes meanwhile
-        (`StagedFile.keep` belongs into the write transaction of the clip for this reason).
+        Files that it made unneeded (`removals.record`) are removed right after.
         """
-        with self.write() as tx:
-            for sha256 in references.unreferenced(tx, sha256s):
-                self.files.remove(sha256)
+        with self.database.write() as tx:
+            yield tx
+            has_removals = removals.settle(tx)
+        if has_removals:
+            self.finish_removals()
 
-    def sweep_files(self) -> int:
-        """Removes what interrupted uploads and deletions left; returns how many files."""
-        swept = self.files.remove_stale_temporaries()
-        with self.write() as tx:
-            orphans = references.unreferenced(tx, list(self.files))
-            for sha256 in orphans:
-                self.files.remove(sha256)
-        return swept + len(orphans)
+    def write_even_when_full(self, work: Callable[[Tx], _Result]) -> _Result:
+        """What `work` returns, of a write transaction that frees space.
+
+        On a full disk it is tried again with the space that is kept in reserve for this.
+        Raises DiskFull where even that is not enough.
+        """
+        try:
+            with self.write() as tx:
+                return work(tx)
+        except DiskFull:
+            if self._reserve is None or not self._reserve.give_up():
+                raise
+            with suppress(StorageError):  # it may help, by what the log gives back
+                self.erase_traces()
+            with self.write() as tx:
+                return work(tx)
+        finally:
+            self.make_reserve()
+
+    def finish_removals(self) -> int:
+        """Removes the files that are recorded to be removed; returns how many.
+
+        What cannot be removed now stays recorded, and a later call tries again.
+        """
+        try:
+            with self.database.write() as tx:
+                return removals.finish(tx, self.files)
+        except StorageError as problem:
+            _log.warning("files could not be removed yet: %s", problem.detail)
+            return 0
+
+    def make_reserve(self) -> None:
+        """Keeps some disk space in reserve, when there is room (`Reserve`)."""
+        if self._reserve is not None:
+            self._reserve.make()
 
     def erase_traces(self) -> None:
         """Writes what was removed over, also where the database keeps its latest changes."""
@@ -59,3 +96,8 @@ class Store:
     def close(self) -> None:
         """Gives back all connections."""
         self.database.close()
+
+    @property
+    def _reserve(self) -> Reserve | None:
+        file = self.database.file
+        return None if file is None else Reserve(file.path)

@@ -74,7 +74,12 @@ library = Table(
     metadata,
     Column("id", Integer, primary_key=True, autoincrement=False),
     Column("version", BigInteger, nullable=False),
+    # The folder of files holds the same one: see `identity`.
+    Column("library_id", String, nullable=False),
 )
+
+# Files that a committed change made unneeded and that are still to be removed.
+file_removals = Table("file_removals", metadata, Column("sha256", String, primary_key=True))
 
 clips = Table(
     "clips",

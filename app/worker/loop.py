@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from contextlib import contextmanager, suppress
+from dataclasses import asdict
 from typing import Any
 
 from app.config import Settings
@@ -29,6 +30,7 @@ from app.store.job_record import ClaimedJob, JobKind
 from app.worker.expiry import Expiry
 from app.worker.running import Running
 from app.worker.starting import Bench
+from app.worker.sweeps import Sweeps
 
 _log = logging.getLogger(__name__)
 
@@ -52,18 +54,20 @@ def run_worker(
 ) -> None:
     """Work until `stop_event` is set, or `until` holds (asked when there is nothing to claim)."""
     lib = Library.open(settings)
+    sweeps = Sweeps(lib.store, settings.quarantine_days)
     try:
-        swept = lib.store.sweep_files()
+        swept = sweeps.begin()
         if not settings.recognize_persons:
             persons.remove_person_models(lib)
         outdated = reanalysis.requeue_outdated(lib)
-        _log.info("worker begins", extra={"fields": {"swept_files": swept, "outdated": outdated}})
+        _log.info("worker begins", extra={"fields": {"swept": asdict(swept), "outdated": outdated}})
         worker = Worker(lib)
         try:
             worker.run(stop_event, until)
         finally:
             worker.close()
     finally:
+        sweeps.end()
         lib.close()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import socket
 from pathlib import Path
@@ -11,7 +12,8 @@ from urllib.parse import urlsplit
 import httpx2
 import pytest
 
-from app.services.manifest import read_manifest
+from app.services.manifest import Manifest
+from app.services.manifest_table import ManifestLimits
 from tests.api.conftest import assert_problem
 from tests.live import Live
 
@@ -69,7 +71,9 @@ def test_the_same_frame_rates_are_refused_wherever_they_are_said(
     answers.append(idle.patch("/v1/clips/nope", json={"frame_rate": rate}))
     for answer in answers:
         assert_problem(answer, 422, "bad_field", "body.frame_rate")
-    (row,) = read_manifest(f"path,fps\na.bvh,{rate}\n".encode()).values()
+    manifest = Manifest(ManifestLimits(10))
+    manifest.read(io.BytesIO(f"path,fps\na.bvh,{rate}\n".encode()))
+    row = manifest.row("a.bvh")
     assert row.problem is not None
     assert "from 1 to 2000 Hz" in row.problem.detail
 

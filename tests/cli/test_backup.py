@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import signal
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from app.cli.backup import _ended_by_sigterm
 from app.services.demo import DemoClip
 from app.store.backup import DATABASE, FILES
 from tests.cli.conftest import Kinedex
@@ -51,6 +53,15 @@ def test_what_cannot_be_copied_is_said(kinedex: Kinedex, tmp_path: Path) -> None
     assert "There is no library in" in nothing.err
     assert list(tmp_path.iterdir()) == []
     assert kinedex("backup").code == 2
+
+
+def test_sigterm_ends_a_copy_as_a_failure_does() -> None:
+    """So that the half of it is removed; only SIGKILL leaves that to the next copy."""
+    before = signal.getsignal(signal.SIGTERM)
+    with pytest.raises(SystemExit) as ended, _ended_by_sigterm():
+        signal.raise_signal(signal.SIGTERM)
+    assert ended.value.code == 128 + signal.SIGTERM
+    assert signal.getsignal(signal.SIGTERM) == before
 
 
 def test_a_library_is_not_copied_into_itself(

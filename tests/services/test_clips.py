@@ -14,6 +14,7 @@ from app.services.clips import NewClip
 from app.services.demo import DemoClip
 from app.services.find import MotionQuery
 from app.services.library import Library
+from app.store import id_file
 from app.store.clip_record import ClipState, Reanalysis
 from app.store.job_record import JobState
 from tests.services.conftest import settings_for, upload, work
@@ -66,7 +67,8 @@ def test_what_no_reader_takes_is_refused_and_nothing_is_kept(
     with pytest.raises(failure):
         clips.create_clip(lib, io.BytesIO(content), NewClip("a.bvh"))
     assert clips.list_clips(lib).items == ()
-    assert [p for p in lib.settings.files_dir.rglob("*") if p.is_file()] == []
+    kept = [path.name for path in lib.settings.files_dir.rglob("*") if path.is_file()]
+    assert kept == [id_file.NAME]
     lib.close()
 
 

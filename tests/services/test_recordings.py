@@ -21,6 +21,7 @@ from app.services.library import Library, ingest_limits
 from app.services.recordings import NewRecording
 from app.store import import_files
 from app.store.clip_record import ClipRecord, ClipState, Reanalysis
+from app.store.sweep import Swept, sweep
 from tests.services.conftest import work
 
 
@@ -146,7 +147,7 @@ def test_a_recording_goes_with_the_last_clip_that_has_it(lib: Library, danced: D
     path = clips.open_recording(lib, one.clip.id).path
     clips.delete_clip(lib, one.clip.id)
     assert path.exists()
-    assert lib.store.sweep_files() == 0
+    assert sweep(lib.store, 30) == Swept()
     clips.delete_clip(lib, two.clip.id)
     assert not path.exists()
 

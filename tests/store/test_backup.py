@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import io
 import itertools
+import os
+import random
+import subprocess
+import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from sqlalchemy import insert, select
 
-from app.errors import BadField, ConfigurationError, StorageError
-from app.store import backup, clips, jobs, outcomes, references
+from app.errors import BadField, ConfigurationError, DatabaseDamaged, StorageError
+from app.store import backup, clips, identity, jobs, library, outcomes, references
 from app.store.backup import Backup, back_up
 from app.store.clip_record import ClipRecord, NewClip
-from app.store.engine import Database
+from app.store.engine import Database, sqlite_url
+from app.store.files import FileStore
 from app.store.job_record import JobKind, NewJob
 from app.store.store import Store
+from app.store.tables import file_removals
 
 Add = Callable[[str], ClipRecord]
 
@@ -40,7 +49,6 @@ def add(store: Store) -> Add:
 def delete(store: Store, clip: ClipRecord) -> None:
     with store.write() as tx:
         outcomes.remove_clip(tx, clip.id)
-    store.drop_unreferenced([clip.sha256])
 
 
 def restored(made: Backup) -> Store:
@@ -119,18 +127,136 @@ def test_what_is_deleted_before_its_turn_is_left_out(
     assert check_whole(made) == {kept.name, "late 2"}
 
 
-@pytest.mark.parametrize("harm", ["lost", "damaged"])
-def test_a_library_that_is_not_whole_is_not_copied(
-    store: Store, add: Add, tmp_path: Path, harm: str
+def test_every_file_that_is_lost_or_damaged_is_named_and_nothing_is_copied(
+    store: Store, add: Add, tmp_path: Path
 ) -> None:
     add("walk")
-    path = store.files.path(add("run").sha256)
-    path.unlink() if harm == "lost" else path.write_bytes(b"ruined")
-    told = {"lost": "1 files that the library refers to are not there", "damaged": "is damaged"}
-    with pytest.raises(StorageError, match=told[harm]) as refused:
+    lost = [add(f"lost {number}").sha256 for number in range(3)]
+    damaged = [add(f"damaged {number}").sha256 for number in range(2)]
+    for sha256 in lost:
+        store.files.path(sha256).unlink()
+    for sha256 in damaged:
+        store.files.path(sha256).write_bytes(b"ruined")
+    with pytest.raises(StorageError, match="3 are not there and 2 are damaged") as refused:
         back_up(store, tmp_path / "copy")
-    assert path.name in refused.value.detail
+    told = {place.location: place.message for place in refused.value.places}
+    assert told == dict.fromkeys(lost, "is not there") | dict.fromkeys(damaged, "is damaged")
     assert not [name for name in tmp_path.iterdir() if "copy" in name.name]
+
+
+def test_a_file_that_the_disk_cannot_read_is_named_too(
+    store: Store, add: Add, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    names = {add("walk").sha256, add("run").sha256}
+
+    class Unreadable(io.BytesIO):
+        def read(self, size: int | None = -1, /) -> bytes:
+            raise OSError(errno.EIO, os.strerror(errno.EIO))
+
+    monkeypatch.setattr(FileStore, "open", lambda *_: Unreadable())
+    with pytest.raises(StorageError, match="2 are damaged") as refused:
+        back_up(store, tmp_path / "copy")
+    assert {place.location for place in refused.value.places} == names
+
+
+def test_a_damaged_database_is_not_copied(store: Store, add: Add, tmp_path: Path) -> None:
+    for number in range(200):
+        add(f"walk {number}")
+    assert back_up(store, tmp_path / "good").files == 200
+    overwrite_pages(store)
+    with pytest.raises(DatabaseDamaged) as refused:
+        back_up(store, tmp_path / "copy")
+    assert refused.value.places or "damaged" in refused.value.detail
+    assert not [name for name in tmp_path.iterdir() if "copy" in name.name]
+
+
+def test_rows_that_refer_to_nothing_are_damage(store: Store, add: Add, tmp_path: Path) -> None:
+    add("walk")
+    loose = Database(sqlite_url(tmp_path / "kinedex.sqlite3"), foreign_keys=False)
+    with loose.write() as tx:
+        tx.exec_driver_sql("INSERT INTO clip_words VALUES ('clip_none', 'walk', 0)")
+    loose.close()
+    with pytest.raises(DatabaseDamaged) as refused:
+        back_up(store, tmp_path / "copy")
+    (place,) = refused.value.places
+    assert "clip_words refers to a row of clips that is not there" in place.message
+
+
+def overwrite_pages(store: Store) -> None:
+    """Overwrites pages of the database with noise, as a bad disk does; the first one stays."""
+    store.erase_traces()  # into the file, away from its log
+    path = store.database.file.path  # type: ignore[union-attr]
+    store.close()
+    pages = path.stat().st_size // 4096
+    draw = random.Random(5)
+    with path.open("r+b") as file:
+        for page in draw.sample(range(1, pages), min(40, pages - 1)):
+            file.seek(page * 4096)
+            file.write(draw.randbytes(4096))
+
+
+@contextmanager
+def killed_backup(folder: Path, name: str) -> Iterator[Path]:
+    """What a process left that was killed while it copied to `folder / name`."""
+    code = (
+        "import os, sys, pathlib, functools\n"
+        "from app.store import backup, locked_file\n"
+        "path = pathlib.Path(sys.argv[1])\n"
+        "with locked_file.locked_folder(functools.partial(backup._make_part, path)) as part:\n"
+        "    (part / 'files').mkdir()\n"
+        "    (part / 'kinedex.sqlite3').write_bytes(b'half')\n"
+        "    print(part, flush=True)\n"
+        "    sys.stdin.read()\n"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", code, str(folder / name)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert process.stdout is not None
+        yield Path(process.stdout.readline().strip())
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def test_what_a_killed_backup_left_is_removed_by_the_next_one(
+    store: Store, add: Add, tmp_path: Path
+) -> None:
+    add("walk")
+    others = tmp_path / ".mine.part"
+    others.mkdir()
+    (others / "notes.txt").write_text("not a copy")
+    with killed_backup(tmp_path, "monday") as part:
+        back_up(store, tmp_path / "tuesday")
+        assert part.is_dir()  # its maker lives
+    assert part.is_dir()
+    back_up(store, tmp_path / "wednesday")
+    assert not part.exists()
+    assert (others / "notes.txt").exists()
+
+
+def test_a_copy_is_private_and_says_whose_it_is(store: Store, add: Add, tmp_path: Path) -> None:
+    add("walk")
+    made = back_up(store, tmp_path / "copy")
+    assert made.path.stat().st_mode & 0o777 == 0o700
+    url = sqlite_url(made.path / backup.DATABASE)
+    with store.read() as tx:
+        assert identity.check(url, made.path / backup.FILES) == library.library_id(tx)
+
+
+def test_a_copy_removes_nothing_when_it_is_used(store: Store, add: Add, tmp_path: Path) -> None:
+    """A removal that was due at the moment of the copy is not due any more where it is restored."""
+    add("walk")
+    with store.database.write() as tx:  # which does not finish it
+        tx.execute(insert(file_removals), {"sha256": "0" * 64})
+    made = back_up(store, tmp_path / "copy")
+    copy = restored(made)
+    with copy.read() as tx:
+        assert not tx.execute(select(file_removals)).all()
+    copy.close()
 
 
 def test_a_library_in_use_is_copied_as_it_was_at_one_moment(

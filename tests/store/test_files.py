@@ -6,17 +6,16 @@ import errno
 import hashlib
 import io
 import os
+import subprocess
+import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from app.errors import BadField, DiskFull, NotFound, StorageError, TooLarge
-from app.store import clips, jobs
+from app.errors import BadField, DiskFull, FileDamaged, NotFound, StorageError, TooLarge
+from app.store import locked_file
+from app.store.checked import read_whole
 from app.store.files import FileStore
-from app.store.job_record import JobKind, NewJob
-from app.store.store import Store
-from tests.store.conftest import AddClip
 
 
 @pytest.fixture
@@ -131,32 +130,89 @@ def test_missing_and_malformed_names(files: FileStore) -> None:
     files.remove("0" * 64)
 
 
-def test_only_stale_temporaries_are_removed(files: FileStore) -> None:
-    put(files, b"walk")
-    stale, fresh = files.root / "tmp" / "up_stale", files.root / "tmp" / "up_fresh"
-    for path in (stale, fresh):
-        path.write_bytes(b"x")
-    os.utime(stale, (0, 0))
-    assert files.remove_stale_temporaries() == 1
-    assert fresh.exists()
-    assert not stale.exists()
+def held_by_another_process(files: FileStore) -> subprocess.Popen[str]:
+    """A process in the middle of an upload; `line` of its output names the temporary."""
+    code = (
+        "import io, pathlib, sys\n"
+        "from app.store.files import FileStore\n"
+        "files = FileStore(pathlib.Path(sys.argv[1]))\n"
+        "with files.stage(io.BytesIO(b'half')) as staged:\n"
+        "    print(staged.temporary, flush=True)\n"
+        "    sys.stdin.read()\n"
+    )
+    return subprocess.Popen(
+        [sys.executable, "-c", code, str(files.root)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
 
 
-def test_files_go_when_nothing_refers_to_them(store: Store, add_clip: AddClip) -> None:
-    kept = put(store.files, b"kept")
-    skeleton = put(store.files, b"skeleton")
-    archive = put(store.files, b"archive")
-    orphan = put(store.files, b"orphan")
-    with store.write() as tx:
-        fields: dict[str, Any] = {"file_name": "k.amc", "file_size": 4, "name": "k"}
-        new = clips.NewClip(sha256=kept, skeleton_sha256=skeleton, **fields)
-        clip = clips.add_or_get(tx, new).clip
-        jobs.enqueue(tx, NewJob(JobKind.IMPORT, file_sha256=archive))
-    store.drop_unreferenced([kept, skeleton, archive])
-    assert set(store.files) == {kept, skeleton, archive, orphan}
-    assert store.sweep_files() == 1
-    assert set(store.files) == {kept, skeleton, archive}
-    with store.write() as tx:
-        clips.delete_clip(tx, clip.id)
-    store.drop_unreferenced([kept, skeleton])
-    assert set(store.files) == {archive}
+def test_temporaries_of_dead_uploads_go_whatever_the_clock_says(files: FileStore) -> None:
+    process = held_by_another_process(files)
+    try:
+        assert process.stdout is not None
+        temporary = Path(process.stdout.readline().strip())
+        os.utime(temporary, (0, 0))  # old by the clock, but its process lives
+        with files.stage(io.BytesIO(b"walk")) as own:
+            assert files.remove_abandoned_temporaries() == 0
+            assert own.temporary.exists()
+        assert temporary.exists()
+    finally:
+        process.kill()
+        process.communicate()
+    os.utime(temporary, (2**33, 2**33))  # of the future, and dead
+    assert files.remove_abandoned_temporaries() == 1
+    assert everything_in(files) == []
+
+
+def test_a_temporary_that_is_swept_before_it_is_locked_is_made_again(
+    files: FileStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real, swept = locked_file._lock, []
+
+    def swept_first(descriptor: int) -> None:
+        if not swept:
+            swept.append(files.remove_abandoned_temporaries())
+        real(descriptor)
+
+    monkeypatch.setattr(locked_file, "_lock", swept_first)
+    sha256 = put(files, b"walk")
+    assert swept == [1]
+    assert files.path(sha256).read_bytes() == b"walk"
+
+
+def test_what_is_made_is_its_makers_own(files: FileStore) -> None:
+    before = os.umask(0)
+    try:
+        put(files, b"walk")
+        files.set_aside(put(files, b"run"))
+    finally:
+        os.umask(before)
+    modes = {path: path.stat().st_mode & 0o777 for path in [files.root, *files.root.rglob("*")]}
+    assert {mode for path, mode in modes.items() if path.is_dir()} == {0o700}
+    assert {mode for path, mode in modes.items() if path.is_file()} == {0o600}
+
+
+def test_a_damaged_file_is_not_given_out(files: FileStore) -> None:
+    sha256 = put(files, b"walk, walk, walk")
+    assert files.checked_path(sha256) == files.path(sha256)
+    path = files.path(sha256)
+    with path.open("r+b") as file:  # one flipped bit, in place
+        file.write(b"v")
+    with pytest.raises(FileDamaged, match=sha256):
+        files.checked_path(sha256)
+    with pytest.raises(FileDamaged):
+        read_whole(path)
+    put(files, b"walk, walk, walk")  # the same bytes again mend it
+    assert read_whole(files.checked_path(sha256)) == b"walk, walk, walk"
+
+
+def test_a_file_that_was_whole_is_not_hashed_for_every_part_of_it(
+    files: FileStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sha256, hashed = put(files, b"song"), []
+    monkeypatch.setattr("app.store.checked.refuse_damage", lambda *names: hashed.append(names))
+    for _ in range(5):
+        files.checked_path(sha256)
+    assert hashed == [(sha256, sha256)]

@@ -8,7 +8,7 @@ from fastapi.responses import RedirectResponse
 from app.api.admission import OwnThreads, at_once
 from app.api.deps import Lib
 from app.api.openapi import refusals
-from app.api.problems import NotReadyYet
+from app.api.problems import NotReadyYet, Unhealthy
 from app.api.schemas.health import Alive, Ready
 from app.services.library import Library
 
@@ -31,11 +31,18 @@ async def livez() -> Alive:
 
 @router.get("/readyz", dependencies=[at_once], responses={503: refusals(503)[503]})
 async def readyz(lib: Lib) -> Ready:
-    """200 once the index is loaded, 503 before. Needs no key."""
+    """200 while every call can be answered. Needs no key.
+
+    503 before the index is loaded, and while the database is damaged, deleted or replaced, the
+    folder of files is missing or another one, or nothing can be written; `errors` names each.
+    """
     return await _threads.run(lambda: _look(lib))
 
 
 def _look(lib: Library) -> Ready:
+    troubles = lib.health.troubles()
+    if troubles:
+        raise Unhealthy(places=troubles)
     if not lib.index.is_loaded:
         raise NotReadyYet
     return Ready(library_version=lib.index.version, clips=len(lib.index))

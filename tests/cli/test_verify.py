@@ -1,0 +1,122 @@
+"""`kinedex verify` and `kinedex db adopt-files`; starts that are refused."""
+
+from __future__ import annotations
+
+import shutil
+import stat
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from app.store.backup import DATABASE
+from tests.cli.conftest import Kinedex, end, start
+
+
+@pytest.fixture
+def copied(imported: object, data_dir: Path, tmp_path: Path) -> Path:
+    """A library of its own for a test that harms it."""
+    return Path(shutil.copytree(data_dir, tmp_path / "data"))
+
+
+def stored(folder: Path) -> list[Path]:
+    return sorted(path for path in (folder / "files").rglob("*") if len(path.name) == 64)
+
+
+def flip(path: Path) -> None:
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+
+
+def test_a_whole_library(kinedex: Kinedex) -> None:
+    told = kinedex("verify", "--json").json()
+    assert told["is_whole"]
+    assert told["files"] == 13
+    assert told["arrays"] > 100
+    assert "The library is whole." in kinedex("verify").out
+
+
+def test_what_is_wrong_is_named(kinedex: Kinedex, copied: Path) -> None:
+    damaged, lost, *_ = stored(copied)
+    flip(damaged)
+    lost.unlink()
+    found = kinedex("verify", data_dir=copied)
+    assert found.code == 1
+    assert f"damaged file: {damaged.name}" in found.out
+    assert f"missing file: {lost.name}" in found.out
+    assert "The library is not whole." in found.out
+    assert kinedex("verify", "--json", data_dir=copied).code == 1
+    backup = kinedex("backup", str(copied.parent / "copy"), data_dir=copied)
+    assert backup.code == 1
+    assert {damaged.name, lost.name} <= set(backup.err.replace(":", " ").split())
+
+
+def overwrite(copied: Path) -> None:
+    path = copied / DATABASE
+    with path.open("r+b") as file:
+        for page in range(3, path.stat().st_size // 4096, 7):
+            file.seek(page * 4096)
+            file.write(b"\xa5" * 4096)
+
+
+def test_a_damaged_database(kinedex: Kinedex, copied: Path) -> None:
+    overwrite(copied)
+    for command in (("verify",), ("backup", str(copied.parent / "copy"))):
+        found = kinedex(*command, data_dir=copied)
+        assert found.code == 1
+        assert "damage" in found.out + found.err
+    assert [path.name for path in copied.parent.iterdir()] == [copied.name]
+
+
+def test_no_library(kinedex: Kinedex, tmp_path: Path) -> None:
+    found = kinedex("verify", data_dir=tmp_path / "nothing")
+    assert (found.code, "There is no library" in found.err) == (1, True)
+    assert list(tmp_path.iterdir()) == []
+
+
+def move_database(copied: Path) -> dict[str, object]:
+    for path in copied.glob("kinedex.sqlite3*"):
+        path.rename(copied.parent / path.name)
+    return {}
+
+
+def mistype_database(copied: Path) -> dict[str, object]:
+    return {"database_url": f"sqlite:///{copied}/kinedx.sqlite3"}
+
+
+@pytest.mark.parametrize("harm", [move_database, mistype_database])
+@pytest.mark.parametrize("command", ["serve", "worker", "db", "keys"])
+def test_a_start_without_its_database_is_refused_and_deletes_nothing(
+    copied: Path, harm: Callable[[Path], dict[str, object]], command: str
+) -> None:
+    before = stored(copied)
+    settings = harm(copied)
+    words = {"db": ("db", "upgrade"), "keys": ("keys", "list")}.get(command, (command,))
+    found = end(start(*words, data_dir=copied, **settings))
+    assert found.code == 1
+    assert "There is no library in" in found.err
+    assert "put it back" in found.err
+    assert len(before) == 13
+    assert stored(copied) == before
+    assert not [path for path in copied.iterdir() if "kinedx" in path.name]
+
+
+def test_files_are_given_to_another_database_only_by_a_command(
+    kinedex: Kinedex, copied: Path
+) -> None:
+    other = copied.parent / "other"
+    assert kinedex("db", "upgrade", data_dir=other).code == 0
+    shutil.copy(other / DATABASE, copied / DATABASE)
+    refused = kinedex("keys", "list", data_dir=copied)
+    assert (refused.code, "kinedex db adopt-files" in refused.err) == (1, True)
+    adopted = kinedex("db", "adopt-files", data_dir=copied)
+    assert (adopted.code, "13 others go to the quarantine" in adopted.out) == (0, True)
+    assert kinedex("keys", "list", data_dir=copied).code == 0
+    assert len(stored(copied)) == 13
+
+
+def test_a_data_directory_that_is_made_is_its_makers_own(kinedex: Kinedex, tmp_path: Path) -> None:
+    made = tmp_path / "made"
+    assert kinedex("keys", "list", data_dir=made).code == 0
+    assert stat.S_IMODE(made.stat().st_mode) == 0o700

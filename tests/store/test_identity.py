@@ -1,0 +1,224 @@
+"""A database and a folder of files that do not belong together are refused, untouched."""
+
+from __future__ import annotations
+
+import io
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from alembic import command
+
+from app.errors import LibraryMismatch, StorageError
+from app.store import clips, identity, library, schema
+from app.store.clip_record import NewClip
+from app.store.engine import Database, sqlite_url
+from app.store.id_file import NAME, read_id, write_id
+from app.store.store import Store
+from app.store.sweep import sweep
+
+Open = Callable[..., Store]
+
+
+def open_library(folder: Path, database: str = "kinedex.sqlite3") -> Store:
+    """As every start does."""
+    url, files = sqlite_url(folder / database), folder / "files"
+    return Store.open(url, files, identity.prepare(url, files))
+
+
+def add(store: Store, *names: str) -> list[str]:
+    """Clips with a file each, as uploads make them; the names of their files."""
+    made = []
+    for name in names:
+        with store.files.stage(io.BytesIO(name.encode())) as staged, store.write() as tx:
+            staged.keep()
+            new = NewClip(staged.sha256, f"{name}.bvh", staged.size, name)
+            made.append(clips.add_or_get(tx, new).clip.sha256)
+    return made
+
+
+def state_of(folder: Path) -> dict[str, bytes]:
+    """Every file below a folder, with what is in it."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A library with three clips, closed."""
+    store = open_library(tmp_path / "data")
+    add(store, "walk", "run", "jump")
+    store.close()
+    return tmp_path / "data"
+
+
+def test_a_new_library_has_one_id_on_both_sides(tmp_path: Path) -> None:
+    store = open_library(tmp_path)
+    with store.read() as tx:
+        ours = library.library_id(tx)
+    store.close()
+    assert read_id(tmp_path / "files") == ours == store.files.library_id
+    again = open_library(tmp_path)
+    assert again.files.library_id == ours
+    again.close()
+    other = open_library(tmp_path / "other")
+    assert other.files.library_id != ours
+    other.close()
+
+
+def test_a_database_that_was_moved_away_is_missed(folder: Path) -> None:
+    moved = folder.parent / "elsewhere"
+    moved.mkdir()
+    for path in folder.glob("kinedex.sqlite3*"):
+        path.rename(moved / path.name)
+    before = state_of(folder)
+    with pytest.raises(LibraryMismatch, match=r"no library in .*kinedex.sqlite3.*3 files"):
+        open_library(folder)
+    assert state_of(folder) == before  # not even an empty database
+    for path in moved.iterdir():
+        path.rename(folder / path.name)
+    store = open_library(folder)
+    assert sweep(store, 30).set_aside == 0
+    store.close()
+
+
+@pytest.mark.parametrize("leaves_id", [True, False])
+def test_a_new_database_never_gets_the_files_of_another(folder: Path, leaves_id: bool) -> None:
+    """As when the URL is mistyped; also where the folder is of a Kinedex that wrote no id."""
+    if not leaves_id:
+        (folder / "files" / NAME).unlink()
+    with pytest.raises(LibraryMismatch):
+        open_library(folder, "mistyped.sqlite3")
+    assert not (folder / "mistyped.sqlite3").exists()
+    schema.upgrade(sqlite_url(folder / "empty.sqlite3"))
+    before = {name: data for name, data in state_of(folder).items() if "files" in name}
+    with pytest.raises(LibraryMismatch, match="adopt-files"):
+        open_library(folder, "empty.sqlite3")
+    assert {n: d for n, d in state_of(folder).items() if "files" in n} == before
+
+
+def test_a_library_that_never_had_a_clip_is_missed_too(tmp_path: Path) -> None:
+    open_library(tmp_path).close()
+    (tmp_path / "kinedex.sqlite3").unlink()
+    with pytest.raises(LibraryMismatch):
+        open_library(tmp_path)
+
+
+def test_two_libraries_cannot_share_a_folder(tmp_path: Path) -> None:
+    open_library(tmp_path, "one.sqlite3").close()
+    schema.upgrade(sqlite_url(tmp_path / "two.sqlite3"))
+    with pytest.raises(LibraryMismatch, match=r"two\.sqlite3 is the database of the library"):
+        open_library(tmp_path, "two.sqlite3")
+    open_library(tmp_path, "one.sqlite3").close()
+
+
+@pytest.mark.parametrize("how", ["gone", "empty"])
+def test_a_database_without_its_files_is_refused(folder: Path, how: str) -> None:
+    """A folder that is not mounted, or a data directory that is mistyped."""
+    (folder / "files").rename(folder / "away")
+    if how == "empty":
+        (folder / "files").mkdir()
+    with pytest.raises(LibraryMismatch, match="names 3 files, of which 0 are in"):
+        open_library(folder)
+    assert not (folder / "files" / NAME).exists()
+
+
+def test_an_old_library_gets_its_id(folder: Path) -> None:
+    """Upgraded from a schema without ids; with the archive of an import that nobody needs."""
+    url = sqlite_url(folder / "kinedex.sqlite3")
+    database = Database(url, foreign_keys=False)
+    with database.migrate() as tx:
+        command.downgrade(schema._config(tx), "0005")
+    database.close()
+    (folder / "files" / NAME).unlink()
+    archive = folder / "files" / "ab" / "cd" / ("abcd" + 60 * "0")
+    archive.parent.mkdir(parents=True)
+    archive.write_bytes(b"a ZIP")
+    schema.upgrade(url)
+    store = open_library(folder)
+    assert read_id(folder / "files") == store.files.library_id
+    assert (sweep(store, 30).set_aside, archive.exists()) == (1, False)
+    store.close()
+
+
+def test_a_start_that_was_cut_off_between_the_ids_goes_on(tmp_path: Path) -> None:
+    url = sqlite_url(tmp_path / "kinedex.sqlite3")
+    schema.prepare(url)  # and killed here
+    store = open_library(tmp_path)
+    assert read_id(tmp_path / "files") == store.files.library_id
+    store.close()
+
+
+def test_of_two_that_take_a_folder_at_once_one_wins(tmp_path: Path) -> None:
+    write_id(tmp_path, "library_one")
+    write_id(tmp_path, "library_two")
+    assert read_id(tmp_path) == "library_one"
+    write_id(tmp_path, "library_two", replaces=True)
+    assert read_id(tmp_path) == "library_two"
+    assert [path.name for path in tmp_path.iterdir()] == [NAME]
+
+
+def test_an_operator_may_join_them(folder: Path) -> None:
+    url, files = sqlite_url(folder / "other.sqlite3"), folder / "files"
+    with pytest.raises(LibraryMismatch, match="no library"):
+        identity.adopt(url, files)
+    schema.upgrade(url)
+    found = identity.adopt(url, files)
+    assert (found.present, found.missing, found.unknown) == (0, 0, 3)
+    store = open_library(folder, "other.sqlite3")
+    store.close()
+    with pytest.raises(LibraryMismatch):  # the first one notices
+        open_library(folder)
+    found = identity.adopt(sqlite_url(folder / "kinedex.sqlite3"), files)
+    assert (found.present, found.missing, found.unknown) == (3, 0, 0)
+    open_library(folder).close()
+
+
+def test_nothing_is_stored_in_a_folder_that_changed_while_it_was_open(folder: Path) -> None:
+    store = open_library(folder)
+    (folder / "files").rename(folder / "unmounted")
+    for _ in range(2):
+        with pytest.raises(StorageError, match="not the one of this library"):
+            add(store, "late")
+        with pytest.raises(StorageError):
+            sweep(store, 30)
+        (folder / "files").mkdir(exist_ok=True)
+    assert list((folder / "files").iterdir()) == []
+    (folder / "files").rmdir()
+    (folder / "unmounted").rename(folder / "files")
+    add(store, "late")
+    store.close()
+
+
+@pytest.mark.parametrize("first", ["database", "files"])
+def test_restoring_in_any_order_loses_nothing(folder: Path, first: str) -> None:
+    """An older database is restored and used before the newer one; or the files come later."""
+    older, newer = folder.parent / "older.sqlite3", folder.parent / "newer.sqlite3"
+    shutil.copy(folder / "kinedex.sqlite3", older)
+    store = open_library(folder)
+    late = add(store, "late 1", "late 2")
+    store.erase_traces()
+    store.close()
+    shutil.copy(folder / "kinedex.sqlite3", newer)
+    everything = set(store.files)
+    if first == "database":
+        shutil.copy(older, folder / "kinedex.sqlite3")
+        store = open_library(folder)
+        assert sweep(store, 30).set_aside == 2
+        assert set(store.files) == everything - set(late)
+        store.close()
+    else:  # the newer database comes while only the older files are there
+        for sha256 in late:
+            store.files.set_aside(sha256)
+    shutil.copy(newer, folder / "kinedex.sqlite3")
+    store = open_library(folder)
+    with store.files.open(late[0]) as file:  # before any sweep
+        assert file.read() == b"late 1"
+    assert sweep(store, 30).brought_back == 1
+    assert set(store.files) == everything
+    assert list(store.files.quarantine) == []
+    store.close()
