@@ -135,8 +135,10 @@ def requeue(tx: Tx, clip_id: str) -> ClipRecord:
 
 
 def wait_again(tx: Tx, clip_id: str) -> None:
-    """Nobody works on it any more, and its job waits. Raises ClipNotFound."""
-    clip = get(tx, clip_id)
+    """Nobody works on it any more, and its job waits. A clip that is gone needs nothing."""
+    clip = get_many(tx, [clip_id]).get(clip_id)
+    if clip is None:
+        return
     if ClipState.PROCESSING is clip.state or Reanalysis.PROCESSING is clip.reanalysis:
         requeue(tx, clip_id)
 
