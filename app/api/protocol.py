@@ -115,8 +115,8 @@ class GuardedProtocol(H11Protocol):
                 reason=HTTPStatus(answer.status_code).phrase.encode(),
                 headers=[*self.server_state.default_headers, *answer.raw_headers],
             )
-            for event in (start, h11.Data(data=bytes(answer.body)), h11.EndOfMessage()):
-                self.transport.write(self.conn.send(event) or b"")
+            events = (start, h11.Data(data=bytes(answer.body)), h11.EndOfMessage())
+            self.transport.write(b"".join(self.conn.send(event) or b"" for event in events))
         self._close()
 
     def _close(self) -> None:
