@@ -15,7 +15,7 @@ import os
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import TracebackType
 from typing import Any, TextIO, cast
 
@@ -30,7 +30,11 @@ END_SECONDS = 1.0
 
 
 class _Lines(io.TextIOBase):
-    """A stream into which threads write whole lines, one after the other."""
+    """A stream into which threads write whole lines, one after the other.
+
+    A line that cannot be written (the disk that holds the log is full) is lost. An exception
+    would be logged in its turn, end the thread that reads the pipe, and so stop the process.
+    """
 
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
@@ -38,7 +42,7 @@ class _Lines(io.TextIOBase):
 
     def write(self, text: str) -> int:
         content = memoryview(text.encode("utf-8", "backslashreplace"))
-        with self._turn:
+        with self._turn, suppress(OSError):
             while content:
                 content = content[os.write(self._descriptor, content) :]
         return len(text)

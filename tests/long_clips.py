@@ -12,7 +12,7 @@ from sqlalchemy import insert, update
 from app.analysis.analyse import ANALYSIS_VERSION
 from app.config import Settings
 from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
-from app.store import arrays, schema
+from app.store import arrays, identity
 from app.store import tables as t
 from app.store.index_feed import IndexedClip
 from app.store.store import Store
@@ -30,7 +30,7 @@ def long_library(data_dir: Path) -> list[str]:
     """Write COUNT ready clips into a new library, and return their ids."""
     settings = Settings(data_dir=data_dir)
     data_dir.mkdir(parents=True, exist_ok=True)
-    schema.prepare(settings.database)
+    identity.prepare(settings.database, settings.files_dir)
     store = Store.open(settings.database, settings.files_dir)
     names = [role.value for role in SUN_ROLES]
     changes = {"roles": {n: n for n in names}, "frames": FRAMES, "joints": len(names)}

@@ -49,6 +49,23 @@ def test_what_is_written_past_logging_becomes_json() -> None:
     assert "ssss" not in text
 
 
+def test_a_log_that_cannot_be_written_stops_nothing() -> None:
+    """The disk that holds it is full: /dev/full is such a file."""
+    program = (
+        "import logging, os, sys\n"
+        "from app.json_stderr import json_stderr\n"
+        "with json_stderr():\n"
+        "    for _ in range(2000):\n"
+        "        logging.getLogger('app').warning('a line of ours')\n"
+        "        os.write(2, b'noise that is no JSON, and more than a pipe holds\\n' * 4)\n"
+    )
+    with Path("/dev/full").open("wb") as full:
+        ended = subprocess.run(
+            [sys.executable, "-c", program], stderr=full, timeout=60, check=False
+        )
+    assert ended.returncode == 0
+
+
 def test_the_pattern_finds_the_keys_that_are_made(tmp_path: Path) -> None:
     url = f"sqlite:///{tmp_path}/keys.sqlite3"
     prepare(url)

@@ -18,7 +18,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from app.errors import BadContent, StoredFileMissing
+from app.errors import BadContent, FileDamaged, StoredFileMissing
 from app.formats.bvh_export import write_animation_bvh
 from app.formats.csv_writer import write_csv
 from app.formats.glb_writer import write_glb
@@ -145,7 +145,7 @@ def own_animation(lib: Library, clip: ClipRecord, motion: Motion, rate: float) -
     if clip.format not in POSITION_FORMATS:
         try:
             recording = lib.pool.read(order_for(lib, clip))
-        except (BadContent, StoredFileMissing):
+        except (BadContent, FileDamaged, StoredFileMissing):
             recording = None  # the positions are what counts, and they are stored
         animation = animation_of_recording(recording, motion) if recording else None
         if animation is not None:

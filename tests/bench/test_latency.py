@@ -23,7 +23,7 @@ import numpy as np
 import pytest
 
 from app.config import Settings
-from app.store import schema
+from app.store import identity
 from app.store.store import Store
 from tests import live as live_service
 from tests.bench.large_library import fill
@@ -60,7 +60,7 @@ def service(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[tuple[Live, int]]:
     settings = Settings(data_dir=tmp_path_factory.mktemp("latency") / "data")
-    schema.prepare(settings.database)
+    identity.prepare(settings.database, settings.files_dir)
     store = Store.open(settings.database, settings.files_dir)
     fill(store, request.param, names=NAMES)
     store.close()

@@ -27,7 +27,7 @@ from app.models.symbol_space import LANDMARKS, symbol_distances
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm import GaussianHMM
 from app.services.training import NAMES
-from app.store import schema
+from app.store import identity
 from app.store import tables as t
 from app.store.blobs import to_blob
 from app.store.store import Store
@@ -90,7 +90,7 @@ def _describe(store: Store) -> None:
 @pytest.fixture(scope="module")
 def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
     settings = Settings(data_dir=tmp_path_factory.mktemp("words") / "data")
-    schema.prepare(settings.database)
+    identity.prepare(settings.database, settings.files_dir)
     store = Store.open(settings.database, settings.files_dir)
     fill(store, CLIPS, names=())
     _describe(store)

@@ -18,7 +18,7 @@ MANY = 1000
 
 def _ended(tx: Tx, kind: JobKind, files: int = 0) -> str:
     job = jobs.enqueue(tx, NewJob(kind))
-    claimed = leases.claim(tx, [kind], "worker", 30)
+    claimed = leases.claim(tx, [kind], "worker")
     assert claimed is not None
     imports.add_entries(
         tx, job.id, [NewEntry(f"{i:03d}", ImportOutcome.FAILED) for i in range(files)]

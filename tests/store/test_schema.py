@@ -74,7 +74,7 @@ def test_an_upgrade_makes_large_results_small_and_keeps_every_file(
     long = "x" * 3000
     with store.write() as tx:
         job = jobs.enqueue(tx, NewJob(JobKind.IMPORT))
-        claimed = leases.claim(tx, [JobKind.IMPORT], "worker", 30)
+        claimed = leases.claim(tx, [JobKind.IMPORT], "worker")
         assert claimed is not None
         entries = [NewEntry(path, ImportOutcome.FAILED, problem={}) for path in ("a", long)]
         imports.add_entries(tx, job.id, entries)

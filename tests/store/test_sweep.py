@@ -17,7 +17,7 @@ from app.store import clips, imports, jobs, leases, outcomes, references
 from app.store.clip_record import ClipRecord, NewClip
 from app.store.engine import Tx
 from app.store.files import FileStore
-from app.store.imports import ImportOutcome
+from app.store.imports import ImportOutcome, NewEntry
 from app.store.job_record import JobKind, JobRecord, NewJob
 from app.store.quarantine import DAY_S, Quarantine
 from app.store.store import Store
@@ -115,7 +115,7 @@ def test_a_file_that_cannot_be_removed_is_tried_again(
 
 
 def claim_import(tx: Tx) -> Any:
-    claimed = leases.claim(tx, [JobKind.IMPORT], "me", 30.0)
+    claimed = leases.claim(tx, [JobKind.IMPORT], "me")
     assert claimed is not None
     return claimed
 
@@ -148,7 +148,9 @@ def test_an_archive_goes_when_it_is_unpacked_though_its_clips_are_not_analysed(
     clip = add(store, "walk")
     with store.write() as tx:
         claimed = claim_import(tx)
-        imports.add_entry(tx, job.id, "walk.bvh", ImportOutcome.QUEUED, clip_id=clip.id)
+        imports.add_entries(
+            tx, job.id, [NewEntry("walk.bvh", ImportOutcome.QUEUED, clip_id=clip.id)]
+        )
     assert store.files.has(archive)
     with store.write() as tx:
         assert imports.wait_for_clips(tx, claimed.lease).is_open

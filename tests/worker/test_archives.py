@@ -68,7 +68,7 @@ def test_an_archive_goes_when_the_api_cancels_its_import(
 ) -> None:
     job = imports.start_import(lib, archive_of(some_demo_clips[0]), "demo.zip")
     assert len(stored(lib)) == 1
-    jobs.cancel_job(lib, job.id)
+    jobs.cancel_or_remove(lib, job.id)
     assert stored(lib) == set()
 
 

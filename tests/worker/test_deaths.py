@@ -229,7 +229,7 @@ def test_what_a_worker_held_whose_clock_was_ahead_is_free_within_a_lease(
         held._take_a_turn()
         held._bench.close()  # dead, as far as the store knows
     if is_canceled:
-        jobs.cancel_job(lib, job_id)
+        jobs.cancel_or_remove(lib, job_id)
     with _worker(lib.settings):
         wait_until(lambda: not jobs.get_job(lib, job_id).is_open, NET_S)
     wanted = JobState.CANCELED if is_canceled else JobState.SUCCEEDED
