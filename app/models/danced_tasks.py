@@ -65,10 +65,6 @@ def arrange(
     return DancedTasks(stacked, who, what, np.array(cycle, dtype=np.int64))
 
 
-def _steps(task: str, count: int) -> list[str]:
-    return [f"{task} {number + 1}" for number in range(count)]
-
-
 def _in_phase(of_task: list[int], clips: Sequence[DancedCycles]) -> list[tuple[int, FloatArray]]:
     """Each clip of a task with its cycles (c, m, ...), shifted to the first clip's."""
     counts = Counter(clips[i].length for i in of_task)

@@ -28,11 +28,6 @@ class FlatPCA:
     axes: PrincipalAxes
     coefficients: FloatArray
 
-    @property
-    def numbers_a_person(self) -> int:
-        """How many numbers represent one person: a vector for each task."""
-        return int(len(self.cells.tasks) * self.coefficients.shape[1])
-
 
 def fit_flat_pca(
     samples: FloatArray,

@@ -81,11 +81,6 @@ class Multilinear:
         basis = mode_product(mode_product(core, row, 0), motions, 2)[0]
         return _coordinates(basis, self.axes.project(sample))
 
-    def eigenmotions(self) -> FloatArray:
-        """(1250, R3) J of eq. 3 in the samples' own numbers: orthonormal motions, of which all
-        cells are made, those that matter most first."""
-        return np.asarray(self.axes.axes @ self.svd.factors[2])
-
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
         """Arrays and JSON-able meta from which from_arrays makes the same record."""
         people, actions, motions = self.svd.factors

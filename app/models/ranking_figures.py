@@ -43,11 +43,6 @@ def mean_precision_at_k(scores: FloatArray, is_relevant: BoolArray, k: int) -> f
     return float(np.mean(found)) if found else 0.0
 
 
-def nearest_neighbour_rate(scores: FloatArray, is_relevant: BoolArray) -> float:
-    """Share of the rows of (Q, N) with something relevant whose best candidate is relevant."""
-    return mean_precision_at_k(scores, is_relevant, 1)
-
-
 def f_where_recall_is_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
     """F at R = P over all pairs at once (micro), any equal shapes; 0.0 where none is relevant.
 

@@ -65,14 +65,6 @@ class Surroundings:
         return np.asarray(straight + DETOUR * np.minimum(self.far[rows], MOST_DETOUR * straight))
 
 
-def fused_distances(query: FloatArray, vectors: FloatArray, warped: FloatArray) -> FloatArray:
-    """(n,) distances of clips to a query.
-
-    query: (d,) and vectors: (n, d), motion vectors; warped: (n,) DTW distances to the query.
-    """
-    return Surroundings.of(query, vectors).distances(np.arange(len(vectors)), warped)
-
-
 def _distances(points: FloatArray) -> FloatArray:
     """(n, n) Euclidean distances; those from the first of `points` (n, d) without rounding."""
     centred = points - points[0]  # differences of small numbers keep more digits

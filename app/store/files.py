@@ -11,7 +11,6 @@ import errno
 import hashlib
 import os
 import re
-import shutil
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -107,11 +106,6 @@ class FileStore:
                     path.unlink()
                     removed += 1
         return removed
-
-    def free_bytes(self) -> int:
-        """Space left for this process's user."""
-        self.root.mkdir(parents=True, exist_ok=True)
-        return shutil.disk_usage(self.root).free
 
     def __iter__(self) -> Iterator[str]:
         """The SHA-256 of every file in the store."""

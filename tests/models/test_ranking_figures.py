@@ -11,7 +11,6 @@ from app.models.ranking_figures import (
     f_where_recall_is_precision,
     mean_average_precision,
     mean_precision_at_k,
-    nearest_neighbour_rate,
     precision_at_k,
     precision_at_recalls,
     top_k_rate,
@@ -35,7 +34,7 @@ def test_precision_at_k() -> None:
 def test_means_leave_out_queries_without_an_answer() -> None:
     scores = np.stack([SCORES, SCORES, SCORES])
     relevant = np.stack([RELEVANT, ~RELEVANT, np.zeros(4, dtype=bool)])
-    assert nearest_neighbour_rate(scores, relevant) == 0.5
+    assert mean_precision_at_k(scores, relevant, 1) == 0.5
     assert mean_precision_at_k(scores, relevant, 4) == 0.5
     expected = (average_precision(SCORES, RELEVANT) + average_precision(SCORES, ~RELEVANT)) / 2
     assert mean_average_precision(scores, relevant) == pytest.approx(expected)
