@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from app.numerics.area_under_curve import area_under_curve
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 NEW = -1
@@ -96,11 +97,8 @@ class Calibration:
         return [(float(t), *self.error_rates(float(t))) for t in every[chosen]]
 
     def area_under_curve(self) -> float:
-        """Chance that something new is more novel than something known; ties count half."""
-        ranks = np.searchsorted(self.known_novelty, self.new_novelty, side="left")
-        ties = np.searchsorted(self.known_novelty, self.new_novelty, side="right") - ranks
-        pairs = max(len(self.known_novelty) * len(self.new_novelty), 1)
-        return float((ranks + ties / 2).sum() / pairs)
+        """The chance that something new has a larger novelty than something known."""
+        return area_under_curve(self.new_novelty, self.known_novelty)
 
     def error_rates(self, threshold: float | None = None) -> tuple[float, float]:
         """(false acceptance of new, false rejection of known), shares of held-out clips."""

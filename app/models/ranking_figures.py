@@ -76,19 +76,6 @@ def precision_at_recalls(
     return np.asarray(found / places[found - 1])
 
 
-def area_under_curve(scores: FloatArray, is_relevant: BoolArray) -> float:
-    """Chance that a relevant candidate scores above one that is not; ties count half.
-
-    scores, is_relevant: (N,). One half where either kind is missing.
-    """
-    others = np.sort(scores[~is_relevant])
-    own = scores[is_relevant]
-    if not own.size or not others.size:
-        return 0.5
-    below = np.searchsorted(others, own, "left") + np.searchsorted(others, own, "right")
-    return float(below.mean() / (2.0 * others.size))
-
-
 def calibration_error(probabilities: FloatArray, is_so: BoolArray, bins: int = 10) -> float:
     """Expected calibration error: how far shares lie from probabilities, by equal bins.
 

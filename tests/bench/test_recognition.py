@@ -32,6 +32,7 @@ from app.models.task_model import Reading
 from app.models.tensor_recogniser import fit_tensor_recogniser, recognise_by_tensor
 from app.motion.body_frame import body_track
 from app.motion.canonical import canonicalise
+from app.numerics.area_under_curve import area_under_curve
 from tests.real_clips import manifest, real_clips
 
 pytestmark = pytest.mark.bench
@@ -225,11 +226,10 @@ def test_the_unknown(library: Library, factor: str, method: str, learned: int) -
         novelties["known"] += beyond[~strange].tolist()
         rejected[str(name)] = float((beyond[strange] > 0).mean())
     new, known = (np.array(novelties[each]) for each in ("new", "known"))
-    above = (new[:, None] > known) + 0.5 * (new[:, None] == known)
     shares = {
         "new_rejected": float((new > 0).mean()),
         "known_accepted": float((known <= 0).mean()),
-        "area_under_curve": float(above.mean()),
+        "area_under_curve": area_under_curve(new, known),
         "worst": min(rejected.values()),
     }
     shares["balanced_accuracy"] = (shares["new_rejected"] + shares["known_accepted"]) / 2

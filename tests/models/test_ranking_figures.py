@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from app.models.ranking_figures import (
-    area_under_curve,
     average_precision,
     brier_score,
     calibration_error,
@@ -64,14 +63,6 @@ def test_precision_at_a_recall_is_that_of_the_shortest_list_that_reaches_it() ->
     hits = np.array([[True, False, True], [False, False, True]])
     found = precision_at_recalls(scores, hits, np.array([0.0, 1 / 3, 0.5, 1.0]))
     np.testing.assert_allclose(found, [1.0, 1.0, 2 / 3, 0.5])
-
-
-def test_area_under_curve_counts_pairs() -> None:
-    rng = np.random.default_rng(0)
-    scores, hits = rng.integers(6, size=40).astype(float), rng.random(40) < 0.4
-    pairs = [(a > b) + 0.5 * (a == b) for a in scores[hits] for b in scores[~hits]]
-    assert area_under_curve(scores, hits) == pytest.approx(np.mean(pairs))
-    assert area_under_curve(scores, np.zeros(40, dtype=bool)) == 0.5
 
 
 def test_scores_are_off_by_how_far_shares_lie_from_them() -> None:

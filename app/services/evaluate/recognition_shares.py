@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.numerics.area_under_curve import area_under_curve
 from app.numerics.arrays import FloatArray
 from app.numerics.binomial import wilson_interval
 from app.services.evaluate.recognition_trials import Told, Trial
@@ -146,9 +147,14 @@ def unknown(trials: Sequence[Trial], factor: str) -> Unknown | None:
     if not new or not known:
         return None
     together = [told for trial, told in pairs if not told.new and trial.together]
-    curve, area = _curve(*(np.array([t.guess.novelty for t in some]) for some in (known, new)))
+    known_novelty, new_novelty = _novelty(known), _novelty(new)
     return Unknown(
-        _refused(new), _accepted(known), _accepted(together), area, _categories(pairs), curve
+        refused=_refused(new),
+        accepted=_accepted(known),
+        accepted_together=_accepted(together),
+        area_under_curve=area_under_curve(new_novelty, known_novelty),
+        categories=_categories(pairs),
+        curve=_curve(known_novelty, new_novelty),
     )
 
 
@@ -197,13 +203,16 @@ def _categories(pairs: Sequence[tuple[Trial, Told]]) -> tuple[Category, ...]:
     return tuple(found)
 
 
-def _curve(known: FloatArray, new: FloatArray) -> tuple[FloatArray, float]:
-    """(P, 2) false acceptance and rejection by rising threshold, and the area."""
+def _novelty(some: Iterable[Told]) -> FloatArray:
+    """(n,) how new the method took each to be."""
+    return np.array([told.guess.novelty for told in some])
+
+
+def _curve(known: FloatArray, new: FloatArray) -> FloatArray:
+    """(P, 2) false acceptance and false rejection by rising threshold."""
     every = np.unique(np.concatenate([known, new]))
     cuts = np.concatenate([[every[0] - 1.0], every])
     places = np.unique(np.linspace(0, len(cuts) - 1, CURVE_POINTS).round().astype(int))
     accepted = np.searchsorted(np.sort(new), cuts[places], side="right") / len(new)
     rejected = 1 - np.searchsorted(np.sort(known), cuts[places], side="right") / len(known)
-    below, upto = (np.searchsorted(np.sort(known), new, side=side) for side in ("left", "right"))
-    area = float((below + upto).sum() / (2 * len(known) * len(new)))
-    return np.stack([accepted, rejected], axis=1), area
+    return np.stack([accepted, rejected], axis=1)
