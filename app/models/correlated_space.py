@@ -19,6 +19,7 @@ import numpy as np
 from app.errors import ModelNotFitted, NotEnoughLabels
 from app.numerics.arrays import FloatArray
 from app.numerics.cca import CanonicalPair, fit_cca
+from app.numerics.euclidean import distances
 
 CORRELATED_SPACE_VERSION = 1
 
@@ -65,8 +66,7 @@ class CorrelatedSpace:
 
     def word_distances(self, points: FloatArray) -> FloatArray:
         """(N, V) distance of D'f of each clip to the g of each single word, as printed."""
-        offsets = self._reached(points)[:, None] - self._single_words()
-        return np.asarray(np.linalg.norm(offsets, axis=2))
+        return distances(self._reached(points), self._single_words())
 
     def _wanted(self, query: FloatArray) -> FloatArray:
         """(1, k) C'g."""

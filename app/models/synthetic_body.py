@@ -24,6 +24,7 @@ from app.motion.joint_roles import SUN_ROLES, JointRole
 from app.motion.posing import ancestors, pose_to
 from app.motion.rotations import conjugate, identity_quaternions, multiply
 from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.euclidean import squared_distances
 
 NEIGHBOURS = 12
 """Moments of the person's that a pose starts from."""
@@ -110,10 +111,10 @@ def _alike(poses: FloatArray, others: FloatArray) -> tuple[IntArray, FloatArray]
     rows, table = (values.reshape(len(values), -1) for values in (poses, others))
     rows = rows * (np.linalg.norm(table) / len(table) ** 0.5)
     rows /= max(np.linalg.norm(poses) / len(poses) ** 0.5, 1e-9)
-    squares = (rows**2).sum(1)[:, None] - 2 * rows @ table.T + (table**2).sum(1)
+    squares = squared_distances(rows, table)
     count = min(NEIGHBOURS, len(table))
     near = np.argsort(squares, axis=1, kind="stable")[:, :count]
-    away = np.maximum(np.take_along_axis(squares, near, axis=1), 0.0)
+    away = np.take_along_axis(squares, near, axis=1)
     weights = np.exp(-0.5 * away / np.maximum(away.mean(axis=1, keepdims=True), 1e-9))
     return near, weights / weights.sum(axis=1, keepdims=True)
 

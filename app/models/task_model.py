@@ -24,6 +24,7 @@ from app.models.cells import cell_means, find_cells
 from app.models.multilinear import MOST_CELLS, complete_tensor
 from app.motion.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.euclidean import squared_distances
 from app.numerics.nmode_svd import NModeSVD, nmode_svd
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
 
@@ -82,9 +83,7 @@ class TaskModel:
         probes = self._in_subdomain(poses)
         out = np.empty((len(probes), len(self.person), JOINTS))
         for joint in range(JOINTS):
-            one, other = probes[:, joint], self.cells[:, joint]
-            squares = (one**2).sum(1)[:, None] - 2 * one @ other.T + (other**2).sum(1)
-            out[:, :, joint] = np.maximum(squares, 0.0)
+            out[:, :, joint] = squared_distances(probes[:, joint], self.cells[:, joint])
         return out
 
     def _in_subdomain(self, poses: FloatArray) -> FloatArray:

@@ -15,6 +15,7 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.diffusion import diffused_closeness, neighbour_radii
+from app.numerics.euclidean import distances
 
 SHORTLIST = 300
 """Clips that are compared so; the graph costs the cube of it, 12 ms."""
@@ -66,11 +67,10 @@ class Surroundings:
 
 
 def _distances(points: FloatArray) -> FloatArray:
-    """(n, n) Euclidean distances; those from the first of `points` (n, d) without rounding."""
-    centred = points - points[0]  # differences of small numbers keep more digits
-    squares = np.einsum("ij,ij->i", centred, centred)
-    products = squares[:, None] + squares - 2.0 * (centred @ centred.T)
-    between = np.sqrt(np.maximum(products, 0.0))
-    between[0] = between[:, 0] = np.sqrt(squares)
-    np.fill_diagonal(between, 0.0)
+    """(n, n) symmetric Euclidean distances of `points` (n, d).
+
+    Those from the first point are exact: it is the origin, so that its products are zero.
+    """
+    centred = points - points[0]
+    between = distances(centred, centred)
     return np.asarray(np.maximum(between, between.T))
