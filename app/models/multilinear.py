@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from app.errors import NotEnoughLabels
-from app.models.alignment import Courses, fit_courses
 from app.models.calibration import softmax
 from app.models.cells import Cells, cell_means, find_cells, fit_effects
 from app.models.recognition import Recognition, answer, given
+from app.models.task_means import TaskMeans, fit_task_means
 from app.numerics.arrays import FloatArray
 from app.numerics.nmode_svd import NModeSVD, nmode_svd
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
@@ -49,22 +49,22 @@ class Multilinear:
     """persons (P,), tasks (T,) sorted labels; svd: core and the mode matrices persons
     (P, R1) whose rows are signatures, actions (T, R2), and eigenmotions (d, R3) in the
     coordinates of `axes`; radius: distance in those coordinates beyond which a clip is of
-    no cell; courses: onto which motions of each task were warped, if they were."""
+    no cell; task_means: onto which the motions of each task were warped, if they were."""
 
     persons: tuple[str, ...]
     tasks: tuple[str, ...]
     axes: PrincipalAxes
     svd: NModeSVD
     radius: float
-    courses: Courses | None = None
+    task_means: TaskMeans | None = None
 
     def aligned(self, sample: FloatArray, task: str) -> FloatArray:
-        """A sample (1250,) in the course of time that `task` has, as the tensor's motions are."""
-        if self.courses is None:
+        """A sample (1250,) warped onto the mean of `task`, as the motions of the tensor are."""
+        if self.task_means is None:
             return sample
-        moments, width = self.courses.means.shape[1:]
+        moments, width = self.task_means.means.shape[1:]
         poses = np.asarray(sample[: moments * width]).reshape(1, moments, width)
-        warped = self.courses.onto(poses, self.courses.tasks.index(task))
+        warped = self.task_means.onto(poses, task)
         return np.concatenate([warped.ravel(), sample[moments * width :]])
 
     def signature(self, sample: FloatArray, task: str) -> FloatArray:
@@ -98,8 +98,8 @@ class Multilinear:
             "tasks": list(self.tasks),
             "radius": self.radius,
         }
-        if self.courses is not None:
-            arrays["courses"] = self.courses.means
+        if self.task_means is not None:
+            arrays["courses"] = self.task_means.means
         return arrays, meta
 
     @classmethod
@@ -114,7 +114,7 @@ class Multilinear:
             PrincipalAxes(arrays["centre"], arrays["axes"]),
             NModeSVD(arrays["core"], factors),
             float(meta["radius"]),
-            Courses(tuple(meta["tasks"]), arrays["courses"]) if "courses" in arrays else None,
+            TaskMeans(tuple(meta["tasks"]), arrays["courses"]) if "courses" in arrays else None,
         )
 
 
@@ -138,9 +138,9 @@ def fit_multilinear(
         raise NotEnoughLabels("The multilinear model needs two persons and two tasks.")
     if len(cells.persons) * len(cells.tasks) > MOST_CELLS:
         raise NotEnoughLabels(f"The multilinear model holds {MOST_CELLS} persons x tasks.")
-    chosen, courses = np.asarray(samples)[use], None
+    chosen, task_means = np.asarray(samples)[use], None
     if moments is not None:
-        chosen, courses = _aligned(chosen, [tasks[i] for i in use], moments)
+        chosen, task_means = _aligned(chosen, [tasks[i] for i in use], moments)
     axes = principal_axes(chosen, DIMENSIONS, centred=False)
     points = axes.project(chosen)
     tensor = complete_tensor(cell_means(points, cells), cells)
@@ -148,18 +148,18 @@ def fit_multilinear(
     own = svd.reconstruct()[cells.person[cells.member], cells.task[cells.member]]
     reach = np.percentile(np.linalg.norm(points - own, axis=1), RADIUS_SHARE)
     radius = float(reach * RADIUS_SLACK)
-    return Multilinear(cells.persons, cells.tasks, axes, svd, radius, courses)
+    return Multilinear(cells.persons, cells.tasks, axes, svd, radius, task_means)
 
 
 def _aligned(
     samples: FloatArray, tasks: Sequence[str | None], moments: int
-) -> tuple[FloatArray, Courses]:
-    """`samples` (n, w), the poses that each begins with in the course of its task."""
+) -> tuple[FloatArray, TaskMeans]:
+    """`samples` (n, w), the poses that each begins with warped onto the mean of its task."""
     width = samples.shape[1] // moments
     poses = samples[:, : moments * width].reshape(len(samples), moments, width)
-    courses = fit_courses(poses, tasks)
-    warped = courses.aligned(poses, tasks).reshape(len(samples), -1)
-    return np.hstack([warped, samples[:, moments * width :]]), courses
+    task_means = fit_task_means(poses, tasks)
+    warped = task_means.aligned(poses, tasks).reshape(len(samples), -1)
+    return np.hstack([warped, samples[:, moments * width :]]), task_means
 
 
 def complete_tensor(means: FloatArray, cells: Cells) -> FloatArray:
@@ -191,8 +191,8 @@ def recognise_multilinear(
         people = record.svd.factors[0]
         own = record.signature(record.aligned(sample, known_task), known_task)
         to_persons = np.linalg.norm(own - people, axis=1)
-    elif record.courses is not None:
-        # in whose way it is done is told without its timing; what is done, with it
+    elif record.task_means is not None:
+        # who does it is recognised without the timing, what is done with it
         likely = int(to_tasks.argmin())
         point = record.axes.project(record.aligned(sample, record.tasks[likely]))
         to_persons = np.linalg.norm(record.svd.reconstruct()[:, likely] - point, axis=1)
