@@ -190,17 +190,23 @@ def _accepted(known: Iterable[Told]) -> Share:
 
 
 def _categories(pairs: Sequence[tuple[Trial, Told]]) -> tuple[Category, ...]:
+    """A category for each label that was left out, by name; pairs: trials and their answers."""
     names = sorted({told.truth or "" for _, told in pairs if told.new})
-    found = []
-    for name in names:
-        own = [(trial, told) for trial, told in pairs if told.new and told.truth == name]
-        rounds = {trial.left_out for trial, _ in own}
-        known = [told for trial, told in pairs if not told.new and trial.left_out in rounds]
-        wrong = Counter(sorted(t.guess.label or "" for _, t in own if t.guess.known))
-        taken_for = wrong.most_common(1)[0][0] if wrong else None
-        refused = _refused(told for _, told in own)
-        found.append(Category(name, refused, _accepted(known), taken_for))
-    return tuple(found)
+    return tuple(_category(name, pairs) for name in names)
+
+
+def _category(name: str, pairs: Sequence[tuple[Trial, Told]]) -> Category:
+    own = [(trial, told) for trial, told in pairs if told.new and told.truth == name]
+    rounds = {trial.left_out for trial, _ in own}
+    known = [told for trial, told in pairs if not told.new and trial.left_out in rounds]
+    answers = [told for _, told in own]
+    return Category(name, _refused(answers), _accepted(known), _mostly_taken_for(answers))
+
+
+def _mostly_taken_for(new: Iterable[Told]) -> str | None:
+    """The label that most of the new ones got that were called known; the first of several."""
+    labels = sorted(told.guess.label or "" for told in new if told.guess.known)
+    return Counter(labels).most_common(1)[0][0] if labels else None
 
 
 def _novelty(some: Iterable[Told]) -> FloatArray:
