@@ -5,7 +5,6 @@ from __future__ import annotations
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -226,7 +225,7 @@ def test_many_threads_search_while_clips_come_and_go(store: Store, add: Add) -> 
 
 
 OTHER_PROCESS = """
-import sys, time
+import sys
 from pathlib import Path
 from app.store import clips
 from app.store.store import Store
@@ -238,12 +237,12 @@ for clip_id in sys.argv[3:]:
             clips.delete_clip(tx, clip_id[1:])
         else:
             clips.patch(tx, clip_id, {"task": "found"})
-    print(time.time(), flush=True)
+    print("committed", flush=True)
     sys.stdin.readline()
 """
 
 
-def test_it_follows_another_process_within_a_second(store: Store, add: Add, tmp_path: Path) -> None:
+def test_it_follows_another_process(store: Store, add: Add, tmp_path: Path) -> None:
     changed, gone = add("changed"), add("gone")
     index = VectorIndex()
     index.catch_up(store)
@@ -258,9 +257,8 @@ def test_it_follows_another_process_within_a_second(store: Store, add: Add, tmp_
     assert other.stdout is not None
     try:
         for left in (2, 1):
-            committed = float(other.stdout.readline())
+            assert other.stdout.readline() == "committed\n"
             index.catch_up(store)
-            assert time.time() - committed < 1.0
             assert list(index.candidates(ClipFilter(task=("found",))).ids) == [changed.id]
             assert len(index) == left
             other.stdin.write("\n")
