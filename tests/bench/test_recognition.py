@@ -263,14 +263,14 @@ def test_perera_s_experiment(library: Library) -> None:
 
 
 def test_fitting_and_probing_are_quick(library: Library) -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     record = fit_recogniser(library.full, library.persons, library.tasks, library.groups)
-    fitted = time.perf_counter() - start
-    start = time.perf_counter()
+    fitted = time.process_time() - start
+    start = time.process_time()
     for sample in library.full[:100]:
         recognise(record, sample)
-    probe = (time.perf_counter() - start) / 100
-    _tell("seconds", {"default": {"fit": fitted, "probe": probe}})
+    probe = (time.process_time() - start) / 100
+    _tell("CPU seconds", {"default": {"fit": fitted, "probe": probe}})
     assert fitted < 2.0
     assert probe < 0.005
 

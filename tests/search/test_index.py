@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 
 from app.errors import StorageError
+from app.search import near
 from app.search.array_cache import ArrayCache
 from app.search.index import VECTOR, WIDTH, VectorIndex
 from app.store import arrays, clips, index_feed, schema
@@ -202,11 +204,11 @@ def test_many_threads_search_while_clips_come_and_go(store: Store, add: Add) -> 
     def search() -> None:
         while not stop.is_set():
             index.catch_up(store)
-            near = index.nearest(np.zeros(WIDTH), ClipFilter(person=("ada",), task=("walk",)))
-            page = near.page(None, 1000)
+            found = index.nearest(np.zeros(WIDTH), ClipFilter(person=("ada",), task=("walk",)))
+            page = found.page(None, 1000)
             if not stays <= set(page.ids) or len(set(page.ids)) != len(page.ids):
                 wrong.append(list(page.ids))
-            if len(page.ids) != len(near) or np.any(np.diff(page.distances) < 0):
+            if len(page.ids) != len(found) or np.any(np.diff(page.distances) < 0):
                 wrong.append(list(page.ids))
 
     threads = [threading.Thread(target=search) for _ in range(8)]
@@ -222,6 +224,29 @@ def test_many_threads_search_while_clips_come_and_go(store: Store, add: Add) -> 
     for thread in threads:
         thread.join(10)
     assert not wrong
+
+
+def test_no_search_waits_for_another(
+    store: Store, add: Add, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Eight searches are in the middle of their product at the same moment."""
+    add("one")
+    index = VectorIndex()
+    index.catch_up(store)
+    all_inside, whole = threading.Barrier(8), near.nearest
+
+    def wait_for_all(*asked: Any) -> Any:
+        all_inside.wait(30)
+        return whole(*asked)
+
+    monkeypatch.setattr(near, "nearest", wait_for_all)
+
+    def search(_: int) -> int:
+        index.catch_up(store)
+        return len(index.nearest(np.zeros(WIDTH), ClipFilter()).page(None, 1).ids)
+
+    with ThreadPoolExecutor(8) as pool:
+        assert list(pool.map(search, range(8))) == [1] * 8
 
 
 OTHER_PROCESS = """
