@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from app.errors import ModelNotFitted, NotEnoughLabels
+from app.errors import NotEnoughLabels
 from app.numerics.arrays import FloatArray
 from app.numerics.cca import CanonicalPair, fit_cca
 from app.numerics.euclidean import distances
@@ -97,9 +97,9 @@ class CorrelatedSpace:
     def from_arrays(
         cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
     ) -> CorrelatedSpace:
-        """The record that to_arrays took apart. Raises ModelNotFitted on another version."""
+        """The record that to_arrays took apart. Raises ValueError on another version."""
         if meta["version"] != CORRELATED_SPACE_VERSION:
-            raise ModelNotFitted("The correlated space is of another version: fit again.")
+            raise ValueError(f"correlated space of version {meta['version']}")
         names = ("x_mean", "y_mean", "a", "b", "correlations")
         pair = CanonicalPair(*(arrays[name] for name in names))
         return cls(pair, arrays["words_to_motions"], arrays["motions_to_words"])
