@@ -24,22 +24,10 @@ def average_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
     return float((np.arange(1, places.size + 1) / places).mean())
 
 
-def precision_at_k(scores: FloatArray, is_relevant: BoolArray, k: int) -> float:
-    """Share of relevant ones among the k best; scores, is_relevant: (N,), 1 <= k <= N."""
-    return float(is_relevant[_best_first(scores)[:k]].mean())
-
-
 def mean_average_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
     """Mean of eq. 20 over the rows of (Q, N) that have something relevant; else 0.0."""
     rows = np.flatnonzero(is_relevant.any(axis=1))
     found = [average_precision(scores[row], is_relevant[row]) for row in rows]
-    return float(np.mean(found)) if found else 0.0
-
-
-def mean_precision_at_k(scores: FloatArray, is_relevant: BoolArray, k: int) -> float:
-    """Mean of precision_at_k over the rows of (Q, N) that have something relevant."""
-    rows = np.flatnonzero(is_relevant.any(axis=1))
-    found = [precision_at_k(scores[row], is_relevant[row], k) for row in rows]
     return float(np.mean(found)) if found else 0.0
 
 
