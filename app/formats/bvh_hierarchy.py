@@ -1,8 +1,8 @@
 """The HIERARCHY part of a BVH file: joints, offsets and channels.
 
-Source: Biovision's format as told by Meredith and Maddock, "Motion capture file formats
-explained" (2001), widened to what files in the wild hold (DESIGN 4). No recursion: the
-joints that are open stand on a stack, so that depth costs nothing.
+Source: Biovision's format as described by Meredith and Maddock, "Motion capture file formats
+explained" (2001), and what files of other writers hold besides. There is no recursion: the open
+joints are kept on a stack, so that any depth can be read.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class Hierarchy:
 
 
 def read_hierarchy(text: bytes) -> Hierarchy:
-    """Read all that stands before MOTION, lines separated by newlines.
+    """Read everything before MOTION; lines are separated by newlines.
 
     Raises Unreadable naming the line, or TooLarge.
     """

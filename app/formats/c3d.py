@@ -1,9 +1,9 @@
 """C3D files of labelled markers: bytes in, Recording out.
 
-The recording's joints are the joint centres that the markers tell (a tree, named plainly),
-then the markers themselves (parentless, under their labels), so that a client may choose
-them as roles. Points without a label, what gait models write among the points, other
-subjects and markers seen too seldom are left out, each with a caution where it may matter.
+The joints of the recording are the joint centers that are computed from the markers (a tree with
+plain names), then the markers themselves (without parents, under their labels), so that a client
+may choose them as roles. These are left out, with a caution where it may matter: points without a
+label, results of gait models among the points, other subjects, and markers seen too seldom.
 Our own reader: ezc3d 1.7 crashes, hangs or asks for gigabytes on one broken file in twenty,
 and reads a truncated one as one frame; it is the oracle of the tests.
 """

@@ -1,8 +1,8 @@
 """The points of a C3D file: header, frame count, and the numbers of each frame.
 
 Source: "The C3D file format user guide" (Motion Lab Systems 2008), chapters 3 and 6.
-Analogue channels stand between the frames and are passed over, whatever is said of them.
-What the file declares is compared with the bytes that are there before any is read.
+Analog channels stand between the frames and are skipped, whatever the parameters say of them.
+What the file declares is compared with the number of its bytes before any frame is read.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from app.motion.recording import Caution
 from app.numerics.arrays import FloatArray
 
 FULL_COUNT = 65535
-"""What the header's 16 bits say of the last frame when they cannot hold it."""
+"""The number of the last frame in the header if 16 bits are too few for it."""
 NO_SCALE = 1e-12
 
 
@@ -91,7 +91,11 @@ def _header(content: bytes, numbers: Numbers) -> _Header:
 def _frame_count(
     header: _Header, parameters: Parameters, room: int, start: int
 ) -> tuple[int, tuple[Caution, ...]]:
-    """Frames to read; the header's 16 bits hold no long motion, parameters do."""
+    """The number of frames to read, and a caution if more are declared.
+
+    The 16 bits of the header are too few for a long motion, so the parameters count as well.
+    room: how many frames the file has bytes for, from the byte `start` on. Raises Unreadable.
+    """
     declared = _declared_counts(header, parameters)
     held = [count for count in declared if count <= room]
     if not held:

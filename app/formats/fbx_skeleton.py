@@ -1,8 +1,8 @@
 """Which nodes of an FBX scene are the body's joints.
 
-Limb nodes are; so is what else hangs between them, and a node above them that moves (a
-reference that carries the hips). Where there are no limb nodes, moving Nulls are taken.
-Of several bodies the one with most moving joints is read.
+Limb nodes are joints. So are the nodes between them, and a node above them that moves (a
+reference that carries the hips). In a scene without limb nodes, the Nulls that move are taken.
+Of several bodies, the one with most moving joints is read.
 """
 
 from __future__ import annotations
@@ -34,9 +34,10 @@ class Body:
 
 
 def find_body(scene: FbxScene, moving: Collection[int]) -> Body:
-    """The body in a scene; `moving`: ids of the nodes that have curves.
+    """Find the body in a scene.
 
-    Raises Unreadable where there is none, or none that moves, and TooLarge.
+    moving: the ids of the nodes that have curves. Raises Unreadable where there is no body, or
+    none that moves, and TooLarge for more than MAX_JOINTS joints.
     """
     nodes, parents = _in_order(scene)
     moves = [node.id in moving for node in nodes]

@@ -1,10 +1,10 @@
 """The multilinear model of Vasilescu 2002: signatures of persons, parameters of actions.
 
-D (persons P, tasks T, samples) = Z x_1 P x_2 A x_3 J (eq. 3), from cell means; missing
-cells are completed by person and task effects added up (app.models.cells). The sample mode
-is kept in PCA coordinates (d <= 100, uncentred, so nothing is taken away from the paper's
-tensor but what no cell has). Recognition as in section 5 where the other factor is known;
-where neither is, the cell whose motion p_n, a_m reconstruct is nearest.
+D (persons P, tasks T, samples) = Z x_1 P x_2 A x_3 J (eq. 3). D holds the mean motion of each
+cell, a cell being a person at a task; a cell without clips gets the sum of the effects of its
+person and its task (app.models.cells). Samples are kept in at most 100 PCA coordinates. These are
+uncentered, so that the tensor is the paper's. Where the person or the task of a clip is known, the
+other is recognized as in section 5; where none is known, the nearest reconstructed cell is taken.
 """
 
 from __future__ import annotations
@@ -46,10 +46,14 @@ RADIUS_SLACK = 1.5
 
 @dataclass(frozen=True, slots=True)
 class Multilinear:
-    """persons (P,), tasks (T,) sorted labels; svd: core and the mode matrices persons
-    (P, R1) whose rows are signatures, actions (T, R2), and eigenmotions (d, R3) in the
-    coordinates of `axes`; radius: distance in those coordinates beyond which a clip is of
-    no cell; task_means: onto which the motions of each task were warped, if they were."""
+    """A fitted multilinear model.
+
+    persons: (P,) and tasks: (T,) sorted labels. axes: the PCA coordinates. svd: the core tensor
+    and the mode matrices: persons (P, R1), whose rows are the signatures, actions (T, R2), and
+    eigenmotions (d, R3) in the coordinates of `axes`. radius: a clip that is farther than this
+    from every cell, in these coordinates, is unknown. task_means: the means onto which the motions
+    of each task were warped before the fit; None if they were not.
+    """
 
     persons: tuple[str, ...]
     tasks: tuple[str, ...]
@@ -125,12 +129,13 @@ def fit_multilinear(
     ranks: tuple[int | None, int | None] = (None, None),
     moments: int | None = None,
 ) -> Multilinear:
-    """Fit on motion samples (clips, 1250) that have both labels; others are left out.
+    """Fit a model on motion samples.
 
-    ranks: columns kept of the person and action matrices, None for all; moments: how many poses
-    a sample begins with, so that all takes of a task can be warped onto its mean; None leaves
-    them as they are.
-    Raises NotEnoughLabels without two persons or two tasks, or with too many of both.
+    samples: (clips, 1250); persons, tasks: (clips,) labels. A clip without both labels is left
+    out. ranks: the numbers of columns to keep of the person and the action matrices; None keeps
+    all. moments: the number of poses at the start of each sample, which are warped onto the mean
+    of the clip's task; None leaves them as they are.
+    Raises NotEnoughLabels without two persons or two tasks, or with more than MOST_CELLS cells.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
     cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
@@ -178,10 +183,11 @@ def recognise_multilinear(
     known_person: str | None = None,
     known_task: str | None = None,
 ) -> Recognition:
-    """Who does what in one motion sample (1250,), given what the asker knows.
+    """Recognize who does what in one motion sample (1250,).
 
-    Scores are shares by nearness, not probabilities; a clip beyond the radius of every
-    cell is unknown. A known label that the library lacks counts as not given for the other.
+    known_person, known_task: the label that the caller knows. It is part of the answer; a label
+    that the library does not have is not used to find the other. Scores are shares by nearness,
+    not probabilities. A clip that is farther than the radius from every cell is unknown.
     """
     far = np.linalg.norm(record.svd.reconstruct() - record.axes.project(sample), axis=2)
     person = given(known_person, record.persons) if known_person else None
@@ -212,6 +218,6 @@ def _coordinates(basis: FloatArray, point: FloatArray) -> FloatArray:
 
 
 def shares(distances: FloatArray) -> FloatArray:
-    """(n,) shares that sum to 1 by distances (n,), of which the smallest sets the scale."""
+    """(n,) shares that sum to 1 and fall with `distances` (n,); the smallest is the unit."""
     scale = max(float(distances.min()), 1e-9)
     return np.asarray(softmax(-0.5 * ((distances / scale) ** 2)[None])[0])

@@ -1,7 +1,7 @@
-"""The default word model: kernel ridge from clip statistics to label vectors (DESIGN 6, 13).
+"""The default word model: kernel ridge from clip statistics to label vectors.
 
-A clip's words are ranked by the model's output. What outputs tell as probabilities, and of
-several words at once, is learned beside it (models.word_calibration). Shapes: clips N, words V,
+A clip's words are ranked by the model's output. How outputs become probabilities, of one word and
+of several at once, is learned separately (models.word_calibration). Shapes: clips N, words V,
 statistics p (131 of app.analysis.symbol_features).
 """
 

@@ -1,10 +1,9 @@
-"""The distance of `fused`: vectors and warping, and what lies between (DESIGN 7).
+"""The distance of the method `fused`: of vectors, of warping, and along a graph of clips.
 
-Within a shortlist, a clip is also near when one gets to it from the query by way of others,
-each near the last: takes of one task by people of many manners are joined so, although a
-clip of another task by the same person may be nearer. The graph is made anew for each
-question, of the clips that pass its filter and nothing else; nothing is fitted, and a clip
-that became ready a moment ago is in it.
+Within a shortlist, a clip is also near if a path of short steps leads to it from the query, over
+other clips. Such paths join the takes of one task by people of many manners, although a clip of
+another task by the same person may be nearer. The graph is built for each query, from the clips
+that pass its filter. Nothing is fitted, so a clip is part of it as soon as it is ready.
 """
 
 from __future__ import annotations
@@ -38,9 +37,9 @@ MOST_DETOUR = 5.0
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """What vectors tell of a shortlist before anything is warped, which is dearer.
+    """The part of the fused distance that needs only vectors, which is cheaper than warping.
 
-    near: (n,) distances of the vectors; far: (n,) what the graph adds, at most.
+    near: (n,) the distances of the vectors to the query; far: (n,) the most that the graph adds.
     """
 
     near: FloatArray
@@ -58,9 +57,10 @@ class Surroundings:
         return cls(between[0, 1:], float(np.median(radii)) * far)
 
     def distances(self, rows: IntArray, warped: FloatArray) -> FloatArray:
-        """(m,) fused distances of `rows` (m,), given their DTW distances to the query (m,).
+        """(m,) fused distances of `rows` (m,); warped: (m,) their DTW distances to the query.
 
-        They never fall as those rise, so that with 0 for all of them they are lower bounds.
+        A fused distance never falls when a DTW distance rises. So with 0 for all DTW distances,
+        the results are lower bounds.
         """
         straight = self.near[rows] + DTW_WEIGHT * warped
         return np.asarray(straight + DETOUR * np.minimum(self.far[rows], MOST_DETOUR * straight))
