@@ -8,16 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.analysis.joint_angles import ANGLES, filtered, joint_angles
+from app.analysis.joint_angles import filtered, joint_angles
 from app.analysis.motion_sample import SAMPLES, exact_cycles, turn_and_speed
 from app.motion.body_frame import BodyTrack
 from app.motion.gait import gait_cycles
 from app.motion.motion import Motion
 from app.motion.resampling import resample_to, sample_at
 from app.numerics.arrays import FloatArray
-
-ANGLE_SAMPLE_LENGTH = SAMPLES * len(ANGLES) + 2
-"""Numbers in an angle sample: 642."""
 
 
 def angle_sample(motion: Motion, track: BodyTrack) -> FloatArray:

@@ -28,7 +28,6 @@ from app.cli import (
 from app.cli.settings import remember
 from app.errors import ClipNotFound, KinedexError
 
-USAGE_ERROR = 2
 FAILURE = 1
 
 program = typer.Typer(

@@ -1,8 +1,8 @@
 """The HIERARCHY part of a BVH file: joints, offsets and channels.
 
-Source: Biovision's format as told by Meredith and Maddock, "Motion capture file formats
-explained" (2001), widened to what files in the wild hold (DESIGN 4). No recursion: the
-joints that are open stand on a stack, so that depth costs nothing.
+Source: Biovision's format as described by Meredith and Maddock, "Motion capture file formats
+explained" (2001), and what files of other writers hold besides. There is no recursion: the open
+joints are kept on a stack, so that any depth can be read.
 """
 
 from __future__ import annotations
@@ -34,6 +34,8 @@ REMEMBERED, REMEMBERED_BYTES = 16, 100_000
 _TOKEN = re.compile(rb"[{}]|[^\s{}]+|\n")
 _NUMBERLIKE = re.compile(rb"[-+.,\d]|nan|inf", re.IGNORECASE)
 _CHANNEL = re.compile(r"([XYZ])(POSITION|ROTATION)")
+_IN_END_SITE = (b"OFFSET", b"CHANNELS", b"}")
+_IN_JOINT = (*_IN_END_SITE, b"JOINT", b"END")
 _END = 0
 """Marks an open End Site on the stack of open blocks; joints stand there as 1 + index."""
 
@@ -57,7 +59,7 @@ class Hierarchy:
 
 
 def read_hierarchy(text: bytes) -> Hierarchy:
-    """Read all that stands before MOTION, lines separated by newlines.
+    """Read everything before MOTION; lines are separated by newlines.
 
     Raises Unreadable naming the line, or TooLarge.
     """
@@ -153,24 +155,34 @@ class _Reader:
 
     def _statement(self, token: bytes) -> None:
         keyword = token.upper().rstrip(b":")
-        at_end_site = bool(self.open) and self.open[-1] == _END
-        if keyword == b"ROOT" and not self.open:
-            self._begin_joint(-1)
-        elif keyword == b"}" and self.open:
-            self._close()
-        elif keyword == b"OFFSET" and self.open:
-            self._offset(at_end_site)
-        elif keyword == b"CHANNELS" and self.open:
-            self._channels(at_end_site)
-        elif keyword == b"JOINT" and self.open and not at_end_site:
-            self._begin_joint(self.open[-1] - 1)
-        elif keyword == b"END" and self.open and not at_end_site:
-            self.tokens.until_brace()
-            self.open.append(_END)
-        else:
+        if keyword not in self._allowed():
             raise self.tokens.expected("a statement of the hierarchy", token)
+        if keyword in (b"ROOT", b"JOINT"):
+            self._begin_joint()
+        elif keyword == b"END":
+            self._begin_end_site()
+        elif keyword == b"OFFSET":
+            self._offset()
+        elif keyword == b"CHANNELS":
+            self._channels()
+        else:
+            self._close()
 
-    def _begin_joint(self, parent: int) -> None:
+    def _allowed(self) -> tuple[bytes, ...]:
+        """The keywords that may stand here: outside of all joints, in an End Site, in a joint."""
+        if not self.open:
+            return (b"ROOT",)
+        return _IN_END_SITE if self._at_end_site() else _IN_JOINT
+
+    def _at_end_site(self) -> bool:
+        return self.open[-1] == _END
+
+    def _begin_end_site(self) -> None:
+        self.tokens.until_brace()
+        self.open.append(_END)
+
+    def _begin_joint(self) -> None:
+        parent = self.open[-1] - 1 if self.open else -1
         line = self.tokens.line
         name = b" ".join(self.tokens.until_brace())
         if len(self.joints) >= MAX_JOINTS:
@@ -183,20 +195,20 @@ class _Reader:
         if opened != _END and self.joints[opened - 1].offset is None:
             raise self.tokens.expected(f"OFFSET in joint {self.joints[opened - 1].name}", b"}")
 
-    def _offset(self, at_end_site: bool) -> None:
+    def _offset(self) -> None:
         line = self.tokens.line
         numbers = parse_numbers(self.tokens.numbers_on_line(), line, expected=3)
         if len(numbers) != 3:
             raise unreadable(line, f"expected 3 numbers after OFFSET, found {len(numbers)}")
-        if at_end_site:
+        if self._at_end_site():
             parent = next(opened for opened in reversed(self.open) if opened != _END) - 1
             self.ends.append((parent, numbers))
         else:
             self.joints[self.open[-1] - 1].offset = numbers
 
-    def _channels(self, at_end_site: bool) -> None:
+    def _channels(self) -> None:
         count = self.tokens.next()
-        allowed = 0 if at_end_site else MAX_CHANNELS
+        allowed = 0 if self._at_end_site() else MAX_CHANNELS
         if not re.fullmatch(rb"0*\d{1,2}", count) or int(count) > allowed:
             raise self.tokens.expected(f"a number of channels up to {allowed}", count)
         joint = self.open[-1] - 1

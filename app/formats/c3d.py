@@ -1,9 +1,9 @@
 """C3D files of labelled markers: bytes in, Recording out.
 
-The recording's joints are the joint centres that the markers tell (a tree, named plainly),
-then the markers themselves (parentless, under their labels), so that a client may choose
-them as roles. Points without a label, what gait models write among the points, other
-subjects and markers seen too seldom are left out, each with a caution where it may matter.
+The joints of the recording are the joint centers that are computed from the markers (a tree with
+plain names), then the markers themselves (without parents, under their labels), so that a client
+may choose them as roles. These are left out, with a caution where it may matter: points without a
+label, results of gait models among the points, other subjects, and markers seen too seldom.
 Our own reader: ezc3d 1.7 crashes, hangs or asks for gigabytes on one broken file in twenty,
 and reads a truncated one as one frame; it is the oracle of the tests.
 """
@@ -74,26 +74,34 @@ def read_c3d(content: bytes) -> Recording:
 def _centres(
     markers: Markers, usable: Mapping[int, FloatArray], gaps: Sequence[Gap]
 ) -> dict[JointRole, Centre]:
-    """Joint centres by role; a role that no recipe tells may be told by a label alone.
+    """Joint centres by role: by recipes from several markers, else by a marker's label.
 
-    Raises Unreadable where one of Sun's roles is lost to long gaps.
+    usable: (frames, 3) by marker, those that were seen long enough. Raises Unreadable where one
+    of Sun's roles is lost to long gaps.
     """
     places = places_of(markers.labels)
     tracks = {place: usable[m] for place, m in places.items() if m in usable}
     centres = joint_centres(tracks)
-    lost = [role for role in SUN_ROLES if role not in centres]
-    by_label = roles_by_name(
-        [label if m in usable else "" for m, label in enumerate(markers.labels)]
-    )
-    for role, marker in by_label.items():
-        if role not in centres and marker in usable:
-            centres[role] = Centre(usable[marker].astype(np.float64), (markers.labels[marker],))
-    for role in lost:
-        recipe = chosen(RECIPES[role], places.__contains__)
-        if role not in centres and recipe is not None:
+    for role, centre in _centres_by_label(markers, usable).items():
+        centres.setdefault(role, centre)
+    for role in SUN_ROLES:
+        recipe = None if role in centres else chosen(RECIPES[role], places.__contains__)
+        if recipe is not None:
             hidden = {places[place] for place in recipe}
             raise hidden_too_long(markers, [gap for gap in gaps if gap.marker in hidden])
     return centres
+
+
+def _centres_by_label(
+    markers: Markers, usable: Mapping[int, FloatArray]
+) -> dict[JointRole, Centre]:
+    """A centre for each role whose name is the label of a usable marker."""
+    labels = [label if m in usable else "" for m, label in enumerate(markers.labels)]
+    return {
+        role: Centre(usable[marker].astype(np.float64), (labels[marker],))
+        for role, marker in roles_by_name(labels).items()
+        if marker in usable
+    }
 
 
 def _skeleton(

@@ -1,8 +1,8 @@
 """The points of a C3D file: header, frame count, and the numbers of each frame.
 
 Source: "The C3D file format user guide" (Motion Lab Systems 2008), chapters 3 and 6.
-Analogue channels stand between the frames and are passed over, whatever is said of them.
-What the file declares is compared with the bytes that are there before any is read.
+Analog channels stand between the frames and are skipped, whatever the parameters say of them.
+What the file declares is compared with the number of its bytes before any frame is read.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from app.motion.recording import FRAME_RATES, Caution
 from app.numerics.arrays import FloatArray
 
 FULL_COUNT = 65535
-"""What the header's 16 bits say of the last frame when they cannot hold it."""
+"""The number of the last frame in the header if 16 bits are too few for it."""
 NO_SCALE = 1e-12
 
 
@@ -91,37 +91,57 @@ def _header(content: bytes, numbers: Numbers) -> _Header:
 def _frame_count(
     header: _Header, parameters: Parameters, room: int, start: int
 ) -> tuple[int, tuple[Caution, ...]]:
-    """Frames to read; the header's 16 bits hold no long motion, parameters do."""
-    told = _told_counts(header, parameters)
-    held = [count for count in told if count <= room]
+    """The number of frames to read, and a caution if more are declared.
+
+    The 16 bits of the header are too few for a long motion, so the parameters count as well.
+    room: how many frames the file has bytes for, from the byte `start` on. Raises Unreadable.
+    """
+    declared = _declared_counts(header, parameters)
+    held = [count for count in declared if count <= room]
     if not held:
-        least = min(told) if told else 1
+        least = min(declared) if declared else 1
         message = f"expected {least} frames, found {room}: the file is cut short"
         raise unreadable_at(start, message)
     frames = max(held)
-    if frames == max(told):
+    if frames == max(declared):
         return frames, ()
-    detail = f"the file declares {max(told)} frames and holds {frames}"
+    detail = f"the file declares {max(declared)} frames and holds {frames}"
     return frames, (Caution("frames_mismatch", detail),)
 
 
-def _told_counts(header: _Header, parameters: Parameters) -> list[int]:
-    """What header and parameters say of the number of frames, where they say anything."""
-    told = []
-    if header.last >= header.first and header.last != FULL_COUNT:
-        told.append(header.last - header.first + 1)
+def _declared_counts(header: _Header, parameters: Parameters) -> list[int]:
+    """The numbers of frames that the header and the parameters declare; empty if none does."""
+    every = (
+        _count_of_header(header),
+        _count_of_points(parameters),
+        _count_of_trial(parameters),
+    )
+    counts = [count for count in every if count is not None and 0 < count != FULL_COUNT]
+    if not counts and header.last == FULL_COUNT:
+        return [FULL_COUNT - header.first + 1]
+    return counts
+
+
+def _count_of_header(header: _Header) -> int | None:
+    if header.last < header.first or header.last == FULL_COUNT:
+        return None
+    return header.last - header.first + 1
+
+
+def _count_of_points(parameters: Parameters) -> int | None:
     declared = parameters.get("POINT:FRAMES")
-    if declared is not None and declared.first is not None and np.isfinite(declared.first):
-        count = int(declared.first)
-        # Above 32,767 the integer's sign is wrong; FULL_COUNT says that it did not fit.
-        told.append(count % 2**16 if count < 0 else count)
-    limits = [parameters.get(f"TRIAL:ACTUAL_{end}_FIELD") for end in ("START", "END")]
-    if all(limit is not None and len(limit.values) >= 2 for limit in limits):
-        first, last = (_joined(limit.values) for limit in limits if limit is not None)
-        told.append(last - first + 1)
-    at_most = header.last == FULL_COUNT
-    counts = [count for count in told if count > 0 and count != FULL_COUNT]
-    return counts or ([FULL_COUNT - header.first + 1] if at_most else [])
+    if declared is None or declared.first is None or not np.isfinite(declared.first):
+        return None
+    count = int(declared.first)
+    # Above 32,767 the sign of the 16-bit integer is wrong.
+    return count % 2**16 if count < 0 else count
+
+
+def _count_of_trial(parameters: Parameters) -> int | None:
+    start, end = (parameters.get(f"TRIAL:ACTUAL_{name}_FIELD") for name in ("START", "END"))
+    if start is None or end is None or min(len(start.values), len(end.values)) < 2:
+        return None
+    return _joined(end.values) - _joined(start.values) + 1
 
 
 def _joined(halves: tuple[float, ...]) -> int:

@@ -1,8 +1,8 @@
 """Which nodes of an FBX scene are the body's joints.
 
-Limb nodes are; so is what else hangs between them, and a node above them that moves (a
-reference that carries the hips). Where there are no limb nodes, moving Nulls are taken.
-Of several bodies the one with most moving joints is read.
+Limb nodes are joints. So are the nodes between them, and a node above them that moves (a
+reference that carries the hips). In a scene without limb nodes, the Nulls that move are taken.
+Of several bodies, the one with most moving joints is read.
 """
 
 from __future__ import annotations
@@ -34,26 +34,40 @@ class Body:
 
 
 def find_body(scene: FbxScene, moving: Collection[int]) -> Body:
-    """The body in a scene; `moving`: ids of the nodes that have curves.
+    """Find the body in a scene.
 
-    Raises Unreadable where there is none, or none that moves, and TooLarge.
+    moving: the ids of the nodes that have curves. Raises Unreadable where there is no body, or
+    none that moves, and TooLarge for more than MAX_JOINTS joints.
     """
     nodes, parents = _in_order(scene)
     moves = [node.id in moving for node in nodes]
+    roots = _roots(parents, _joints(parents, _limbs(scene, nodes, moves), moves))
+    root, others = _chosen(roots, moves)
+    names = [nodes[other].name for other in others]
+    return _body(nodes, parents, [found == root for found in roots], names)
+
+
+def _limbs(scene: FbxScene, nodes: list[FbxObject], moves: list[bool]) -> list[bool]:
+    """Whether each node is a limb node or, in a scene without any, a Null that moves."""
     limbs = [_is_limb(scene, node) for node in nodes]
-    if not any(limbs):
-        limbs = [node.subtype == "Null" and move for node, move in zip(nodes, moves, strict=True)]
-    joints = _joints(parents, limbs, moves)
-    roots = _roots(parents, joints)
+    if any(limbs):
+        return limbs
+    return [node.subtype == "Null" and move for node, move in zip(nodes, moves, strict=True)]
+
+
+def _chosen(roots: list[int], moves: list[bool]) -> tuple[int, list[int]]:
+    """The root of the body with most moving joints, and the roots of other moving bodies.
+
+    roots: the root of each node's body, -1 for none. Raises Unreadable.
+    """
     bodies = Counter(root for root in roots if root >= 0)
     if not bodies:
         raise unreadable_at("node Objects/Model", "expected a skeleton of limb nodes, found none")
     moved = Counter(root for root, move in zip(roots, moves, strict=True) if move and root >= 0)
     if not moved:
         raise unreadable_at("node Objects/AnimationCurve", "expected curves that move joints")
-    root = max(bodies, key=lambda one: (moved[one], bodies[one], -one))
-    others = [nodes[one].name for one in moved if one != root and bodies[one] > 1]
-    return _body(nodes, parents, [found == root for found in roots], others)
+    chosen = max(bodies, key=lambda one: (moved[one], bodies[one], -one))
+    return chosen, [one for one in moved if one != chosen and bodies[one] > 1]
 
 
 def _in_order(scene: FbxScene) -> tuple[list[FbxObject], list[int]]:

@@ -1,8 +1,8 @@
-"""How far a recogniser's evidence can be believed: temperature, and the threshold of unknown.
+"""Calibration of a recognizer: the temperature of its evidence, and the threshold of unknown.
 
-evidence: (n, labels) log evidence of each label; novelty: (n,) log evidence of something
-new less that of all that is known; truth: (n,) label index, NEW where the label was not
-among the training clips. All from held-out clips.
+evidence: (n, labels) log evidence of each label; novelty: (n,) the log evidence of something new
+minus that of everything known; truth: (n,) the label index, NEW where the label was not among the
+training clips. All of them come from held-out clips.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from app.numerics.area_under_curve import area_under_curve
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 NEW = -1
@@ -43,10 +44,13 @@ _FAR = 1e30
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """temperature: divides log evidence; threshold: novelty above it is unknown; scale:
-    novelty over which belief in being known falls off; known_novelty, new_novelty: sorted
-    novelties of held-out clips (or imagined ones, see fit_calibration), from which error rates
-    at any threshold follow."""
+    """A fitted calibration.
+
+    temperature: divides the log evidence. threshold: a clip with a larger novelty is unknown.
+    scale: the novelty over which the belief in being known falls. known_novelty, new_novelty:
+    sorted novelties of held-out clips (or of imagined ones, see fit_calibration), from which the
+    error rates at any threshold are computed.
+    """
 
     temperature: float
     threshold: float
@@ -77,8 +81,8 @@ class Calibration:
         return np.asarray(softmax(evidence / self.temperature) * known[:, None])
 
     def at_false_acceptance(self, rate: float) -> Calibration:
-        """The same with the largest threshold under which at most `rate` (0..1, below 1) of the
-        new ones held out are accepted; as it is where none was held out."""
+        """The same calibration with the largest threshold at which at most `rate` (0..1, below 1)
+        of the new held-out clips are accepted. Without such clips it stays as it is."""
         if not len(self.new_novelty):
             return self
         beyond = self.new_novelty[int(rate * len(self.new_novelty))]
@@ -96,11 +100,8 @@ class Calibration:
         return [(float(t), *self.error_rates(float(t))) for t in every[chosen]]
 
     def area_under_curve(self) -> float:
-        """Chance that something new is more novel than something known; ties count half."""
-        ranks = np.searchsorted(self.known_novelty, self.new_novelty, side="left")
-        ties = np.searchsorted(self.known_novelty, self.new_novelty, side="right") - ranks
-        pairs = max(len(self.known_novelty) * len(self.new_novelty), 1)
-        return float((ranks + ties / 2).sum() / pairs)
+        """The chance that something new has a larger novelty than something known."""
+        return area_under_curve(self.new_novelty, self.known_novelty)
 
     def error_rates(self, threshold: float | None = None) -> tuple[float, float]:
         """(false acceptance of new, false rejection of known), shares of held-out clips."""
@@ -117,12 +118,13 @@ def fit_calibration(
     seen: BoolArray | None = None,
     imagined: FloatArray | None = None,
 ) -> Calibration:
-    """Calibrate on held-out clips; sensible constants where there are none.
+    """Calibrate on held-out clips; without any, the calibration has fixed values.
 
-    seen: (n,) whether the same person at the same task was among the training clips, none if
-    not given. Known clips of which that is not true look newer than those that will be asked
-    about, so that the threshold is set, and errors are told, by the others where there are enough;
-    else by `imagined`, the (m,) novelties that further takes of what was recorded would have.
+    seen: (n,) whether the same person at the same task was among the training clips; if not
+    given, none was. A known clip that was not seen looks newer than the clips that will be asked
+    about. So the threshold and the error rates come from the clips that were seen, where there
+    are LEAST_USUAL of them; else from `imagined`: (m,) novelties that further takes of the
+    recorded cells would have.
     """
     known = truth != NEW
     new, around = novelty[~known], novelty[known]

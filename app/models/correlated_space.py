@@ -16,9 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from app.errors import ModelNotFitted, NotEnoughLabels
+from app.errors import NotEnoughLabels
 from app.numerics.arrays import FloatArray
 from app.numerics.cca import CanonicalPair, fit_cca
+from app.numerics.euclidean import distances
 
 CORRELATED_SPACE_VERSION = 1
 
@@ -65,8 +66,7 @@ class CorrelatedSpace:
 
     def word_distances(self, points: FloatArray) -> FloatArray:
         """(N, V) distance of D'f of each clip to the g of each single word, as printed."""
-        offsets = self._reached(points)[:, None] - self._single_words()
-        return np.asarray(np.linalg.norm(offsets, axis=2))
+        return distances(self._reached(points), self._single_words())
 
     def _wanted(self, query: FloatArray) -> FloatArray:
         """(1, k) C'g."""
@@ -97,9 +97,9 @@ class CorrelatedSpace:
     def from_arrays(
         cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
     ) -> CorrelatedSpace:
-        """The record that to_arrays took apart. Raises ModelNotFitted on another version."""
+        """The record that to_arrays took apart. Raises ValueError on another version."""
         if meta["version"] != CORRELATED_SPACE_VERSION:
-            raise ModelNotFitted("The correlated space is of another version: fit again.")
+            raise ValueError(f"correlated space of version {meta['version']}")
         names = ("x_mean", "y_mean", "a", "b", "correlations")
         pair = CanonicalPair(*(arrays[name] for name in names))
         return cls(pair, arrays["words_to_motions"], arrays["motions_to_words"])

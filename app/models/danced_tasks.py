@@ -1,8 +1,8 @@
 """The segments of a library's dances, arranged for Perera's tensor: person, task, cycle.
 
-Each step of a repeated sequence is a task ("salsa 1", "salsa 2", ...), each time through it a
-cycle. Where a sequence begins is anybody's choice: the cycles of all clips of a task are
-shifted to begin alike.
+Each step of a repeated sequence is a task ("salsa 1", "salsa 2", ...). Each repetition of the
+sequence is a cycle. A sequence may begin at any of its steps, so the cycles of all clips of a
+task are shifted until they begin with the same one.
 """
 
 from __future__ import annotations
@@ -19,8 +19,11 @@ from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 @dataclass(frozen=True, slots=True)
 class DancedTasks:
-    """n segments. poses: (n, POSES, 13, 3) body frame, body lengths; persons, tasks: (n,);
-    cycle: (n,) from 0, which time it is that this person does this task."""
+    """n segments of dances.
+
+    poses: (n, POSES, 13, 3) in the body frame, in body lengths; persons, tasks: (n,) labels;
+    cycle: (n,) how often the same person did the same task before, from 0.
+    """
 
     poses: FloatArray
     persons: tuple[str, ...]
@@ -31,7 +34,7 @@ class DancedTasks:
         return len(self.cycle)
 
     def part(self, chosen: BoolArray) -> DancedTasks:
-        """The segments of which `chosen` (n,) says so."""
+        """The segments where `chosen` (n,) is true."""
         index = np.flatnonzero(chosen)
         who, what = (tuple(names[i] for i in index) for names in (self.persons, self.tasks))
         return DancedTasks(self.poses[index], who, what, self.cycle[index])
@@ -40,9 +43,10 @@ class DancedTasks:
 def arrange(
     clips: Sequence[DancedCycles], persons: Sequence[str | None], tasks: Sequence[str | None]
 ) -> DancedTasks:
-    """All segments of the clips that have both labels, (clips,) each.
+    """Arrange the segments of all clips that have both labels.
 
-    A clip whose cycles have another number of segments than most of its task have is left out.
+    clips, persons, tasks: (clips,) each. A clip is left out where its cycles have another number
+    of segments than those of most clips of its task.
     """
     poses: list[FloatArray] = []
     labels: list[tuple[str, str, int]] = []
@@ -63,10 +67,6 @@ def arrange(
     who, what, cycle = zip(*labels, strict=True) if labels else ((), (), ())
     stacked = np.stack(poses) if poses else np.zeros((0, 0, 13, 3))
     return DancedTasks(stacked, who, what, np.array(cycle, dtype=np.int64))
-
-
-def _steps(task: str, count: int) -> list[str]:
-    return [f"{task} {number + 1}" for number in range(count)]
 
 
 def _in_phase(of_task: list[int], clips: Sequence[DancedCycles]) -> list[tuple[int, FloatArray]]:

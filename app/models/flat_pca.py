@@ -1,8 +1,8 @@
-"""Flat PCA, the baseline that Vasilescu 2002 (section 5) holds her model against.
+"""Flat PCA, the baseline with which Vasilescu 2002 (section 5) compares her model.
 
-Every observed motion is a vector of coefficients of the most significant axes. A person is as
-many such vectors as there are tasks, where the multilinear model has one signature, and nothing
-tells what two tasks of one person have in common.
+Each observed motion is a vector of coefficients of the principal axes. A person is represented by
+one vector for each task, where the multilinear model has one signature for the person. So nothing
+is known of what two tasks of one person have in common.
 """
 
 from __future__ import annotations
@@ -22,16 +22,12 @@ from app.numerics.principal_axes import PrincipalAxes, principal_axes
 
 @dataclass(frozen=True, slots=True)
 class FlatPCA:
-    """coefficients: (cells, k) in the coordinates of `axes`, the mean of each cell's takes."""
+    """cells: the pairs of person and task that were recorded; coefficients: (cells, k) the mean
+    of each cell's takes, in the k coordinates of `axes`."""
 
     cells: Cells
     axes: PrincipalAxes
     coefficients: FloatArray
-
-    @property
-    def numbers_a_person(self) -> int:
-        """How many numbers represent one person: a vector for each task."""
-        return int(len(self.cells.tasks) * self.coefficients.shape[1])
 
 
 def fit_flat_pca(
@@ -55,10 +51,10 @@ def recognise_flat(
     known_person: str | None = None,
     known_task: str | None = None,
 ) -> Recognition:
-    """Who does what in one sample (w,): the nearest coefficients, among those of what is known.
+    """Recognize who does what in one sample (w,) by the nearest cell.
 
-    It calls everything known. Scores are shares by nearness; known labels that were never seen
-    tell nothing.
+    Only the cells of a known person or task are compared; a known label that was never seen is
+    ignored. Nothing is called unknown. Scores are shares by nearness.
     """
     cells = record.cells
     far = np.linalg.norm(record.coefficients - record.axes.project(sample), axis=1)

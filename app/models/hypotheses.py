@@ -25,6 +25,7 @@ import numpy as np
 from app.models.cells import Cells, cell_means, fit_effects
 from app.models.within_cells import Scatter, scatter_within
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.numerics.euclidean import squared_distances
 from app.numerics.shrinkage import oracle_share
 
 SHRINKAGE = 0.1
@@ -110,11 +111,9 @@ class Hypotheses:
         # hypotheses of one form stand together
         starts = np.searchsorted(self.form, np.arange(len(self.whiteners) + 1))
         for form, (start, end) in enumerate(pairwise(starts)):
-            white, means = points @ self.whiteners[form], self.means[start:end]
-            lengths = np.einsum("nd,nd->n", white, white)
-            out[:, start:end] = lengths[:, None] - 2 * white @ means.T
-        out += np.einsum("hd,hd->h", self.means, self.means)
-        return np.asarray(np.maximum(out, 0) / self.spread)
+            white = points @ self.whiteners[form]
+            out[:, start:end] = squared_distances(white, self.means[start:end])
+        return np.asarray(out / self.spread)
 
 
 @dataclass(frozen=True, slots=True)

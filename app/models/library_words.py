@@ -125,7 +125,7 @@ class LibraryWords:
     def from_arrays(
         cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
     ) -> LibraryWords:
-        """The record that to_arrays took apart. Raises ModelNotFitted on another version."""
+        """The record that to_arrays took apart. Raises ValueError on another version."""
         correlated, cosines, back = None, None, None
         if "correlated" in meta:
             own = _part(arrays, "correlated")

@@ -1,10 +1,10 @@
 """The multilinear model of Vasilescu 2002: signatures of persons, parameters of actions.
 
-D (persons P, tasks T, samples) = Z x_1 P x_2 A x_3 J (eq. 3), from cell means; missing
-cells are completed by person and task effects added up (app.models.cells). The sample mode
-is kept in PCA coordinates (d <= 100, uncentred, so nothing is taken away from the paper's
-tensor but what no cell has). Recognition as in section 5 where the other factor is known;
-where neither is, the cell whose motion p_n, a_m reconstruct is nearest.
+D (persons P, tasks T, samples) = Z x_1 P x_2 A x_3 J (eq. 3). D holds the mean motion of each
+cell, a cell being a person at a task; a cell without clips gets the sum of the effects of its
+person and its task (app.models.cells). Samples are kept in at most 100 PCA coordinates. These are
+uncentered, so that the tensor is the paper's. Where the person or the task of a clip is known, the
+other is recognized as in section 5; where none is known, the nearest reconstructed cell is taken.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from app.errors import NotEnoughLabels
-from app.models.alignment import Courses, fit_courses
 from app.models.calibration import softmax
 from app.models.cells import Cells, cell_means, find_cells, fit_effects
 from app.models.recognition import Recognition, answer, given
+from app.models.task_means import TaskMeans, fit_task_means
 from app.numerics.arrays import FloatArray
 from app.numerics.nmode_svd import NModeSVD, nmode_svd
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
@@ -46,25 +46,29 @@ RADIUS_SLACK = 1.5
 
 @dataclass(frozen=True, slots=True)
 class Multilinear:
-    """persons (P,), tasks (T,) sorted labels; svd: core and the mode matrices persons
-    (P, R1) whose rows are signatures, actions (T, R2), and eigenmotions (d, R3) in the
-    coordinates of `axes`; radius: distance in those coordinates beyond which a clip is of
-    no cell; courses: onto which motions of each task were warped, if they were."""
+    """A fitted multilinear model.
+
+    persons: (P,) and tasks: (T,) sorted labels. axes: the PCA coordinates. svd: the core tensor
+    and the mode matrices: persons (P, R1), whose rows are the signatures, actions (T, R2), and
+    eigenmotions (d, R3) in the coordinates of `axes`. radius: a clip that is farther than this
+    from every cell, in these coordinates, is unknown. task_means: the means onto which the motions
+    of each task were warped before the fit; None if they were not.
+    """
 
     persons: tuple[str, ...]
     tasks: tuple[str, ...]
     axes: PrincipalAxes
     svd: NModeSVD
     radius: float
-    courses: Courses | None = None
+    task_means: TaskMeans | None = None
 
     def aligned(self, sample: FloatArray, task: str) -> FloatArray:
-        """A sample (1250,) in the course of time that `task` has, as the tensor's motions are."""
-        if self.courses is None:
+        """A sample (1250,) warped onto the mean of `task`, as the motions of the tensor are."""
+        if self.task_means is None:
             return sample
-        moments, width = self.courses.means.shape[1:]
+        moments, width = self.task_means.means.shape[1:]
         poses = np.asarray(sample[: moments * width]).reshape(1, moments, width)
-        warped = self.courses.onto(poses, self.courses.tasks.index(task))
+        warped = self.task_means.onto(poses, task)
         return np.concatenate([warped.ravel(), sample[moments * width :]])
 
     def signature(self, sample: FloatArray, task: str) -> FloatArray:
@@ -80,11 +84,6 @@ class Multilinear:
         row = people[[self.persons.index(person)]]
         basis = mode_product(mode_product(core, row, 0), motions, 2)[0]
         return _coordinates(basis, self.axes.project(sample))
-
-    def eigenmotions(self) -> FloatArray:
-        """(1250, R3) J of eq. 3 in the samples' own numbers: orthonormal motions, of which all
-        cells are made, those that matter most first."""
-        return np.asarray(self.axes.axes @ self.svd.factors[2])
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
         """Arrays and JSON-able meta from which from_arrays makes the same record."""
@@ -103,8 +102,8 @@ class Multilinear:
             "tasks": list(self.tasks),
             "radius": self.radius,
         }
-        if self.courses is not None:
-            arrays["courses"] = self.courses.means
+        if self.task_means is not None:
+            arrays["courses"] = self.task_means.means
         return arrays, meta
 
     @classmethod
@@ -119,7 +118,7 @@ class Multilinear:
             PrincipalAxes(arrays["centre"], arrays["axes"]),
             NModeSVD(arrays["core"], factors),
             float(meta["radius"]),
-            Courses(tuple(meta["tasks"]), arrays["courses"]) if "courses" in arrays else None,
+            TaskMeans(tuple(meta["tasks"]), arrays["courses"]) if "courses" in arrays else None,
         )
 
 
@@ -130,12 +129,13 @@ def fit_multilinear(
     ranks: tuple[int | None, int | None] = (None, None),
     moments: int | None = None,
 ) -> Multilinear:
-    """Fit on motion samples (clips, 1250) that have both labels; others are left out.
+    """Fit a model on motion samples.
 
-    ranks: columns kept of the person and action matrices, None for all; moments: how many poses
-    a sample begins with, so that all takes of a task can be warped onto its mean; None leaves
-    them as they are.
-    Raises NotEnoughLabels without two persons or two tasks, or with too many of both.
+    samples: (clips, 1250); persons, tasks: (clips,) labels. A clip without both labels is left
+    out. ranks: the numbers of columns to keep of the person and the action matrices; None keeps
+    all. moments: the number of poses at the start of each sample, which are warped onto the mean
+    of the clip's task; None leaves them as they are.
+    Raises NotEnoughLabels without two persons or two tasks, or with more than MOST_CELLS cells.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
     cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
@@ -143,9 +143,9 @@ def fit_multilinear(
         raise NotEnoughLabels("The multilinear model needs two persons and two tasks.")
     if len(cells.persons) * len(cells.tasks) > MOST_CELLS:
         raise NotEnoughLabels(f"The multilinear model holds {MOST_CELLS} persons x tasks.")
-    chosen, courses = np.asarray(samples)[use], None
+    chosen, task_means = np.asarray(samples)[use], None
     if moments is not None:
-        chosen, courses = _aligned(chosen, [tasks[i] for i in use], moments)
+        chosen, task_means = _aligned(chosen, [tasks[i] for i in use], moments)
     axes = principal_axes(chosen, DIMENSIONS, centred=False)
     points = axes.project(chosen)
     tensor = complete_tensor(cell_means(points, cells), cells)
@@ -153,18 +153,18 @@ def fit_multilinear(
     own = svd.reconstruct()[cells.person[cells.member], cells.task[cells.member]]
     reach = np.percentile(np.linalg.norm(points - own, axis=1), RADIUS_SHARE)
     radius = float(reach * RADIUS_SLACK)
-    return Multilinear(cells.persons, cells.tasks, axes, svd, radius, courses)
+    return Multilinear(cells.persons, cells.tasks, axes, svd, radius, task_means)
 
 
 def _aligned(
     samples: FloatArray, tasks: Sequence[str | None], moments: int
-) -> tuple[FloatArray, Courses]:
-    """`samples` (n, w), the poses that each begins with in the course of its task."""
+) -> tuple[FloatArray, TaskMeans]:
+    """`samples` (n, w), the poses that each begins with warped onto the mean of its task."""
     width = samples.shape[1] // moments
     poses = samples[:, : moments * width].reshape(len(samples), moments, width)
-    courses = fit_courses(poses, tasks)
-    warped = courses.aligned(poses, tasks).reshape(len(samples), -1)
-    return np.hstack([warped, samples[:, moments * width :]]), courses
+    task_means = fit_task_means(poses, tasks)
+    warped = task_means.aligned(poses, tasks).reshape(len(samples), -1)
+    return np.hstack([warped, samples[:, moments * width :]]), task_means
 
 
 def complete_tensor(means: FloatArray, cells: Cells) -> FloatArray:
@@ -183,10 +183,11 @@ def recognise_multilinear(
     known_person: str | None = None,
     known_task: str | None = None,
 ) -> Recognition:
-    """Who does what in one motion sample (1250,), given what the asker knows.
+    """Recognize who does what in one motion sample (1250,).
 
-    Scores are shares by nearness, not probabilities; a clip beyond the radius of every
-    cell is unknown. A known label that the library lacks counts as not given for the other.
+    known_person, known_task: the label that the caller knows. It is part of the answer; a label
+    that the library does not have is not used to find the other. Scores are shares by nearness,
+    not probabilities. A clip that is farther than the radius from every cell is unknown.
     """
     far = np.linalg.norm(record.svd.reconstruct() - record.axes.project(sample), axis=2)
     person = given(known_person, record.persons) if known_person else None
@@ -196,8 +197,8 @@ def recognise_multilinear(
         people = record.svd.factors[0]
         own = record.signature(record.aligned(sample, known_task), known_task)
         to_persons = np.linalg.norm(own - people, axis=1)
-    elif record.courses is not None:
-        # in whose way it is done is told without its timing; what is done, with it
+    elif record.task_means is not None:
+        # who does it is recognised without the timing, what is done with it
         likely = int(to_tasks.argmin())
         point = record.axes.project(record.aligned(sample, record.tasks[likely]))
         to_persons = np.linalg.norm(record.svd.reconstruct()[:, likely] - point, axis=1)
@@ -217,6 +218,6 @@ def _coordinates(basis: FloatArray, point: FloatArray) -> FloatArray:
 
 
 def shares(distances: FloatArray) -> FloatArray:
-    """(n,) shares that sum to 1 by distances (n,), of which the smallest sets the scale."""
+    """(n,) shares that sum to 1 and fall with `distances` (n,); the smallest is the unit."""
     scale = max(float(distances.min()), 1e-9)
     return np.asarray(softmax(-0.5 * ((distances / scale) ** 2)[None])[0])

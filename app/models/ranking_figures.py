@@ -24,28 +24,11 @@ def average_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
     return float((np.arange(1, places.size + 1) / places).mean())
 
 
-def precision_at_k(scores: FloatArray, is_relevant: BoolArray, k: int) -> float:
-    """Share of relevant ones among the k best; scores, is_relevant: (N,), 1 <= k <= N."""
-    return float(is_relevant[_best_first(scores)[:k]].mean())
-
-
 def mean_average_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
     """Mean of eq. 20 over the rows of (Q, N) that have something relevant; else 0.0."""
     rows = np.flatnonzero(is_relevant.any(axis=1))
     found = [average_precision(scores[row], is_relevant[row]) for row in rows]
     return float(np.mean(found)) if found else 0.0
-
-
-def mean_precision_at_k(scores: FloatArray, is_relevant: BoolArray, k: int) -> float:
-    """Mean of precision_at_k over the rows of (Q, N) that have something relevant."""
-    rows = np.flatnonzero(is_relevant.any(axis=1))
-    found = [precision_at_k(scores[row], is_relevant[row], k) for row in rows]
-    return float(np.mean(found)) if found else 0.0
-
-
-def nearest_neighbour_rate(scores: FloatArray, is_relevant: BoolArray) -> float:
-    """Share of the rows of (Q, N) with something relevant whose best candidate is relevant."""
-    return mean_precision_at_k(scores, is_relevant, 1)
 
 
 def f_where_recall_is_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
@@ -79,19 +62,6 @@ def precision_at_recalls(
         return np.zeros(len(recalls))
     found = np.clip(np.ceil(recalls * places.size - 1e-9).astype(np.int64), 1, places.size)
     return np.asarray(found / places[found - 1])
-
-
-def area_under_curve(scores: FloatArray, is_relevant: BoolArray) -> float:
-    """Chance that a relevant candidate scores above one that is not; ties count half.
-
-    scores, is_relevant: (N,). One half where either kind is missing.
-    """
-    others = np.sort(scores[~is_relevant])
-    own = scores[is_relevant]
-    if not own.size or not others.size:
-        return 0.5
-    below = np.searchsorted(others, own, "left") + np.searchsorted(others, own, "right")
-    return float(below.mean() / (2.0 * others.size))
 
 
 def calibration_error(probabilities: FloatArray, is_so: BoolArray, bins: int = 10) -> float:

@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.distance import cdist
 from scipy.stats import spearmanr
 
 from app.errors import NotEnoughLabels
@@ -119,7 +120,7 @@ def _placing_errors(distances: FloatArray, rng: np.random.RandomState) -> tuple[
 
 
 def _relative(left: FloatArray, right: FloatArray, wanted: FloatArray) -> float:
-    reached = np.linalg.norm(left[:, None] - right, axis=2)
+    reached = cdist(left, right)
     return float(np.abs(reached - wanted).mean() / max(float(wanted.mean()), 1e-12))
 
 

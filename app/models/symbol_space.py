@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 
-from app.errors import ModelNotFitted
 from app.models.symbol_arrays import pack_symbols, unpack_symbols
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.hmm import GaussianHMM
@@ -56,9 +55,9 @@ class SymbolSpace:
     def from_arrays(
         cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
     ) -> SymbolSpace:
-        """The record that to_arrays took apart. Raises ModelNotFitted on another version."""
+        """The record that to_arrays took apart. Raises ValueError on another version."""
         if meta["version"] != SYMBOL_SPACE_VERSION:
-            raise ModelNotFitted("The symbol space is of another version: fit again.")
+            raise ValueError(f"symbol space of version {meta['version']}")
         prefix = "landmark_"
         packed = {k.removeprefix(prefix): v for k, v in arrays.items() if k.startswith(prefix)}
         return cls(unpack_symbols(packed), arrays["points"])

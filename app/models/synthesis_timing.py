@@ -1,9 +1,10 @@
-"""Motions of one task brought to one course of time, and back.
+"""Motion shapes warped to the time of their group, and back to a time of their own.
 
-Of takes that do not go round one begins late and another lingers: their mean as they are would
-be half a gesture twice. Each is warped onto the mean of its group; how its time runs beside
-that of the group is kept as its *timing*, which is learned and carried over as the rest of a
-motion is. Cycles are aligned where they are cut.
+Of takes that are not cycles, one begins late and another is slow; the mean of the takes as they
+are would show half a gesture twice. Each is warped onto the mean of its group
+(app.numerics.group_warping). The difference between its time and that of the group is its
+*timing*, which is learned and carried over like the rest of a motion. Cycles are aligned where
+they are cut, so they are not warped.
 """
 
 from __future__ import annotations
@@ -11,19 +12,26 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from app.analysis.motion_sample import SAMPLES
 from app.analysis.motion_shape import CHANNELS
 from app.models.synthesis_basis import weights
-from app.models.synthesis_warping import inverse, read_at, rising, warping_times
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
-
-ROUNDS = 2
-"""Of warping onto the mean and taking the mean of what was warped."""
+from app.numerics.euclidean import distances
+from app.numerics.group_warping import (
+    ROUNDS,
+    group_means,
+    group_members,
+    inverse,
+    means_of_warped,
+    read_at,
+    rising,
+    smooth_times,
+    warping_times,
+)
 
 _TIE = 1e-6
-"""Relative: distances this close count as equal, rounding must not decide."""
+"""Relative: distances that are this close count as equal, so that rounding does not decide."""
 
 _STEADY: FloatArray = np.arange(SAMPLES, dtype=np.float64)
 
@@ -31,16 +39,16 @@ _STEADY: FloatArray = np.arange(SAMPLES, dtype=np.float64)
 @dataclass(frozen=True, slots=True)
 class Timed:
     """shapes: (n, 1378) motion shapes in the time of their group; timing: (n, 32) moments by
-    which each is late in its own time, zeros for what goes round or is alone."""
+    which each is late in its own time, zeros for cycles and for a take that is alone."""
 
     shapes: FloatArray
     timing: FloatArray
 
 
 def together(shapes: FloatArray, group: IntArray) -> Timed:
-    """Motion shapes (n, 1378) in the mean time of those of the same number in `group` (n,).
+    """Warp motion shapes (n, 1378) to the mean time of their group; group: (n,) its number.
 
-    Groups in which anything goes round stay as they are.
+    Groups with a cycle among them stay as they are.
     """
     shapes = np.array(shapes, dtype=np.float64)
     timing = np.zeros((len(shapes), SAMPLES))
@@ -49,13 +57,12 @@ def together(shapes: FloatArray, group: IntArray) -> Timed:
         return Timed(shapes, timing)
     moments = moments_of_shapes(shapes[chosen])
     group = np.unique(group[chosen], return_inverse=True)[1]
-    times: FloatArray = _STEADY
-    reference = moments[_medoids(moments, group)]
-    for _ in range(ROUNDS):
-        times = warping_times(_compared(moments), _compared(reference)[group])
-        reference = _means(read_at(moments, times), group)
+    medoids = moments[_medoids(moments, group)]
+    # the last round gives the times, not another mean
+    means = means_of_warped(moments, group, medoids, _by_movement, ROUNDS - 1)
+    times = _times(moments, means[group])
     # the time of the group is the mean of its members'
-    usual = inverse(rising(_means(times, group)))[group]
+    usual = inverse(rising(group_means(times, group)))[group]
     times = rising(read_at(times[:, :, None], usual)[:, :, 0])
     shapes[chosen, :-2] = read_at(moments, times).reshape(len(chosen), -1)
     timing[chosen] = times - _STEADY
@@ -63,11 +70,10 @@ def together(shapes: FloatArray, group: IntArray) -> Timed:
 
 
 def onto(shapes: FloatArray, references: FloatArray, smoothing: float = 0.0) -> Timed:
-    """Each of `shapes` (n, 1378) in the time of the same row of `references` (n, 1378); what
-    goes round, and what is held against something that does, stays as it is.
+    """Warp each of `shapes` (n, 1378) to the time of the same row of `references` (n, 1378).
 
-    smoothing: moments (standard deviation) within which time is not to hurry and linger, beyond
-    what `warping_times` smooths.
+    A cycle stays as it is, and so does a shape whose reference is a cycle. smoothing: standard
+    deviation, in moments, by which times are smoothed beyond what `warping_times` smooths.
     """
     shapes = np.array(shapes, dtype=np.float64)
     timing = np.zeros((len(shapes), SAMPLES))
@@ -75,17 +81,16 @@ def onto(shapes: FloatArray, references: FloatArray, smoothing: float = 0.0) -> 
     if len(chosen):
         moments = moments_of_shapes(shapes[chosen])
         aims = moments_of_shapes(references[chosen])
-        times = warping_times(_compared(moments), _compared(aims))
+        times = _times(moments, aims)
         if smoothing > 0:
-            moved = gaussian_filter1d(times - _STEADY, smoothing, axis=1, mode="nearest")
-            times = rising(moved + _STEADY)
+            times = smooth_times(times, smoothing)
         shapes[chosen, :-2] = read_at(moments, times).reshape(len(chosen), -1)
         timing[chosen] = times - _STEADY
     return Timed(shapes, timing)
 
 
 def in_own_time(shape: FloatArray, timing: FloatArray) -> FloatArray:
-    """(1378,) a shape that is in the time of its group, with its own `timing` (32,)."""
+    """(1378,) a `shape` (1378,) in the time of its group, brought to its own `timing` (32,)."""
     times = inverse(rising(_STEADY + timing)[None])
     moments = read_at(moments_of_shapes(shape[None]), times)
     return np.concatenate([moments.ravel(), shape[-2:]])
@@ -97,14 +102,24 @@ def moments_of_shapes(shapes: FloatArray) -> FloatArray:
 
 
 def _can_be_warped(shapes: FloatArray, group: IntArray) -> BoolArray:
-    """(n,) which are in a group of several of which none goes round."""
+    """(n,) which are in a group of several takes, none of them a cycle."""
     count = np.bincount(group)
     cyclic = np.bincount(group, weights=shapes[:, -1] >= 0.5)
     return np.asarray(((count > 1) & (cyclic == 0))[group])
 
 
+def _times(moments: FloatArray, references: FloatArray) -> FloatArray:
+    """(n, 32) the time in `moments` of each moment of the `references`, both (n, 32, 43)."""
+    return warping_times(_compared(moments), _compared(references))
+
+
+def _by_movement(moments: FloatArray, references: FloatArray) -> FloatArray:
+    """(n, 32, 43) `moments` read at the times that go with the `references`."""
+    return read_at(moments, _times(moments, references))
+
+
 def _compared(moments: FloatArray) -> FloatArray:
-    """What tells which moment is which: the movement, whatever the posture."""
+    """(n, 32, 43) what moments are compared by: the movement without the mean posture."""
     weighed = moments * weights()[:CHANNELS]
     return np.asarray(weighed - weighed.mean(axis=1, keepdims=True))
 
@@ -112,22 +127,10 @@ def _compared(moments: FloatArray) -> FloatArray:
 def _medoids(moments: FloatArray, group: IntArray) -> IntArray:
     """(groups,) the row nearest to all others of its group."""
     rows = _compared(moments).reshape(len(moments), -1)
-    return np.array([members[medoid(rows[members])] for members in _members(group)])
+    return np.array([members[medoid(rows[members])] for members in group_members(group)])
 
 
 def medoid(rows: FloatArray) -> int:
     """Which of `rows` (n, d) is nearest to all the others, the first where several are."""
-    gram = rows @ rows.T
-    squares = np.diag(gram)[:, None] + np.diag(gram) - 2 * gram
-    away = np.sqrt(np.maximum(squares, 0.0)).sum(axis=1)
-    return int(np.argmax(away <= (1 + _TIE) * away.min()))  # of two, both are: rounding apart
-
-
-def _members(group: IntArray) -> list[IntArray]:
-    order = np.argsort(group, kind="stable")
-    return list(np.split(order, np.cumsum(np.bincount(group))[:-1]))
-
-
-def _means(values: FloatArray, group: IntArray) -> FloatArray:
-    """(groups, ...) of `values` (n, ...)."""
-    return np.stack([values[members].mean(axis=0) for members in _members(group)])
+    away = distances(rows, rows).sum(axis=1)
+    return int(np.argmax(away <= (1 + _TIE) * away.min()))  # of two rows, both are the medoid

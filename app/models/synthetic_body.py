@@ -1,10 +1,10 @@
-"""A course of joint roles on a person's own skeleton.
+"""A course of 13 joint roles, put on a person's own skeleton.
 
-The turns of its joints start as those of the person's own moments in which the body was held
-most alike (a kernel mean of them), so that what 13 roles do not tell, twists and toes and
-fingers, is as the person does it; then the joints turn until the roles are where they should
-be (`motion.posing`), and once more with the feet held where they stand (`foot_contact`), which
-then lie on the floor (`synthetic_feet`).
+The rotations of the joints start as a kernel mean of those moments of the person in which the pose
+was most alike. So twists, toes and fingers, which 13 roles do not show, are as the person does
+them. Then the joints are rotated until the roles are where they should be (`motion.posing`), and
+once more with the feet fixed where they stand (`foot_contact`). At last the feet are laid on the
+floor (`synthetic_feet`).
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from app.motion.joint_roles import SUN_ROLES, JointRole
 from app.motion.posing import ancestors, pose_to
 from app.motion.rotations import conjugate, identity_quaternions, multiply
 from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.euclidean import squared_distances
 
 NEIGHBOURS = 12
 """Moments of the person's that a pose starts from."""
@@ -106,14 +107,17 @@ def _poses(course: Course) -> FloatArray:
 
 
 def _alike(poses: FloatArray, others: FloatArray) -> tuple[IntArray, FloatArray]:
-    """(n, k) which of `others` (m, 13, 3) are most like each of `poses`, and their weights."""
+    """The k of `others` (m, 13, 3) that are most like each of `poses` (n, 13, 3).
+
+    Returns their rows (n, k) and their weights (n, k), which sum to 1 for each pose.
+    """
     rows, table = (values.reshape(len(values), -1) for values in (poses, others))
     rows = rows * (np.linalg.norm(table) / len(table) ** 0.5)
     rows /= max(np.linalg.norm(poses) / len(poses) ** 0.5, 1e-9)
-    squares = (rows**2).sum(1)[:, None] - 2 * rows @ table.T + (table**2).sum(1)
+    squares = squared_distances(rows, table)
     count = min(NEIGHBOURS, len(table))
     near = np.argsort(squares, axis=1, kind="stable")[:, :count]
-    away = np.maximum(np.take_along_axis(squares, near, axis=1), 0.0)
+    away = np.take_along_axis(squares, near, axis=1)
     weights = np.exp(-0.5 * away / np.maximum(away.mean(axis=1, keepdims=True), 1e-9))
     return near, weights / weights.sum(axis=1, keepdims=True)
 

@@ -1,13 +1,13 @@
 """Perera's task model (2009, section 5): who and what by weighted distances of joints.
 
 P (positions, people, tasks) = Q x_1 S_position x_2 S_people x_3 S_task (eq. 12), of motions
-brought to one body and one length. What is probed is brought to the span of S_position, where
-each joint is held against the same joint of every training motion (eq. 13). A category is told
-by its joints' least distances, weighted and summed (eq. 14).
+scaled to one body and one length. A probe is projected onto the span of S_position. There, each of
+its joints is compared with the same joint of every training motion (eq. 13). A category is chosen
+by the least distances of its joints, weighted and summed (eq. 14).
 
-Read as printed, eq. 14 maximises a sum of distances. With each joint counted for the category
-in which it is nearest that is a vote by joints (Reading.PRINTED), in which a far joint weighs
-more than a near one. Read as meant, the smallest sum over all joints wins (Reading.LEAST).
+As printed, eq. 14 maximizes a sum of distances. If each joint counts for the category in which it
+is nearest, that is a vote by joints (Reading.PRINTED), in which a far joint has more weight than a
+near one. As it was probably meant, the smallest sum over all joints wins (Reading.LEAST).
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from app.models.cells import cell_means, find_cells
 from app.models.multilinear import MOST_CELLS, complete_tensor
 from app.motion.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.euclidean import squared_distances
 from app.numerics.nmode_svd import NModeSVD, nmode_svd
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
 
@@ -62,10 +63,13 @@ def link_weights() -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class TaskModel:
-    """persons (P,), tasks (T,): sorted labels; axes: what the motions span, uncentred, (d, r);
-    svd: of the tensor (r, P, T) in these coordinates; person, task: (c,) of the c cells that
-    were recorded; cells: (c, 13, samples x 3) these as the factorised tensor has them;
-    weights: (13,) of the joints."""
+    """A fitted task model, of which c cells (a person at a task) were recorded.
+
+    persons: (P,) and tasks: (T,) sorted labels; axes: (d, r) uncentered axes that span the
+    motions; svd: the factors of the tensor (r, P, T) in these coordinates; person, task: (c,) the
+    label indices of the recorded cells; cells: (c, 13, samples x 3) the joints of these cells as
+    the factors reconstruct them; weights: (13,) of the joints.
+    """
 
     persons: tuple[str, ...]
     tasks: tuple[str, ...]
@@ -77,18 +81,16 @@ class TaskModel:
     weights: FloatArray
 
     def joint_distances(self, poses: FloatArray) -> FloatArray:
-        """(n, c, 13) squared distances of the joints of `poses` (n, samples, 13, 3) from those
-        of each recorded cell, in the tensor's subdomain (eq. 13)."""
+        """(n, c, 13) squared distances of each joint of `poses` (n, samples, 13, 3) to the same
+        joint of each recorded cell, in the span of S_position (eq. 13)."""
         probes = self._in_subdomain(poses)
         out = np.empty((len(probes), len(self.person), JOINTS))
         for joint in range(JOINTS):
-            one, other = probes[:, joint], self.cells[:, joint]
-            squares = (one**2).sum(1)[:, None] - 2 * one @ other.T + (other**2).sum(1)
-            out[:, :, joint] = np.maximum(squares, 0.0)
+            out[:, :, joint] = squared_distances(probes[:, joint], self.cells[:, joint])
         return out
 
     def _in_subdomain(self, poses: FloatArray) -> FloatArray:
-        """(n, 13, samples x 3) of `poses`, what S_position spans of them."""
+        """(n, 13, samples x 3) the projection of `poses` onto the span of S_position."""
         position = self.svd.factors[0]
         points = self.axes.project(np.asarray(poses).reshape(len(poses), -1))
         return _by_joint(points @ position @ position.T @ self.axes.axes.T)
@@ -129,8 +131,8 @@ def fit_task_model(
     """Fit on motions (n, samples, 13, 3) in the body frame; those without both labels are left
     out, takes of one cell are averaged.
 
-    Cells that nobody recorded are completed for the factorisation (app.models.cells) and never
-    held against a probe. ranks: columns kept of S_position, S_people and S_task, None for all.
+    Cells that nobody recorded are completed for the factorization (app.models.cells), and never
+    compared with a probe. ranks: columns kept of S_position, S_people and S_task, None for all.
     Raises NotEnoughLabels without a cell, or with too many.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
@@ -160,7 +162,7 @@ def fit_task_model(
 def objective(
     distances: FloatArray, label: IntArray, labels: int, weights: FloatArray, reading: Reading
 ) -> FloatArray:
-    """(n, labels) how far each category is: eq. 14, its sign turned where it is maximised.
+    """(n, labels) the distance of each category by eq. 14; negative where eq. 14 is maximized.
 
     distances: (n, c, 13) of `TaskModel.joint_distances`; label: (c,) the category of each cell,
     each of `labels` at least once; weights: (13,).

@@ -18,7 +18,6 @@ from app.models.correlated_space import LEAST_CLIPS, RIDGE, fit_correlated_space
 from app.models.folds import grouped_folds
 from app.models.likeliest_symbols import likelihoods_of_symbols
 from app.models.ranking_figures import (
-    area_under_curve,
     average_precision,
     brier_score,
     calibration_error,
@@ -30,6 +29,7 @@ from app.models.ranking_figures import (
 from app.models.symbol_space import symbol_distances
 from app.models.word_methods import CCA_SCORE, DEFAULT, PRIOR, LabelledClips, score, symbol_points
 from app.models.word_vocabulary import WordVocabulary
+from app.numerics.area_under_curve import area_under_curve
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.hmm import GaussianHMM
 
@@ -252,7 +252,7 @@ def _by_word(
             recordings=recordings,
             average_precision=average_precision(scores, carries),
             f=f_where_recall_is_precision(scores, carries),
-            area_under_curve=area_under_curve(scores, carries),
+            area_under_curve=area_under_curve(scores[carries], scores[~carries]),
             too_rare=recordings < LEAST_RECORDINGS,
         )
         found.append(judged)

@@ -1,7 +1,7 @@
-"""The default word model: kernel ridge from clip statistics to label vectors (DESIGN 6, 13).
+"""The default word model: kernel ridge from clip statistics to label vectors.
 
-A clip's words are ranked by the model's output. What outputs tell as probabilities, and of
-several words at once, is learned beside it (models.word_calibration). Shapes: clips N, words V,
+A clip's words are ranked by the model's output. How outputs become probabilities, of one word and
+of several at once, is learned separately (models.word_calibration). Shapes: clips N, words V,
 statistics p (131 of app.analysis.symbol_features).
 """
 
@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from app.errors import ModelNotFitted, NotEnoughLabels
+from app.errors import NotEnoughLabels
 from app.numerics.arrays import FloatArray
 from app.numerics.kernel_ridge import KernelRidge, fit_kernel_ridge, refit_kernel_ridge
 
@@ -59,9 +59,9 @@ class WordModel:
     def from_arrays(
         cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
     ) -> WordModel:
-        """The record that to_arrays took apart. Raises ModelNotFitted on another version."""
+        """The record that to_arrays took apart. Raises ValueError on another version."""
         if meta["version"] != WORD_MODEL_VERSION:
-            raise ModelNotFitted("The word model is of another version: fit again.")
+            raise ValueError(f"word model of version {meta['version']}")
         ridge = KernelRidge(
             arrays["centres"], arrays["weights"], arrays["offset"], meta["width"], meta["penalty"]
         )

@@ -16,17 +16,13 @@ LARGEST_WASTE = 1.25
 """Candidates share a batch while the longest transform is this times the shortest at most."""
 
 
-def max_cross_correlation(a: FloatArray, b: FloatArray) -> float:
-    """max over lags k of sum_i a[i + k] b[i]; `a` (n,) and `b` (m,), zero outside their ends."""
-    return float(max_cross_correlations(a, [b])[0])
-
-
 def max_cross_correlations(query: FloatArray, candidates: Sequence[FloatArray]) -> FloatArray:
-    """(candidates,) max_cross_correlation of `query` (n,) with each candidate (m,), by FFT.
+    """(candidates,) max over lags k of sum_i query[i + k] candidate[i], by FFT.
 
-    Padding the shorter to the length of the longer, as the paper does, adds only zeros to
-    the correlation; all lags are looked at, also those where the two do not meet, so that
-    no value is below 0. Empty sequences give 0.
+    query: (n,) and each candidate (m,), numbers of one unit, zero outside their ends. Padding
+    the shorter to the length of the longer, as the paper does, adds only zeros to the
+    correlation. All lags count, also those where the two do not meet, so no value is below 0.
+    Empty sequences give 0.
     """
     query = np.asarray(query, dtype=np.float64)
     lengths = np.array([len(candidate) for candidate in candidates], dtype=np.int64)

@@ -1,11 +1,13 @@
 """Kullback-Leibler divergence between left-to-right models (Takano, eqs 1-2).
 
 The paper draws sequences from one model and compares their likelihoods (Monte Carlo,
-kept here as the slow twin). The fast way replaces the sequences by the model's expected
-path: every state lasts as long as expected, and a frame's log density under a state of
-the other model is replaced by its closed-form expectation, which then runs through that
-model's recursion, summed over end states. All divergences are per frame, so that length does
-not count. Shapes: models S (sources) and M (targets), states K, channels D.
+kept here as the slow twin). The fast way replaces the sequences by the expected path of the
+source: each state lasts as long as expected. The log density of a frame under a state of the
+target is replaced by its expectation, which has a closed form. These expectations go through
+the target's recursion, which takes the best path to each end state, as Viterbi's does, and sums
+over the end states. The paper's likelihood sums over all paths; see `_run` for why ours does not.
+All divergences are per frame, so that length does not count. Shapes: models S (sources) and M
+(targets), states K, channels D.
 """
 
 from __future__ import annotations
@@ -124,12 +126,13 @@ def _scores(source: GaussianHMM, targets: _Targets) -> FloatArray:
 
 
 def _run(alpha: FloatArray, stayed: FloatArray, arrived: FloatArray, path: IntArray) -> None:
-    """Lead log probabilities `alpha` (K, M) along a source's path, in place.
+    """Carry the log probabilities `alpha` (K, M) of the best paths along a source's path, in place.
 
     stayed (S, K, M), arrived (S, K - 1, M): what a frame in each state of the source adds, by
-    whether the target stayed in its state or came from the one before. The better of the two,
-    not their sum: ranks against Monte Carlo agree as well (Spearman .9986 for both on the real
-    clips) in a third of the time.
+    whether the target stayed in its state or came from the one before. The larger of the two is
+    taken, not the sum over paths that eq. 1 asks for. Against Monte Carlo both are as good: on 16
+    real clips the ranks agree with Spearman .9979 (sum: .9980), and the median difference is 1.7 %
+    (sum: 1.6 %). The larger one takes a third of the time.
     """
     moved = np.empty_like(alpha[1:])
     for state in path:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.numerics.arrays import FloatArray
+from app.numerics.euclidean import squared_distances
 
 MAX_CENTRES = 2000
 """Rows that may be centres of the kernel."""
@@ -75,7 +76,7 @@ def refit_kernel_ridge(
 
 def gaussian_kernel(left: FloatArray, right: FloatArray, width: float) -> FloatArray:
     """(n, m) exp(-|l - r|^2 / (2 width^2)) of `left` (n, p) and `right` (m, p)."""
-    return np.asarray(np.exp(_squared_distances(left, right) / (-2.0 * width**2)))
+    return np.asarray(np.exp(squared_distances(left, right) / (-2.0 * width**2)))
 
 
 def leave_one_out_errors(kernel: FloatArray, outputs: FloatArray) -> FloatArray:
@@ -97,7 +98,7 @@ def leave_one_out_errors(kernel: FloatArray, outputs: FloatArray) -> FloatArray:
 
 def _tune(rows: FloatArray, outputs: FloatArray) -> tuple[float, float]:
     """Width and penalty of least leave-one-out error; the widest, stiffest of equals."""
-    squares = _squared_distances(rows, rows)
+    squares = squared_distances(rows, rows)
     apart = np.sqrt(squares[np.triu_indices(len(rows), 1)])
     unit = float(np.median(apart)) if apart.size and np.median(apart) > 0.0 else 1.0
     best, chosen = np.inf, (unit, PENALTIES[-1])
@@ -123,8 +124,3 @@ def _solve(
         target += block.T @ outputs[first : first + _BLOCK]
     jitter = 1e-8 * float(np.trace(normal)) / len(centres)
     return np.asarray(np.linalg.solve(normal + jitter * np.eye(len(centres)), target))
-
-
-def _squared_distances(left: FloatArray, right: FloatArray) -> FloatArray:
-    norms = (left**2).sum(axis=1)[:, None] + (right**2).sum(axis=1)
-    return np.asarray(np.maximum(norms - 2.0 * left @ right.T, 0.0))

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from app.numerics.arrays import FloatArray
+from app.numerics.euclidean import squared_distances
 from app.numerics.signs import fix_signs
 
 REFINING_STEPS = 200
@@ -80,9 +81,7 @@ def _floored(distances: FloatArray) -> FloatArray:
 
 def _stress_and_slope(points: FloatArray, squares: FloatArray) -> tuple[float, FloatArray]:
     """T and its flat gradient; squares: (N, N) wanted squared distances."""
-    norms = (points**2).sum(axis=1)
-    reached = norms[:, None] + norms - 2.0 * points @ points.T
-    excess = squares - reached
+    excess = squares - squared_distances(points, points)
     np.fill_diagonal(excess, 0.0)
     pull = excess / squares
     slope = pull @ points - pull.sum(axis=1)[:, None] * points

@@ -1,10 +1,9 @@
-"""The distance of `fused`: vectors and warping, and what lies between (DESIGN 7).
+"""The distance of the method `fused`: of vectors, of warping, and along a graph of clips.
 
-Within a shortlist, a clip is also near when one gets to it from the query by way of others,
-each near the last: takes of one task by people of many manners are joined so, although a
-clip of another task by the same person may be nearer. The graph is made anew for each
-question, of the clips that pass its filter and nothing else; nothing is fitted, and a clip
-that became ready a moment ago is in it.
+Within a shortlist, a clip is also near if a path of short steps leads to it from the query, over
+other clips. Such paths join the takes of one task by people of many manners, although a clip of
+another task by the same person may be nearer. The graph is built for each query, from the clips
+that pass its filter. Nothing is fitted, so a clip is part of it as soon as it is ready.
 """
 
 from __future__ import annotations
@@ -15,6 +14,7 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.diffusion import diffused_closeness, neighbour_radii
+from app.numerics.euclidean import distances
 
 SHORTLIST = 300
 """Clips that are compared so; the graph costs the cube of it, 12 ms."""
@@ -37,9 +37,9 @@ MOST_DETOUR = 5.0
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """What vectors tell of a shortlist before anything is warped, which is dearer.
+    """The part of the fused distance that needs only vectors, which is cheaper than warping.
 
-    near: (n,) distances of the vectors; far: (n,) what the graph adds, at most.
+    near: (n,) the distances of the vectors to the query; far: (n,) the most that the graph adds.
     """
 
     near: FloatArray
@@ -57,28 +57,20 @@ class Surroundings:
         return cls(between[0, 1:], float(np.median(radii)) * far)
 
     def distances(self, rows: IntArray, warped: FloatArray) -> FloatArray:
-        """(m,) fused distances of `rows` (m,), given their DTW distances to the query (m,).
+        """(m,) fused distances of `rows` (m,); warped: (m,) their DTW distances to the query.
 
-        They never fall as those rise, so that with 0 for all of them they are lower bounds.
+        A fused distance never falls when a DTW distance rises. So with 0 for all DTW distances,
+        the results are lower bounds.
         """
         straight = self.near[rows] + DTW_WEIGHT * warped
         return np.asarray(straight + DETOUR * np.minimum(self.far[rows], MOST_DETOUR * straight))
 
 
-def fused_distances(query: FloatArray, vectors: FloatArray, warped: FloatArray) -> FloatArray:
-    """(n,) distances of clips to a query.
-
-    query: (d,) and vectors: (n, d), motion vectors; warped: (n,) DTW distances to the query.
-    """
-    return Surroundings.of(query, vectors).distances(np.arange(len(vectors)), warped)
-
-
 def _distances(points: FloatArray) -> FloatArray:
-    """(n, n) Euclidean distances; those from the first of `points` (n, d) without rounding."""
-    centred = points - points[0]  # differences of small numbers keep more digits
-    squares = np.einsum("ij,ij->i", centred, centred)
-    products = squares[:, None] + squares - 2.0 * (centred @ centred.T)
-    between = np.sqrt(np.maximum(products, 0.0))
-    between[0] = between[:, 0] = np.sqrt(squares)
-    np.fill_diagonal(between, 0.0)
+    """(n, n) symmetric Euclidean distances of `points` (n, d).
+
+    Those from the first point are exact: it is the origin, so that its products are zero.
+    """
+    centred = points - points[0]
+    between = distances(centred, centred)
     return np.asarray(np.maximum(between, between.T))

@@ -96,11 +96,6 @@ class Ranking:
         return np.flatnonzero(keep)
 
 
-def ranking(ids: IdArray, distances: FloatArray) -> Ranking:
-    """Order clips (n,) by distances (n,), then by id."""
-    return Ranking(ids, distances)
-
-
 def in_order(ids: IdArray, distances: FloatArray) -> IntArray:
     """(n,) indices that sort clips by rounded distances (n,), then by id."""
     order = np.argsort(distances, kind="stable")

@@ -74,12 +74,6 @@ def get_some(tx: Tx, clip_id: str, names: Collection[str]) -> dict[str, NDArray[
     return {name: from_blob(dtype, shape, data) for name, dtype, shape, data in rows}
 
 
-def get_all(tx: Tx, clip_id: str) -> dict[str, NDArray[Any]]:
-    """All arrays of a clip by name, read-only."""
-    rows = tx.execute(select(clip_arrays.c.name, *_CONTENT).where(clip_arrays.c.clip_id == clip_id))
-    return {name: from_blob(dtype, shape, data) for name, dtype, shape, data in rows}
-
-
 def get_many(
     tx: Tx, clip_ids: Collection[str], name: str, *, version: int | None = None
 ) -> dict[str, NDArray[Any]]:
@@ -97,14 +91,6 @@ def get_many(
         for clip_id, dtype, shape, data in rows.all():
             found[clip_id] = from_blob(dtype, shape, data)
     return {clip_id: found[clip_id] for clip_id in clip_ids if clip_id in found}
-
-
-def versions(tx: Tx, clip_id: str) -> dict[str, int]:
-    """The analysis version of each of a clip's arrays, by name."""
-    query = select(clip_arrays.c.name, clip_arrays.c.version).where(
-        clip_arrays.c.clip_id == clip_id
-    )
-    return {name: version for name, version in tx.execute(query)}  # noqa: C416 - rows to a dict
 
 
 def delete_all(tx: Tx, clip_id: str) -> None:

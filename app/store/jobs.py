@@ -59,18 +59,6 @@ def get_row(tx: Tx, job_id: str) -> RowMapping:
     return row
 
 
-def open_for_clip(tx: Tx, clip_id: str) -> JobRecord | None:
-    """The job that is still to end for this clip, if there is one."""
-    query = (
-        select(jobs)
-        .where(jobs.c.clip_id == clip_id, jobs.c.state.in_(open_states()))
-        .order_by(jobs.c.created_at)
-        .limit(1)
-    )
-    row = tx.execute(query).mappings().one_or_none()
-    return None if row is None else to_record(row)
-
-
 def list_jobs(
     tx: Tx,
     *,

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.analysis.angle_sample import ANGLE_SAMPLE_LENGTH, angle_sample
+from app.analysis.angle_sample import angle_sample
 from app.analysis.motion_sample import SAMPLES, motion_sample
 from app.motion.body_frame import body_track
 from app.numerics.arrays import FloatArray
@@ -22,7 +22,7 @@ def test_width_and_the_tail_of_the_motion_sample() -> None:
     motion = motion_of(walking(turn=0.4))
     track = body_track(motion)
     sample = angle_sample(motion, track)
-    assert sample.shape == (ANGLE_SAMPLE_LENGTH,)
+    assert sample.shape == (32 * 20 + 2,)
     assert sample.dtype == np.float32
     np.testing.assert_array_equal(sample[-2:], motion_sample(track)[-2:])
 

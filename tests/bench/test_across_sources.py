@@ -23,9 +23,9 @@ import pytest
 from app.models.learned_metric import Factor, fit_axes
 from app.models.ranking_figures import average_precision
 from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to
-from app.search.fusion import fused_distances
 from app.search.methods import Method
 from tests.bench.described_clips import RealClips, described_clips
+from tests.search.fused import fused_distances
 
 pytestmark = pytest.mark.bench
 

@@ -3,7 +3,8 @@
 Run: pytest -m bench -s tests/bench/test_index.py
 Real motion vectors, disturbed, at 10,000, 100,000 and a million clips. A search is the whole of
 it: filter, product, exact distances, and the page in order. Passes alternate with searches, so
-that both meet the same caches. Target (issue 4): at most three passes.
+that both meet the same caches. Target (issue 4): at most three passes. Asserted is CPU time;
+times on the wall are printed alone.
 """
 
 from __future__ import annotations
@@ -98,7 +99,10 @@ def test_pages_are_those_of_every_distance_sorted(rows: RowsView) -> None:
 
 
 def test_eight_searches_at_once(rows: RowsView) -> None:
-    """On two cores they take half as long as one after the other, if no lock is in the way."""
+    """Printed alone: what it gains depends on the machine's cores and on its load.
+
+    That no search waits for another is a test of the quick suite (tests/search/test_index.py).
+    """
     count = len(rows.labels.ids)
     query = rows.blocks[0].vectors[5]
     rounds = max(8, ROUNDS[count] // 4)
@@ -114,7 +118,7 @@ def test_eight_searches_at_once(rows: RowsView) -> None:
         started = time.perf_counter()
         list(pool.map(search, range(rounds)))
         together = time.perf_counter() - started
-    print(f"\n{count} clips: 8 threads take {together / alone:.2f} of one thread's time")
+    print(f"\n{count} clips: 8 threads take {together / alone:.2f} of the time of one, on the wall")
 
 
 @pytest.mark.parametrize("count", [100_000])
@@ -156,14 +160,14 @@ def _alternate(
     queries: np.ndarray,
     rounds: int,
 ) -> tuple[float, float]:
-    """Median seconds of each, taken in turns."""
+    """Median CPU seconds of each, taken in turns."""
     taken: tuple[list[float], list[float]] = ([], [])
     for number in range(rounds):
         query = queries[number % len(queries)]
         for call, seconds in zip((one, other), taken, strict=True):
-            started = time.perf_counter()
+            started = time.process_time()
             call(query)
-            seconds.append(time.perf_counter() - started)
+            seconds.append(time.process_time() - started)
     return float(np.median(taken[0])), float(np.median(taken[1]))
 
 

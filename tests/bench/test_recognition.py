@@ -32,6 +32,7 @@ from app.models.task_model import Reading
 from app.models.tensor_recogniser import fit_tensor_recogniser, recognise_by_tensor
 from app.motion.body_frame import body_track
 from app.motion.canonical import canonicalise
+from app.numerics.area_under_curve import area_under_curve
 from tests.real_clips import manifest, real_clips
 
 pytestmark = pytest.mark.bench
@@ -225,11 +226,10 @@ def test_the_unknown(library: Library, factor: str, method: str, learned: int) -
         novelties["known"] += beyond[~strange].tolist()
         rejected[str(name)] = float((beyond[strange] > 0).mean())
     new, known = (np.array(novelties[each]) for each in ("new", "known"))
-    above = (new[:, None] > known) + 0.5 * (new[:, None] == known)
     shares = {
         "new_rejected": float((new > 0).mean()),
         "known_accepted": float((known <= 0).mean()),
-        "area_under_curve": float(above.mean()),
+        "area_under_curve": area_under_curve(new, known),
         "worst": min(rejected.values()),
     }
     shares["balanced_accuracy"] = (shares["new_rejected"] + shares["known_accepted"]) / 2
@@ -263,14 +263,14 @@ def test_perera_s_experiment(library: Library) -> None:
 
 
 def test_fitting_and_probing_are_quick(library: Library) -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     record = fit_recogniser(library.full, library.persons, library.tasks, library.groups)
-    fitted = time.perf_counter() - start
-    start = time.perf_counter()
+    fitted = time.process_time() - start
+    start = time.process_time()
     for sample in library.full[:100]:
         recognise(record, sample)
-    probe = (time.perf_counter() - start) / 100
-    _tell("seconds", {"default": {"fit": fitted, "probe": probe}})
+    probe = (time.process_time() - start) / 100
+    _tell("CPU seconds", {"default": {"fit": fitted, "probe": probe}})
     assert fitted < 2.0
     assert probe < 0.005
 

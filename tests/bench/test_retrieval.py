@@ -56,6 +56,7 @@ from app.services.library import Library
 from app.store.clip_record import ClipRecord
 from app.worker.loop import run_worker
 from tests.real_clips import manifest, real_clips
+from tests.search.fused import fused_distances
 
 pytestmark = pytest.mark.bench
 
@@ -177,14 +178,14 @@ def test_no_single_change_is_better_on_the_choice_sets(
 
     told("vector", vectors, lambda query, those, _: np.linalg.norm(those - query, axis=1))
     told("dtw", vectors, lambda _query, _those, warped: warped)
-    chosen = told("fused, as chosen", vectors, fusion.fused_distances)
+    chosen = told("fused, as chosen", vectors, fused_distances)
     best = chosen
     for module, name, values in CHANGES:
         for value in values:
             with monkeypatch.context() as changed:
                 changed.setattr(module, name, value)
                 other = choice.vectors() if module is motion_vector else vectors
-                best = max(best, told(f"  {name} {value}", other, fusion.fused_distances))
+                best = max(best, told(f"  {name} {value}", other, fused_distances))
     assert chosen > best - TOLERANCE
 
 

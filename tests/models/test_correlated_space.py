@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.errors import ModelNotFitted, NotEnoughLabels
+from app.errors import NotEnoughLabels
 from app.models.correlated_space import RIDGE, CorrelatedSpace, fit_correlated_space
 
 KIND = np.tile(np.arange(3), 20)
@@ -54,7 +54,7 @@ def test_survives_being_taken_apart(points: np.ndarray, labels: np.ndarray) -> N
     arrays, meta = space.to_arrays()
     again = CorrelatedSpace.from_arrays(arrays, meta)
     np.testing.assert_array_equal(again.word_cosines(points), space.word_cosines(points))
-    with pytest.raises(ModelNotFitted):
+    with pytest.raises(ValueError, match="version"):
         CorrelatedSpace.from_arrays(arrays, {"version": 0})
 
 

@@ -26,7 +26,6 @@ def test_a_person_is_a_vector_for_each_task() -> None:
     clips = factor_clips(persons=5, tasks=6)
     record = fit_flat_pca(clips.samples, clips.persons, clips.tasks, dimensions=10)
     assert record.coefficients.shape == (30, 10)
-    assert record.numbers_a_person == 60
 
 
 def test_what_a_person_never_did_is_not_told_by_their_other_tasks() -> None:

@@ -4,15 +4,11 @@ import numpy as np
 import pytest
 
 from app.models.ranking_figures import (
-    area_under_curve,
     average_precision,
     brier_score,
     calibration_error,
     f_where_recall_is_precision,
     mean_average_precision,
-    mean_precision_at_k,
-    nearest_neighbour_rate,
-    precision_at_k,
     precision_at_recalls,
     top_k_rate,
 )
@@ -27,16 +23,9 @@ def test_average_precision_is_equation_20() -> None:
     assert average_precision(SCORES, np.zeros(4, dtype=bool)) == 0.0
 
 
-def test_precision_at_k() -> None:
-    assert precision_at_k(SCORES, RELEVANT, 1) == 1.0
-    assert precision_at_k(SCORES, RELEVANT, 2) == 0.5
-
-
 def test_means_leave_out_queries_without_an_answer() -> None:
     scores = np.stack([SCORES, SCORES, SCORES])
     relevant = np.stack([RELEVANT, ~RELEVANT, np.zeros(4, dtype=bool)])
-    assert nearest_neighbour_rate(scores, relevant) == 0.5
-    assert mean_precision_at_k(scores, relevant, 4) == 0.5
     expected = (average_precision(SCORES, RELEVANT) + average_precision(SCORES, ~RELEVANT)) / 2
     assert mean_average_precision(scores, relevant) == pytest.approx(expected)
     assert mean_average_precision(scores, np.zeros_like(relevant)) == 0.0
@@ -57,7 +46,8 @@ def test_top_k_counts_clips_of_which_any_word_is_found() -> None:
 
 
 def test_equal_scores_keep_their_order() -> None:
-    assert precision_at_k(np.zeros(4), RELEVANT, 1) == 1.0
+    assert average_precision(np.zeros(3), np.array([True, False, False])) == 1.0
+    assert average_precision(np.zeros(3), np.array([False, False, True])) == pytest.approx(1 / 3)
 
 
 def test_precision_at_a_recall_is_that_of_the_shortest_list_that_reaches_it() -> None:
@@ -65,14 +55,6 @@ def test_precision_at_a_recall_is_that_of_the_shortest_list_that_reaches_it() ->
     hits = np.array([[True, False, True], [False, False, True]])
     found = precision_at_recalls(scores, hits, np.array([0.0, 1 / 3, 0.5, 1.0]))
     np.testing.assert_allclose(found, [1.0, 1.0, 2 / 3, 0.5])
-
-
-def test_area_under_curve_counts_pairs() -> None:
-    rng = np.random.default_rng(0)
-    scores, hits = rng.integers(6, size=40).astype(float), rng.random(40) < 0.4
-    pairs = [(a > b) + 0.5 * (a == b) for a in scores[hits] for b in scores[~hits]]
-    assert area_under_curve(scores, hits) == pytest.approx(np.mean(pairs))
-    assert area_under_curve(scores, np.zeros(40, dtype=bool)) == 0.5
 
 
 def test_scores_are_off_by_how_far_shares_lie_from_them() -> None:

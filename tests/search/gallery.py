@@ -12,9 +12,9 @@ from app.models.learned_metric import INPUTS, Described, Factor, MetricAxes, fit
 from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
 from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to
-from app.search.fusion import fused_distances
 from app.search.index import VECTOR
 from app.search.methods import Method
+from tests.search.fused import fused_distances
 
 Arrays = dict[str, FloatArray]
 RERANKED = (Method.DTW, Method.MSV_DTW, Method.MSV_XCORR)

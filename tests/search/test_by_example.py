@@ -12,12 +12,13 @@ from app.numerics.arrays import FloatArray
 from app.numerics.dtw import dtw_distances
 from app.search.by_example import rank_by_example
 from app.search.distances import QueryArrays
-from app.search.fusion import SHORTLIST, fused_distances
+from app.search.fusion import SHORTLIST
 from app.search.index import MOTION_VECTORS, VectorIndex
 from app.search.methods import Method
 from app.search.near import Near
 from app.search.rows import Rows
 from app.store.clip_filter import ClipFilter
+from tests.search.fused import fused_distances
 from tests.search.indexed import indexed
 from tests.search.walking import walk
 

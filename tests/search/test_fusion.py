@@ -6,7 +6,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.search.fusion import DTW_WEIGHT, MOST_DETOUR, Surroundings, fused_distances
+from app.search.fusion import DTW_WEIGHT, MOST_DETOUR, Surroundings
+from tests.search.fused import fused_distances
 
 
 @given(n=st.integers(1, 40), seed=st.integers(0, 10_000))

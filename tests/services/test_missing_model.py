@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
 import pytest
 
 from app.errors import ModelBeingFitted, ModelNotFitted
+from app.models.library_words import fit_library_words
 from app.services import models, reanalysis
 from app.services.demo import DemoClip
 from app.services.library import Library
 from app.store import models as stored
+from tests.models.word_clips import word_clips
 from tests.services.conftest import upload, work
 
 
@@ -22,6 +27,28 @@ def test_a_model_of_another_version_is_to_be_fitted_again(lib: Library) -> None:
     job = models.request_fit(lib)
     with pytest.raises(ModelBeingFitted, match=f"another version.* job {job.id} has ended"):
         lib.models.multilinear(lib.store)
+
+
+@pytest.fixture(scope="module")
+def fitted_words() -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """A model of words with all its parts, taken apart."""
+    return fit_library_words(*word_clips(6)).words.to_arrays()
+
+
+@pytest.mark.parametrize("part", ["model", "space", "correlated"])
+def test_words_of_another_version_are_explained_like_all_models(
+    lib: Library, fitted_words: tuple[dict[str, np.ndarray], dict[str, Any]], part: str
+) -> None:
+    arrays, meta = fitted_words
+    meta = meta | {part: meta[part] | {"version": -1}}
+    with lib.store.write() as tx:
+        kept = {"model": meta}
+        stored.save(tx, "words", meta=kept, arrays=arrays, library_version=1, library_size=2)
+    with pytest.raises(ModelNotFitted, match=r"another version of Kinedex.*POST /v1/models/fit"):
+        lib.models.words(lib.store)
+    job = models.request_fit(lib)
+    with pytest.raises(ModelBeingFitted, match=f"another version.* job {job.id} has ended"):
+        lib.models.words(lib.store)
 
 
 def test_during_an_upgrade_it_is_said_that_the_fit_follows(

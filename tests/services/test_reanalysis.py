@@ -20,6 +20,7 @@ from app.store import arrays, tables
 from app.store import clips as stored
 from app.store.clip_record import ClipState, Reanalysis
 from tests.services.conftest import upload, work
+from tests.store.stored_arrays import array_versions
 
 
 def _make_ready(lib: Library, demo: list[DemoClip]) -> list[str]:
@@ -110,7 +111,7 @@ def test_during_an_upgrade_that_changes_shapes_searches_go_on_without_the_old_cl
     with lib.store.write() as tx:
         wider = {
             name: np.concatenate([array, array], axis=-1)
-            for name, array in arrays.get_all(tx, old).items()
+            for name, array in arrays.get_named(tx, old, array_versions(tx, old)).items()
         }
         arrays.put_many(tx, old, wider, version=0)
         tx.execute(update(tables.clips).where(tables.clips.c.id == old).values(analysis_version=0))

@@ -35,17 +35,6 @@ def test_a_fit_is_queued_once_but_may_follow_one_that_runs(store: Store, add_job
     assert add_job(JobKind.FIT, dedupe_key="fit") == second
 
 
-def test_the_open_job_of_a_clip(store: Store, add_job: AddJob) -> None:
-    job = add_job(clip_id="clip")
-    add_job(clip_id="other")
-    with store.write() as tx:
-        assert jobs.open_for_clip(tx, "clip") == job
-        claimed = leases.claim(tx, [JobKind.INGEST], "worker")
-        assert claimed is not None
-        leases.succeed(tx, claimed.lease)
-        assert jobs.open_for_clip(tx, "clip") is None
-
-
 def test_jobs_are_listed_newest_first_page_by_page(store: Store, add_job: AddJob) -> None:
     ids = [add_job().id for _ in range(5)]
     add_job(JobKind.FIT)

@@ -26,6 +26,7 @@ from app.store.job_record import ClaimedJob, JobKind, JobRecord, JobState, NewJo
 from app.store.store import Store
 from tests.store.conftest import facts
 from tests.store.queued import ALL, FOUND, PROBLEM, add, die, states, take
+from tests.store.stored_arrays import array_versions
 
 
 def test_a_taken_clip_is_processing_and_then_ready(store: Store) -> None:
@@ -68,7 +69,7 @@ def test_a_worker_that_lost_its_lease_changes_nothing(store: Store) -> None:
             settle(tx)
     with store.read() as tx:
         assert states(tx, clip, current) == (ClipState.PROCESSING, JobState.PROCESSING)
-        assert arrays.get_all(tx, clip.id) == {}
+        assert array_versions(tx, clip.id) == {}
         assert library.version(tx) == 0
 
 
@@ -107,8 +108,7 @@ def test_a_worker_told_to_stop_gives_its_clip_back(store: Store) -> None:
 def test_cancel_a_queued_job(store: Store) -> None:
     with store.write() as tx:
         clip = add(tx, "walk")
-        job = jobs.open_for_clip(tx, clip.id)
-        assert job is not None
+        (job,) = jobs.list_jobs(tx).items
         assert outcomes.request_cancel(tx, job.id).state is JobState.CANCELED
         failed = clips.get(tx, clip.id)
         assert failed.error is not None

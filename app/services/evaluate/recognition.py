@@ -42,7 +42,14 @@ from app.services.evaluate.recognition_rounds import (
     rounds_by_recording,
     rounds_by_takes,
 )
-from app.services.evaluate.recognition_shares import chance, confusion, recognised, unknown
+from app.services.evaluate.recognition_shares import (
+    Recognised,
+    Unknown,
+    chance,
+    confusion,
+    recognised,
+    unknown,
+)
 from app.services.evaluate.recognition_trials import Stopwatch, Trial, run, run_told
 from app.services.library import Library
 from app.services.synthesis_fit import fit_on
@@ -213,20 +220,32 @@ _NEW: dict[str, str] = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
 
 def _judged(method: str, trials: Sequence[Trial], way: str) -> Judged:
     factor = _NEW.get(way)
+    of_new: list[Trial] = []
     if factor is not None:
         # a label that the held-out takes alone carried is new too, but was not left out
         trials = [t for t in trials if not t.of(factor).new or t.of(factor).truth in t.left_out]
-    judged = FACTORS if way == LeftOut.SOURCE else (factor,)
-    found = {name: unknown(trials, name) for name in judged if name is not None}
-    parties = sorted({trial.left_out for trial in trials if trial.left_out})
+        of_new = [t for t in trials if t.of(factor).new]
     return Judged(
         method=method,
         recognised=recognised(trials),
-        of_new=recognised([t for t in trials if factor is not None and t.of(factor).new]),
-        unknown={name: one for name, one in found.items() if one is not None},
+        of_new=recognised(of_new),
+        unknown=_unknown(trials, way),
         confusion={name: confusion(trials, name) for name in FACTORS},
-        by_name={
-            ", ".join(party): recognised([t for t in trials if t.left_out == party])
-            for party in parties
-        },
+        by_name=_by_left_out(trials),
     )
+
+
+def _unknown(trials: Sequence[Trial], way: str) -> dict[str, Unknown]:
+    """By factor, where whole labels of it were left out, or whole sources."""
+    factors = FACTORS if way == LeftOut.SOURCE else [_NEW[way]] if way in _NEW else []
+    found = {name: unknown(trials, name) for name in factors}
+    return {name: one for name, one in found.items() if one is not None}
+
+
+def _by_left_out(trials: Sequence[Trial]) -> dict[str, Recognised]:
+    """Shares by the labels that were left out, joined by commas."""
+    parties = sorted({trial.left_out for trial in trials if trial.left_out})
+    return {
+        ", ".join(party): recognised([t for t in trials if t.left_out == party])
+        for party in parties
+    }

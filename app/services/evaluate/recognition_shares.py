@@ -1,4 +1,4 @@
-"""Figures of trials: shares recognised, confusions, and how well the new is told apart."""
+"""Figures of trials: shares that were recognized, confusions, and how well new labels are found."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.numerics.area_under_curve import area_under_curve
 from app.numerics.arrays import FloatArray
 from app.numerics.binomial import wilson_interval
 from app.services.evaluate.recognition_trials import Told, Trial
@@ -42,9 +43,10 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Recognised:
-    """Shares whose best candidate is right, of the clips whose label the method has seen.
+    """Shares of clips whose best candidate is right.
 
-    both: of those that have both labels seen.
+    person, task: of the clips whose label the method has seen; both: of the clips whose person
+    and task it has both seen.
     """
 
     person: Share
@@ -54,8 +56,11 @@ class Recognised:
 
 @dataclass(frozen=True, slots=True)
 class Category:
-    """A label that was left out: how many of its clips were called new, how many known clips
-    were called known meanwhile, and what its clips were mostly taken for."""
+    """The figures of one label that was left out of the training.
+
+    refused: its clips that were called new; accepted: the known clips of the same rounds that
+    were called known; taken_for: the label that most of its other clips got.
+    """
 
     label: str
     refused: Share
@@ -71,12 +76,13 @@ class Category:
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """How well the labels that a method has not seen are told from those it has.
+    """How well a method separates labels that it has not seen from labels that it has.
 
-    refused: new ones called new; accepted: known ones called known; accepted_together: of
-    those, the ones whose person had been seen at their very task; area_under_curve: chance
-    that a new one looks newer than a known one, ties counting half; categories: by label that
-    was left out; curve: (P, 2) false acceptance and false rejection at P thresholds.
+    refused: new clips that were called new; accepted: known clips that were called known;
+    accepted_together: the same for known clips whose person was seen at the same task;
+    area_under_curve: the chance that a new clip has a larger novelty than a known one;
+    categories: the figures of each label that was left out; curve: (P, 2) false acceptance and
+    false rejection at P thresholds.
     """
 
     refused: Share
@@ -103,13 +109,13 @@ class Unknown:
 
     @property
     def equal_error_rate(self) -> float:
-        """Where the curve's two errors are the same."""
+        """The error at the threshold where false acceptance and false rejection are equal."""
         place = int(np.argmin(np.abs(self.curve[:, 0] - self.curve[:, 1])))
         return float(self.curve[place].mean())
 
     @property
     def worst(self) -> Category | None:
-        """The label that was told worst."""
+        """The label with the smallest balanced accuracy."""
         judged = [one for one in self.categories if one.balanced_accuracy is not None]
         return min(judged, key=lambda one: one.balanced_accuracy or 0.0, default=None)
 
@@ -126,7 +132,7 @@ def recognised(trials: Iterable[Trial]) -> Recognised:
 
 
 def chance(trials: Iterable[Trial]) -> tuple[float | None, float | None, float | None]:
-    """Of person, task and both: what guessing among the labels would come to."""
+    """The shares of person, task and both that guessing would reach; None without trials."""
     judged = list(trials)
     person = [1 / t.person.labels for t in judged if _is_judged(t.person)]
     task = [1 / t.task.labels for t in judged if _is_judged(t.task)]
@@ -146,17 +152,23 @@ def unknown(trials: Sequence[Trial], factor: str) -> Unknown | None:
     if not new or not known:
         return None
     together = [told for trial, told in pairs if not told.new and trial.together]
-    curve, area = _curve(*(np.array([t.guess.novelty for t in some]) for some in (known, new)))
+    known_novelty, new_novelty = _novelty(known), _novelty(new)
     return Unknown(
-        _refused(new), _accepted(known), _accepted(together), area, _categories(pairs), curve
+        refused=_refused(new),
+        accepted=_accepted(known),
+        accepted_together=_accepted(together),
+        area_under_curve=area_under_curve(new_novelty, known_novelty),
+        categories=_categories(pairs),
+        curve=_curve(known_novelty, new_novelty),
     )
 
 
 def confusion(trials: Iterable[Trial], factor: str) -> tuple[tuple[str, ...], FloatArray]:
-    """C labels and (C, C) shares: a row a true label, a column what it was taken for.
+    """The confusion matrix of the factor "person" or "task".
 
-    Of the labels that were asked about or answered; only clips whose label had been seen. The
-    row of a label that was never asked about is 0.
+    Returns C labels, sorted, and (C, C) shares: a row for each true label, a column for the label
+    that was answered. Only clips whose label had been seen count. The row of a label that was
+    answered but never true is 0.
     """
     judged = [told for told in (trial.of(factor) for trial in trials) if _is_judged(told)]
     pairs = [(told.truth or "", told.guess.label or "") for told in judged if told.guess.label]
@@ -184,26 +196,35 @@ def _accepted(known: Iterable[Told]) -> Share:
 
 
 def _categories(pairs: Sequence[tuple[Trial, Told]]) -> tuple[Category, ...]:
+    """A category for each label that was left out, by name; pairs: trials and their answers."""
     names = sorted({told.truth or "" for _, told in pairs if told.new})
-    found = []
-    for name in names:
-        own = [(trial, told) for trial, told in pairs if told.new and told.truth == name]
-        rounds = {trial.left_out for trial, _ in own}
-        known = [told for trial, told in pairs if not told.new and trial.left_out in rounds]
-        wrong = Counter(sorted(t.guess.label or "" for _, t in own if t.guess.known))
-        taken_for = wrong.most_common(1)[0][0] if wrong else None
-        refused = _refused(told for _, told in own)
-        found.append(Category(name, refused, _accepted(known), taken_for))
-    return tuple(found)
+    return tuple(_category(name, pairs) for name in names)
 
 
-def _curve(known: FloatArray, new: FloatArray) -> tuple[FloatArray, float]:
-    """(P, 2) false acceptance and rejection by rising threshold, and the area."""
+def _category(name: str, pairs: Sequence[tuple[Trial, Told]]) -> Category:
+    own = [(trial, told) for trial, told in pairs if told.new and told.truth == name]
+    rounds = {trial.left_out for trial, _ in own}
+    known = [told for trial, told in pairs if not told.new and trial.left_out in rounds]
+    answers = [told for _, told in own]
+    return Category(name, _refused(answers), _accepted(known), _mostly_taken_for(answers))
+
+
+def _mostly_taken_for(new: Iterable[Told]) -> str | None:
+    """The label that most of the new ones got that were called known; the first of several."""
+    labels = sorted(told.guess.label or "" for told in new if told.guess.known)
+    return Counter(labels).most_common(1)[0][0] if labels else None
+
+
+def _novelty(some: Iterable[Told]) -> FloatArray:
+    """(n,) how new the method took each to be."""
+    return np.array([told.guess.novelty for told in some])
+
+
+def _curve(known: FloatArray, new: FloatArray) -> FloatArray:
+    """(P, 2) false acceptance and false rejection by rising threshold."""
     every = np.unique(np.concatenate([known, new]))
     cuts = np.concatenate([[every[0] - 1.0], every])
     places = np.unique(np.linspace(0, len(cuts) - 1, CURVE_POINTS).round().astype(int))
     accepted = np.searchsorted(np.sort(new), cuts[places], side="right") / len(new)
     rejected = 1 - np.searchsorted(np.sort(known), cuts[places], side="right") / len(known)
-    below, upto = (np.searchsorted(np.sort(known), new, side=side) for side in ("left", "right"))
-    area = float((below + upto).sum() / (2 * len(known) * len(new)))
-    return np.stack([accepted, rejected], axis=1), area
+    return np.stack([accepted, rejected], axis=1)

@@ -5,48 +5,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.models import synthesis_warping
-from app.models.synthesis_warping import (
-    BAND,
-    RELUCTANCE,
-    held_moments,
+from app.numerics import group_warping
+from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.group_warping import (
+    group_means,
     inverse,
+    means_of_warped,
     read_at,
     rising,
+    warped,
     warping_times,
 )
-from app.numerics.arrays import FloatArray
-
-
-def naive_held(cost: FloatArray) -> FloatArray:
-    """(m,) by the textbook's table, one cell after another."""
-    size = len(cost)
-    reach = max(1, int(BAND * size))
-    reluctance = RELUCTANCE * float(cost.mean())
-    total, came = np.full((size, size), np.inf), {}
-    for i in range(size):
-        for j in range(size):
-            if abs(i - j) > reach:
-                continue
-            if i == j == 0:
-                total[i, j] = cost[i, j]
-                continue
-            ways = []
-            if i and j:
-                ways.append((total[i - 1, j - 1], (i - 1, j - 1)))
-            if i:
-                ways.append((total[i - 1, j] + reluctance, (i - 1, j)))
-            if j:
-                ways.append((total[i, j - 1] + reluctance, (i, j - 1)))
-            best = min(ways, key=lambda way: way[0])
-            total[i, j], came[i, j] = best[0] + cost[i, j], best[1]
-    held: list[list[int]] = [[] for _ in range(size)]
-    here = (size - 1, size - 1)
-    while True:
-        held[here[1]].append(here[0])
-        if here == (0, 0):
-            return np.array([np.mean(moments) for moments in held])
-        here = came[here]
 
 
 def wandering(count: int, size: int = 32, seed: int = 0) -> FloatArray:
@@ -54,23 +23,25 @@ def wandering(count: int, size: int = 32, seed: int = 0) -> FloatArray:
     return np.cumsum(rng.normal(size=(count, size, 3)), axis=1)
 
 
-@pytest.mark.parametrize("size", [2, 3, 9, 32])
-def test_all_at_once_are_warped_as_one_after_another(size: int) -> None:
-    one, other = wandering(20, size, 1), wandering(20, size, 2)
-    cost = np.linalg.norm(one[:, :, None] - other[:, None], axis=-1)
-    np.testing.assert_allclose(held_moments(cost), [naive_held(each) for each in cost])
-
-
 def test_a_large_number_is_warped_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     one, other = wandering(7, seed=1), wandering(7, seed=2)
-    whole = warping_times(one, other)
-    monkeypatch.setattr(synthesis_warping, "AT_ONCE", 3)
-    np.testing.assert_array_equal(warping_times(one, other), whole)
+    times, motions = warping_times(one, other), warped(one, other)
+    monkeypatch.setattr(group_warping, "AT_ONCE", 3)
+    np.testing.assert_array_equal(warping_times(one, other), times)
+    np.testing.assert_array_equal(warped(one, other), motions)
+
+
+def test_one_reference_may_serve_all_and_no_motion_is_none() -> None:
+    motions, reference = wandering(4), wandering(1, seed=3)[0]
+    each = [warped(motion[None], reference)[0] for motion in motions]
+    np.testing.assert_allclose(warped(motions, reference), each, rtol=1e-12)
+    assert warped(motions[:0], reference).shape == (0, 32, 3)
 
 
 def test_a_motion_onto_itself_is_not_moved() -> None:
     motions = wandering(3)
     np.testing.assert_allclose(warping_times(motions, motions), np.tile(np.arange(32), (3, 1)))
+    np.testing.assert_allclose(warped(motions, motions), motions)
 
 
 def bump(at: float, size: int = 32) -> FloatArray:
@@ -84,6 +55,32 @@ def test_a_gesture_that_is_late_is_found_where_it_is(late: float) -> None:
     assert (np.diff(times[0]) > 0).all()
     moved = read_at(bump(15 + late)[None], times)[0]
     assert np.abs(moved - bump(15)).max() < 0.25  # half a moment where it is steepest: 0.1
+
+
+def late_middle(by: float) -> FloatArray:
+    """(24, 3) a curve that never comes back to a position, its middle early or late."""
+    time = np.linspace(0, 1, 24)
+    time = time + by * np.sin(np.pi * time)
+    return np.stack([np.sin(5 * time), np.cos(3 * time), time], axis=-1)
+
+
+def test_a_motion_in_another_time_falls_onto_the_reference() -> None:
+    reference, late = late_middle(0.0), late_middle(-0.15)
+    before = np.abs(late - reference).mean()
+    after = np.abs(warped(late[None], reference)[0] - reference).mean()
+    assert after < 0.35 * before
+
+
+def test_each_group_gets_a_mean_that_its_takes_share() -> None:
+    rng = np.random.default_rng(1)
+    group: IntArray = np.array([0, 1] * 6)
+    takes = np.stack([late_middle(by) for by in rng.uniform(-0.15, 0.15, 12)])
+    takes[group == 1] += 3.0
+    plain = group_means(takes, group)
+    means = means_of_warped(takes, group, plain, warped)
+    moved = np.abs(warped(takes, means[group]) - means[group]).mean()
+    assert moved < 0.5 * np.abs(takes - plain[group]).mean()
+    np.testing.assert_allclose(means[1] - 3.0, means[0], atol=0.2)
 
 
 @given(st.lists(st.floats(-40, 70), min_size=32, max_size=32))

@@ -1,0 +1,54 @@
+"""The mean motion of each task, onto which takes of the task are warped for recognition.
+
+Gait cycles are aligned where they are cut (app.motion.gait). Takes of other tasks are warped onto
+the mean of their task; see app.numerics.group_warping. The task of a probe is not known: it is
+warped onto the mean of each task with which it is compared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.group_warping import group_means, means_of_warped, warped
+
+
+@dataclass(frozen=True, slots=True)
+class TaskMeans:
+    """tasks: (T,) sorted labels; means: (T, moments, d), the mean motion of each."""
+
+    tasks: tuple[str, ...]
+    means: FloatArray
+
+    def onto(self, motions: FloatArray, task: str) -> FloatArray:
+        """`motions` (n, moments, d) warped onto the mean of `task`, which must be known."""
+        return warped(motions, self.means[self.tasks.index(task)])
+
+    def aligned(self, motions: FloatArray, tasks: Sequence[str | None]) -> FloatArray:
+        """(n, moments, d): each of `motions` (n, moments, d) warped onto the mean of its own
+        task. tasks: (n,); a motion whose task is unknown or None stays as it is."""
+        out = np.array(motions, dtype=np.float64)
+        known, group = _groups(tasks, self.tasks)
+        out[known] = warped(out[known], self.means[group])
+        return out
+
+
+def fit_task_means(motions: FloatArray, tasks: Sequence[str | None]) -> TaskMeans:
+    """The means of `motions` (n, moments, d) by task (n,); motions without one are left out."""
+    names = tuple(sorted({task for task in tasks if task}))
+    known, group = _groups(tasks, names)
+    own = np.asarray(motions, dtype=np.float64)[known]
+    if not len(own):
+        return TaskMeans((), own)
+    return TaskMeans(names, means_of_warped(own, group, group_means(own, group), warped))
+
+
+def _groups(tasks: Sequence[str | None], names: Sequence[str]) -> tuple[IntArray, IntArray]:
+    """(k,) which of `tasks` (n,) are among `names`, and (k,) the number of each one's name."""
+    known = [row for row, task in enumerate(tasks) if task in names]
+    return np.array(known, dtype=np.int64), np.array(
+        [names.index(str(tasks[row])) for row in known], dtype=np.int64
+    )

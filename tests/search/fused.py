@@ -1,0 +1,13 @@
+"""Fused distances of every vector at once; the search measures them piece by piece."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray
+from app.search.fusion import Surroundings
+
+
+def fused_distances(query: FloatArray, vectors: FloatArray, warped: FloatArray) -> FloatArray:
+    """(n,) fused distances of motion vectors (n, d) to a query (d,); warped: (n,) by DTW."""
+    return Surroundings.of(query, vectors).distances(np.arange(len(vectors)), warped)
