@@ -20,7 +20,7 @@ from contextlib import contextmanager
 from multiprocessing.popen_forkserver import Popen
 from multiprocessing.process import BaseProcess
 
-LIBRARIES = ["app.analysis.analyse", "app.formats.read", "app.motion.canonical"]
+LIBRARIES = ["app.analysis.analyse", "app.formats.read", "app.motion.canonical", "hmmlearn.hmm"]
 """What the server process imports for its children."""
 
 STDERR = 2
