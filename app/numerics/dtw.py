@@ -5,6 +5,9 @@ only on the two anti-diagonals before its own, so one numpy step computes a whol
 anti-diagonal of a whole batch of candidates. Candidates of similar length share a batch;
 padding at their ends is harmless because D never looks ahead.
 Sequences are (frames, dimensions), or (frames,) for one dimension; cost is Euclidean.
+
+This stays ours: one clip against 350 takes 58 ms, with dtaidistance 307, with aeon 344, with
+tslearn 430 (one thread; tests/bench/test_dtw.py).
 """
 
 from __future__ import annotations

@@ -97,7 +97,9 @@ def log_likelihood(model: GaussianHMM, sequence: FloatArray) -> float:
 def log_likelihoods(models: Sequence[GaussianHMM], sequence: FloatArray) -> FloatArray:
     """(M,) log P(sequence | model) of each model: which symbol is this motion (Takano 2.4)?
 
-    As log_likelihood, for many models at once.
+    As log_likelihood, for many models at once. This stays ours: 50 models score a clip of 5 s in
+    11.5 ms, hmmlearn one after the other in 73 (tests/bench/test_libraries.py). Its faster way,
+    with plain probabilities, underflows under models of other motion.
     """
     if not models:
         return np.zeros(0)
