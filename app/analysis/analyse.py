@@ -37,6 +37,7 @@ from app.analysis.rhythm import NOTHING, Told, find_rhythm, rhythm_arrays
 from app.analysis.symbol_features import symbol_features, symbol_statistics
 from app.analysis.windows import window_arrays
 from app.motion.body_frame import BodyTrack, body_track
+from app.motion.gait import exact_gait_cycles
 from app.motion.motion import Motion
 from app.motion.recording import Caution
 from app.numerics.arrays import FloatArray
@@ -74,7 +75,11 @@ def analyse(
     Deterministic; raises TooShort or NotHuman.
     """
     track = body_track(motion)
-    arrays: dict[str, NDArray[Any]] = {**_for_search(motion, track), **describe_symbol(track)}
+    channels = symbol_features(track)
+    arrays: dict[str, NDArray[Any]] = {
+        **_for_search(motion, track, channels),
+        **describe_symbol(channels),
+    }
     plain = energies(track)
     rhythm = find_rhythm(track, told, onsets, plain)
     arrays |= rhythm_arrays(rhythm)
@@ -90,14 +95,17 @@ def describe_for_search(motion: Motion) -> Analysis:
 
     Some 10 ms for 5 s of motion; each array is the same as from `analyse`.
     """
-    return Analysis(motion, {**_for_search(motion, body_track(motion))})
+    track = body_track(motion)
+    return Analysis(motion, {**_for_search(motion, track, symbol_features(track))})
 
 
-def _for_search(motion: Motion, track: BodyTrack) -> dict[str, FloatArray]:
+def _for_search(motion: Motion, track: BodyTrack, channels: FloatArray) -> dict[str, FloatArray]:
+    """The arrays that both need; channels: (n, 26) those of the motion symbol."""
     features = frame_features(track)
     features_10hz = features_at_10hz(features, track.rate)
     described = describe(features)
     volume = decompose(track)
+    cycles = exact_gait_cycles(track)
     arrays = {
         "role_positions": track.positions,
         "features_10hz": features_10hz,
@@ -107,10 +115,10 @@ def _for_search(motion: Motion, track: BodyTrack) -> dict[str, FloatArray]:
         "msv_rho": volume.primary,
         "msv_epsilon": volume.secondary,
         "msv_convergence": np.column_stack([volume.errors, volume.changes]),
-        "motion_sample": motion_sample(track),
-        "angle_sample": angle_sample(motion, track),
-        "motion_shape": motion_shape(track),
-        "symbol_statistics": symbol_statistics(symbol_features(track), track.rate),
+        "motion_sample": motion_sample(track, cycles),
+        "angle_sample": angle_sample(motion, track, cycles),
+        "motion_shape": motion_shape(track, cycles),
+        "symbol_statistics": symbol_statistics(channels, track.rate),
     }
     kept = {name: array.astype(np.float32) for name, array in arrays.items()}
     return kept | window_arrays(features_10hz)

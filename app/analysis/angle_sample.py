@@ -9,24 +9,27 @@ from __future__ import annotations
 import numpy as np
 
 from app.analysis.joint_angles import filtered, joint_angles
-from app.analysis.motion_sample import SAMPLES, exact_cycles, turn_and_speed
+from app.analysis.motion_sample import SAMPLES, turn_and_speed
 from app.motion.body_frame import BodyTrack
-from app.motion.gait import gait_cycles
+from app.motion.gait import exact_gait_cycles
 from app.motion.motion import Motion
 from app.motion.resampling import resample_to, sample_at
 from app.numerics.arrays import FloatArray
 
 
-def angle_sample(motion: Motion, track: BodyTrack) -> FloatArray:
+def angle_sample(
+    motion: Motion, track: BodyTrack, cycles: list[tuple[float, float]] | None = None
+) -> FloatArray:
     """(642,) float32: 32 x 20 angles (radians), net turn, mean speed, as in the motion sample.
 
     Positions are filtered at the clip's own rate; what is left can be read at the analysis
-    rate, and at 32 phases of a gait cycle, as it is. track: of the same motion.
+    rate, and at 32 phases of a gait cycle, as it is. track: of the same motion;
+    cycles: `exact_gait_cycles(track)`, where the caller has them.
     """
     smooth = filtered(motion.role_positions().astype(np.float64), motion.frame_rate)
     times = np.arange(track.frames) * (motion.frame_rate / track.rate)
     angles = joint_angles(sample_at(smooth, times), track.rate)
-    cycles = exact_cycles(track, gait_cycles(track))
+    cycles = exact_gait_cycles(track) if cycles is None else cycles
     if cycles:
         phases = np.arange(SAMPLES) / SAMPLES
         read = [sample_at(angles, start + (end - start) * phases) for start, end in cycles]

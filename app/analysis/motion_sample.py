@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.motion.body_frame import BodyTrack
-from app.motion.gait import foot_split, gait_cycles
+from app.motion.gait import exact_gait_cycles
 from app.motion.resampling import low_pass, resample_to, sample_at
 from app.numerics.arrays import FloatArray
 
@@ -24,14 +24,14 @@ SAMPLE_LENGTH = SAMPLES * 13 * 3 + 2
 """Numbers in a motion sample: 1250."""
 
 
-def motion_sample(track: BodyTrack) -> FloatArray:
+def motion_sample(track: BodyTrack, cycles: list[tuple[float, float]] | None = None) -> FloatArray:
     """(1250,) float32: 32 x 13 x 3 positions (body lengths), net turn, mean speed.
 
     The net turn is asinh of radians: near its true value up to a quarter turn, while a
     dance of many turns does not outweigh everything else. Speed is horizontal, of the hips,
-    body lengths per second.
+    body lengths per second. cycles: `exact_gait_cycles(track)`, where the caller has them.
     """
-    cycles = gait_cycles(track)
+    cycles = exact_gait_cycles(track) if cycles is None else cycles
     poses = mean_cycle(track, cycles) if cycles else resample_to(track.local, SAMPLES)
     parts = [poses.ravel(), turn_and_speed(track)]
     return np.asarray(np.concatenate(parts), dtype=np.float32)
@@ -43,23 +43,15 @@ def turn_and_speed(track: BodyTrack) -> FloatArray:
     return np.array([turn, np.hypot(*track.velocity()[:, [0, 2]].T).mean()])
 
 
-def mean_cycle(track: BodyTrack, cycles: list[tuple[int, int]]) -> FloatArray:
+def mean_cycle(track: BodyTrack, cycles: list[tuple[float, float]]) -> FloatArray:
     """(32, 13, 3) mean over `cycles` of the body-frame positions at 32 phases of each."""
-    return mean_over_cycles(track.local, track, cycles)[:-1]
+    return mean_over_cycles(track.local, cycles)[:-1]
 
 
-def mean_over_cycles(
-    values: FloatArray, track: BodyTrack, cycles: list[tuple[int, int]]
-) -> FloatArray:
-    """(33, ...) mean over `cycles` of `values` (n, ...) at 32 phases of each and at its end."""
-    ends = exact_cycles(track, cycles)
-    return np.asarray(np.mean([_phases(values, *cycle) for cycle in ends], axis=0))
-
-
-def exact_cycles(track: BodyTrack, cycles: list[tuple[int, int]]) -> list[tuple[float, float]]:
-    """When `cycles` start and end, in frames, between frames too."""
-    split = foot_split(track)
-    return [(_crossing(split, first), _crossing(split, stop)) for first, stop in cycles]
+def mean_over_cycles(values: FloatArray, cycles: list[tuple[float, float]]) -> FloatArray:
+    """(33, ...) mean over `cycles` (start and end in frames) of `values` (n, ...), at 32 phases
+    of each and at its end."""
+    return np.asarray(np.mean([_phases(values, *cycle) for cycle in cycles], axis=0))
 
 
 def _phases(values: FloatArray, start: float, end: float) -> FloatArray:
@@ -68,13 +60,3 @@ def _phases(values: FloatArray, start: float, end: float) -> FloatArray:
     first = max(0, int(start) - AROUND)
     smooth = low_pass(values[first : int(end) + AROUND + 1], (end - start) / SAMPLES)
     return sample_at(smooth, start - first + (end - start) * np.arange(SAMPLES + 1) / SAMPLES)
-
-
-def _crossing(split: FloatArray, frame: int) -> float:
-    """When `split` (n,) rises through zero just before `frame`, in frames.
-
-    A cycle cut at whole frames would be out of phase by as much as the stride of one.
-    """
-    if not 0 < frame < len(split) or not split[frame - 1] <= 0 < split[frame]:
-        return float(frame)
-    return float(frame - split[frame] / (split[frame] - split[frame - 1]))

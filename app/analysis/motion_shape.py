@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.motion_sample import SAMPLES, exact_cycles, mean_over_cycles
+from app.analysis.motion_sample import SAMPLES, mean_over_cycles
 from app.motion.body_frame import BodyTrack
-from app.motion.gait import gait_cycles
+from app.motion.gait import exact_gait_cycles
 from app.motion.joint_roles import SUN_ROLES
 from app.motion.resampling import resample_to
 from app.numerics.arrays import FloatArray
@@ -52,12 +52,16 @@ class Shape:
     is_cyclic: bool
 
 
-def motion_shape(track: BodyTrack) -> FloatArray:
-    """(1378,) float32: 32 x 43 channels, log seconds, 1.0 where cyclic and 0.0 where not."""
-    moments, cycles = moments_of(track), gait_cycles(track)
+def motion_shape(track: BodyTrack, cycles: list[tuple[float, float]] | None = None) -> FloatArray:
+    """(1378,) float32: 32 x 43 channels, log seconds, 1.0 where cyclic and 0.0 where not.
+
+    cycles: `exact_gait_cycles(track)`, where the caller has them.
+    """
+    moments = moments_of(track)
+    cycles = exact_gait_cycles(track) if cycles is None else cycles
     if cycles:
-        shaped = closed(mean_over_cycles(moments, track, cycles))
-        frames = float(np.mean([end - start for start, end in exact_cycles(track, cycles)]))
+        shaped = closed(mean_over_cycles(moments, cycles))
+        frames = float(np.mean([end - start for start, end in cycles]))
     else:
         shaped, frames = resample_to(moments, SAMPLES), float(track.frames)
     end = [np.log(frames / track.rate), float(bool(cycles))]

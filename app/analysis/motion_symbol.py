@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.analysis.symbol_features import symbol_features, symbol_statistics
-from app.motion.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm import GaussianHMM
-from app.numerics.hmm_fit import fit_left_to_right
 
 SYMBOL_STATES = 30
 """States of a symbol (Takano, section 3); fewer for clips under three seconds."""
@@ -19,36 +16,28 @@ VARIANCE_FLOOR = 0.1
 SYMBOL_ARRAYS = ("symbol_transitions", "symbol_means", "symbol_variances")
 """The stored arrays that make a symbol."""
 
-__all__ = [
-    "SYMBOL_ARRAYS",
-    "SYMBOL_STATES",
-    "VARIANCE_FLOOR",
-    "describe_symbol",
-    "motion_symbol",
-    "symbol_features",
-    "symbol_from_arrays",
-]
-
 
 def motion_symbol(features: FloatArray) -> GaussianHMM:
-    """The symbol of `features` (n, 26), n >= 1; deterministic."""
+    """The symbol of the channels `features` (n, 26), n >= 1; deterministic.
+
+    features: as from `symbol_features`. Raises ValueError where one is not finite.
+    """
+    from app.numerics.hmm_fit import fit_left_to_right  # hmmlearn is slow to load
+
     floor = np.full(features.shape[1], VARIANCE_FLOOR)
     return fit_left_to_right(features, states=SYMBOL_STATES, variance_floor=floor)
 
 
-def describe_symbol(track: BodyTrack) -> dict[str, FloatArray]:
-    """The arrays that are stored of a symbol, float32.
+def describe_symbol(features: FloatArray) -> dict[str, FloatArray]:
+    """The arrays that are stored of the symbol of the channels `features` (n, 26), float32.
 
-    symbol_means, symbol_variances: (K, 26); symbol_transitions: (K, K);
-    symbol_statistics: (131,) of the same channels, for the word model.
+    symbol_means, symbol_variances: (K, 26); symbol_transitions: (K, K).
     """
-    features = symbol_features(track)
     symbol = motion_symbol(features)
     return {
         "symbol_means": symbol.means.astype(np.float32),
         "symbol_variances": symbol.variances.astype(np.float32),
         "symbol_transitions": symbol.transitions.astype(np.float32),
-        "symbol_statistics": symbol_statistics(features, track.rate).astype(np.float32),
     }
 
 

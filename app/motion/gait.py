@@ -39,7 +39,20 @@ FORWARD = 2
 
 def gait_cycles(track: BodyTrack) -> list[tuple[int, int]]:
     """(first, stop) frames of each gait cycle of `track`, in order; empty where none."""
+    return _cycles(track, foot_split(track))
+
+
+def exact_gait_cycles(track: BodyTrack) -> list[tuple[float, float]]:
+    """(start, end) of each gait cycle of `track` in frames, between frames too.
+
+    A cycle cut at whole frames would be out of phase by as much as the stride of one.
+    """
     split = foot_split(track)
+    cycles = _cycles(track, split)
+    return [(_crossing(split, first), _crossing(split, stop)) for first, stop in cycles]
+
+
+def _cycles(track: BodyTrack, split: FloatArray) -> list[tuple[int, int]]:
     cuts = list(pairwise(_upward(split))) or _lone_cycle(split)
     return [cut for cut in cuts if _is_stride(track, split, *cut)]
 
@@ -47,6 +60,13 @@ def gait_cycles(track: BodyTrack) -> list[tuple[int, int]]:
 def _upward(split: FloatArray) -> list[int]:
     """Frames at which (n,) `split` has just become positive."""
     return [int(frame) + 1 for frame in np.flatnonzero((split[:-1] <= 0) & (split[1:] > 0))]
+
+
+def _crossing(split: FloatArray, frame: int) -> float:
+    """When `split` (n,) rises through zero just before `frame`, in frames."""
+    if not 0 < frame < len(split) or not split[frame - 1] <= 0 < split[frame]:
+        return float(frame)
+    return float(frame - split[frame] / (split[frame] - split[frame - 1]))
 
 
 def _lone_cycle(split: FloatArray) -> list[tuple[int, int]]:

@@ -3,6 +3,10 @@
 Quaternions are (..., 4), w x y z, acting on column vectors: q v q*. Euler angles are
 intrinsic: order "ZXY" means R = Rz(a0) Rx(a1) Ry(a2), which is how BVH lists its
 channels (Meredith and Maddock, "Motion capture file formats explained", 2001).
+
+scipy's Rotation stays out: for 150 frames of 31 joints it takes 8 times as long to read angles
+(4.1 ms against .50) and 18 times as long for a product (2.0 ms against .11). It turns points as
+fast (tests/bench/test_libraries.py). Before scipy 1.17 it holds no more than one axis.
 """
 
 from __future__ import annotations

@@ -1,8 +1,10 @@
 """How well points fall into clusters: the silhouette (Rousseeuw 1987) of Ward's clusters.
 
-Any set of points has a best silhouette above 0, a small one the more so. Beside it stands
-what points without clusters have, drawn from a normal distribution of the same covariance
-(the idea of the gap statistic, Tibshirani and others 2001).
+Any set of points has a best silhouette above 0, and a small set has a high one. So it is compared
+with that of points without clusters, which are drawn from a normal distribution of the same
+covariance (the idea of the gap statistic, Tibshirani and others 2001).
+
+scipy finds the clusters, scikit-learn their silhouettes.
 """
 
 from __future__ import annotations
@@ -67,6 +69,8 @@ def clusteredness(points: FloatArray) -> Clusteredness | None:
 def best_clusters(points: FloatArray) -> Clusters | None:
     """Ward's clusters of points (n, d), as many as have the best silhouette; None for fewer
     than three points, or where all are one."""
+    from sklearn.metrics import silhouette_score  # slow to load
+
     rows = np.asarray(points, dtype=np.float64)
     if len(rows) < 3 or not np.ptp(rows, axis=0).any():
         return None
@@ -75,30 +79,6 @@ def best_clusters(points: FloatArray) -> Clusters | None:
     for count in range(2, min(MOST_CLUSTERS, len(rows) - 1) + 1):
         labels = fcluster(tree, count, "maxclust")
         if len(np.unique(labels)) > 1:
-            found.append(Clusters(_silhouette(distances, labels), labels))
+            score = silhouette_score(distances, labels, metric="precomputed")
+            found.append(Clusters(float(score), labels))
     return max(found, key=lambda one: (one.silhouette, -one.count), default=None)
-
-
-def silhouette(points: FloatArray, labels: IntArray) -> float:
-    """Mean over points (n, d) of (b - a) / max(a, b): a, b are the mean distances to the others
-    of its own cluster and to those of the nearest other one; 0 for a point alone in its
-    cluster. Raises ValueError for fewer than two clusters."""
-    return _silhouette(squareform(pdist(points)), labels)
-
-
-def _silhouette(distances: FloatArray, labels: IntArray) -> float:
-    names, member = np.unique(labels, return_inverse=True)
-    if len(names) < 2:
-        raise ValueError("a silhouette needs at least two clusters")
-    # (n, clusters): sums of distances to the members of each, then means
-    sums = distances @ np.eye(len(names))[member]
-    sizes = np.bincount(member)
-    own = np.arange(len(member)), member
-    alone = sizes[member] == 1
-    within = sums[own] / np.maximum(sizes[member] - 1, 1)
-    means = sums / sizes
-    means[own] = np.inf
-    between = means.min(axis=1)
-    larger = np.maximum(within, between)
-    scores = np.where(larger > 0, (between - within) / np.where(larger > 0, larger, 1.0), 0.0)
-    return float(np.where(alone, 0.0, scores).mean())

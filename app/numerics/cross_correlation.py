@@ -1,4 +1,9 @@
-"""The largest value of the cross-correlation of two sequences (Sun 2011, equation 6)."""
+"""The largest value of the cross-correlation of two sequences (Sun 2011, equation 6).
+
+The transforms are scipy's; that many candidates share one is ours. With 500 clips it takes 1.8 ms,
+a loop over scipy.signal.correlate 10.5, one over numpy.correlate 3.3
+(tests/bench/test_libraries.py).
+"""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from app.deadline import check
 from app.numerics.arrays import FloatArray, IntArray
-from app.numerics.hmm import GaussianHMM, log_likelihood, sample
+from app.numerics.hmm import GaussianHMM, log_likelihood
 
 BLOCK = 1000
 """Targets scored at once: bounds memory to BLOCK K^2 floats."""
@@ -69,8 +69,13 @@ def symmetric_divergences(left: Sequence[GaussianHMM], right: Sequence[GaussianH
 def monte_carlo_divergence(
     source: GaussianHMM, target: GaussianHMM, *, draws: int = 30, seed: int = 0
 ) -> float:
-    """d(source || target) per frame by eq. 1: `draws` sequences of the expected length."""
-    rng = np.random.default_rng(seed)
+    """d(source || target) per frame by eq. 1, over `draws` sequences of the expected length.
+
+    The result is deterministic for a seed.
+    """
+    from app.numerics.hmm_fit import sample  # hmmlearn is slow to load
+
+    rng = np.random.RandomState(seed)
     frames = len(source.expected_path())
     total = 0.0
     for _ in range(draws):

@@ -3,6 +3,10 @@
 |q - x|^2 = |q|^2 - 2 q.x + |x|^2 costs one pass over the vectors but loses digits. How many
 is bounded (Higham 2002, section 3.1: a sum of d products errs by at most d u |q| |x|, in any
 order), so whatever could be among the nearest is kept, and measured again in float64.
+
+scikit-learn's NearestNeighbors stays out: it knows no masks, no blocks that grow, and no pages
+beyond a distance. Its brute force takes 3 times as long (11.5 ms against 3.8 for the 10 nearest
+of 100,000 x 128, 13 against 4.2 among half of them; tests/bench/test_libraries.py).
 """
 
 from __future__ import annotations

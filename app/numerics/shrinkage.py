@@ -12,7 +12,9 @@ def oracle_share(covariance: FloatArray, freedom: float) -> float:
     covariance (d, d) of so many degrees of freedom: near 1 where its shape is no more than
     chance, small where few directions hold all variance.
 
-    Oracle approximating shrinkage: Chen, Wiesel, Eldar, Hero 2010, eq. 23.
+    Oracle approximating shrinkage: Chen, Wiesel, Eldar, Hero 2010, eq. 23. scikit-learn's OAS
+    takes the samples and counts each of them; a scatter within classes has fewer degrees of
+    freedom, which only this formula takes.
     """
     size = len(covariance)
     of_squares, square = float((covariance**2).sum()), float(np.trace(covariance)) ** 2

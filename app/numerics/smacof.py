@@ -1,54 +1,37 @@
-"""Multidimensional scaling by majorisation (SMACOF: de Leeuw 1977; Borg and Groenen, ch. 8).
+"""Multidimensional scaling by majorization (SMACOF: de Leeuw 1977; Borg and Groenen, ch. 8).
 
-Minimises the raw stress, the sum over pairs of (distance - wanted)^2, where eq. 3 of Takano
-compares squares (app.numerics.mds). Each step is a Guttman transform, which never raises the
-stress. Starts from classical scaling, so that the result is deterministic. Points N,
-dimensions d.
+It minimizes the raw stress, the sum over pairs of (distance - wanted)^2, where eq. 3 of Takano
+compares squares (app.numerics.mds). scikit-learn does it; for 166 symbols in 1 to 15 dimensions
+it takes 1.2 s, as long as our own loop took. Points N, dimensions d.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial.distance import cdist
 
 from app.numerics.arrays import FloatArray
 from app.numerics.mds import classical_mds
 
 STEPS = 300
-LEAST_GAIN = 1e-6
-"""Stop when a step lowers the stress by less than this share of it."""
-
-_SMALLEST = 1e-12
 
 
 def smacof(distances: FloatArray, dimensions: int) -> FloatArray:
-    """(N, d) coordinates that minimise the raw stress for symmetric `distances` (N, N)."""
+    """(N, d) coordinates that minimize the raw stress for symmetric `distances` (N, N).
+
+    They start from classical scaling, whose signs are fixed, so the result is deterministic.
+    """
+    from sklearn.manifold import smacof as majorized  # slow to load
+
     wanted = np.asarray(distances, dtype=np.float64)
-    points = classical_mds(wanted, dimensions)
-    if len(points) < 3:
-        return points
-    reached = cdist(points, points)
-    before = _stress(reached, wanted)
-    for _ in range(STEPS):
-        points = _guttman(points, reached, wanted)
-        reached = cdist(points, points)
-        after = _stress(reached, wanted)
-        if before - after <= LEAST_GAIN * before:
-            break
-        before = after
-    return points
-
-
-def raw_stress(points: FloatArray, distances: FloatArray) -> float:
-    """Sum over pairs i < j of (|x_i - x_j| - wanted)^2 for `points` (N, d)."""
-    return _stress(cdist(points, points), np.asarray(distances, dtype=np.float64))
-
-
-def _stress(reached: FloatArray, wanted: FloatArray) -> float:
-    return float(np.square(reached - wanted).sum() / 2.0)
-
-
-def _guttman(points: FloatArray, reached: FloatArray, wanted: FloatArray) -> FloatArray:
-    ratio = np.where(reached > _SMALLEST, wanted / np.maximum(reached, _SMALLEST), 0.0)
-    np.fill_diagonal(ratio, 0.0)
-    return np.asarray((ratio.sum(axis=1)[:, None] * points - ratio @ points) / len(points))
+    start = classical_mds(wanted, dimensions)
+    if len(start) < 3 or not wanted.any():  # scikit-learn divides by the stress
+        return start
+    points, _ = majorized(
+        (wanted + wanted.T) / 2,
+        n_components=dimensions,
+        init=start,
+        n_init=1,
+        max_iter=STEPS,
+        normalized_stress=False,
+    )
+    return np.asarray(points, dtype=np.float64)

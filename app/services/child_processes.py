@@ -23,7 +23,7 @@ from multiprocessing.process import BaseProcess
 from app.json_stderr import STDERR, log_uncaught
 from app.logs import configure_logging
 
-LIBRARIES = ["app.analysis.analyse", "app.formats.read", "app.motion.canonical"]
+LIBRARIES = ["app.analysis.analyse", "app.formats.read", "app.motion.canonical", "hmmlearn.hmm"]
 """What the server process imports for its children."""
 
 one_at_a_time = threading.RLock()

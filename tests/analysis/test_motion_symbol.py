@@ -4,36 +4,36 @@ import numpy as np
 import pytest
 
 from app.analysis.motion_symbol import describe_symbol, symbol_from_arrays
+from app.analysis.symbol_features import symbol_features
 from app.models.symbol_space import symbol_distances
-from app.motion.body_frame import BodyTrack, body_track
+from app.motion.body_frame import body_track
 from app.numerics.hmm import GaussianHMM
 from tests.bodies import motion_of, standing, turned_about_y, walking, waving
 
 
-def track(positions: np.ndarray) -> BodyTrack:
-    return body_track(motion_of(positions))
+def described(positions: np.ndarray) -> dict[str, np.ndarray]:
+    return describe_symbol(symbol_features(body_track(motion_of(positions))))
 
 
 def symbol(positions: np.ndarray) -> GaussianHMM:
-    return symbol_from_arrays(describe_symbol(track(positions)))
+    return symbol_from_arrays(described(positions))
 
 
 @pytest.mark.parametrize(("frames", "states"), [(2, 1), (30, 10), (300, 30)])
 def test_shapes_of_what_is_stored(frames: int, states: int) -> None:
-    arrays = describe_symbol(track(walking(seconds=(frames - 1) / 30)))
+    arrays = described(walking(seconds=(frames - 1) / 30))
     shapes = {name: array.shape for name, array in arrays.items()}
     assert shapes == {
         "symbol_means": (states, 26),
         "symbol_variances": (states, 26),
         "symbol_transitions": (states, states),
-        "symbol_statistics": (131,),
     }
     assert {array.dtype for array in arrays.values()} == {np.dtype(np.float32)}
     assert all(np.isfinite(array).all() for array in arrays.values())
 
 
 def test_the_same_motion_gives_the_same_symbol() -> None:
-    one, again = describe_symbol(track(walking())), describe_symbol(track(walking()))
+    one, again = described(walking()), described(walking())
     for name, array in one.items():
         np.testing.assert_array_equal(array, again[name])
 

@@ -194,10 +194,9 @@ def test_where_the_time_goes() -> None:
         _timed(took, "motion vector", lambda f=features: motion_vector(f))
         _timed(took, "motion volume", lambda t=track: decompose(t))
         _timed(took, "motion sample", lambda t=track: motion_sample(t))
-        _timed(
-            took, "symbol statistics", lambda t=track: symbol_statistics(symbol_features(t), t.rate)
-        )
-        _timed(took, "motion symbol", lambda t=track: describe_symbol(t))
+        channels = _timed(took, "symbol features", lambda t=track: symbol_features(t))
+        _timed(took, "symbol statistics", lambda c=channels, t=track: symbol_statistics(c, t.rate))
+        _timed(took, "motion symbol", lambda c=channels: describe_symbol(c))
     total = sum(took.values())
     print(f"\n{seconds:.0f} s of motion in {total:.1f} s of CPU: {seconds / total:.0f} a second")
     for stage, spent in took.most_common():

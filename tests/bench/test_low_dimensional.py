@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sklearn.metrics import silhouette_score
 
 from app.analysis.keyposes import find_keyposes
 from app.analysis.low_dimensional import (
@@ -28,7 +29,7 @@ from app.formats.read import read_recording
 from app.motion.body_frame import BodyTrack, body_track
 from app.motion.canonical import canonicalise
 from app.numerics.arrays import FloatArray
-from app.numerics.clusteredness import clusteredness, silhouette
+from app.numerics.clusteredness import clusteredness
 from tests.bodies import motion_of
 from tests.cyclic_dances import cyclic_dance
 from tests.real_clips import manifest, real_clips
@@ -157,7 +158,7 @@ def test_the_same_keyposes_of_eight_dancers_cluster() -> None:
         for basis, each in poses.items():
             rows = np.concatenate(each)
             points = eigen_model(rows).coordinates(rows, 3)
-            own[basis].append(silhouette(points, np.tile(np.arange(8), 8)))
+            own[basis].append(silhouette_score(points, np.tile(np.arange(8), 8)))
     told = {basis: float(np.mean(values)) for basis, values in own.items()}
     print(
         "\nsilhouette of poses by their number: "

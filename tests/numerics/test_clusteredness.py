@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.numerics.arrays import FloatArray, IntArray
-from app.numerics.clusteredness import clusteredness, silhouette
+from app.numerics.clusteredness import best_clusters, clusteredness
 
 
 def _clusters(count: int, each: int, spread: float, seed: int = 1) -> tuple[FloatArray, IntArray]:
@@ -36,9 +36,11 @@ def _slow_silhouette(points: FloatArray, labels: IntArray) -> float:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_the_silhouette_is_rousseeuw_s(seed: int) -> None:
-    points, labels = _clusters(4, 5, 0.4, seed)
-    labels[0] = 9  # alone in its cluster
-    assert silhouette(points, labels) == pytest.approx(_slow_silhouette(points, labels))
+    points, _ = _clusters(4, 5, 0.4, seed)
+    points[0] += 9  # alone in its cluster
+    found = best_clusters(points)
+    assert found is not None
+    assert found.silhouette == pytest.approx(_slow_silhouette(points, found.labels))
 
 
 def test_clusters_are_counted_and_exceed_chance() -> None:
@@ -69,8 +71,3 @@ def test_points_that_repeat_are_clusters_of_no_size() -> None:
     found = clusteredness(np.repeat(np.eye(3), 4, axis=0))
     assert found is not None
     assert (found.clusters.silhouette, found.clusters.count) == (1.0, 3)
-
-
-def test_one_cluster_is_none() -> None:
-    with pytest.raises(ValueError, match="two clusters"):
-        silhouette(np.eye(3), np.zeros(3, dtype=int))
