@@ -20,7 +20,7 @@ from app.errors import Forbidden, Unauthorized
 from app.services.library import Library
 from app.store import keys
 from app.store.engine import Tx
-from app.store.keys import KeyRole
+from app.store.key_role import KeyRole
 
 _bearer = HTTPBearer(auto_error=False, description="An API key (`kinedex keys create`).")
 _header = APIKeyHeader(name="X-API-Key", auto_error=False, description="The same key.")

@@ -6,7 +6,8 @@ from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.problems import problem_of, respond
+from app.api.problem_response import respond
+from app.api.problems import problem_of
 from app.config import Settings
 from app.errors import TooLarge
 

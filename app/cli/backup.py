@@ -11,9 +11,6 @@ import typer
 from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.settings import settings_of
 from app.errors import BadField, ConfigurationError, Place
-from app.store import schema
-from app.store.backup import DATABASE, back_up
-from app.store.store import Store
 
 
 def backup(
@@ -26,6 +23,10 @@ def backup(
     The copy is a data directory: to restore it, start Kinedex with KINEDEX_DATA_DIR set to it, or
     to a copy of it. It holds everything, also keys (hashed) and what is deleted later.
     """
+    from app.store import schema
+    from app.store.backup import DATABASE, back_up
+    from app.store.store import Store
+
     settings = settings_of(context)
     if settings.database_url is None and not (settings.data_dir / DATABASE).is_file():
         raise ConfigurationError(f"There is no library in {settings.data_dir}.")

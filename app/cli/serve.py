@@ -10,10 +10,6 @@ import typer
 
 from app.cli.settings import settings_of
 from app.logs import configure_logging
-from app.services.exposure import refuse_exposure_without_keys, refuse_taken_address
-from app.store import schema
-from app.worker.loop import run_worker
-from app.worker.supervisor import supervise
 
 Host = Annotated[str | None, typer.Option(help="Address to listen on [KINEDEX_HOST].")]
 Port = Annotated[int | None, typer.Option(help="Port to listen on [KINEDEX_PORT].")]
@@ -28,6 +24,10 @@ def serve(
     ] = True,
 ) -> None:
     """Serve the API and do the work, until stopped; each process is restarted if it dies."""
+    from app.services.exposure import refuse_exposure_without_keys, refuse_taken_address
+    from app.store import schema
+    from app.worker.supervisor import supervise
+
     settings = settings_of(context, host=host, port=port)
     configure_logging(settings.log_level.upper())
     schema.prepare(settings.database)
@@ -38,6 +38,8 @@ def serve(
 
 def worker(context: typer.Context) -> None:
     """Do the queued work, until stopped; any number of workers share one library."""
+    from app.worker.loop import run_worker
+
     settings = settings_of(context)
     configure_logging(settings.log_level.upper())
     stop = threading.Event()

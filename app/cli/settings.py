@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from app.config import Settings, load_settings
-from app.services.library import Library
+if TYPE_CHECKING:
+    from app.config import Settings
+    from app.services.library import Library
 
 
 def remember(context: typer.Context, **flags: Any) -> None:
@@ -19,12 +20,16 @@ def remember(context: typer.Context, **flags: Any) -> None:
 
 def settings_of(context: typer.Context, **flags: Any) -> Settings:
     """The settings in force; a flag of None counts as not given. Raises ConfigurationError."""
+    from app.config import load_settings
+
     return load_settings(**{**(context.obj or {}), **flags})
 
 
 @contextmanager
 def open_library(context: typer.Context) -> Iterator[Library]:
     """The library of the settings, closed at the end."""
+    from app.services.library import Library
+
     library = Library.open(settings_of(context))
     try:
         yield library

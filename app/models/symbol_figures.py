@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import spearmanr
+import scipy
 
 from app.errors import NotEnoughLabels
 from app.models.symbol_space import DIMENSIONS, landmark_rows, symbol_distances
@@ -130,4 +130,4 @@ def _agreement(symbols: Sequence[GaussianHMM], seed: int) -> float:
         for one in symbols
     ]
     apart = ~np.eye(len(symbols), dtype=bool)
-    return float(spearmanr(fast[apart], np.array(slow)[apart]).statistic)
+    return float(scipy.stats.spearmanr(fast[apart], np.array(slow)[apart]).statistic)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+import scipy
 
 from app.analysis.motion_sample import SAMPLES
 from app.analysis.motion_shape import CHANNELS
@@ -77,7 +77,9 @@ def onto(shapes: FloatArray, references: FloatArray, smoothing: float = 0.0) -> 
         aims = moments_of_shapes(references[chosen])
         times = warping_times(_compared(moments), _compared(aims))
         if smoothing > 0:
-            moved = gaussian_filter1d(times - _STEADY, smoothing, axis=1, mode="nearest")
+            moved = scipy.ndimage.gaussian_filter1d(
+                times - _STEADY, smoothing, axis=1, mode="nearest"
+            )
             times = rising(moved + _STEADY)
         shapes[chosen, :-2] = read_at(moments, times).reshape(len(chosen), -1)
         timing[chosen] = times - _STEADY

@@ -8,7 +8,7 @@ and may lie between moments, so that what was warped can be brought back to its 
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+import scipy
 
 from app.numerics.arrays import FloatArray, IntArray
 
@@ -41,7 +41,7 @@ def _times(motions: FloatArray, references: FloatArray) -> FloatArray:
     squares -= 2 * np.matmul(motions, references.transpose(0, 2, 1))
     held = held_moments(np.sqrt(np.maximum(squares, 0.0)))
     moved = held - np.arange(held.shape[1])
-    smooth = gaussian_filter1d(moved, SMOOTHING, axis=1, mode="nearest")
+    smooth = scipy.ndimage.gaussian_filter1d(moved, SMOOTHING, axis=1, mode="nearest")
     return rising(smooth + np.arange(held.shape[1]))
 
 

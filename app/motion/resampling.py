@@ -10,7 +10,7 @@ Shapes: (frames, ...) in, (samples, ...) out. Any unit.
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import convolve1d
+import scipy
 
 from app.numerics.arrays import FloatArray
 
@@ -77,7 +77,9 @@ def low_pass(samples: FloatArray, ratio: float) -> FloatArray:
         return samples
     kernel = _sinc(ratio)
     reach = len(kernel) // 2
-    return np.asarray(convolve1d(_continued(samples, reach), kernel, axis=0)[reach:-reach])
+    return np.asarray(
+        scipy.ndimage.convolve1d(_continued(samples, reach), kernel, axis=0)[reach:-reach]
+    )
 
 
 def _few_of_low_pass(samples: FloatArray, ratio: float, times: FloatArray) -> FloatArray:

@@ -10,8 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.cluster.hierarchy import fcluster, linkage
-from scipy.spatial.distance import pdist, squareform
+import scipy
 
 from app.numerics.arrays import FloatArray, IntArray
 
@@ -70,10 +69,13 @@ def best_clusters(points: FloatArray) -> Clusters | None:
     rows = np.asarray(points, dtype=np.float64)
     if len(rows) < 3 or not np.ptp(rows, axis=0).any():
         return None
-    tree, distances = linkage(rows, "ward"), squareform(pdist(rows))
+    tree, distances = (
+        scipy.cluster.hierarchy.linkage(rows, "ward"),
+        scipy.spatial.distance.squareform(scipy.spatial.distance.pdist(rows)),
+    )
     found = []
     for count in range(2, min(MOST_CLUSTERS, len(rows) - 1) + 1):
-        labels = fcluster(tree, count, "maxclust")
+        labels = scipy.cluster.hierarchy.fcluster(tree, count, "maxclust")
         if len(np.unique(labels)) > 1:
             found.append(Clusters(_silhouette(distances, labels), labels))
     return max(found, key=lambda one: (one.silhouette, -one.count), default=None)
@@ -83,7 +85,9 @@ def silhouette(points: FloatArray, labels: IntArray) -> float:
     """Mean over points (n, d) of (b - a) / max(a, b): a, b are the mean distances to the others
     of its own cluster and to those of the nearest other one; 0 for a point alone in its
     cluster. Raises ValueError for fewer than two clusters."""
-    return _silhouette(squareform(pdist(points)), labels)
+    return _silhouette(
+        scipy.spatial.distance.squareform(scipy.spatial.distance.pdist(points)), labels
+    )
 
 
 def _silhouette(distances: FloatArray, labels: IntArray) -> float:

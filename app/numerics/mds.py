@@ -9,7 +9,7 @@ fixed landmarks under the same error. Shapes: points N, landmarks L, dimensions 
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy
 
 from app.numerics.arrays import FloatArray
 from app.numerics.signs import fix_signs
@@ -46,7 +46,7 @@ def metric_mds(distances: FloatArray, dimensions: int) -> FloatArray:
     if len(start) < 3:
         return start
     squares = _floored(distances) ** 2
-    found = minimize(
+    found = scipy.optimize.minimize(
         lambda flat: _stress_and_slope(flat.reshape(start.shape), squares),
         start.ravel(),
         jac=True,

@@ -9,7 +9,7 @@ dimensions d.
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial.distance import cdist
+import scipy
 
 from app.numerics.arrays import FloatArray
 from app.numerics.mds import classical_mds
@@ -27,11 +27,11 @@ def smacof(distances: FloatArray, dimensions: int) -> FloatArray:
     points = classical_mds(wanted, dimensions)
     if len(points) < 3:
         return points
-    reached = cdist(points, points)
+    reached = scipy.spatial.distance.cdist(points, points)
     before = _stress(reached, wanted)
     for _ in range(STEPS):
         points = _guttman(points, reached, wanted)
-        reached = cdist(points, points)
+        reached = scipy.spatial.distance.cdist(points, points)
         after = _stress(reached, wanted)
         if before - after <= LEAST_GAIN * before:
             break
@@ -41,7 +41,9 @@ def smacof(distances: FloatArray, dimensions: int) -> FloatArray:
 
 def raw_stress(points: FloatArray, distances: FloatArray) -> float:
     """Sum over pairs i < j of (|x_i - x_j| - wanted)^2 for `points` (N, d)."""
-    return _stress(cdist(points, points), np.asarray(distances, dtype=np.float64))
+    return _stress(
+        scipy.spatial.distance.cdist(points, points), np.asarray(distances, dtype=np.float64)
+    )
 
 
 def _stress(reached: FloatArray, wanted: FloatArray) -> float:

@@ -17,11 +17,22 @@ import threading
 import types
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from multiprocessing.popen_forkserver import Popen
 from multiprocessing.process import BaseProcess
 
-LIBRARIES = ["app.analysis.analyse", "app.formats.read", "app.motion.canonical"]
-"""What the server process imports for its children."""
+LIBRARIES = [
+    "app.analysis.analyse",
+    "app.formats.read",
+    "app.motion.canonical",
+    # SciPy imports these parts on first use, and some take half a second.
+    "scipy.fft",
+    "scipy.interpolate",
+    "scipy.linalg",
+    "scipy.ndimage",
+    "scipy.signal",
+]
+"""What an analysis needs; the server process imports it once for its children."""
 
 STDERR = 2
 """Its file descriptor, whatever `sys.stderr` is."""
@@ -47,6 +58,12 @@ def child_context() -> multiprocessing.context.BaseContext:
     context = _Context()
     context.set_forkserver_preload(LIBRARIES)
     return context
+
+
+def import_libraries() -> None:
+    """Import what an analysis needs into this process, so that no first request waits for it."""
+    for name in LIBRARIES:
+        import_module(name)
 
 
 @contextmanager

@@ -13,7 +13,7 @@ import pytest
 
 from app.config import load_settings
 from app.store import keys
-from app.store.keys import KeyRole
+from app.store.key_role import KeyRole
 from app.store.store import Store
 from tests.api.conftest import assert_problem
 from tests.live import Live, serve

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pydantic import Field
 
 from app.api.schemas.low_dimensional import ReductionFields
-from app.services.export import MAX_FPS, ExportFormat, ExportSkeleton
+from app.services.export import MAX_FPS
+from app.services.export_format import ExportFormat, ExportSkeleton
 
 
 class ExportQuery(ReductionFields):
