@@ -26,6 +26,7 @@ CONFIG_FILE_ENV = "KINEDEX_CONFIG_FILE"
 CONFIG_FILE_DEFAULT = "kinedex.toml"
 LOOPBACK_HOSTS = frozenset({"127.0.0.1", "::1", "localhost"})
 MIB = 1024 * 1024
+_ESCAPED_IN_URLS = str.maketrans({"%": "%25", "?": "%3F"})
 
 
 class Settings(BaseSettings):
@@ -110,8 +111,6 @@ class Settings(BaseSettings):
         """The database's URL, password included: never log it."""
         if self.database_url is not None:
             return self.database_url.get_secret_value()
-        from app.store.engine import sqlite_url
-
         return sqlite_url(self.data_dir / "kinedex.sqlite3")
 
     @property
@@ -136,6 +135,12 @@ class Settings(BaseSettings):
         """Flags win over the environment, that over the file."""
         path = Path(os.environ.get(CONFIG_FILE_ENV, CONFIG_FILE_DEFAULT))
         return init_settings, env_settings, TomlConfigSettingsSource(settings_cls, path)
+
+
+def sqlite_url(path: Path) -> str:
+    """The URL of the SQLite database at `path`, whatever characters the path holds."""
+    # Not by SQLAlchemy's URL, which cannot write names that are not UTF-8.
+    return f"sqlite:///{str(path).translate(_ESCAPED_IN_URLS)}"
 
 
 def load_settings(**flags: Any) -> Settings:

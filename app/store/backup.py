@@ -17,7 +17,7 @@ from pathlib import Path
 
 from app.errors import BadField, DiskFull, NotFound, Place, StorageError
 from app.store import references
-from app.store.engine import Database, sqlite_url
+from app.store.engine import Database
 from app.store.files import NO_SPACE, FileStore, sync_directory
 from app.store.store import Store
 
@@ -95,7 +95,7 @@ def _copy_database(database: Database, path: Path) -> frozenset[str]:
     """Copies the database over what is there; the names of the files that it needs."""
     path.unlink(missing_ok=True)
     database.copy_to(path)
-    copy = Database(sqlite_url(path))
+    copy = Database.at(path)
     try:
         with copy.read() as tx:
             return references.referenced(tx)

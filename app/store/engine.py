@@ -14,7 +14,7 @@ import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from sqlalchemy import Connection, Engine, create_engine, event, func, select
 from sqlalchemy.engine import URL, make_url
@@ -40,8 +40,6 @@ _UNUSABLE = frozenset(
 )
 """SQLite's results that tell of the file or its disk rather than of what was asked."""
 
-_IN_URLS = str.maketrans({"%": "%25", "?": "%3F"})
-
 Tx = Connection
 """A running transaction, as `Database.read()` and `Database.write()` give it."""
 
@@ -49,7 +47,7 @@ Tx = Connection
 class Database:
     """An engine and its two kinds of transaction; safe to share between threads."""
 
-    def __init__(self, url: str, *, foreign_keys: bool = True) -> None:
+    def __init__(self, url: str | URL, *, foreign_keys: bool = True) -> None:
         """Connects lazily. `foreign_keys=False` is for migrations, which rebuild tables."""
         self.engine = _open_engine(url, foreign_keys=foreign_keys)
         self._is_sqlite = self.engine.dialect.name == "sqlite"
@@ -57,6 +55,11 @@ class Database:
         self._writer = self.engine.execution_options(**{WRITES_OPTION: True})
         # Threads of one process queue here rather than poll SQLite's lock; processes poll.
         self._turn = threading.Lock()
+
+    @classmethod
+    def at(cls, path: Path) -> Self:
+        """The SQLite database in the file at `path`, whatever characters the path holds."""
+        return cls(URL.create("sqlite", database=str(path)))
 
     @contextmanager
     def read(self) -> Iterator[Tx]:
@@ -139,17 +142,11 @@ class Database:
             self._turn.release()
 
 
-def sqlite_url(path: Path) -> str:
-    """The URL of an SQLite database, whatever its path holds."""
-    # Not by SQLAlchemy's URL, which cannot write names that are not UTF-8.
-    return f"sqlite:///{str(path).translate(_IN_URLS)}"
-
-
 def _snapshot_reader(engine: Engine) -> Engine:
     return engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
 
 
-def _open_engine(url: str, *, foreign_keys: bool) -> Engine:
+def _open_engine(url: str | URL, *, foreign_keys: bool) -> Engine:
     try:
         parsed = make_url(url)
     except ArgumentError as error:
