@@ -5,10 +5,10 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 BENCH_STAMP := $(VENV)/.bench-installed
 
-.PHONY: help install demo serve test test-all bench lint
+.PHONY: help install demo serve test test-all bench lint picture
 
 help:
-	@echo "make demo | serve | test | test-all | bench | lint | install"
+	@echo "make demo | serve | test | test-all | bench | lint | install | picture"
 
 install: $(STAMP)
 
@@ -46,3 +46,7 @@ $(BENCH_STAMP): $(STAMP)
 
 bench: $(BENCH_STAMP)
 	$(BIN)/pytest -m bench -s tests/bench
+
+# The README's picture, made from the demo library: look at it before you commit it.
+picture: install
+	$(BIN)/python -m tests.picture

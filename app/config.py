@@ -32,6 +32,7 @@ HEARTBEATS_IN_LEASE = 2.0
 """At least, so that one late heartbeat does not give a job to another worker."""
 LOOPBACK_HOSTS = frozenset({"127.0.0.1", "::1", "localhost"})
 MIB = 1024 * 1024
+_ESCAPED_IN_URLS = str.maketrans({"%": "%25", "?": "%3F"})
 
 
 class Settings(BaseSettings):
@@ -154,8 +155,6 @@ class Settings(BaseSettings):
         """The database's URL, password included: never log it."""
         if self.database_url is not None:
             return self.database_url.get_secret_value()
-        from app.store.engine import sqlite_url
-
         return sqlite_url(self.data_dir / "kinedex.sqlite3")
 
     @property
@@ -180,6 +179,12 @@ class Settings(BaseSettings):
         """Flags win over the environment, that over the file."""
         path = Path(os.environ.get(CONFIG_FILE_ENV, CONFIG_FILE_DEFAULT))
         return init_settings, env_settings, TomlConfigSettingsSource(settings_cls, path)
+
+
+def sqlite_url(path: Path) -> str:
+    """The URL of the SQLite database at `path`, whatever characters the path holds."""
+    # Not by SQLAlchemy's URL, which cannot write names that are not UTF-8.
+    return f"sqlite:///{str(path).translate(_ESCAPED_IN_URLS)}"
 
 
 def load_settings(**flags: Any) -> Settings:

@@ -77,3 +77,13 @@ def test_no_pickle_no_eval_no_shell() -> None:
         if forbidden.search(path.read_text())
     ]
     assert not found
+
+
+def test_only_the_api_says_which_part_of_a_request_a_field_stands_in() -> None:
+    located = re.compile(r"""["'](?:body|query|path|header)\.""")
+    found = [
+        str(path.relative_to(ROOT))
+        for path in (ROOT / "app").rglob("*.py")
+        if "api" not in path.relative_to(ROOT).parts and located.search(path.read_text())
+    ]
+    assert not found

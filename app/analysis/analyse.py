@@ -15,7 +15,9 @@ symbol_means (K, 26), symbol_variances (K, 26), symbol_transitions (K, K).
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -35,12 +37,13 @@ from app.analysis.onsets import Onsets
 from app.analysis.pose_cover import pose_cover
 from app.analysis.rhythm import NOTHING, Told, find_rhythm, rhythm_arrays
 from app.analysis.symbol_features import symbol_features, symbol_statistics
-from app.analysis.windows import window_arrays
+from app.analysis.windows import WINDOW_SCALES, window_arrays
 from app.motion.body_frame import BodyTrack, body_track
 from app.motion.gait import exact_gait_cycles
 from app.motion.motion import Motion
 from app.motion.recording import Caution
 from app.numerics.arrays import FloatArray
+from app.numerics.rank1 import Rank1
 
 ANALYSIS_VERSION = 4
 """Raise it with every change of what an array holds; older clips are then analysed again."""
@@ -75,11 +78,8 @@ def analyse(
     Deterministic; raises TooShort or NotHuman.
     """
     track = body_track(motion)
-    channels = symbol_features(track)
-    arrays: dict[str, NDArray[Any]] = {
-        **_for_search(motion, track, channels),
-        **describe_symbol(channels),
-    }
+    parts = _Parts(motion, track)
+    arrays: dict[str, NDArray[Any]] = {**_for_search(parts), **describe_symbol(parts.channels)}
     plain = energies(track)
     rhythm = find_rhythm(track, told, onsets, plain)
     arrays |= rhythm_arrays(rhythm)
@@ -90,35 +90,78 @@ def analyse(
     return Analysis(motion, arrays, offset, rhythm.cautions)
 
 
-def describe_for_search(motion: Motion) -> Analysis:
-    """The arrays that finding and recognising need: no keyposes, no motion symbol (it is slow).
+def describe_for_search(motion: Motion, names: Collection[str] | None = None) -> Analysis:
+    """The arrays that finding and recognizing need: no keyposes, no motion symbol (it is slow).
 
-    Some 10 ms for 5 s of motion; each array is the same as from `analyse`.
+    names: only these arrays; None: all of them, in some 10 ms for 5 s of motion. Each array is
+    the same as from `analyse`. Raises KeyError for a name that `analyse` alone computes.
     """
-    track = body_track(motion)
-    return Analysis(motion, {**_for_search(motion, track, symbol_features(track))})
+    return Analysis(motion, {**_for_search(_Parts(motion, body_track(motion)), names)})
 
 
-def _for_search(motion: Motion, track: BodyTrack, channels: FloatArray) -> dict[str, FloatArray]:
-    """The arrays that both need; channels: (n, 26) those of the motion symbol."""
-    features = frame_features(track)
-    features_10hz = features_at_10hz(features, track.rate)
-    described = describe(features)
-    volume = decompose(track)
-    cycles = exact_gait_cycles(track)
-    arrays = {
-        "role_positions": track.positions,
-        "features_10hz": features_10hz,
-        "motion_vector": narrow(described),
-        "wide_motion_vector": wide(described),
-        "msv_lambda": np.array([volume.weight]),
-        "msv_rho": volume.primary,
-        "msv_epsilon": volume.secondary,
-        "msv_convergence": np.column_stack([volume.errors, volume.changes]),
-        "motion_sample": motion_sample(track, cycles),
-        "angle_sample": angle_sample(motion, track, cycles),
-        "motion_shape": motion_shape(track, cycles),
-        "symbol_statistics": symbol_statistics(channels, track.rate),
+class _Parts:
+    """What the arrays of a motion are made of; each part is computed once, if it is needed."""
+
+    def __init__(self, motion: Motion, track: BodyTrack) -> None:
+        self.motion = motion
+        self.track = track
+
+    @cached_property
+    def features(self) -> FloatArray:
+        """(n, 82) at 30 Hz."""
+        return frame_features(self.track)
+
+    @cached_property
+    def features_10hz(self) -> FloatArray:
+        """(m, 82) at 10 Hz."""
+        return features_at_10hz(self.features, self.track.rate)
+
+    @cached_property
+    def described(self) -> FloatArray:
+        """What motion vectors are projected from."""
+        return describe(self.features)
+
+    @cached_property
+    def volume(self) -> Rank1:
+        """The rank-1 factors of the motion volume."""
+        return decompose(self.track)
+
+    @cached_property
+    def channels(self) -> FloatArray:
+        """(n, 26) the features of the motion symbol."""
+        return symbol_features(self.track)
+
+    @cached_property
+    def cycles(self) -> list[tuple[float, float]]:
+        """The gait cycles, (begin, end) in frames."""
+        return exact_gait_cycles(self.track)
+
+    @cached_property
+    def windows(self) -> dict[str, FloatArray]:
+        """The window arrays by name."""
+        return window_arrays(self.features_10hz)
+
+
+_FLOAT32: dict[str, Callable[[_Parts], FloatArray]] = {
+    "role_positions": lambda parts: parts.track.positions,
+    "features_10hz": lambda parts: parts.features_10hz,
+    "motion_vector": lambda parts: narrow(parts.described),
+    "wide_motion_vector": lambda parts: wide(parts.described),
+    "msv_lambda": lambda parts: np.array([parts.volume.weight]),
+    "msv_rho": lambda parts: parts.volume.primary,
+    "msv_epsilon": lambda parts: parts.volume.secondary,
+    "msv_convergence": lambda parts: np.column_stack([parts.volume.errors, parts.volume.changes]),
+    "motion_sample": lambda parts: motion_sample(parts.track, parts.cycles),
+    "angle_sample": lambda parts: angle_sample(parts.motion, parts.track, parts.cycles),
+    "motion_shape": lambda parts: motion_shape(parts.track, parts.cycles),
+    "symbol_statistics": lambda parts: symbol_statistics(parts.channels, parts.track.rate),
+}
+"""How each array is computed that is kept as float32."""
+_WINDOWS = tuple(name for scale in WINDOW_SCALES for name in (scale.vectors, scale.spans))
+
+
+def _for_search(parts: _Parts, names: Collection[str] | None = None) -> dict[str, FloatArray]:
+    return {
+        name: parts.windows[name] if name in _WINDOWS else _FLOAT32[name](parts).astype(np.float32)
+        for name in (names if names is not None else (*_FLOAT32, *_WINDOWS))
     }
-    kept = {name: array.astype(np.float32) for name, array in arrays.items()}
-    return kept | window_arrays(features_10hz)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d
+import scipy
 
 from app.analysis.beat_tracking import (
     LEAST_BEATS,
@@ -155,7 +155,7 @@ def _trimmed(beats: IntArray, strength: FloatArray) -> IntArray:
 
 def _at(curve: FloatArray, beats: IntArray) -> FloatArray:
     """The curve's largest value near each beat."""
-    return np.asarray(maximum_filter1d(curve, 2 * NEAR + 1)[beats])
+    return np.asarray(scipy.ndimage.maximum_filter1d(curve, 2 * NEAR + 1)[beats])
 
 
 def _plausibility(onsets: Onsets, beats: IntArray) -> float:

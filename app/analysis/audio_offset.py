@@ -11,8 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
-from scipy.signal import fftconvolve
+import scipy
 
 from app.analysis.beats import FINE, WIDTH, Stops
 from app.analysis.onsets import RATE, Onsets
@@ -98,7 +97,7 @@ class _Met:
 
 def _met(stops: Stops, beats: FloatArray, duration: float) -> _Met:
     heard, moved = _humps(beats, int(duration * FINE) + 1), stops.curve
-    share = fftconvolve(moved, heard[::-1]) / max(float(np.square(moved).sum()), 1e-9)
+    share = scipy.signal.fftconvolve(moved, heard[::-1]) / max(float(np.square(moved).sum()), 1e-9)
     lags = np.arange(-len(heard) + 1, len(moved))
     shared = np.minimum(len(moved), lags + len(heard)) - np.maximum(0, lags)
     share[shared < LEAST_COVERED * min(len(moved), len(heard))] = 0.0
@@ -135,7 +134,7 @@ def _fit(stops: Stops, beats: FloatArray, beat: float) -> float:
 def _fuller(met: _Met, onsets: Onsets, beat: float) -> FloatArray:
     """(c,) by how much more begins to sound within the motion than outside, -1..1 or so: the
     correlation of the music's fullness with being danced to."""
-    smooth = gaussian_filter1d(onsets.rise, SMOOTH * beat * RATE)
+    smooth = scipy.ndimage.gaussian_filter1d(onsets.rise, SMOOTH * beat * RATE)
     full = np.interp(np.arange(met.heard) / FINE, np.arange(len(smooth)) / RATE, smooth)
     sums = np.concatenate([[0.0], np.cumsum(full)])
     first = np.maximum(0, -met.lags)

@@ -8,8 +8,8 @@ followed by their onsets, motions by their stops.
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.lib.stride_tricks import sliding_window_view
-from scipy.fft import irfft, next_fast_len, rfft
 
 from app.numerics.arrays import FloatArray, IntArray
 
@@ -34,9 +34,9 @@ def autocorrelation(strength: FloatArray) -> FloatArray:
     count = len(strength)
     if not count or not np.ptp(strength) > 0:
         return np.zeros(count)
-    length = next_fast_len(2 * count, real=True)
-    spectrum = rfft(strength - strength.mean(), length)
-    raw = irfft(np.square(np.abs(spectrum)), length)[:count]
+    length = scipy.fft.next_fast_len(2 * count, real=True)
+    spectrum = scipy.fft.rfft(strength - strength.mean(), length)
+    raw = scipy.fft.irfft(np.square(np.abs(spectrum)), length)[:count]
     overlap = np.maximum(count - np.arange(count), count / 4) / count
     return np.asarray(raw / raw[0] / overlap)
 

@@ -13,9 +13,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
+import scipy
 from numpy.polynomial.legendre import legvander
-from scipy.ndimage import gaussian_filter1d
-from scipy.signal import find_peaks
 
 from app.analysis.beat_tracking import LEAST_BEATS, likely_periods, track
 from app.numerics.arrays import FloatArray
@@ -176,7 +175,7 @@ def find_stops(energy: FloatArray, rate: float) -> Stops:
     grid = np.arange(int(duration * FINE) + 1) / FINE
     if not spread > 0:
         return Stops(np.zeros(0), np.zeros(0), np.zeros(len(grid)), duration)
-    minima, found = find_peaks(-level, prominence=DEEP * spread, plateau_size=1)
+    minima, found = scipy.signal.find_peaks(-level, prominence=DEEP * spread, plateau_size=1)
     depths = found["prominences"]
     middles = [_middle(level, m, d) for m, d in zip(minima, depths, strict=True)]
     times, weights = np.array(middles) / rate, np.minimum(depths / (DEEPEST * spread), 1.0)
@@ -194,7 +193,7 @@ def _log_energy(energy: FloatArray, rate: float) -> FloatArray:
     if not highest > 0:
         return np.zeros(len(energy))
     level = np.log(energy + max(FLOOR * float(np.median(energy)), 1e-6 * highest))
-    return np.asarray(level - gaussian_filter1d(level, TREND * rate, mode="reflect"))
+    return np.asarray(level - scipy.ndimage.gaussian_filter1d(level, TREND * rate, mode="reflect"))
 
 
 def _middle(level: FloatArray, minimum: int, depth: float) -> float:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+import scipy
 
 from app.analysis.marker_noise import noise_of_speed, noise_power
 from app.motion.body_frame import BodyTrack
@@ -145,4 +145,4 @@ def _smoothed(positions: FloatArray, spread: float) -> FloatArray:
     continued = np.pad(
         positions, ((reach, reach), (0, 0), (0, 0)), mode="reflect", reflect_type="odd"
     )
-    return np.asarray(gaussian_filter1d(continued, spread, axis=0)[reach:-reach])
+    return np.asarray(scipy.ndimage.gaussian_filter1d(continued, spread, axis=0)[reach:-reach])

@@ -17,8 +17,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.signal import butter, sosfiltfilt
+import scipy
 
 from app.motion.joint_roles import SUN_ROLES, JointRole
 from app.motion.occlusion import LONGEST_GAP, runs
@@ -113,11 +112,11 @@ def filtered(samples: FloatArray, rate: float) -> FloatArray:
     cut_off = CUT_OFF / (2.0 ** (1.0 / PASSES) - 1.0) ** 0.25
     if cut_off >= rate / 2 or len(samples) < 2:
         return samples
-    sections = butter(2, cut_off, fs=rate, output="sos")
+    sections = scipy.signal.butter(2, cut_off, fs=rate, output="sos")
     width = round(PADDING * rate)
     around = [(width, width)] + [(0, 0)] * (samples.ndim - 1)
     padded = np.pad(samples, around, mode="reflect", reflect_type="odd")
-    return np.asarray(sosfiltfilt(sections, padded, axis=0, padlen=0)[width:-width])
+    return np.asarray(scipy.signal.sosfiltfilt(sections, padded, axis=0, padlen=0)[width:-width])
 
 
 def spanned(values: FloatArray, seen: BoolArray, longest: int) -> FloatArray:
@@ -136,7 +135,7 @@ def spanned(values: FloatArray, seen: BoolArray, longest: int) -> FloatArray:
     ]
     if short and len(at) >= 4:
         gaps = np.concatenate(short)
-        filled[gaps] = CubicSpline(at, values[at])(gaps)
+        filled[gaps] = scipy.interpolate.CubicSpline(at, values[at])(gaps)
     return np.asarray(filled)
 
 

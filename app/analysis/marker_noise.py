@@ -7,9 +7,10 @@ quietest moments is noise. Taken to be white, it tells what noise makes of any s
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
-from scipy.ndimage import convolve1d
-from scipy.signal import firwin
+import scipy
 
 from app.numerics.arrays import FloatArray
 
@@ -31,13 +32,11 @@ QUIET_PER_MEAN = 0.84
 """That quantile as a share of the mean, for white noise on 13 joints."""
 
 
+@cache
 def _band_pass() -> FloatArray:
-    taps = firwin(TAPS, BAND, pass_zero=False, window="blackman")
+    """(TAPS,) the filter; made by the first call, because scipy.signal is slow to import."""
+    taps = scipy.signal.firwin(TAPS, BAND, pass_zero=False, window="blackman")
     return np.asarray(taps - taps.mean())  # nothing at all of what stands still
-
-
-_FILTER = _band_pass()
-_GAIN = float(np.square(_FILTER).sum())
 
 
 def noise_power(positions: FloatArray, weights: FloatArray) -> float:
@@ -49,10 +48,12 @@ def noise_power(positions: FloatArray, weights: FloatArray) -> float:
     if len(positions) < LEAST_FRAMES:
         return 0.0
     reach = TAPS // 2
-    shaking = convolve1d(positions, _FILTER, axis=0)[reach:-reach]
+    band_pass = _band_pass()
+    shaking = scipy.ndimage.convolve1d(positions, band_pass, axis=0)[reach:-reach]
     power = np.square(shaking).sum(axis=-1) @ weights
-    around = convolve1d(power, np.full(AROUND, 1 / AROUND))
-    return float(np.quantile(around, QUIET) / (_GAIN * QUIET_PER_MEAN))
+    around = scipy.ndimage.convolve1d(power, np.full(AROUND, 1 / AROUND))
+    gain = float(np.square(band_pass).sum())
+    return float(np.quantile(around, QUIET) / (gain * QUIET_PER_MEAN))
 
 
 def noise_of_speed(spread: float) -> float:

@@ -20,8 +20,8 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
 
 from app.analysis.frame_features import FEATURES
 from app.motion.body_frame import ANALYSIS_RATE
@@ -113,7 +113,7 @@ def _slowly(values: FloatArray, seconds: float = SLOW) -> FloatArray:
     """
     width = 2 * round(seconds * ANALYSIS_RATE) + 1
     for _ in range(3):
-        values = uniform_filter1d(values, width, axis=0, mode="nearest")
+        values = scipy.ndimage.uniform_filter1d(values, width, axis=0, mode="nearest")
     return values
 
 

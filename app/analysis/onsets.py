@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d, maximum_filter1d, uniform_filter1d
+import scipy
 
 from app.numerics.arrays import FloatArray
 
@@ -126,7 +126,7 @@ def _flux(power: FloatArray, loudest: float) -> FloatArray:
     flux: FloatArray = np.zeros_like(power)
     if loudest > 0:
         level = 10.0 * np.log10(np.maximum(power / loudest, 10.0 ** (-QUIETEST / 10.0)))
-        earlier = maximum_filter1d(level, 3, axis=1)
+        earlier = scipy.ndimage.maximum_filter1d(level, 3, axis=1)
         flux[BEFORE:] = np.maximum(level[BEFORE:] - earlier[:-BEFORE], 0.0)
     return flux
 
@@ -142,6 +142,6 @@ def _levelled(curve: FloatArray) -> FloatArray:
     """Above its local mean, in units of its spread; zeros where nothing begins."""
     if len(curve) < RATE or float(np.percentile(curve, 98)) < LEAST_RISE:
         return np.zeros(len(curve))
-    smooth = gaussian_filter1d(curve, 1.0)
-    above = np.maximum(smooth - uniform_filter1d(smooth, round(LEVELLED * RATE)), 0.0)
+    smooth = scipy.ndimage.gaussian_filter1d(curve, 1.0)
+    above = np.maximum(smooth - scipy.ndimage.uniform_filter1d(smooth, round(LEVELLED * RATE)), 0.0)
     return np.asarray(above / max(float(above.std()), 1e-9))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.signal import find_peaks
+import scipy
 
 from app.analysis.energy import EnergyCurve
 from app.numerics.arrays import FloatArray
@@ -78,11 +78,11 @@ def find_rests(curve: EnergyCurve) -> tuple[Rest, ...]:
 def median_maximum(values: FloatArray) -> tuple[float, FloatArray]:
     """The median of the maxima that stand out, and their frames; its maximum where none do."""
     high = float(np.quantile(values, HIGH))
-    maxima, _ = find_peaks(values, prominence=max(STANDS_OUT * high, 1e-12))
+    maxima, _ = scipy.signal.find_peaks(values, prominence=max(STANDS_OUT * high, 1e-12))
     if not len(maxima):
         return float(values.max()), maxima
     unit = float(np.median(values[maxima]))
-    standing, _ = find_peaks(values, prominence=STANDS_OUT * unit)
+    standing, _ = scipy.signal.find_peaks(values, prominence=STANDS_OUT * unit)
     return unit, standing
 
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from app.analysis.symbol_features import CHANNEL_SCALES, CHANNELS, symbol_features
 from app.motion.body_frame import BodyTrack, turned
@@ -89,7 +89,7 @@ def _led(times: FloatArray, values: FloatArray, frames: int) -> FloatArray:
     if len(times) == 1:
         return np.repeat(values, frames, axis=0)
     inside = np.clip(np.arange(frames), times[0], times[-1])
-    return np.asarray(PchipInterpolator(times, values, axis=0)(inside))
+    return np.asarray(scipy.interpolate.PchipInterpolator(times, values, axis=0)(inside))
 
 
 def _with_lengths(poses: FloatArray, like: FloatArray) -> FloatArray:

@@ -11,7 +11,7 @@ from app.errors import Forbidden, Unauthorized
 from app.services.library import Library
 from app.store import keys
 from app.store.engine import Tx
-from app.store.keys import KeyRole
+from app.store.key_role import KeyRole
 
 
 @dataclass(frozen=True, slots=True)

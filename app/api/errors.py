@@ -10,6 +10,7 @@ from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 
+from app.api.problem_response import respond
 from app.api.problems import (
     RETRY_AFTER_SECONDS,
     NotReadyYet,
@@ -18,7 +19,6 @@ from app.api.problems import (
     problem_of,
     problem_of_http,
     problem_of_validation,
-    respond,
     status_of,
 )
 from app.errors import (

@@ -8,7 +8,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.media import FORM, media_type
 from app.api.paths import path_of
-from app.api.problems import problem_of, respond
+from app.api.problem_response import respond
+from app.api.problems import problem_of
 from app.config import Settings
 from app.errors import TooLarge
 

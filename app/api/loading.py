@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import threading
 
+from app.services.child_processes import import_libraries
 from app.services.library import Library
 
 log = logging.getLogger(__name__)
@@ -32,6 +33,7 @@ class Loading:
     def _load(self) -> None:
         while not self._stop.is_set():
             try:
+                import_libraries()
                 self._library.index.catch_up(self._library.store)
             except Exception:
                 log.exception("the index could not be loaded; trying again")

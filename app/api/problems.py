@@ -10,7 +10,6 @@ from collections.abc import Iterable, Mapping
 from http import HTTPStatus
 from typing import Any
 
-from fastapi.responses import JSONResponse
 from pydantic_core import ErrorDetails
 
 from app import errors
@@ -202,10 +201,3 @@ def _status_by_code() -> dict[str, int]:
 
 def _kinds(kind: type[KinedexError]) -> list[type[KinedexError]]:
     return [kind] + [deeper for child in kind.__subclasses__() for deeper in _kinds(child)]
-
-
-def respond(told: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> JSONResponse:
-    """A problem as an answer."""
-    return JSONResponse(
-        told, status_code=told["status"], media_type=MEDIA_TYPE, headers=dict(headers or {})
-    )

@@ -15,13 +15,13 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from app.api.connections import Connections
 from app.api.envelope import SECURITY_HEADERS
+from app.api.problem_response import respond
 from app.api.problems import (
     RETRY_AFTER_SECONDS,
     RequestTimeout,
     TooManyConnections,
     problem,
     problem_of,
-    respond,
 )
 
 HEADER_SECONDS = 10.0

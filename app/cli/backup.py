@@ -15,7 +15,6 @@ import typer
 from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.settings import open_store, settings_of
 from app.errors import BadField, Place
-from app.store.backup import back_up
 
 
 def backup(
@@ -28,6 +27,8 @@ def backup(
     The copy is a data directory: to restore it, start Kinedex with KINEDEX_DATA_DIR set to it, or
     to a copy of it. It holds everything, also keys (hashed) and what is deleted later.
     """
+    from app.store.backup import back_up
+
     _refuse_inside(settings_of(context).data_dir, path)
     with open_store(context) as store, _ended_by_sigterm(), progress_bar() as bar:
         task = bar.add_task("copying", total=None)

@@ -5,8 +5,6 @@ from __future__ import annotations
 import typer
 
 from app.cli.settings import settings_of
-from app.store import identity, schema
-from app.store.folders import make_private
 
 program = typer.Typer(help="The database.", no_args_is_help=True)
 
@@ -14,6 +12,9 @@ program = typer.Typer(help="The database.", no_args_is_help=True)
 @program.command("upgrade")
 def upgrade(context: typer.Context) -> None:
     """Bring the database to this version's schema, making it where there is none."""
+    from app.store import identity, schema
+    from app.store.folders import make_private
+
     settings = settings_of(context)
     make_private(settings.data_dir)
     identity.refuse_files_without_database(settings.database, settings.files_dir)
@@ -28,6 +29,8 @@ def adopt_files(context: typer.Context) -> None:
     Run it only when you are sure. Files that the database does not name are moved to the
     quarantine by the next worker, and are removed after the retention.
     """
+    from app.store import identity
+
     settings = settings_of(context)
     found = identity.adopt(settings.database, settings.files_dir)
     typer.echo(

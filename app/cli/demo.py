@@ -7,17 +7,16 @@ import threading
 import urllib.error
 import urllib.request
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 
-from app.cli.library import fit_if_due, follow, register, working
 from app.cli.serve import Host, Port
 from app.cli.settings import open_library, settings_of
-from app.config import Settings
 from app.logs import configure_logging
-from app.services.demo.library import write_demo
-from app.services.exposure import refuse_exposure_without_keys, refuse_taken_address
-from app.worker.supervisor import supervise
+
+if TYPE_CHECKING:
+    from app.config import Settings
 
 READY_POLL_S = 0.25
 QUIET = "WARNING"
@@ -29,6 +28,9 @@ def demo(context: typer.Context, host: Host = None, port: Port = None) -> None:
 
     Run again, it serves what is there: clips that are in the library are passed over.
     """
+    from app.services.exposure import refuse_exposure_without_keys, refuse_taken_address
+    from app.worker.supervisor import supervise
+
     settings = settings_of(context, host=host, port=port)
     configure_logging(QUIET)
     refuse_exposure_without_keys(settings)
@@ -41,6 +43,9 @@ def demo(context: typer.Context, host: Host = None, port: Port = None) -> None:
 
 
 def _fill(context: typer.Context) -> None:
+    from app.cli.library import fit_if_due, follow, register, working
+    from app.services.demo.library import write_demo
+
     with open_library(context) as lib, tempfile.TemporaryDirectory() as folder:
         count = write_demo(Path(folder))
         typer.echo(f"The demo library: {count} clips, generated here.")

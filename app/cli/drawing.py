@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.cli.export import write_whole
+from app.cli.files import write_whole
 from app.errors import BadField
 from app.services import fields, pictures
 from app.services.pictures import Format

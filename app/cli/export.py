@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from app.analysis.low_dimensional import Basis
+from app.cli.files import write_whole
 from app.cli.output import AsJson, print_json
 from app.cli.settings import open_library
-from app.services import export as exporting
-from app.services.export import ExportFormat, ExportSkeleton
-from app.services.fields import bad_field
-from app.services.low_dimensional import Reduction
+from app.errors import BadField, Place
+from app.services.export_format import ExportFormat, ExportSkeleton
 
 
 def export(
@@ -45,6 +43,9 @@ def export(
     as_json: AsJson = False,
 ) -> None:
     """Export a clip as BVH, GLB, NPZ or CSV."""
+    from app.services import export as exporting
+    from app.services.low_dimensional import Reduction
+
     wanted = format or _by_ending(output)
     with open_library(context) as lib:
         reduction = None if dimensions is None else Reduction(dimensions, basis)
@@ -67,21 +68,4 @@ def _by_ending(output: Path | None) -> ExportFormat:
     except ValueError:
         known = ", ".join(ExportFormat)
         message = f"must end in one of {known}, or --format must be given"
-        raise bad_field("output", message) from None
-
-
-def write_whole(path: Path, blocks: Iterable[bytes]) -> int:
-    """Write beside the target, then rename: what was there stays until all is written.
-
-    Returns how many bytes; raises BadField.
-    """
-    part = path.with_name(f".{path.name}.part")
-    try:
-        with part.open("wb") as written:
-            size = sum(written.write(block) for block in blocks)
-        part.replace(path)
-    except OSError as problem:
-        raise bad_field("output", f"{path} cannot be written: {problem.strerror}") from None
-    finally:
-        part.unlink(missing_ok=True)
-    return size
+        raise BadField(f"output: {message}", places=[Place("output", message)]) from None

@@ -7,21 +7,20 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.api.schemas.recognition import Answer, Recognition
-from app.api.schemas.search import MotionHits, WordHits
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 from app.errors import BadField, ClipNotFound, Place
 from app.search.methods import Method
-from app.services import find, recognise
-from app.services.fields import bad_field
-from app.services.hits import Hits
-from app.store.files import Readable
+
+if TYPE_CHECKING:
+    from app.api.schemas.recognition import Answer
+    from app.services.hits import Hits
+    from app.store.files import Readable
 
 Query = Annotated[str, typer.Argument(help="A motion file, or the id of a stored clip.")]
 FrameRate = Annotated[float | None, typer.Option(help="Of a file: overrides what it declares.")]
@@ -68,6 +67,8 @@ def search(
     as_json: AsJson = False,
 ) -> None:
     """Find motions like one (a file or a stored clip), or motions for words."""
+    from app.services import find
+
     if (query is None) == (not words):
         raise typer.BadParameter("give either a file or clip id, or --words")
     if words and scope != "clips":
@@ -118,6 +119,9 @@ def recognize(
     as_json: AsJson = False,
 ) -> None:
     """Tell who it is, what they do, and in which words."""
+    from app.api.schemas.recognition import Recognition
+    from app.services import recognise
+
     with (
         open_library(context) as lib,
         content_of(query) as (clip_id, content),
@@ -188,7 +192,8 @@ def opened(path: Path) -> Iterator[Readable]:
     try:
         content = path.open("rb")
     except OSError as problem:
-        raise bad_field("file", f"{path} cannot be read: {problem.strerror}") from None
+        message = f"{path} cannot be read: {problem.strerror}"
+        raise BadField(message, places=[Place("file", message)]) from None
     with content:
         yield content
 
@@ -205,6 +210,8 @@ def companion_of(skeleton: Path | None) -> Iterator[Readable | None]:
 
 def _show(hits: Hits, as_json: bool, *, by_words: bool, parts: bool) -> None:
     if as_json:
+        from app.api.schemas.search import MotionHits, WordHits
+
         answer = WordHits.of(hits) if by_words else MotionHits.of(hits)
         print_json(answer.model_dump(mode="json"))
         return

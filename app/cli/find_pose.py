@@ -8,14 +8,12 @@ from typing import Annotated, Any
 
 import typer
 
-from app.api.schemas.pose import PoseHits
 from app.cli.find import FrameRate, Skeleton, Stack, Unit, companion_of, content_of, filter_of
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 from app.errors import BadField, Place
 from app.search.pose_places import Places
-from app.services.find_pose import PoseQuery, find_pose
 
 
 def search_pose(
@@ -42,6 +40,8 @@ def search_pose(
     as_json: AsJson = False,
 ) -> None:
     """Find the clips that take a pose, and when they do."""
+    from app.services.find_pose import PoseQuery, find_pose
+
     if (query is None) == (positions is None):
         raise typer.BadParameter("give either a file or clip id with --time, or --positions")
     if query is not None and time is None:
@@ -69,6 +69,8 @@ def search_pose(
             ),
         )
     if as_json:
+        from app.api.schemas.pose import PoseHits
+
         print_json(PoseHits.of(hits).model_dump(mode="json"))
         return
     columns = ("rank", "score", "time", "name", "person", "task", "id")

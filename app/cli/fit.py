@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from app.api.schemas.jobs import Job
-from app.cli.library import FAILURE, follow, working
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
-from app.services import models
-from app.store.job_record import JobRecord, JobState
+
+if TYPE_CHECKING:
+    from app.store.job_record import JobRecord
 
 COUNTED = "clips"
 """The name of what is no share."""
@@ -19,6 +18,11 @@ COUNTED = "clips"
 
 def fit(context: typer.Context, as_json: AsJson = False) -> None:
     """Fit the models on the library as it is now, and show their held-out figures."""
+    from app.api.schemas.jobs import Job
+    from app.cli.library import FAILURE, follow, working
+    from app.services import models
+    from app.store.job_record import JobState
+
     with open_library(context) as lib:
         asked = models.request_fit(lib)
         with working(lib):

@@ -8,8 +8,7 @@ import typer
 
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
-from app.store import keys
-from app.store.keys import KeyRole
+from app.store.key_role import KeyRole
 
 program = typer.Typer(help="API keys.", no_args_is_help=True)
 
@@ -22,6 +21,8 @@ def create(
     as_json: AsJson = False,
 ) -> None:
     """Make a key. It is shown once; only its hash is kept."""
+    from app.store import keys
+
     with open_library(context) as lib, lib.store.write() as tx:
         made = keys.create(tx, role, name)
     if as_json:
@@ -34,6 +35,8 @@ def create(
 @program.command("list")
 def list_keys(context: typer.Context, as_json: AsJson = False) -> None:
     """Show the keys, without their secrets."""
+    from app.store import keys
+
     with open_library(context) as lib, lib.store.read() as tx:
         records = keys.list_keys(tx)
     columns = ("id", "role", "name", "created_at", "revoked_at")
@@ -56,6 +59,8 @@ def list_keys(context: typer.Context, as_json: AsJson = False) -> None:
 @program.command("revoke")
 def revoke(context: typer.Context, key_id: str) -> None:
     """Make a key worthless from now on."""
+    from app.store import keys
+
     with open_library(context) as lib, lib.store.write() as tx:
         keys.revoke(tx, key_id)
     typer.echo(f"Key {key_id} is revoked.")

@@ -7,22 +7,18 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.api.schemas.jobs import Job, JobFile
 from app.cli.output import AsJson, print_json, print_table, progress_bar
 from app.cli.settings import open_library
-from app.services import imports, jobs, models
-from app.services.import_plan import MOST_ABSENT
-from app.services.library import Library
-from app.store.import_files import FileOutcome
-from app.store.job_record import JobKind, JobRecord, JobState
-from app.worker.loop import run_worker
+
+if TYPE_CHECKING:
+    from app.services.library import Library
+    from app.store.job_record import JobRecord
 
 POLL_S = 0.2
-ENDED = frozenset({JobState.SUCCEEDED, JobState.FAILED, JobState.CANCELED})
 PROGRESS_STEPS = 1000
 """A job tells its progress as a part of one; the bar counts steps."""
 FAILURE = 1
@@ -41,6 +37,8 @@ def import_clips(
 
     What is there already is passed over, so an import that was cut off can be run again.
     """
+    from app.store.job_record import JobState
+
     with open_library(context) as lib:
         job = register(lib, path)
         if wait:
@@ -59,6 +57,8 @@ def import_clips(
 
 def register(lib: Library, path: Path) -> JobRecord:
     """Take in every file below `path`, with a progress bar."""
+    from app.services import imports
+
     with progress_bar() as bar:
         task = bar.add_task("registering", total=None)
         job = imports.import_path(
@@ -71,6 +71,8 @@ def register(lib: Library, path: Path) -> JobRecord:
 @contextmanager
 def working(lib: Library) -> Iterator[None]:
     """A worker in this process; it shares the work with one that runs elsewhere."""
+    from app.worker.loop import run_worker
+
     stop = threading.Event()
     worker = threading.Thread(target=run_worker, args=(lib.settings, stop), name="worker")
     worker.start()
@@ -83,18 +85,22 @@ def working(lib: Library) -> Iterator[None]:
 
 def follow(lib: Library, job_id: str, doing: str) -> JobRecord:
     """Show a job's progress until it has ended."""
+    from app.services import jobs
+
     with progress_bar() as bar:
         task = bar.add_task(doing, total=PROGRESS_STEPS)
         while True:
             job = jobs.get_job(lib, job_id)
             bar.update(task, completed=round(job.progress * PROGRESS_STEPS))
-            if job.state in ENDED:
+            if not job.is_open:
                 return job
             time.sleep(POLL_S)
 
 
 def fit_if_due(lib: Library) -> None:
     """Have the models fitted where the library has changed enough, and wait for that."""
+    from app.services import models
+
     waiting = _open_fit(lib)
     if waiting is None:
         with lib.store.read() as tx:
@@ -106,13 +112,19 @@ def fit_if_due(lib: Library) -> None:
 
 def _open_fit(lib: Library) -> JobRecord | None:
     """A fit that is queued or being done, by this worker or another."""
+    from app.services import jobs
+    from app.store.job_record import JobKind
+
     recent = jobs.list_jobs(lib, kind=JobKind.FIT, limit=RECENT).items
-    return next((job for job in recent if job.state not in ENDED), None)
+    return next((job for job in recent if job.is_open), None)
 
 
 def _document(lib: Library, job: JobRecord) -> dict[str, Any]:
     """The job as the API has it, its result with every file that is recorded."""
-    document = Job.of(job).model_dump(mode="json")
+    from app.api.schemas.jobs import Job, JobFile
+    from app.services import jobs
+
+    document: dict[str, Any] = Job.of(job).model_dump(mode="json")
     if document["result"] is not None:
         files = [JobFile.of(file).model_dump(mode="json") for file in jobs.all_files(lib, job.id)]
         left_out = max(document["result"]["total"] - len(files), 0)
@@ -134,6 +146,10 @@ def show_import(lib: Library, job: JobRecord) -> None:
 
 
 def _show_failures(lib: Library, job_id: str, absent: int) -> None:
+    from app.services import jobs
+    from app.services.import_plan import MOST_ABSENT
+    from app.store.import_files import FileOutcome
+
     failures = [
         (file.path, _reason(file.error))
         for outcome in (FileOutcome.FAILED, FileOutcome.ABSENT)

@@ -9,49 +9,20 @@ from typing import Annotated
 import typer
 
 from app import __version__
-from app.cli import (
-    backup,
-    db,
-    demo,
-    evaluate,
-    export,
-    find,
-    find_pose,
-    fit,
-    keys,
-    library,
-    reanalyze,
-    serve,
-    synthesize,
-    verify,
-)
+from app.cli.commands import COMMANDS
+from app.cli.lazy import lazy_group
 from app.cli.settings import remember
 from app.errors import ClipNotFound, KinedexError
 
 FAILURE = 1
 
 program = typer.Typer(
+    cls=lazy_group(COMMANDS),
     name="kinedex",
     help="A self-hosted search engine for human motion.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
-program.command("serve")(serve.serve)
-program.command("worker")(serve.worker)
-program.command("demo")(demo.demo)
-program.command("import")(library.import_clips)
-program.command("reanalyze")(reanalyze.reanalyze)
-program.command("search")(find.search)
-program.command("search-pose")(find_pose.search_pose)
-program.command("recognize")(find.recognize)
-program.command("synthesize")(synthesize.synthesize)
-program.command("fit")(fit.fit)
-program.command("export")(export.export)
-program.command("backup")(backup.backup)
-program.command("verify")(verify.verify)
-program.add_typer(evaluate.program, name="evaluate")
-program.add_typer(keys.program, name="keys")
-program.add_typer(db.program, name="db")
 
 
 def _show_version(wanted: bool) -> None:

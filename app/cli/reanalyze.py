@@ -1,18 +1,17 @@
-"""Analysing stored clips anew."""
+"""Analyzing stored clips again."""
 
 from __future__ import annotations
 
 import time
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.cli.library import POLL_S, fit_if_due, working
 from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.settings import open_library
-from app.services import reanalysis
-from app.services.library import Library
-from app.store import clip_listing
+
+if TYPE_CHECKING:
+    from app.services.library import Library
 
 
 def reanalyze(
@@ -26,11 +25,14 @@ def reanalyze(
     ] = True,
     as_json: AsJson = False,
 ) -> None:
-    """Analyse clips again from their stored files.
+    """Analyze clips again from their stored files.
 
     A worker that starts does this by itself for clips of an earlier version. Clips that are
     ready stay so, and searches find them, until the new analysis replaces the old one.
     """
+    from app.cli.library import fit_if_due, working
+    from app.services import reanalysis
+
     with open_library(context) as lib:
         queued = reanalysis.requeue_outdated(lib)
         queued += reanalysis.requeue_ready(lib) if every else 0
@@ -48,6 +50,8 @@ def reanalyze(
 
 def _follow(lib: Library) -> None:
     """Show how many clips still wait until none does."""
+    from app.cli.library import POLL_S
+
     with progress_bar() as bar:
         total = _waiting(lib)
         task = bar.add_task("analysing", total=total)
@@ -58,5 +62,7 @@ def _follow(lib: Library) -> None:
 
 
 def _waiting(lib: Library) -> int:
+    from app.store import clip_listing
+
     with lib.store.read() as tx:
         return clip_listing.count_waiting(tx)

@@ -9,12 +9,6 @@ from typing import Annotated
 import typer
 
 from app.cli.settings import settings_of
-from app.json_stderr import json_stderr
-from app.logs import configure_logging, set_level
-from app.services.exposure import refuse_exposure_without_keys, refuse_taken_address
-from app.store import identity
-from app.worker.loop import run_worker
-from app.worker.supervisor import supervise
 
 Host = Annotated[str | None, typer.Option(help="Address to listen on [KINEDEX_HOST].")]
 Port = Annotated[int | None, typer.Option(help="Port to listen on [KINEDEX_PORT].")]
@@ -29,6 +23,11 @@ def serve(
     ] = True,
 ) -> None:
     """Serve the API and do the work, until stopped; each process is restarted if it dies."""
+    from app.logs import configure_logging
+    from app.services.exposure import refuse_exposure_without_keys, refuse_taken_address
+    from app.store import identity
+    from app.worker.supervisor import supervise
+
     settings = settings_of(context, host=host, port=port)
     configure_logging(settings.log_level.upper())
     identity.prepare(settings.database, settings.files_dir)
@@ -39,6 +38,10 @@ def serve(
 
 def worker(context: typer.Context) -> None:
     """Do the queued work, until stopped; any number of workers share one library."""
+    from app.json_stderr import json_stderr
+    from app.logs import set_level
+    from app.worker.loop import run_worker
+
     settings = settings_of(context)
     stop = threading.Event()
     for sign in (signal.SIGTERM, signal.SIGINT):

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from app.config import Settings, load_settings
 from app.errors import ConfigurationError
-from app.services.library import Library
-from app.store import identity
-from app.store.store import Store
+
+if TYPE_CHECKING:
+    from app.config import Settings
+    from app.services.library import Library
+    from app.store.store import Store
 
 
 def remember(context: typer.Context, **flags: Any) -> None:
@@ -22,6 +23,8 @@ def remember(context: typer.Context, **flags: Any) -> None:
 
 def settings_of(context: typer.Context, **flags: Any) -> Settings:
     """The settings in force; a flag of None counts as not given. Raises ConfigurationError."""
+    from app.config import load_settings
+
     return load_settings(**{**(context.obj or {}), **flags})
 
 
@@ -31,6 +34,9 @@ def open_store(context: typer.Context) -> Iterator[Store]:
 
     Raises ConfigurationError, LibraryMismatch, DatabaseOutOfDate, StorageError.
     """
+    from app.store import identity
+    from app.store.store import Store
+
     settings = settings_of(context)
     if not identity.is_database_there(settings.database):
         raise ConfigurationError(f"There is no library in {settings.data_dir}.")
@@ -45,6 +51,8 @@ def open_store(context: typer.Context) -> Iterator[Store]:
 @contextmanager
 def open_library(context: typer.Context) -> Iterator[Library]:
     """The library of the settings, closed at the end."""
+    from app.services.library import Library
+
     library = Library.open(settings_of(context))
     try:
         yield library

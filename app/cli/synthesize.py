@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.api.schemas.synthesis import Synthesis
-from app.cli.export import write_whole
+from app.cli.files import write_whole
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
-from app.services import synthesise
-from app.services.synthesis_plan import SynthesisKind
-from app.services.synthesise import Synthesised, SynthesisQuery
+
+if TYPE_CHECKING:
+    from app.services.synthesise import Synthesised
 
 
 def synthesize(
@@ -33,6 +32,8 @@ def synthesize(
     as_json: AsJson = False,
 ) -> None:
     """Make a motion that a person never recorded, as a BVH file, and tell what to expect."""
+    from app.services.synthesise import SynthesisQuery, synthesise
+
     if (person is None) == (not clip):
         raise typer.BadParameter("give either --person or --clip")
     query = SynthesisQuery(
@@ -43,11 +44,13 @@ def synthesize(
         store=store,
     )
     with open_library(context) as lib:
-        made = synthesise.synthesise(lib, query)
+        made = synthesise(lib, query)
     whose = made.person or "someone"
     path = output or Path(f"{_safe(f'{whose} {made.name}')}.bvh")
     write_whole(path, [made.bvh])
     if as_json:
+        from app.api.schemas.synthesis import Synthesis
+
         told = Synthesis.of(made, with_bvh=False).model_dump(mode="json", exclude={"motion"})
         print_json({"path": str(path), "bytes": len(made.bvh)} | told)
         return
@@ -70,6 +73,8 @@ def _tell(made: Synthesised, path: Path) -> None:
 
 
 def _made_of(made: Synthesised) -> str:
+    from app.services.synthesis_plan import SynthesisKind
+
     quality = made.quality
     if quality.kind is SynthesisKind.SEEN:
         one = "one of their own takes, which do not agree" if quality.follows else "their own takes"

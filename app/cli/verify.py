@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from datetime import UTC, datetime
+from typing import TYPE_CHECKING
 
 import typer
 
 from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.settings import open_store
-from app.store.verify import Verified
-from app.store.verify import verify as look
+
+if TYPE_CHECKING:
+    from app.store.verify import Verified
 
 FAILURE = 1
 
@@ -21,6 +23,8 @@ def verify(context: typer.Context, as_json: AsJson = False) -> None:
     The database's pages and references, every stored file against its SHA-256, every array. It may
     run while the library is in use.
     """
+    from app.store.verify import verify as look
+
     with open_store(context) as store, progress_bar() as bar:
         task = bar.add_task("reading", total=None)
         found = look(store, lambda done, total: bar.update(task, completed=done, total=total))

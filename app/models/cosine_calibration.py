@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy
 
 from app.models.correlated_space import LEAST_CLIPS, CorrelatedSpace, fit_correlated_space
 from app.models.folds import grouped_folds
@@ -120,7 +120,9 @@ def _likeliest(
         return float(np.mean(np.logaddexp(0.0, odds) - is_so * odds)), missed @ told / len(told)
 
     bounds = (LEVELS, SLOPES, WEIGHTS)
-    level, slope, weight = minimize(loss, START, jac=True, method="L-BFGS-B", bounds=bounds).x
+    level, slope, weight = scipy.optimize.minimize(
+        loss, START, jac=True, method="L-BFGS-B", bounds=bounds
+    ).x
     return float(level), float(slope), float(weight)
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy
 
 from app.numerics.arrays import BoolArray, FloatArray
 
@@ -55,5 +55,7 @@ def calibrate_pairs(distances: FloatArray, same: BoolArray) -> PairCalibration:
         told = float(np.mean(np.logaddexp(0.0, odds) - targets * odds))
         return told, np.array([missed.mean(), -np.mean(missed * distances)])
 
-    found = minimize(loss, START, jac=True, method="L-BFGS-B", bounds=(LEVELS, SLOPES))
+    found = scipy.optimize.minimize(
+        loss, START, jac=True, method="L-BFGS-B", bounds=(LEVELS, SLOPES)
+    )
     return PairCalibration(*(float(value) for value in found.x))

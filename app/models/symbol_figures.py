@@ -12,8 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.distance import cdist
-from scipy.stats import spearmanr
+import scipy
 
 from app.errors import NotEnoughLabels
 from app.models.symbol_space import DIMENSIONS, landmark_rows, symbol_distances
@@ -120,7 +119,7 @@ def _placing_errors(distances: FloatArray, rng: np.random.RandomState) -> tuple[
 
 
 def _relative(left: FloatArray, right: FloatArray, wanted: FloatArray) -> float:
-    reached = cdist(left, right)
+    reached = scipy.spatial.distance.cdist(left, right)
     return float(np.abs(reached - wanted).mean() / max(float(wanted.mean()), 1e-12))
 
 
@@ -131,4 +130,4 @@ def _agreement(symbols: Sequence[GaussianHMM], seed: int) -> float:
         for one in symbols
     ]
     apart = ~np.eye(len(symbols), dtype=bool)
-    return float(spearmanr(fast[apart], np.array(slow)[apart]).statistic)
+    return float(scipy.stats.spearmanr(fast[apart], np.array(slow)[apart]).statistic)

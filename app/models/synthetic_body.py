@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+import scipy
 
 from app.models.synthetic_feet import LOWEST_QUANTILE, feet_of, floor_of, on_the_floor, sole_depths
 from app.models.synthetic_motion import Course
@@ -127,7 +127,9 @@ def _mean_turns(turns: FloatArray, weights: FloatArray) -> FloatArray:
     side = np.sign(np.einsum("nkjc,njc->nkj", turns, turns[:, 0]))
     mean = np.einsum("nk,nkj,nkjc->njc", weights, np.where(side == 0, 1.0, side), turns)
     lengths = np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), 1e-9)
-    smooth = gaussian_filter1d(continuous(mean / lengths), SMOOTHING, axis=0, mode="nearest")
+    smooth = scipy.ndimage.gaussian_filter1d(
+        continuous(mean / lengths), SMOOTHING, axis=0, mode="nearest"
+    )
     return np.asarray(smooth / np.maximum(np.linalg.norm(smooth, axis=-1, keepdims=True), 1e-9))
 
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+import scipy
 
 from app.motion.animation import Animation
 from app.motion.foot_contact import LEVEL_PERCENTILE, Stance, stances
@@ -120,7 +120,7 @@ def _standing_tips(
         near[: stance.first] = np.minimum.accumulate(near[: stance.first][::-1])[::-1]
         tips = np.where((near > sure)[:, None], tip, tips)
         sure = np.maximum(sure, near)
-    return tips, np.asarray(gaussian_filter1d(sure, RELEASE, mode="nearest"))
+    return tips, np.asarray(scipy.ndimage.gaussian_filter1d(sure, RELEASE, mode="nearest"))
 
 
 def _between(start: FloatArray, end: FloatArray, share: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+import scipy
 
 from app.analysis.motion_sample import SAMPLES
 from app.analysis.motion_shape import CHANNELS, Shape, clearance, parts_of
@@ -90,12 +90,12 @@ def _stretched(
     own = np.asarray(take_shape, dtype=np.float64)
     timed = onto(own[None], np.asarray(shape)[None], TIME_SMOOTHING)
     there = _moments(timed.shapes[0])
-    slow = gaussian_filter1d(wanted - there, SLOWLY, axis=0, mode="nearest")
+    slow = scipy.ndimage.gaussian_filter1d(wanted - there, SLOWLY, axis=0, mode="nearest")
     detailed = _in_time(take, timed.timing[0], frames)
     made = detailed + resample_to(slow, frames)
     # As high over the floor as the take, and what the shape adds: the sum of two poses is not.
     higher = clearance(wanted) - clearance(there)
-    higher = gaussian_filter1d(higher, SLOWLY, mode="nearest")[:, None]
+    higher = scipy.ndimage.gaussian_filter1d(higher, SLOWLY, mode="nearest")[:, None]
     made[:, 39] += clearance(detailed) + resample_to(higher, frames)[:, 0] - clearance(made)
     return np.asarray(made)
 

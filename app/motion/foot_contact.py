@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+import scipy
 
 from app.motion.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import BoolArray, FloatArray
@@ -53,7 +53,7 @@ def standing(feet: FloatArray, rate: float) -> FloatArray:
     heights = feet[:, :, 1] - np.percentile(feet[:, :, 1], LEVEL_PERCENTILE, axis=0)
     speeds = np.linalg.norm(np.gradient(feet[:, :, [0, 2]], axis=0), axis=-1) * rate
     sure = np.exp(-((np.maximum(heights, 0.0) / LOW) ** 2) - (speeds / SLOW) ** 2)
-    return np.asarray(gaussian_filter1d(sure, 1.0, axis=0, mode="nearest"))
+    return np.asarray(scipy.ndimage.gaussian_filter1d(sure, 1.0, axis=0, mode="nearest"))
 
 
 def carried_by_feet(origin: FloatArray, feet: FloatArray, rate: float) -> FloatArray:

@@ -30,7 +30,7 @@ from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
+import scipy
 
 from app.motion.centre_of_mass import centre_of_mass
 from app.motion.joint_roles import SUN_ROLES, JointRole
@@ -231,10 +231,12 @@ def _low_pass(samples: FloatArray, rate: float, cutoff: float) -> FloatArray:
     if cutoff >= 0.45 * rate:
         return samples
     padding = min(len(samples) - 1, round(rate))
-    return np.asarray(sosfiltfilt(_sections(rate, cutoff), samples, axis=0, padlen=padding))
+    return np.asarray(
+        scipy.signal.sosfiltfilt(_sections(rate, cutoff), samples, axis=0, padlen=padding)
+    )
 
 
 @lru_cache(maxsize=64)
 def _sections(rate: float, cutoff: float) -> FloatArray:
     """The filter, whose design takes longer than its use on a short clip."""
-    return np.asarray(butter(2, cutoff, fs=rate, output="sos"))
+    return np.asarray(scipy.signal.butter(2, cutoff, fs=rate, output="sos"))

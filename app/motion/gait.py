@@ -10,7 +10,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+import scipy
 
 from app.motion.body_frame import BodyTrack
 from app.motion.joint_roles import SUN_ROLES, JointRole
@@ -88,7 +88,9 @@ def _lone_cycle(split: FloatArray) -> list[tuple[int, int]]:
 def foot_split(track: BodyTrack) -> FloatArray:
     """(n,) how far the left foot is before the right one, body lengths, smoothed."""
     split = track.local[:, LEFT_FOOT, FORWARD] - track.local[:, RIGHT_FOOT, FORWARD]
-    return np.asarray(gaussian_filter1d(split, SMOOTHING * track.rate, mode="nearest"))
+    return np.asarray(
+        scipy.ndimage.gaussian_filter1d(split, SMOOTHING * track.rate, mode="nearest")
+    )
 
 
 def _is_stride(track: BodyTrack, split: FloatArray, first: int, stop: int) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy
 
 from app.numerics.arrays import BoolArray, FloatArray
 
@@ -67,4 +67,4 @@ def _interpolated(track: FloatArray, unseen: BoolArray, wanted: BoolArray) -> Fl
     frames = np.clip(np.flatnonzero(wanted), seen[0], seen[-1])
     if len(seen) < 2:
         return np.repeat(track[seen], len(frames), axis=0)
-    return np.asarray(CubicSpline(seen, track[seen].astype(np.float64))(frames))
+    return np.asarray(scipy.interpolate.CubicSpline(seen, track[seen].astype(np.float64))(frames))

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.ndimage import convolve1d
+import scipy
 
 from app.deadline import check
 from app.numerics.arrays import FloatArray
@@ -97,7 +97,7 @@ def low_pass(samples: FloatArray, ratio: float) -> FloatArray:
     continued, smooth = _continued(samples, reach), np.empty_like(samples)
     for some in _blocks(samples):
         around = continued[some.start : some.stop + 2 * reach]
-        smooth[some] = convolve1d(around, kernel, axis=0)[reach : len(around) - reach]
+        smooth[some] = scipy.ndimage.convolve1d(around, kernel, axis=0)[reach : len(around) - reach]
     return smooth
 
 

@@ -12,8 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.cluster.hierarchy import fcluster, linkage
-from scipy.spatial.distance import pdist, squareform
+import scipy
 
 from app.numerics.arrays import FloatArray, IntArray
 
@@ -74,10 +73,13 @@ def best_clusters(points: FloatArray) -> Clusters | None:
     rows = np.asarray(points, dtype=np.float64)
     if len(rows) < 3 or not np.ptp(rows, axis=0).any():
         return None
-    tree, distances = linkage(rows, "ward"), squareform(pdist(rows))
+    tree, distances = (
+        scipy.cluster.hierarchy.linkage(rows, "ward"),
+        scipy.spatial.distance.squareform(scipy.spatial.distance.pdist(rows)),
+    )
     found = []
     for count in range(2, min(MOST_CLUSTERS, len(rows) - 1) + 1):
-        labels = fcluster(tree, count, "maxclust")
+        labels = scipy.cluster.hierarchy.fcluster(tree, count, "maxclust")
         if len(np.unique(labels)) > 1:
             score = silhouette_score(distances, labels, metric="precomputed")
             found.append(Clusters(float(score), labels))

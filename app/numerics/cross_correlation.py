@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
+import scipy
 
 from app.deadline import check
 from app.numerics.arrays import FloatArray, IntArray
@@ -71,10 +71,10 @@ def _by_transform(query: FloatArray, candidates: list[FloatArray]) -> FloatArray
     """(c,) maxima for candidates of similar length, none empty."""
     longest = max(len(candidate) for candidate in candidates)
     # Circular, but as long as all lags together: nothing wraps onto anything.
-    length = next_fast_len(len(query) + longest - 1, real=True)
+    length = scipy.fft.next_fast_len(len(query) + longest - 1, real=True)
     padded = np.zeros((len(candidates), length))
     for row, candidate in zip(padded, candidates, strict=True):
         row[: len(candidate)] = candidate
-    spectra = rfft(padded, axis=1)
-    spectra *= rfft(query, length).conj()
-    return np.asarray(irfft(spectra, length, overwrite_x=True).max(axis=1, initial=0.0))
+    spectra = scipy.fft.rfft(padded, axis=1)
+    spectra *= scipy.fft.rfft(query, length).conj()
+    return np.asarray(scipy.fft.irfft(spectra, length, overwrite_x=True).max(axis=1, initial=0.0))

@@ -11,7 +11,6 @@ moves a little changes its closeness a little, although neighbourhoods have ends
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import lapack
 
 from app.numerics.arrays import FloatArray
 
@@ -47,11 +46,10 @@ def diffused_closeness(
     weights *= -damping / degrees
     weights /= degrees[:, None]
     np.fill_diagonal(weights, 1.0)
-    # Symmetric: its transpose is itself, in the order that LAPACK overwrites.
-    factor, _ = lapack.dpotrf(weights.T, lower=True, overwrite_a=True)  # damping < 1: definite
-    # K = M^T M, of which only the first column and the diagonal are asked for.
-    half, _ = lapack.dtrtri(factor, lower=True, overwrite_c=True)
-    first, own = half.T @ half[:, 0], np.einsum("ij,ij->j", half, half)
+    # Not by SciPy, which has a triangular inverse: importing it costs a command more than the
+    # whole search, and the inverse of some hundred rows takes a millisecond.
+    kernel = np.linalg.inv(weights)
+    first, own = kernel[0], np.diagonal(kernel)
     return np.asarray(np.clip(first / np.sqrt(own[0] * own), 0.0, 1.0))
 
 

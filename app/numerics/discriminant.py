@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigh
+import scipy
 
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.signs import fix_signs
@@ -51,7 +51,7 @@ def discriminants(
     within = rows - means[labels]
     if shrinkage is None:
         shrinkage = shrinkage_within(within)
-    values, vectors = eigh(_shrunk(within, len(rows) - len(sizes), shrinkage))
+    values, vectors = scipy.linalg.eigh(_shrunk(within, len(rows) - len(sizes), shrinkage))
     whitening = vectors / np.sqrt(values)
     deviations = (means - rows.mean(axis=0)) * np.sqrt(sizes / sizes.sum())[:, None]
     parting, between = _parting(deviations @ whitening)
@@ -107,5 +107,5 @@ def _by_variance(parting: FloatArray, values: FloatArray) -> FloatArray:
     values: (d,) the variances within classes that were divided by.
     """
     beside = np.linalg.svd(parting, full_matrices=True)[0][:, parting.shape[1] :]
-    _, turn = eigh((beside.T * values) @ beside)
+    _, turn = scipy.linalg.eigh((beside.T * values) @ beside)
     return np.asarray(beside @ turn[:, ::-1])

@@ -12,7 +12,7 @@ scikit-learn minimizes only the raw stress (app.numerics.smacof), which leaves m
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy
 
 from app.numerics.arrays import FloatArray
 from app.numerics.euclidean import squared_distances
@@ -52,7 +52,7 @@ def metric_mds(distances: FloatArray, dimensions: int) -> FloatArray:
     if len(start) < 3:
         return start
     squares = _floored(distances) ** 2
-    found = minimize(
+    found = scipy.optimize.minimize(
         lambda flat: _stress_and_slope(flat.reshape(start.shape), squares),
         start.ravel(),
         jac=True,

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigh
+import scipy
 
 from app.numerics.arrays import FloatArray
 from app.numerics.signs import fix_signs
@@ -42,7 +42,7 @@ def principal_axes(samples: FloatArray, count: int, *, centred: bool = True) -> 
     tall = rows.shape[0] > rows.shape[1]
     gram = rows.T @ rows if tall else rows @ rows.T
     count = min(count, len(gram))
-    values, vectors = eigh(gram, subset_by_index=(len(gram) - count, len(gram) - 1))
+    values, vectors = scipy.linalg.eigh(gram, subset_by_index=(len(gram) - count, len(gram) - 1))
     values, vectors = values[::-1], vectors[:, ::-1]
     kept = max(int((values > _RELATIVE_FLOOR * values[0]).sum()), 1)
     axes = vectors[:, :kept] if tall else rows.T @ vectors[:, :kept]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from scipy.signal import find_peaks
+import scipy
 
 from app.motion.body_frame import ANALYSIS_RATE
 from app.numerics.arrays import FloatArray
@@ -74,7 +74,7 @@ def _minima(distances: FloatArray) -> list[int]:
     """Rising frames of the minima that are deep enough; the lowest is always among them."""
     wall = np.max(distances[np.isfinite(distances)]) + 1.0
     walled = -np.concatenate([[wall], np.minimum(distances, wall), [wall]])
-    _, found = find_peaks(walled, prominence=SAME_PLACE, plateau_size=1)
+    _, found = scipy.signal.find_peaks(walled, prominence=SAME_PLACE, plateau_size=1)
     return [int(frame) for frame in found["left_edges"] - 1]
 
 

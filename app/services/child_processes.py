@@ -17,14 +17,26 @@ import threading
 import types
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from multiprocessing.popen_forkserver import Popen
 from multiprocessing.process import BaseProcess
 
 from app.json_stderr import STDERR, log_uncaught
 from app.logs import configure_logging
 
-LIBRARIES = ["app.analysis.analyse", "app.formats.read", "app.motion.canonical", "hmmlearn.hmm"]
-"""What the server process imports for its children."""
+LIBRARIES = [
+    "app.analysis.analyse",
+    "app.formats.read",
+    "app.motion.canonical",
+    "hmmlearn.hmm",
+    # SciPy imports these parts on first use, and some take half a second.
+    "scipy.fft",
+    "scipy.interpolate",
+    "scipy.linalg",
+    "scipy.ndimage",
+    "scipy.signal",
+]
+"""What an analysis needs; the server process imports it once for its children."""
 
 one_at_a_time = threading.RLock()
 """Held while a child is started or asked how it ended: multiprocessing's own lists of children,
@@ -49,6 +61,12 @@ def child_context() -> multiprocessing.context.BaseContext:
     context = _Context()
     context.set_forkserver_preload(LIBRARIES)
     return context
+
+
+def import_libraries() -> None:
+    """Import what an analysis needs into this process, so that no first request waits for it."""
+    for name in LIBRARIES:
+        import_module(name)
 
 
 @contextmanager

@@ -32,6 +32,7 @@ from app.motion.motion import Motion
 from app.motion.resampling import resample
 from app.numerics.arrays import FloatArray, IntArray
 from app.services import fields
+from app.services.export_format import ExportFormat, ExportSkeleton
 from app.services.frame_rates import wanted_rate
 from app.services.ingest import order_for
 from app.services.library import Library
@@ -44,28 +45,6 @@ _Kind = TypeVar("_Kind", bound=StrEnum)
 
 POSITION_FORMATS = frozenset({"c3d", "npy"})
 """Formats that hold no rotations: their bytes need not be read again."""
-
-
-class ExportFormat(StrEnum):
-    """What a clip can be exported as."""
-
-    BVH = "bvh"
-    """Text, centimetres, Y up."""
-    GLB = "glb"
-    """Binary glTF 2.0 with a skinned body of sticks, metres, Y up."""
-    NPZ = "npz"
-    """NumPy arrays (see `app.formats.npz`), metres, Y up."""
-    CSV = "csv"
-    """A row a frame: time, then x, y, z of each joint; seconds, metres, Y up."""
-
-
-class ExportSkeleton(StrEnum):
-    """On which body."""
-
-    OWN = "own"
-    """The clip's own joints."""
-    CANONICAL = "canonical"
-    """One body for all clips: 18 joints called by role, 1.7 m tall."""
 
 
 @dataclass(frozen=True, slots=True)

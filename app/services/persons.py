@@ -36,7 +36,7 @@ def forget_person(lib: Library, name: str) -> JobRecord:
 def _forget(tx: Tx, person: str) -> JobRecord:
     if person not in labels.person_names(tx):
         raise NotFound(
-            "No clip carries this person.", places=[Place("path.name", "is not in the library")]
+            "No clip carries this person.", places=[Place("name", "is not in the library")]
         )
     clips.forget_person(tx, person)
     models.remove(tx, _HOLDING_PERSONS)

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.analysis.analyse import describe_for_search
 from app.errors import BadField, ClipNotFound, ClipNotReady, EmptyFile, Place, TooLarge
 from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
@@ -64,7 +63,7 @@ def describe(lib: Library, question: Question, names: tuple[str, ...]) -> Answer
     _check_part(question)
     if question.clip_id is not None:
         return _of_clip(lib, question, question.clip_id, names)
-    return Answered(_of_upload(lib, question), None)
+    return Answered(_of_upload(lib, question, names), None)
 
 
 def ready_clip(lib: Library, clip_id: str) -> ClipRecord:
@@ -126,14 +125,22 @@ def _of_clip(lib: Library, question: Question, clip_id: str, names: tuple[str, .
         if question.start is None and question.end is None:
             return Answered(described(tx, clip, names), clip)
     motion = cut(load_motion(lib, clip), question.start, question.end)
-    return Answered(describe_for_search(motion).arrays, clip)
+    return Answered(_described(motion, names), clip)
 
 
-def _of_upload(lib: Library, question: Question) -> Arrays:
+def _of_upload(lib: Library, question: Question, names: tuple[str, ...]) -> Arrays:
     found = lib.pool.analyse(_order(lib, question))
     if question.start is None and question.end is None:
         return found.arrays
-    return describe_for_search(cut(found.motion, question.start, question.end)).arrays
+    return _described(cut(found.motion, question.start, question.end), names)
+
+
+def _described(motion: Motion, names: tuple[str, ...]) -> Arrays:
+    """The named descriptors of a part of a motion, computed here and now."""
+    # The analysis is slow to import, and a search by a whole clip does not need it.
+    from app.analysis.analyse import describe_for_search
+
+    return describe_for_search(motion, names).arrays
 
 
 def _order(lib: Library, question: Question) -> Order:

@@ -138,7 +138,7 @@ def _by_task(
         if clip.id not in shapes:
             raise ClipNotReady(
                 "The clip was analysed by an older Kinedex: run `kinedex reanalyze`.",
-                places=[Place("body.clip_ids", f"{clip.id} was analysed by an older Kinedex")],
+                places=[Place("clip_ids", f"{clip.id} was analysed by an older Kinedex")],
             )
         if clip.task in model.tasks and clip.task != task:
             by_task.setdefault(clip.task or "", []).append(shapes[clip.id])
@@ -147,7 +147,7 @@ def _by_task(
         message = f"at least one must be labelled with another task of the library: {known}"
         raise NotEnoughLabels(
             f"Nothing can be learned from these clips: {message}.",
-            places=[Place("body.clip_ids", message)],
+            places=[Place("clip_ids", message)],
         )
     return {name: mean_of_takes(np.stack(rows)) for name, rows in by_task.items()}
 
@@ -157,5 +157,5 @@ def _unknown(field: str, name: str, known: tuple[str, ...]) -> NotFound:
     return NotFound(
         f"No model knows the {field} {name!r}. Known: {shown}. Clips that were added or labelled"
         " since count once the models are fitted again.",
-        places=[Place(f"body.{field}", f"must be one of: {shown}")],
+        places=[Place(field, f"must be one of: {shown}")],
     )

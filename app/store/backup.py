@@ -31,7 +31,7 @@ from app.errors import (
 )
 from app.store import library, references, removals
 from app.store.checked import refuse_damage
-from app.store.engine import Database, sqlite_url
+from app.store.engine import Database
 from app.store.files import NO_SPACE, FileStore
 from app.store.folders import sync_folder
 from app.store.id_file import write_id
@@ -165,7 +165,7 @@ def _copy_database(database: Database, path: Path) -> frozenset[str]:
     """
     path.unlink(missing_ok=True)
     database.copy_to(path)
-    copy = Database(sqlite_url(path))
+    copy = Database.at(path)
     try:
         damage = copy.find_damage()
         if damage:

@@ -14,7 +14,7 @@ import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from sqlalchemy import Connection, Engine, create_engine, event, func, select
 from sqlalchemy.engine import URL, make_url
@@ -41,8 +41,6 @@ _UNUSABLE = frozenset(
 )
 """SQLite's results that tell of the file or its disk rather than of what was asked."""
 
-_IN_URLS = str.maketrans({"%": "%25", "?": "%3F"})
-
 Tx = Connection
 """A running transaction, as `Database.read()` and `Database.write()` give it."""
 
@@ -50,7 +48,7 @@ Tx = Connection
 class Database:
     """An engine and its two kinds of transaction; safe to share between threads."""
 
-    def __init__(self, url: str, *, foreign_keys: bool = True) -> None:
+    def __init__(self, url: str | URL, *, foreign_keys: bool = True) -> None:
         """Connects lazily. `foreign_keys=False` is for migrations, which rebuild tables."""
         parsed = _parsed(url)
         self.file = database_file(parsed)
@@ -63,6 +61,11 @@ class Database:
         self._writer = self.engine.execution_options(**{WRITES_OPTION: True})
         # Threads of one process queue here rather than poll SQLite's lock; processes poll.
         self._turn = threading.Lock()
+
+    @classmethod
+    def at(cls, path: Path) -> Self:
+        """The SQLite database in the file at `path`, whatever characters the path holds."""
+        return cls(URL.create("sqlite", database=str(path)))
 
     @contextmanager
     def read(self) -> Iterator[Tx]:
@@ -183,12 +186,6 @@ class Database:
             yield
         finally:
             self._turn.release()
-
-
-def sqlite_url(path: Path) -> str:
-    """The URL of an SQLite database, whatever its path holds."""
-    # Not by SQLAlchemy's URL, which cannot write names that are not UTF-8.
-    return f"sqlite:///{str(path).translate(_IN_URLS)}"
 
 
 def _snapshot_reader(engine: Engine) -> Engine:

@@ -11,13 +11,13 @@ import hmac
 import secrets
 from dataclasses import dataclass
 from datetime import datetime
-from enum import StrEnum
 
 from sqlalchemy import RowMapping, bindparam, exists, insert, select, update
 
 from app.errors import NotFound
 from app.store.engine import Tx
 from app.store.ids import utc_now
+from app.store.key_role import KeyRole
 from app.store.tables import api_keys
 
 PREFIX = "kx"
@@ -28,22 +28,6 @@ _NO_HASH = "0" * 64
 # Made once: every call asks these.
 _IS_ANY = select(exists(select(api_keys.c.id)))
 _BY_ID = select(api_keys).where(api_keys.c.id == bindparam("the_id"))
-
-
-class KeyRole(StrEnum):
-    """What a key allows; each role allows what those before it do."""
-
-    READ = "read"
-    """Look, search, recognise."""
-    WRITE = "write"
-    """Also add, change and delete clips, fit models, cancel jobs."""
-    ADMIN = "admin"
-    """Also whatever concerns the installation."""
-
-    def allows(self, needed: KeyRole) -> bool:
-        """Whether this role is enough where `needed` is asked for."""
-        order = list(KeyRole)
-        return order.index(self) >= order.index(needed)
 
 
 @dataclass(frozen=True, slots=True)

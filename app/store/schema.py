@@ -1,20 +1,27 @@
-"""The schema's version: upgrading a database, and refusing one of another version."""
+"""The schema's version: upgrading a database, and refusing one of another version.
+
+Alembic upgrades. It takes a quarter of a second to import, so what every start asks (which
+revision the database has, and which one this code needs) is answered without it: migrations
+are files called NNNN_what.py, where NNNN is the revision.
+"""
 
 from __future__ import annotations
 
 import sysconfig
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from alembic import command
-from alembic.config import Config
-from alembic.migration import MigrationContext
-from alembic.script import ScriptDirectory
-from sqlalchemy import inspect
+from sqlalchemy import inspect, text
 
 from app.errors import DatabaseOutOfDate, StorageError
 from app.store.engine import Database, Tx
 
+if TYPE_CHECKING:
+    from alembic.config import Config
+
+REVISION_TABLE = "alembic_version"
+"""Where Alembic keeps a database's revision."""
 IN_CHECKOUT = Path(__file__).resolve().parents[2] / "migrations"
 IN_INSTALLATION = Path(sysconfig.get_path("data")) / "share" / "kinedex" / "migrations"
 
@@ -47,6 +54,8 @@ def upgrade(database_url: str) -> SchemaState:
     Harmless when it is there already, and when two processes do it at once. Raises
     DatabaseOutOfDate where the database is of a newer Kinedex, or of no Kinedex at all.
     """
+    from alembic import command
+
     # Rebuilding a table under enforced foreign keys would delete what refers to it.
     database = Database(database_url, foreign_keys=False)
     try:
@@ -101,7 +110,9 @@ def prepare(database_url: str) -> None:
     check(database_url)
 
 
-def _config(tx: Tx | None = None) -> Config:
+def _config(tx: Tx) -> Config:
+    from alembic.config import Config
+
     config = Config()
     config.set_main_option("script_location", str(migrations_dir()).replace("%", "%%"))
     config.attributes["connection"] = tx
@@ -109,11 +120,13 @@ def _config(tx: Tx | None = None) -> Config:
 
 
 def _known_revisions() -> frozenset[str]:
-    scripts = ScriptDirectory.from_config(_config()).walk_revisions()
-    return frozenset(script.revision for script in scripts)
+    files = (migrations_dir() / "versions").glob("[0-9]*_*.py")
+    return frozenset(file.name.partition("_")[0] for file in files)
 
 
 def _state(tx: Tx) -> SchemaState:
-    needed = ScriptDirectory.from_config(_config()).get_current_head()
-    current = MigrationContext.configure(tx).get_current_revision()
-    return SchemaState(current, needed or "", is_empty=not inspect(tx).get_table_names())
+    tables = inspect(tx).get_table_names()
+    current = None
+    if REVISION_TABLE in tables:
+        current = tx.execute(text(f"SELECT version_num FROM {REVISION_TABLE}")).scalar()  # noqa: S608
+    return SchemaState(current, max(_known_revisions()), is_empty=not tables)

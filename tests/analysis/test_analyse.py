@@ -78,3 +78,14 @@ def test_a_query_is_described_as_a_stored_clip_is() -> None:
         *SEGMENT_TYPES, *BEAT_ARRAYS,
     }  # fmt: skip
     assert all(stored[name].tobytes() == query[name].tobytes() for name in query)
+
+
+def test_a_query_is_described_by_the_named_arrays_alone() -> None:
+    motion = motion_of(BODIES["walk"])
+    every = describe_for_search(motion).arrays
+    for names in (("features_10hz",), ("motion_vector", "window_spans_1s"), tuple(every)):
+        some = describe_for_search(motion, names).arrays
+        assert tuple(some) == names
+        assert all(some[name].tobytes() == every[name].tobytes() for name in names)
+    with pytest.raises(KeyError, match="symbol_means"):
+        describe_for_search(motion, ["symbol_means"])

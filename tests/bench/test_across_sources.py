@@ -25,7 +25,14 @@ from app.models.ranking_figures import average_precision
 from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to
 from app.search.methods import Method
 from tests.bench.described_clips import RealClips, described_clips
+from tests.bench.page import Section
 from tests.search.fused import fused_distances
+
+FIGURES = Section(
+    "across_sources",
+    "Walks and runs found in other sources",
+    trials="each walk and run of one source asks all clips of another source",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -52,7 +59,7 @@ def test_walks_and_runs_are_found_in_other_sources(clips: RealClips, sources: np
     gaits = np.array([gait(task) for task in clips.tasks])
     found = {}
     for name, labels in (("strict", clips.tasks), ("gait", gaits)):
-        print(
+        FIGURES.print(
             f"\n{name}: P@10 MAP of walk, run\n{'':34}"
             + "".join(f"{a + '>' + b:>22}" for a, b in PAIRS)
         )
@@ -66,7 +73,7 @@ def test_walks_and_runs_are_found_in_other_sources(clips: RealClips, sources: np
             told = "".join(f"{p:6.2f}{m:5.2f}" for p, m in cells)
             mean = np.mean(cells, axis=0)
             found[name, way] = float(mean[1])
-            print(f"{way:34}{told}   mean {mean[0]:.3f} {mean[1]:.3f}")
+            FIGURES.print(f"{way:34}{told}   mean {mean[0]:.3f} {mean[1]:.3f}")
     for way, floor in FLOORS.items():
         assert found["strict", way] >= floor
     # Labels of the source that is searched are worth more than any measure without.

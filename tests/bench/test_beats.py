@@ -30,8 +30,15 @@ from app.services.demo import DemoClip
 from app.services.demo.dances import Sound, dance
 from app.services.demo.dances.music import STYLES
 from app.services.demo.dances.sounds import SAMPLE_RATE
+from tests.bench.page import Section
 from tests.recordings import CLICKS, WITHOUT_BEAT, f_score, piece, without_beat
 from tests.unheard_music import UNHEARD
+
+FIGURES = Section(
+    "beats",
+    "Beats of recordings, tempo from motion, and where a recording begins",
+    trials="generated pieces and dances of seeds that chose nothing; each line says how many",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -57,20 +64,22 @@ def pieces(kind: str) -> tuple[tuple[int, np.ndarray, np.ndarray], ...]:
 def test_beats_of_recordings() -> None:
     means = _told((CLICKS, *STYLES))
     music = float(np.mean([means[style] for style in STYLES]))
-    print(f"music {music:.3f}")
+    FIGURES.print(f"music {music:.3f}")
     assert means[CLICKS] >= 0.98
     assert music >= 0.90
 
 
 def test_beats_of_styles_never_heard() -> None:
     """None of them chose anything, and no target was set for them."""
-    print(f"music never heard {np.mean(list(_told(tuple(UNHEARD)).values())):.3f}")
+    FIGURES.print(f"music never heard {np.mean(list(_told(tuple(UNHEARD)).values())):.3f}")
 
 
 def _told(kinds: tuple[str, ...]) -> dict[str, float]:
     """Mean F by kind of piece; printed by tempo, with how often the tempo itself is right."""
-    print("\nF at 70 ms of beats in recordings of 30 s; tempo within 4 %, and half or double it")
-    print(f"{'':11}" + "".join(f"{bpm:>6}" for bpm in TEMPI) + "  mean tempo octave")
+    FIGURES.print(
+        "\nF at 70 ms of beats in recordings of 30 s; tempo within 4 %, and half or double it"
+    )
+    FIGURES.print(f"{'':11}" + "".join(f"{bpm:>6}" for bpm in TEMPI) + "  mean tempo octave")
     means, seconds = {}, []
     for kind in kinds:
         scores, ratios = defaultdict(list), []
@@ -83,8 +92,8 @@ def _told(kinds: tuple[str, ...]) -> dict[str, float]:
         means[kind] = float(np.mean([score for both in scores.values() for score in both]))
         row = "".join(f"{np.mean(scores[bpm]):6.2f}" for bpm in TEMPI)
         right, octave = (_near(ratios, wanted) for wanted in ((1.0,), (0.5, 2.0)))
-        print(f"{kind:11}{row}{means[kind]:6.3f}{right:6.2f}{octave:7.2f}")
-    print(f"{np.median(seconds):.2f} s each")
+        FIGURES.print(f"{kind:11}{row}{means[kind]:6.3f}{right:6.2f}{octave:7.2f}")
+    FIGURES.print(f"{np.median(seconds):.2f} s each")
     return means
 
 
@@ -102,17 +111,21 @@ def test_the_peer_on_the_same_recordings() -> None:
             scores[kind].append(f_score(found, beats))
     known, unheard = (np.mean([np.mean(scores[s]) for s in some]) for some in (STYLES, UNHEARD))
     clicks = np.mean(scores[CLICKS])
-    print(f"\nlibrosa's beat_track: clicks {clicks:.3f}, music {known:.3f}, unheard {unheard:.3f}")
+    FIGURES.print(
+        f"\nlibrosa's beat_track: clicks {clicks:.3f}, music {known:.3f}, unheard {unheard:.3f}"
+    )
 
 
 def test_recordings_without_a_beat() -> None:
-    print("\nbeats found where there are none, of 10 recordings")
+    FIGURES.print("\nbeats found where there are none, of 10 recordings")
     for seconds in (12.0, 30.0):
         row = {
             kind: sum(_hears(without_beat(PIECES + seed, kind, seconds)) for seed in range(10))
             for kind in WITHOUT_BEAT
         }
-        print(f"{seconds:.0f} s: " + ", ".join(f"{kind} {count}" for kind, count in row.items()))
+        FIGURES.print(
+            f"{seconds:.0f} s: " + ", ".join(f"{kind} {count}" for kind, count in row.items())
+        )
         assert sum(row.values()) <= 0.1 * 10 * len(row)
 
 
@@ -126,7 +139,7 @@ def _energy(clip: DemoClip) -> np.ndarray:
 
 def test_tempo_from_motion() -> None:
     """The same 36 dances with each noise."""
-    print("\ntempo of dances from their motion, within 3 %; F of beats at 100 ms")
+    FIGURES.print("\ntempo of dances from their motion, within 3 %; F of beats at 100 ms")
     every = []
     for noise in NOISES:
         right, silent, scores = [], 0, []
@@ -140,13 +153,13 @@ def test_tempo_from_motion() -> None:
             scores.append(f_score(found.times, beats, within=0.1))
         every += right
         told = f"{sum(right)} of {len(right)} right, {silent} none, F {np.mean(scores):.3f}"
-        print(f"{noise:>3} mm: {told}")
-    print(f"all: {np.mean(every):.3f}")
+        FIGURES.print(f"{noise:>3} mm: {told}")
+    FIGURES.print(f"all: {np.mean(every):.3f}")
     assert np.mean(every) >= 0.95
 
 
 def test_offsets_of_recordings() -> None:
-    print("\noffsets planted between recording and motion, -5 to 1 s")
+    FIGURES.print("\noffsets planted between recording and motion, -5 to 1 s")
     for sound in Sound:
         whole, modulo, unknown = [], [], 0
         for i in range(36):
@@ -164,7 +177,7 @@ def test_offsets_of_recordings() -> None:
             modulo.append(abs((error + beat / 2) % beat - beat / 2))
         exact, but_for_beats = (float(np.mean(np.array(e) <= 0.05)) for e in (whole, modulo))
         quartiles = 1000 * np.percentile(modulo, [50, 75, 95])
-        print(
+        FIGURES.print(
             f"{sound.value}: within 50 ms {exact:.2f}; but for whole beats {but_for_beats:.2f}"
             f" (median, 75 %, 95 %: {', '.join(f'{q:.0f}' for q in quartiles)} ms);"
             f" unknown {unknown} of 36"

@@ -14,6 +14,13 @@ import pytest
 
 from app.analysis.motion_volume import cross_correlations
 from app.numerics.arrays import FloatArray
+from tests.bench.page import Section
+
+FIGURES = Section(
+    "cross_correlation",
+    "D_xcorr of one motion against many",
+    trials="one batch against a loop of `numpy.correlate`, in turns, at each number of volumes",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -60,10 +67,10 @@ def test_the_batch_is_exact_and_faster(count: int) -> None:
         batch, found = _best(lambda asked=asked: cross_correlations(*asked))
         np.testing.assert_allclose(found, expected, atol=1e-12)
         ratios.append(loop / batch)
-        print(
+        FIGURES.print(
             f"\n{count:6} volumes, query of {len(epsilons[query]):4} frames:"
             f" loop {1e3 * loop:7.1f} ms, batch {1e3 * batch:6.1f} ms, {ratios[-1]:.1f}x",
             end="",
         )
-    print(f"\n{count:6} volumes: {np.median(ratios):.1f}x (median)")
+    FIGURES.print(f"\n{count:6} volumes: {np.median(ratios):.1f}x (median)")
     assert np.median(ratios) > 1.0

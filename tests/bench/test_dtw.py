@@ -19,6 +19,13 @@ import pytest
 from app.numerics.dtw import dtw_distances
 from app.search.distances import FEATURES
 from tests.bench.described_clips import described_clips
+from tests.bench.page import Section
+
+FIGURES = Section(
+    "dtw",
+    "DTW beside its peers",
+    trials="each query against 350 real clips, one thread, best of some rounds",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -51,9 +58,9 @@ def test_dtw_beside_its_peers(sequences: list[np.ndarray]) -> None:
             for query in queries:
                 way(query)
             best[name] = min(best[name], (time.process_time() - began) / len(queries))
-    print(f"\n{len(sequences)} clips, load {os.getloadavg()[0]:.1f}")
+    FIGURES.print(f"\n{len(sequences)} clips, load {os.getloadavg()[0]:.1f}")
     for name, seconds in best.items():
-        print(f"  {name:14}{1e3 * seconds:8.1f} ms  {seconds / best['ours']:6.2f} x ours")
+        FIGURES.print(f"  {name:14}{1e3 * seconds:8.1f} ms  {seconds / best['ours']:6.2f} x ours")
     np.testing.assert_allclose(ways["ours"](3), ways["dtaidistance"](3), rtol=1e-4, atol=1e-3)
     assert min(s for name, s in best.items() if name != "ours") >= TARGET * best["ours"]
 

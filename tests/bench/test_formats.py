@@ -25,7 +25,14 @@ from app.formats.read import read_recording
 from app.formats.sniff import sniff
 from app.motion.canonical import canonicalise
 from app.motion.motion import Motion
+from tests.bench.page import Section
 from tests.real_clips import manifest, real_clips
+
+FIGURES = Section(
+    "formats",
+    "Formats, joint roles and frame rates of the real clips",
+    trials="all 501 motion files of the folder, each read once",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -104,14 +111,14 @@ def _numpy_seconds(content: bytes) -> float:
 
 
 def _show(tallies: dict[str, Tally]) -> None:
-    print()
+    FIGURES.print()
     head = ("format", "read", "refused", "roles missing", "wrong fps", "found", "blamed")
-    print("".join(f"{name:>14}" for name in head), "   s/MB   x numpy")
+    FIGURES.print("".join(f"{name:>14}" for name in head), "   s/MB   x numpy")
     for name, t in sorted(tallies.items()):
         cells = (name, t.read, len(t.refused), t.missing_roles, t.wrong_rates, t.wrong_found)
-        print(
+        FIGURES.print(
             "".join(f"{cell!s:>14}" for cell in (*cells, len(t.right_blamed))),
             f"{t.seconds / t.megabytes:7.3f} {t.seconds / t.numpy_seconds:9.1f}",
         )
         for line in (*t.refused, *t.right_blamed):
-            print("   ", line)
+            FIGURES.print("   ", line)

@@ -27,10 +27,17 @@ from app.errors import BadContent
 from app.formats.read import read_recording
 from app.motion.body_frame import body_track
 from app.motion.canonical import canonicalise
+from tests.bench.page import Section
 from tests.bench.processes import MB, Meter, Tree
 from tests.bench.product import API, WORKER, Product, serving, zip_of_real_clips
 from tests.live import wait_until
 from tests.real_clips import manifest, real_clips
+
+FIGURES = Section(
+    "import",
+    "Import of the real clips through the running product",
+    trials="one import of a ZIP of all 501 clips",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -128,12 +135,12 @@ def test_none_is_lost_and_each_failure_is_explained(run: Run) -> None:
     failed = [file for file in files if file["outcome"] == "failed"]
     reasons = Counter((f["error"]["code"], f["error"]["detail"]) for f in failed)
     outcomes = Counter(file["outcome"] for file in files if file["path"] in wanted)
-    print(f"\n{len(wanted)} clips of the manifest: {dict(outcomes)}")
+    FIGURES.print(f"\n{len(wanted)} clips of the manifest: {dict(outcomes)}")
     for (code, detail), count in reasons.most_common():
-        print(f"  {count:4} {code}: {detail}")
+        FIGURES.print(f"  {count:4} {code}: {detail}")
     for file in failed:
         places = "; ".join(f"{p['location']}: {p['message']}" for p in file["error"]["errors"])
-        print(f"       {file['path']}: {file['error']['code']} {places}")
+        FIGURES.print(f"       {file['path']}: {file['error']['code']} {places}")
     assert run.job["state"] == "succeeded"
     assert {path: told[path] for path in wanted} == dict.fromkeys(wanted, 1)
     assert outcomes["ready"] + outcomes["failed"] == len(wanted)
@@ -147,23 +154,27 @@ def test_none_is_lost_and_each_failure_is_explained(run: Run) -> None:
 def test_speed(run: Run) -> None:
     seconds = run.motion_seconds()
     speed = seconds / run.cpu["worker"]
-    print(f"\n{seconds:.0f} s of motion; load {os.getloadavg()[0]:.1f}, {os.cpu_count()} cores")
-    print(f"  wall {run.wall:.1f} s: {seconds / run.wall:.0f} s of motion a second")
-    print(f"  CPU of the worker's tree {run.cpu['worker']:.1f} s: {speed:.0f} a second and core")
-    print(f"  CPU of the API's tree {run.cpu['api']:.1f} s")
+    FIGURES.print(
+        f"\n{seconds:.0f} s of motion; load {os.getloadavg()[0]:.1f}, {os.cpu_count()} cores"
+    )
+    FIGURES.print(f"  wall {run.wall:.1f} s: {seconds / run.wall:.0f} s of motion a second")
+    FIGURES.print(
+        f"  CPU of the worker's tree {run.cpu['worker']:.1f} s: {speed:.0f} a second and core"
+    )
+    FIGURES.print(f"  CPU of the API's tree {run.cpu['api']:.1f} s")
     assert speed >= LEAST_SPEED
 
 
 def test_memory(run: Run) -> None:
-    print(f"\n{'peak MB':10}{'API tree':>10}{'largest':>9}{'processes':>11}", end="")
-    print(f"{'worker tree':>13}{'largest':>9}{'processes':>11}")
+    FIGURES.print(f"\n{'peak MB':10}{'API tree':>10}{'largest':>9}{'processes':>11}", end="")
+    FIGURES.print(f"{'worker tree':>13}{'largest':>9}{'processes':>11}")
     for phase, trees in run.peaks.items():
         cells = []
         for name, widths in (("api", (10, 9, 11)), ("worker", (13, 9, 11))):
             tree, alone, count = trees[name]
             figures = f"{tree / MB:.0f}", f"{alone / MB:.0f}", str(count)
             cells += [f"{text:>{width}}" for text, width in zip(figures, widths, strict=True)]
-        print(f"{phase:10}" + "".join(cells))
+        FIGURES.print(f"{phase:10}" + "".join(cells))
     over = {
         (phase, name): round(peak[0] / MB)
         for phase, trees in run.peaks.items()
@@ -198,9 +209,11 @@ def test_where_the_time_goes() -> None:
         _timed(took, "symbol statistics", lambda c=channels, t=track: symbol_statistics(c, t.rate))
         _timed(took, "motion symbol", lambda c=channels: describe_symbol(c))
     total = sum(took.values())
-    print(f"\n{seconds:.0f} s of motion in {total:.1f} s of CPU: {seconds / total:.0f} a second")
+    FIGURES.print(
+        f"\n{seconds:.0f} s of motion in {total:.1f} s of CPU: {seconds / total:.0f} a second"
+    )
     for stage, spent in took.most_common():
-        print(
+        FIGURES.print(
             f"  {stage:20}{1e3 * spent / seconds:7.2f} ms a second of motion {spent / total:6.1%}"
         )
     assert total > 0

@@ -29,6 +29,13 @@ from app.store import schema
 from app.store.clip_filter import ClipFilter
 from app.store.store import Store
 from tests.bench.large_library import fill, many_clips
+from tests.bench.page import Section
+
+FIGURES = Section(
+    "index",
+    "The index against one bare BLAS pass",
+    trials="searches and passes in turns, at 10 thousand, 100 thousand and a million clips",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -52,7 +59,7 @@ def rows(request: pytest.FixtureRequest) -> Iterator[RowsView]:
         del batch
     gc.collect()
     taken = (_resident() - before) / request.param
-    print(f"\n{request.param} clips: {taken:.0f} bytes a clip, 512 of them its vector")
+    FIGURES.print(f"\n{request.param} clips: {taken:.0f} bytes a clip, 512 of them its vector")
     yield made.view()
     del made
     gc.collect()
@@ -62,7 +69,7 @@ def test_a_search_against_a_bare_pass(rows: RowsView) -> None:
     count = len(rows.labels.ids)
     matrix = np.concatenate([block.vectors for block in rows.blocks])
     queries = matrix[:: count // 64]
-    print(f"\n{count} clips{'':24}limit 10{'':9}limit 1000")
+    FIGURES.print(f"\n{count} clips{'':24}limit 10{'':9}limit 1000")
     worst = 0.0
     for name, wanted in FILTERS.items():
         told = []
@@ -75,7 +82,7 @@ def test_a_search_against_a_bare_pass(rows: RowsView) -> None:
             )
             told.append(f"{searches * 1e3:8.2f} ms {searches / passes:5.2f}x")
             worst = max(worst, searches / passes)
-        print(f"  {name:28}{'   '.join(told)}   (pass {passes * 1e3:.2f} ms)")
+        FIGURES.print(f"  {name:28}{'   '.join(told)}   (pass {passes * 1e3:.2f} ms)")
     deep = _near(rows, ClipFilter(), queries[0]).page(None, min(1000, count // 2))
     after = Position(1000, float(deep.distances[-1]), str(deep.ids[-1]))
     passes, searches = _alternate(
@@ -84,7 +91,9 @@ def test_a_search_against_a_bare_pass(rows: RowsView) -> None:
         queries,
         ROUNDS[count],
     )
-    print(f"  the page after a thousand{'':24}{searches * 1e3:8.2f} ms {searches / passes:5.2f}x")
+    FIGURES.print(
+        f"  the page after a thousand{'':24}{searches * 1e3:8.2f} ms {searches / passes:5.2f}x"
+    )
     if count > 10_000:  # below, a pass is some 0.1 ms, and what a thousand hits cost is more
         assert worst < MOST_PASSES
 
@@ -118,7 +127,9 @@ def test_eight_searches_at_once(rows: RowsView) -> None:
         started = time.perf_counter()
         list(pool.map(search, range(rounds)))
         together = time.perf_counter() - started
-    print(f"\n{count} clips: 8 threads take {together / alone:.2f} of the time of one, on the wall")
+    FIGURES.print(
+        f"\n{count} clips: 8 threads take {together / alone:.2f} of the time of one, on the wall"
+    )
 
 
 @pytest.mark.parametrize("count", [100_000])
@@ -135,11 +146,11 @@ def test_loading(tmp_path: Path, count: int) -> None:
     seconds = time.perf_counter() - started
     gc.collect()
     taken = (_resident() - before) / 1e6
-    print(f"\n{count} clips loaded in {seconds:.1f} s, {taken:.0f} MB")
+    FIGURES.print(f"\n{count} clips loaded in {seconds:.1f} s, {taken:.0f} MB")
     started = time.perf_counter()
     for _ in range(100):
         index.catch_up(store)
-    print(f"nothing new: {(time.perf_counter() - started) * 10:.2f} ms")
+    FIGURES.print(f"nothing new: {(time.perf_counter() - started) * 10:.2f} ms")
     store.close()
     assert len(index) == count
     assert taken * 1e6 / count < 2 * 512

@@ -29,8 +29,15 @@ from app.motion.body_frame import BodyTrack, body_track
 from app.motion.canonical import canonicalise
 from app.motion.motion import Motion
 from app.services.demo.dances import dance
+from tests.bench.page import Section
 from tests.bodies import motion_of
 from tests.dances import dance as simple_dance
+
+FIGURES = Section(
+    "keyposes",
+    "Keyposes of generated dances",
+    trials="generated dances of seeds that chose nothing; each line says how many",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -101,9 +108,11 @@ def judged(some: tuple[Example, ...], pair: Thresholds = USUAL) -> Counts:
 
 
 def tell(title: str, rows: dict[str, list[Counts]]) -> None:
-    print(f"\n{title}\n{'F within 100 ms, noise in mm':<34}" + "".join(f"{n:>7}" for n in NOISES))
+    FIGURES.print(
+        f"\n{title}\n{'F within 100 ms, noise in mm':<34}" + "".join(f"{n:>7}" for n in NOISES)
+    )
     for name, counts in rows.items():
-        print(f"{name:<34}" + "".join(f"{each.f:7.3f}" for each in counts))
+        FIGURES.print(f"{name:<34}" + "".join(f"{each.f:7.3f}" for each in counts))
 
 
 def test_generated_dances() -> None:
@@ -117,7 +126,7 @@ def test_generated_dances() -> None:
     }
     tell("27 dances of the demo's generator, usual thresholds", rows)
     best = rows["rms, beats given"][NOISES.index(5)]
-    print(f"at 5 mm, beats given: precision {best.precision:.3f}, recall {best.recall:.3f}")
+    FIGURES.print(f"at 5 mm, beats given: precision {best.precision:.3f}, recall {best.recall:.3f}")
     for known in KNOWN:
         found = dict(zip(NOISES, rows[f"rms, beats {known}"], strict=True))
         assert found[10].f >= 0.90
@@ -165,7 +174,9 @@ def test_a_minute_at_120_hz() -> None:
         ("keyposes alone", lambda: find_keyposes(track)),
     ):
         wall, cpu = _seconds(work)
-        print(f"\n{name}, {motion.duration:.0f} s at 120 Hz: {wall:.3f} s, of them CPU {cpu:.3f}")
+        FIGURES.print(
+            f"\n{name}, {motion.duration:.0f} s at 120 Hz: {wall:.3f} s, of them CPU {cpu:.3f}"
+        )
 
 
 def _minute() -> Motion:

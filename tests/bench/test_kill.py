@@ -20,10 +20,17 @@ from typing import Any
 import psutil
 import pytest
 
+from tests.bench.page import Section
 from tests.bench.processes import Key, child_running, key_of, kill, processes_over, tree_of
 from tests.bench.product import WORKER, Product, serving, zip_of_real_clips
 from tests.live import wait_until
 from tests.real_clips import manifest
+
+FIGURES = Section(
+    "kill",
+    "Ten kills of the worker during an import",
+    trials="ten `kill -9` during one import of all real clips",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -104,9 +111,9 @@ def test_every_clip_ends_once_whatever_dies(killed: tuple[Tally, Path]) -> None:
     files = tally.files
     outcomes = Counter(file["outcome"] for file in files)
     failures = Counter(file["error"]["code"] for file in files if file["error"])
-    print(f"\n{KILLS} kills in {tally.seconds:.0f} s (load {os.getloadavg()[0]:.1f})")
-    print("  killed: " + "; ".join(tally.at))
-    print(f"  files {len(files)}: {dict(outcomes)}; reasons {dict(failures)}")
+    FIGURES.print(f"\n{KILLS} kills in {tally.seconds:.0f} s (load {os.getloadavg()[0]:.1f})")
+    FIGURES.print("  killed: " + "; ".join(tally.at))
+    FIGURES.print(f"  files {len(files)}: {dict(outcomes)}; reasons {dict(failures)}")
     assert tally.job["state"] == "succeeded"
     told = Counter(file["path"] for file in files)
     assert {row["path"]: told[row["path"]] for row in manifest()} == {
@@ -131,8 +138,8 @@ def _check_clips(database: sqlite3.Connection, acknowledged: list[str]) -> None:
     ready = {clip for clip, state in states.items() if state == "ready"}
     assert arrays.keys() == ready
     assert len(set(arrays.values())) == 1
-    print(f"  clips {len(states)}, each once; {len(ready)} ready,", end=" ")
-    print(f"with {set(arrays.values())} arrays each")
+    FIGURES.print(f"  clips {len(states)}, each once; {len(ready)} ready,", end=" ")
+    FIGURES.print(f"with {set(arrays.values())} arrays each")
 
 
 def _check_jobs(database: sqlite3.Connection) -> None:
@@ -142,8 +149,10 @@ def _check_jobs(database: sqlite3.Connection) -> None:
     ingests = Counter(clip for kind, _, _, clip, _ in jobs if kind == "ingest")
     again = Counter(attempts for kind, _, attempts, _, _ in jobs if kind == "ingest")
     imports = [attempts for kind, _, attempts, _, _ in jobs if kind == "import"]
-    print(f"  ingest jobs {len(ingests)}, by attempts {dict(sorted(again.items()))}; ", end="")
-    print(f"the import took {imports} attempts")
+    FIGURES.print(
+        f"  ingest jobs {len(ingests)}, by attempts {dict(sorted(again.items()))}; ", end=""
+    )
+    FIGURES.print(f"the import took {imports} attempts")
     assert max(ingests.values()) == 1
     assert len(imports) == 1
     assert {state for _, state, _, _, _ in jobs} <= {"succeeded", "failed"}
@@ -156,7 +165,7 @@ def _check_files(database: sqlite3.Connection, folder: Path) -> None:
     kept = [path for path in folder.rglob("*") if path.is_file() and path.name != "library-id"]
     names = Counter(path.name for path in kept)
     strange = [path.name for path in kept if path.name not in wanted]
-    print(f"  files kept {len(kept)}, of which left over {len(strange)}: {strange[:3]}")
+    FIGURES.print(f"  files kept {len(kept)}, of which left over {len(strange)}: {strange[:3]}")
     assert wanted - names.keys() == set()
     assert max(names.values()) == 1
     # The next start removes temporaries; what was not committed yet waits in the quarantine, and

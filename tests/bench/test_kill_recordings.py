@@ -22,9 +22,16 @@ import pytest
 
 from app.services.demo import DemoClip
 from app.services.demo.dances import Sound, dance
+from tests.bench.page import Section
 from tests.bench.processes import child_running, kill, tree_of
 from tests.bench.product import API, WORKER, Product, serving
 from tests.live import wait_until
+
+FIGURES = Section(
+    "kill_recordings",
+    "Eight kills during uploads of recordings",
+    trials="eight `kill -9` of the API or the worker while recordings are uploaded",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -119,8 +126,8 @@ def _check(product: Product, sent: Sent) -> None:
 
     wait_until(ended, READY_SECONDS)
     clips = {clip["id"]: clip for clip in product.items("/v1/clips")}
-    print(f"\nkilled: {'; '.join(sent.killed)}")
-    print(
+    FIGURES.print(f"\nkilled: {'; '.join(sent.killed)}")
+    FIGURES.print(
         f"{UPLOADS} uploads: {len(sent.acknowledged)} acknowledged, {sent.broken} cut off,"
         f" refused {dict(sent.refused)}; clips there {len(clips)}"
     )
@@ -133,7 +140,9 @@ def _check(product: Product, sent: Sent) -> None:
             audio = client.get(f"/v1/clips/{clip_id}/audio")
             assert hashlib.sha256(audio.content).hexdigest() == wanted
             heard[client.get(f"/v1/clips/{clip_id}/keyposes").json()["beats_source"]] += 1
-    print(f"all of them ready, their recordings byte by byte as sent; beats from {dict(heard)}")
+    FIGURES.print(
+        f"all of them ready, their recordings byte by byte as sent; beats from {dict(heard)}"
+    )
     assert heard == {"audio": len(sent.acknowledged)}
 
 

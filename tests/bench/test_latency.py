@@ -27,8 +27,15 @@ from app.store import identity
 from app.store.store import Store
 from tests import live as live_service
 from tests.bench.large_library import fill
+from tests.bench.page import Section
 from tests.bench.processes import processes_over
 from tests.live import Live, serve
+
+FIGURES = Section(
+    "latency",
+    "Time of a search over HTTP",
+    trials="some hundred requests for each method and number of clips",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -73,7 +80,7 @@ def service(
 def test_latency(service: tuple[Live, int]) -> None:
     live, count = service
     rng = np.random.default_rng(1)
-    print(f"\n{count} clips, ms, load {os.getloadavg()[0]:.1f}\n{'':18}{HEAD}")
+    FIGURES.print(f"\n{count} clips, ms, load {os.getloadavg()[0]:.1f}\n{'':18}{HEAD}")
     for name, asked in SEARCHES.items():
         kind = "pose" if "time" in asked else "motion"
         # what the first search of a kind loads is not what a search takes
@@ -86,7 +93,7 @@ def test_latency(service: tuple[Live, int]) -> None:
             spent = (_cpu_seconds(live) - before) / REQUESTS
             shown = (*np.percentile(seconds, [50, 95, 99]), spent)
             told.append("".join(f"{1e3 * s:8.1f}" for s in shown))
-        print(f"  {name:16}{'    '.join(told)}")
+        FIGURES.print(f"  {name:16}{'    '.join(told)}")
 
 
 def _bodies(

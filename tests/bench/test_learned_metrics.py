@@ -21,6 +21,13 @@ from app.models.metric_figures import calibration_error, held_out_metric
 from app.models.pair_calibration import calibrate_pairs
 from app.models.ranking_figures import average_precision
 from tests.bench.described_clips import RealClips, described_clips
+from tests.bench.page import Section
+
+FIGURES = Section(
+    "learned_metrics",
+    "Learned metrics on clips that taught them nothing",
+    trials="takes 3 to 5 of dataset 2 ask, all of dataset 2 answers",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -94,15 +101,15 @@ PROTOCOLS: dict[str, Callable[[RealClips], Iterator[Round]]] = {
 
 @pytest.mark.parametrize("factor", list(Factor))
 def test_unseen_clips_find_their_like(clips: RealClips, factor: Factor) -> None:
-    print(f"\nmetric-{factor}: unseen takes ask all of dataset 2\n{HEAD}")
+    FIGURES.print(f"\nmetric-{factor}: unseen takes ask all of dataset 2\n{HEAD}")
     found = {name: judge(clips, factor, rounds) for name, rounds in PROTOCOLS.items()}
     for name, shares in found.items():
-        print(told(name, shares))
+        FIGURES.print(told(name, shares))
     plain = judge(clips, factor, all_labels, learned=False)
-    print(told("motion vector", plain))
+    FIGURES.print(told("motion vector", plain))
     for count in (2, 4, 8):
         shares = judge(clips, factor, clips_a_label(factor, count))
-        print(told(f"{count} clips a {factor}", shares))
+        FIGURES.print(told(f"{count} clips a {factor}", shares))
         assert shares[2] > plain[2]
     for (of, name), floor in FLOORS.items():
         if of is factor:
@@ -113,7 +120,9 @@ def test_unseen_clips_find_their_like(clips: RealClips, factor: Factor) -> None:
 
 def test_same_style_other_task_and_same_task_other_style(clips: RealClips) -> None:
     """As a filter asks it: by metric-person without the query's task, and the other way round."""
-    print(f"\nunseen takes, the query's own task (style) left out\n{'':24}{'P@1':>8}{'P@10':>8}")
+    FIGURES.print(
+        f"\nunseen takes, the query's own task (style) left out\n{'':24}{'P@1':>8}{'P@10':>8}"
+    )
     for factor in Factor:
         labels, left_out = labels_of(clips, factor), labels_of(clips, other(factor))
         for name, learned in (("learned", True), ("motion vector", False)):
@@ -126,7 +135,7 @@ def test_same_style_other_task_and_same_task_other_style(clips: RealClips) -> No
                     same = labels[those[np.argsort(apart, kind="stable")]] == labels[query]
                     rows.append((same[0], same[:10].mean()))
             first, ten = np.mean(rows, axis=0)
-            print(f"same {factor}, {name:14}".ljust(24) + f"{first:8.3f}{ten:8.3f}")
+            FIGURES.print(f"same {factor}, {name:14}".ljust(24) + f"{first:8.3f}{ten:8.3f}")
             assert not learned or ten > 0.9
 
 
@@ -146,12 +155,12 @@ def test_scores_are_probabilities(clips: RealClips, factor: Factor) -> None:
     curve = calibrate_pairs(np.concatenate(distances[False]), np.concatenate(same[False]))
     there, truth = np.concatenate(distances[True]), np.concatenate(same[True])
     scores = curve.probabilities(there)
-    print(f"\nmetric-{factor}: score told, share that is the same, pairs")
+    FIGURES.print(f"\nmetric-{factor}: score told, share that is the same, pairs")
     for low in np.arange(0, 1, 0.2):
         chosen = (scores >= low) & (scores < low + 0.2 + 1e-9)
-        print(f"{scores[chosen].mean():8.3f}{truth[chosen].mean():8.3f}{chosen.sum():10}")
+        FIGURES.print(f"{scores[chosen].mean():8.3f}{truth[chosen].mean():8.3f}{chosen.sum():10}")
     error = calibration_error(curve, there, truth)
-    print(f"error {error:.4f}")
+    FIGURES.print(f"error {error:.4f}")
     assert error < 0.02
 
 
@@ -170,8 +179,10 @@ def test_learning_and_asking_take_little_time(clips: RealClips) -> None:
     for _ in range(100):
         axes.project(one)
     asked = (time.process_time() - start) / 100
-    print(f"\n{len(known)} clips: fit {fitted:.2f} s, held-out figures {judged:.2f} s of CPU;")
-    print(f"coordinates of a query {1e3 * asked:.2f} ms")
+    FIGURES.print(
+        f"\n{len(known)} clips: fit {fitted:.2f} s, held-out figures {judged:.2f} s of CPU;"
+    )
+    FIGURES.print(f"coordinates of a query {1e3 * asked:.2f} ms")
     assert asked < 0.01
 
 

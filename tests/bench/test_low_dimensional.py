@@ -30,9 +30,16 @@ from app.motion.body_frame import BodyTrack, body_track
 from app.motion.canonical import canonicalise
 from app.numerics.arrays import FloatArray
 from app.numerics.clusteredness import clusteredness
+from tests.bench.page import Section
 from tests.bodies import motion_of
 from tests.cyclic_dances import cyclic_dance
 from tests.real_clips import manifest, real_clips
+
+FIGURES = Section(
+    "low_dimensional",
+    "Keyposes against uniform poses in few dimensions",
+    trials="all real clips with at least four keyposes",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -79,14 +86,14 @@ def test_variance_and_error_of_dances_and_a_walk() -> None:
         models = _models(track)
         assert models is not None
         least = 1000 * reconstruction_errors(eigen_model(track.local), track)
-        print(f"\n{name}: {track.duration:.0f} s, {models[Basis.KEYPOSE].poses} keyposes")
+        FIGURES.print(f"\n{name}: {track.duration:.0f} s, {models[Basis.KEYPOSE].poses} keyposes")
         for basis, model in models.items():
             errors = 1000 * reconstruction_errors(model, track)
-            print(_line(f"variance, {basis}", model.variance_kept(), "7.3f"))
-            print(_line(f"error mm, {basis}", errors, "7.1f"))
+            FIGURES.print(_line(f"variance, {basis}", model.variance_kept(), "7.3f"))
+            FIGURES.print(_line(f"error mm, {basis}", errors, "7.1f"))
             reached = errors[: len(least)]
             assert (reached >= least[: len(reached)] - 1e-6).all()
-        print(_line("error mm, all frames", least, "7.1f"))
+        FIGURES.print(_line("error mm, all frames", least, "7.1f"))
 
 
 def test_keyposes_keep_more_of_their_own_and_less_of_the_motion() -> None:
@@ -106,12 +113,14 @@ def test_keyposes_keep_more_of_their_own_and_less_of_the_motion() -> None:
             kept[basis].append(float(model.variance_kept()[2]))
             errors[basis].append(1000 * float(reconstruction_errors(model, track)[2]))
             silhouettes[basis].append(found.clusters.silhouette if found else 0.0)
-    print(f"\n{len(kept[Basis.KEYPOSE])} clips, 3 dimensions")
+    FIGURES.print(f"\n{len(kept[Basis.KEYPOSE])} clips, 3 dimensions")
     for basis in Basis:
         told = [np.mean(figures[basis]) for figures in (kept, errors, silhouettes)]
-        print("{:10} variance {:.3f}  error {:5.1f} mm  silhouette {:.3f}".format(basis, *told))
+        FIGURES.print(
+            "{:10} variance {:.3f}  error {:5.1f} mm  silhouette {:.3f}".format(basis, *told)
+        )
     better = np.mean(np.array(errors[Basis.KEYPOSE]) < errors[Basis.UNIFORM])
-    print(f"keyposes draw the motion better in {better:.0%} of the clips")
+    FIGURES.print(f"keyposes draw the motion better in {better:.0%} of the clips")
     assert np.mean(kept[Basis.KEYPOSE]) > np.mean(kept[Basis.UNIFORM])
     assert np.mean(silhouettes[Basis.KEYPOSE]) > np.mean(silhouettes[Basis.UNIFORM])
     # What the paper does not measure: people preferred keyposes, the error does not.
@@ -133,10 +142,10 @@ def test_people_hardly_ever_pass_the_limits_of_plausible_poses() -> None:
         drawn += track.frames
         for basis, model in models.items():
             counts[basis.value] += judge_poses(low_dimensional(model, track, 3).local).count
-    print(
+    FIGURES.print(
         f"\nimplausible: original {counts['original']} of {frames} frames; at 3 dimensions", end=""
     )
-    print(f" keypose {counts['keypose']}, uniform {counts['uniform']} of {drawn}")
+    FIGURES.print(f" keypose {counts['keypose']}, uniform {counts['uniform']} of {drawn}")
     assert counts["original"] < 0.003 * frames
 
 
@@ -160,7 +169,7 @@ def test_the_same_keyposes_of_eight_dancers_cluster() -> None:
             points = eigen_model(rows).coordinates(rows, 3)
             own[basis].append(silhouette_score(points, np.tile(np.arange(8), 8)))
     told = {basis: float(np.mean(values)) for basis, values in own.items()}
-    print(
+    FIGURES.print(
         "\nsilhouette of poses by their number: "
         + ", ".join(f"{b} {v:.3f}" for b, v in told.items())
     )

@@ -33,7 +33,15 @@ from app.models.tensor_recogniser import fit_tensor_recogniser, recognise_by_ten
 from app.motion.body_frame import body_track
 from app.motion.canonical import canonicalise
 from app.numerics.area_under_curve import area_under_curve
+from tests.bench.page import Section
 from tests.real_clips import manifest, real_clips
+
+FIGURES = Section(
+    "recognition",
+    "Who is it, and what are they doing?",
+    trials="each clip is asked about once in each round in which it was not learned",
+    chance="the most frequent label, printed as the prior",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -281,8 +289,8 @@ def _right(answers: list[Answer], truth: list[str] | list[str | None]) -> float:
 
 
 def _tell(what: str, figures: Mapping[str, Mapping[str, Any]]) -> None:
-    print(f"\n{what}")
+    FIGURES.print(f"\n{what}")
     for name, shares in figures.items():
         numbers = {key: value for key, value in shares.items() if not isinstance(value, list)}
         told = "  ".join(f"{key} {value:.4g}" for key, value in numbers.items())
-        print(f"  {name:12} {told}")
+        FIGURES.print(f"  {name:12} {told}")

@@ -55,8 +55,16 @@ from app.services.find import MotionQuery
 from app.services.library import Library
 from app.store.clip_record import ClipRecord
 from app.worker.loop import run_worker
+from tests.bench.page import Section
 from tests.real_clips import manifest, real_clips
 from tests.search.fused import fused_distances
+
+FIGURES = Section(
+    "retrieval",
+    "Query by example",
+    trials="each of the 350 clips of dataset 2 asks all others; the report half chose nothing",
+    chance=".10 for the nearest clip: ten tasks of equal size",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -167,13 +175,15 @@ def test_no_single_change_is_better_on_the_choice_sets(
     choice: Choice, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """MAP of each set alone and as one library; what counts is the mean of both views."""
-    print("\n" + " " * 38 + "".join(f"{name:>11}" for name in SETS) + f"{'as one':>11}{'mean':>9}")
+    FIGURES.print(
+        "\n" + " " * 38 + "".join(f"{name:>11}" for name in SETS) + f"{'as one':>11}{'mean':>9}"
+    )
     vectors = choice.vectors()
 
     def told(name: str, vectors: np.ndarray, rank: Callable[..., np.ndarray]) -> float:
         shares = [one.mean_average_precision for one in choice.judge(vectors, rank)]
         mean = float((np.mean(shares[:-1]) + shares[-1]) / 2)
-        print(f"{name:38}" + "".join(f"{s:11.3f}" for s in shares) + f"{mean:9.4f}")
+        FIGURES.print(f"{name:38}" + "".join(f"{s:11.3f}" for s in shares) + f"{mean:9.4f}")
         return mean
 
     told("vector", vectors, lambda query, those, _: np.linalg.norm(those - query, axis=1))
@@ -231,19 +241,23 @@ def test_the_default_holds_what_it_reaches_on_clips_that_chose_nothing(dataset_2
     reported = [clip for clip in stored if clip.person in REPORT_STYLES]
     others = [clip for clip in stored if clip.person not in REPORT_STYLES]
     found: dict[Method, Figures] = {}
-    print(f"\nall {len(stored)} clips of dataset 2 are asked, load {os.getloadavg()[0]:.1f}")
-    print(f"{'':12}{f'report half, {len(reported)}':>32}{'':4}{f'choice half, {len(others)}':>32}")
-    print(f"{'':12}{HEAD}{'':4}{HEAD}{'ms':>8}")
+    FIGURES.print(
+        f"\nall {len(stored)} clips of dataset 2 are asked, load {os.getloadavg()[0]:.1f}"
+    )
+    FIGURES.print(
+        f"{'':12}{f'report half, {len(reported)}':>32}{'':4}{f'choice half, {len(others)}':>32}"
+    )
+    FIGURES.print(f"{'':12}{HEAD}{'':4}{HEAD}{'ms':>8}")
     for method in [method for method in Method if method not in LEARNED]:
         took: list[float] = []
         half = [_ask(dataset_2, clip, method, len(stored), took) for clip in reported]
         rest = [_ask(dataset_2, clip, method, len(stored), took) for clip in others]
         found[method] = _figures(half)
         both = f"{found[method].told()}{'':4}{_figures(rest).told()}"
-        print(f"{method:12}{both}{1e3 * np.median(took):8.1f}")
+        FIGURES.print(f"{method:12}{both}{1e3 * np.median(took):8.1f}")
     reached = found[Method.FUSED]
     for name, target in TARGETS.items():
-        print(f"{name}: {getattr(reached, name):.3f}, hoped for {target:.3f}")
+        FIGURES.print(f"{name}: {getattr(reached, name):.3f}, hoped for {target:.3f}")
     for name, floor in FLOORS.items():
         assert getattr(reached, name) >= floor, name
 

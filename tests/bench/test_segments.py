@@ -25,9 +25,16 @@ from app.motion.body_frame import BodyTrack, body_track
 from app.motion.canonical import canonicalise
 from app.motion.gait import gait_cycles
 from app.numerics.arrays import FloatArray
+from tests.bench.page import Section
 from tests.bodies import motion_of
 from tests.cyclic_dances import cyclic_dance
 from tests.real_clips import manifest, real_clips
+
+FIGURES = Section(
+    "segments",
+    "Segments and cycles",
+    trials="segments of every second real clip, and generated dances; each line says how many",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -64,14 +71,14 @@ def test_segments_find_those_of_their_task() -> None:
         tasks += [row["task"]] * len(spans)
         owners += [number] * len(spans)
     labels, clips = np.array(tasks), np.array(owners)
-    print(f"\n{len(labels)} segments of {len(set(owners))} clips, 1-NN by task:", end="")
+    FIGURES.print(f"\n{len(labels)} segments of {len(set(owners))} clips, 1-NN by task:", end="")
     shares = {}
     for name, rows in vectors.items():
         apart = cdist(rows, rows)
         apart[clips[:, None] == clips[None]] = np.inf
         shares[name] = float(np.mean(labels[apart.argmin(axis=1)] == labels))
-        print(f"  {name} {shares[name]:.3f}", end="")
-    print()
+        FIGURES.print(f"  {name} {shares[name]:.3f}", end="")
+    FIGURES.print()
     assert shares["segment vector"] > shares["motion vector"] - 0.05
 
 
@@ -90,8 +97,8 @@ def test_walks_have_cycles_and_these_are_their_strides() -> None:
         if row["task"].startswith("raise-up") or row["task"] == "bow":
             held += 1
             false += bool(cycles)
-    print(f"\n{walks} walks: cycles in {found}, as long as a stride within 10 % in {agree}")
-    print(f"{held} clips of one gesture: cycles in {false}")
+    FIGURES.print(f"\n{walks} walks: cycles in {found}, as long as a stride within 10 % in {agree}")
+    FIGURES.print(f"{held} clips of one gesture: cycles in {false}")
     assert found > 0.8 * walks
     assert agree > 0.8 * found
     assert false <= 0.05 * held
@@ -112,12 +119,12 @@ def test_cycles_of_generated_dances() -> None:
             right += abs(lasting / period - 1) < 0.1
             other = cyclic_dance(seed + 500, poses=24, times=1, tempo=tempo, change=change)
             false += _periods(other.positions, other.rate) > 0
-        print(
+        FIGURES.print(
             f"\nchange {change:.2f}: period right in {right} of {DANCES}, false in {false}", end=""
         )
         assert right >= (0.95 if change < 0.5 else 0.8) * DANCES
         assert false <= 0.05 * DANCES
-    print()
+    FIGURES.print()
 
 
 def test_segments_cost_little() -> None:
@@ -129,7 +136,7 @@ def test_segments_cost_little() -> None:
     found = describe_segments(features, times)
     spent = time.process_time() - began
     count = len(found["segment_spans"])
-    print(f"\n{count} segments of {track.duration:.0f} s in {1000 * spent:.0f} ms")
+    FIGURES.print(f"\n{count} segments of {track.duration:.0f} s in {1000 * spent:.0f} ms")
 
 
 def _periods(positions: FloatArray, rate: float) -> float:

@@ -40,7 +40,15 @@ from app.motion.joint_roles import SUN_ROLES
 from app.motion.motion import Motion
 from app.motion.recording import Recording
 from app.services.demo import demo_clips
+from tests.bench.page import Section
 from tests.real_clips import manifest, real_clips
+
+FIGURES = Section(
+    "synthesis",
+    "Motions that were not recorded",
+    trials="each combination of person and task left out in turn",
+    chance="1 in the number of combinations (70 in dataset 2): .014",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -118,8 +126,10 @@ def test_all_others_did_it(second: list[Clip]) -> None:
     marks = np.array(hits)
     hit, person_share, task_share = marks[:, :3].mean(axis=0)
     held = marks[marks[:, 3], 0].mean()
-    print(f"\ndataset 2, of all 6 others' takes, {len(hits)} cells:")
-    print(f"  hit {hit:.3f}  person {person_share:.3f}  task {task_share:.3f}; of HELD {held:.3f}")
+    FIGURES.print(f"\ndataset 2, of all 6 others' takes, {len(hits)} cells:")
+    FIGURES.print(
+        f"  hit {hit:.3f}  person {person_share:.3f}  task {task_share:.3f}; of HELD {held:.3f}"
+    )
     assert hit >= 0.9
     assert held >= 0.85
 
@@ -186,22 +196,22 @@ def _made_whole(title: str, clips: list[Clip], kind: str) -> dict[str, float]:
     seconds = (time.perf_counter() - start) / len(trials)
     names = ("hit", "person", "task", "skate", "real skate", "jerk", "real jerk", "brisk")
     shares = dict(zip(names, np.mean(rows, axis=0), strict=True))
-    print(f"\n{title}, made whole and analysed again, {kind} from 5, {len(trials)} cells,")
-    print(f"  {seconds:.2f} s each:")
-    print("  " + "  ".join(f"{name} {value:.3f}" for name, value in shares.items()))
+    FIGURES.print(f"\n{title}, made whole and analysed again, {kind} from 5, {len(trials)} cells,")
+    FIGURES.print(f"  {seconds:.2f} s each:")
+    FIGURES.print("  " + "  ".join(f"{name} {value:.3f}" for name, value in shares.items()))
     return {name: float(value) for name, value in shares.items()}
 
 
 def _table(title: str, record: Synthesis, trials: int) -> dict[str, list[dict[str, float]]]:
     start = time.perf_counter()
     rows = held_out_synthesis(record, trials)
-    print(f"\n{title}: {len(record.persons)} persons, {len(record.tasks)} tasks,")
+    FIGURES.print(f"\n{title}: {len(record.persons)} persons, {len(record.tasks)} tasks,")
     seconds = time.perf_counter() - start
-    print(f"  {len(record.person)} cells, {len(record.ids)} clips; {seconds:.0f} s")
-    print(f"  {'':11} given trials    hit person  task  effects  task mean  real takes")
+    FIGURES.print(f"  {len(record.person)} cells, {len(record.ids)} clips; {seconds:.0f} s")
+    FIGURES.print(f"  {'':11} given trials    hit person  task  effects  task mean  real takes")
     for kind, of_kind in rows.items():
         for row in of_kind:
-            print(
+            FIGURES.print(
                 f"  {kind:11} {row['given']:5} {row['trials']:6}  {row['hit']:.3f}  "
                 f"{row['person']:.3f} {row['task']:.3f}    {row['effects']:.3f}      "
                 f"{row['task_mean']:.3f}      {row['real'] or float('nan'):.3f}"

@@ -52,8 +52,15 @@ from tests.bench.hidden_pieces import (
     hide,
     real_takes,
 )
+from tests.bench.page import Section
 from tests.bodies import motion_of
 from tests.streams import npz_of
+
+FIGURES = Section(
+    "windows",
+    "Pieces hidden in an hour of motion",
+    trials="200 pieces, each hidden at five places",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -166,23 +173,27 @@ def test_pieces_hidden_in_an_hour_are_found_and_bounded(
 ) -> None:
     hours = reported.seconds / 3600
     assert hours > 1
-    print(f"\n{PIECES} pieces of 0.6 to 10 s, each {COPIES} times in {hours:.2f} h; ", end="")
-    print(f"load {os.getloadavg()[0]:.1f}\n{HEAD}{'takes':>9}")
+    FIGURES.print(
+        f"\n{PIECES} pieces of 0.6 to 10 s, each {COPIES} times in {hours:.2f} h; ", end=""
+    )
+    FIGURES.print(f"load {os.getloadavg()[0]:.1f}\n{HEAD}{'takes':>9}")
     found = {}
     for method in METHODS:
         _of_pieces(reported, method)  # what is loaded once does not count as a search
         found[method] = _of_pieces(reported, method)
-        print(f"{method:10}{found[method].told()}{_of_takes(reported, method):9.3f}")
+        FIGURES.print(f"{method:10}{found[method].told()}{_of_takes(reported, method):9.3f}")
     seconds = np.array([len(piece) / RATE for piece in reported.pieces])
-    print("AP@5 of fused by seconds: ", end="")
+    FIGURES.print("AP@5 of fused by seconds: ", end="")
     for length in LENGTHS:
-        print(f" {length:g}: {found['fused'].average[seconds == length].mean():.2f}", end="")
+        FIGURES.print(
+            f" {length:g}: {found['fused'].average[seconds == length].mean():.2f}", end=""
+        )
     monkeypatch.setattr(in_windows, "MOST_PROPOSED", FEW)
     monkeypatch.setattr(in_windows, "LEAST_PROPOSED", FEW)
     few = _of_pieces(reported, "fused")
-    print(f"\n{FEW} places only:{few.told()[:8]}, as where the hour is one of 20", end="")
+    FIGURES.print(f"\n{FEW} places only:{few.told()[:8]}, as where the hour is one of 20", end="")
     kept = sum(index.bytes_kept for index in reported.lib.windows.values())
-    print(f"\nwindows in memory: {kept / hours / 2**20:.1f} MB an hour")
+    FIGURES.print(f"\nwindows in memory: {kept / hours / 2**20:.1f} MB an hour")
     assert few.average.mean() >= FLOOR_OF_FEW
     for method, floor in FLOORS.items():
         assert found[method].average.mean() >= floor
@@ -195,13 +206,13 @@ def test_the_weight_of_fused_is_the_best_on_other_clips(
     chosen: Hidden, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     used = in_windows.VECTOR_WEIGHT
-    print(f"\nfused by weight of the windows, {chosen.seconds / 60:.0f} minutes")
-    print(f"{HEAD}{'takes':>9}")
+    FIGURES.print(f"\nfused by weight of the windows, {chosen.seconds / 60:.0f} minutes")
+    FIGURES.print(f"{HEAD}{'takes':>9}")
     by_weight = {}
     for weight in WEIGHTS:
         monkeypatch.setattr(in_windows, "VECTOR_WEIGHT", weight)
         figures, takes = _of_pieces(chosen, "fused"), _of_takes(chosen, "fused")
-        print(f"{weight:<10}{figures.told()}{takes:9.3f}")
+        FIGURES.print(f"{weight:<10}{figures.told()}{takes:9.3f}")
         by_weight[weight] = figures.average.mean() + takes
     assert by_weight[used] > max(by_weight.values()) - 0.01
 
@@ -210,14 +221,16 @@ def test_the_light_vectors_rank_a_little_worse_than_motion_vectors(chosen: Hidde
     """Both describe the same windows of 2 s, and pieces of about that length."""
     pieces = [n for n, piece in enumerate(chosen.pieces) if 1.5 <= len(piece) / RATE <= 3.0]
     found = {}
-    print(f"\n{len(pieces)} pieces of 1.5 to 3 s by windows of 2 s alone")
+    FIGURES.print(f"\n{len(pieces)} pieces of 1.5 to 3 s by windows of 2 s alone")
     for name, describe in {"light": _light, "motion": _heavy}.items():
         began = time.process_time()
         windows = [describe(stream, SCALE) for stream in chosen.streams.values()]
         spent = 1e3 * (time.process_time() - began) / chosen.seconds
         averages = [_ranked(chosen, number, windows, describe) for number in pieces]
         found[name] = float(np.mean(averages))
-        print(f"{name:10}AP@5 {found[name]:.3f}   {spent:.2f} ms a second of motion, features too")
+        FIGURES.print(
+            f"{name:10}AP@5 {found[name]:.3f}   {spent:.2f} ms a second of motion, features too"
+        )
     assert found["light"] > found["motion"] - 0.12
 
 
@@ -272,5 +285,5 @@ def test_what_windows_add_to_an_analysis(chosen: Hidden) -> None:
         took["windows"] += time.process_time() - began
     share = took["windows"] / took["analysis"]
     each = 1e3 * took["windows"] / chosen.seconds
-    print(f"\nwindows: {each:.3f} ms a second of motion, {share:.1%} of an analysis")
+    FIGURES.print(f"\nwindows: {each:.3f} ms a second of motion, {share:.1%} of an analysis")
     assert share < 0.05

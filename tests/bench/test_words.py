@@ -22,7 +22,15 @@ from app.models.word_figures import WordFigures, held_out_word_figures
 from app.motion.body_frame import BodyTrack, body_track
 from app.motion.canonical import canonicalise
 from app.numerics.arrays import FloatArray
+from tests.bench.page import Section
 from tests.real_clips import manifest, real_clips
+
+FIGURES = Section(
+    "words",
+    "Words for clips and clips for words",
+    trials="all labelled real clips, held out by recording",
+    chance="the frequency of the words, printed as `prior`",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -54,7 +62,7 @@ def test_symbols_take_at_most_three_milliseconds_a_second(
         _symbol(track)
     took = time.process_time() - started
     seconds = sum(track.duration for _, track in tracks[::5])
-    print(f"\nsymbols: {1e3 * took / seconds:.2f} ms a second of motion")
+    FIGURES.print(f"\nsymbols: {1e3 * took / seconds:.2f} ms a second of motion")
     assert took / seconds < 3e-3
 
 
@@ -63,7 +71,7 @@ def test_all_divergences_of_the_library_in_seconds(symbols: list[dict[str, Float
     started = time.process_time()
     symbol_distances(models, models)
     took = time.process_time() - started
-    print(f"\n{len(models)} x {len(models)} divergences: {took:.1f} s")
+    FIGURES.print(f"\n{len(models)} x {len(models)} divergences: {took:.1f} s")
     assert took < 15.0
 
 
@@ -78,11 +86,11 @@ def test_words_held_out(
         [recording_of(row["path"]) for row in rows],
         sequence=lambda row: symbol_features(tracks[row][1]),
     )
-    print(f"\n{found.clips} clips, {found.words} words, {found.folds} folds")
-    print(f"{'':14}{'top-3':>8}{'word F':>8}{'set MAP':>8}")
+    FIGURES.print(f"\n{found.clips} clips, {found.words} words, {found.folds} folds")
+    FIGURES.print(f"{'':14}{'top-3':>8}{'word F':>8}{'set MAP':>8}")
     for one in found.figures:
         figures = one.top_3_recognition, one.word_f, one.set_map
-        print(f"{one.method:14}" + "".join(f"{figure:8.3f}" for figure in figures))
+        FIGURES.print(f"{one.method:14}" + "".join(f"{figure:8.3f}" for figure in figures))
     by_method = {one.method: one for one in found.figures}
     default = columns(by_method.pop("default"))
     assert (default > (0.95, 0.71, 0.52)).all()

@@ -32,9 +32,16 @@ from app.store import tables as t
 from app.store.blobs import to_blob
 from app.store.store import Store
 from tests.bench.large_library import VECTOR, Sample, fill, many_clips, samples
+from tests.bench.page import Section
 from tests.bench.processes import Tree, processes_over
 from tests.live import ENDED, Live, serve
 from tests.real_clips import manifest
+
+FIGURES = Section(
+    "words_at_scale",
+    "Words in a library of 10,000 clips",
+    trials="one fit, and some hundred queries before, during and after it",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -170,7 +177,9 @@ def _while_words_are_fitted(client: httpx2.Client, asker: Asker, asked: Asked) -
 def test_a_fit_takes_minutes_and_searches_go_on(live: Live) -> None:
     with live.client() as client:
         first = _fit(live, client)
-        print(f"\nfit of all models, {CLIPS} clips: {first[0]:.0f} s, {first[1]:.0f} s of CPU")
+        FIGURES.print(
+            f"\nfit of all models, {CLIPS} clips: {first[0]:.0f} s, {first[1]:.0f} s of CPU"
+        )
         asker = Asker(live, client)
         for mode in ("default", "cca"):
             opening, alone, without, during = Asked(), Asked(), Asked(), Asked()
@@ -178,12 +187,12 @@ def test_a_fit_takes_minutes_and_searches_go_on(live: Live) -> None:
             for _ in range(QUERIES):
                 asker.ask(alone, mode)
                 asker.ask(without, mode, leave_out=True)
-            print(f"{mode}: first {opening.wall[0]:.0f} ms; then {alone.told()}")
-            print(f"{mode}, with a word left out: {without.told()}")
+            FIGURES.print(f"{mode}: first {opening.wall[0]:.0f} ms; then {alone.told()}")
+            FIGURES.print(f"{mode}, with a word left out: {without.told()}")
             # nothing is computed of clips that the fit saw: the first only reads what it kept
             assert opening.wall[0] < 200 * np.median(alone.wall)
         _while_words_are_fitted(client, asker, during)
-        print(f"default, while the next fit ran: {during.told()}")
+        FIGURES.print(f"default, while the next fit ran: {during.told()}")
         assert len(during.wall) > QUERIES
         # a fit in the background takes a processor, not the service
         assert np.median(during.wall) < 10 * np.median(alone.wall)
@@ -202,12 +211,12 @@ def test_distances_grow_with_landmarks_not_with_the_square() -> None:
         symbol_distances(symbols[:count], symbols[:LANDMARKS])
         took[count] = time.process_time() - began
     told = ", ".join(f"{count}: {seconds:.2f} s" for count, seconds in took.items())
-    print(f"\nplaced against {LANDMARKS} landmarks, CPU: {told}")
+    FIGURES.print(f"\nplaced against {LANDMARKS} landmarks, CPU: {told}")
     assert took[1200] < 6 * took[300]
     began = time.process_time()
     symbol_distances(symbols[:618], symbols[:618])
     whole = time.process_time() - began
-    print(f"618 x 618, CPU: {whole:.1f} s")
+    FIGURES.print(f"618 x 618, CPU: {whole:.1f} s")
     # 100 landmarks both ways against all pairs one way
     assert took[600] < whole
 

@@ -50,4 +50,6 @@ def test_people_are_told_what_to_expect(run: Run, tmp_path: Path) -> None:
 def test_mistakes_are_told(run: Run) -> None:
     assert run("walk").exit_code == 2
     assert run("walk", "--person", "ada", "--clip", "x").exit_code == 2
-    assert isinstance(run("walk", "--person", "nobody").exception, NotFound)
+    unknown = run("walk", "--person", "nobody").exception
+    assert isinstance(unknown, NotFound)
+    assert [place.location for place in unknown.places] == ["person"]

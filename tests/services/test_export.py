@@ -19,7 +19,7 @@ from app.numerics.arrays import FloatArray
 from app.services import clips, export, views
 from app.services.clips import NewClip
 from app.services.demo import DemoClip
-from app.services.export import ExportFormat
+from app.services.export_format import ExportFormat
 from app.services.library import Library
 from app.services.stored_motion import load_motion
 from app.store.clip_record import ClipRecord, ClipState

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from sqlalchemy import select
 
+from app.config import sqlite_url
 from app.errors import ConfigurationError, DiskFull, StorageError
 from app.store import engine, library
 from app.store.clips import add_or_get
-from app.store.engine import Database, sqlite_url
+from app.store.engine import Database
 from app.store.store import Store
 from app.store.tables import clips
 from tests.store.conftest import new_clip
@@ -119,9 +121,12 @@ def test_a_database_that_cannot_be_shared_is_refused(url: str) -> None:
 @pytest.mark.parametrize(
     "name", ["a?b", "a%20b", "%", "%3F", "a#b@c:d", "k?mode=ro", "é", "d\udcff"]
 )
-def test_a_path_may_hold_anything(tmp_path: Path, name: str) -> None:
+@pytest.mark.parametrize("opened", [Database.at, lambda path: Database(sqlite_url(path))])
+def test_a_path_may_hold_anything(
+    tmp_path: Path, name: str, opened: Callable[[Path], Database]
+) -> None:
     path = tmp_path / name / name
-    database = Database(sqlite_url(path))
+    database = opened(path)
     with database.write() as tx:
         tx.exec_driver_sql("CREATE TABLE t (x)")
     database.close()

@@ -6,7 +6,7 @@ import pytest
 
 from app.errors import NotFound
 from app.store import keys
-from app.store.keys import KeyRole
+from app.store.key_role import KeyRole
 from app.store.store import Store
 
 

@@ -9,6 +9,7 @@ import pytest
 from alembic import command
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
+from alembic.script import ScriptDirectory
 from sqlalchemy import create_mock_engine, text
 
 from app.errors import DatabaseOutOfDate
@@ -26,6 +27,15 @@ def test_migrations_and_tables_agree(store: Store) -> None:
     with store.read() as tx:
         context = MigrationContext.configure(tx, opts={"compare_type": True})
         assert compare_metadata(context, metadata) == []
+
+
+def test_the_revision_that_is_needed_is_alembics_newest(store: Store, database_url: str) -> None:
+    with store.read() as tx:
+        scripts = ScriptDirectory.from_config(schema._config(tx))
+    found = schema.state(database_url)
+    assert found.needed == scripts.get_current_head()
+    names = {Path(script.path).name: script.revision for script in scripts.walk_revisions()}
+    assert {name: name.partition("_")[0] for name in names} == names
 
 
 def test_tables_can_be_made_on_postgresql() -> None:

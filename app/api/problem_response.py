@@ -1,0 +1,17 @@
+"""A problem (RFC 9457) as an HTTP answer."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from fastapi.responses import JSONResponse
+
+from app.api.problems import MEDIA_TYPE
+
+
+def respond(problem: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> JSONResponse:
+    """The members of a problem as the answer to a request."""
+    return JSONResponse(
+        problem, status_code=problem["status"], media_type=MEDIA_TYPE, headers=dict(headers or {})
+    )

@@ -1,0 +1,70 @@
+"""CPU time of commands, from start to end: imports are nearly all of it.
+
+Run: pytest -m bench -s tests/bench/test_commands.py
+The program as a user starts it, over a library of 500 clips made of real ones. Targets (issue 13):
+0.3 s for --version and --help, 1 s for a search; 0.4 s for the help of one command, because typer
+imports pydantic then. A machine at work takes up to half as much again for the same, which the
+floors allow for.
+"""
+
+from __future__ import annotations
+
+import resource
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from app.config import Settings
+from app.search.distances import EPSILON, FEATURES, RHO
+from app.store import schema
+from app.store.store import Store
+from tests.bench.large_library import fill
+from tests.bench.page import Section
+from tests.cli.conftest import environment
+
+FIGURES = Section(
+    "commands", "CPU time of commands", trials="seven runs of each command; 500 clips"
+)
+
+pytestmark = pytest.mark.bench
+
+CLIPS, RUNS = 500, 7
+FIRST = f"clip_{0:020x}"
+COMMANDS = {
+    ("--version",): 0.3,
+    ("--help",): 0.3,
+    ("search", "--help"): 0.4,
+    ("search", FIRST): 1.0,
+    ("search", FIRST, "--method", "vector"): 1.0,
+    ("search", FIRST, "--method", "dtw"): 1.0,
+}
+"""The target of each, seconds of CPU."""
+AT_WORK = 1.5
+
+
+def test_commands_start_at_once(tmp_path: Path) -> None:
+    settings = Settings(data_dir=tmp_path / "data")
+    schema.prepare(settings.database)
+    store = Store.open(settings.database, settings.files_dir)
+    fill(store, CLIPS, names=(FEATURES, RHO, EPSILON))
+    store.close()
+    FIGURES.print(f"\n{'seconds of CPU':36}{'least':>8}{'median':>8}{'target':>8}")
+    taken = {}
+    for words, target in COMMANDS.items():
+        runs = [_cpu(words, settings.data_dir) for _ in range(RUNS)]
+        taken[words] = min(runs)
+        shown = f"kinedex {' '.join(words)}".replace(FIRST, "CLIP")
+        FIGURES.print(f"{shown:36}{min(runs):8.2f}{statistics.median(runs):8.2f}{target:8.1f}")
+    assert {w for w, target in COMMANDS.items() if taken[w] > AT_WORK * target} == set()
+
+
+def _cpu(words: tuple[str, ...], data_dir: Path) -> float:
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    program = str(Path(sys.executable).with_name("kinedex"))
+    env = environment(data_dir=data_dir)
+    subprocess.run([program, *words], env=env, capture_output=True, check=True, timeout=120)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
