@@ -43,7 +43,7 @@ from app.motion.gait import exact_gait_cycles
 from app.motion.motion import Motion
 from app.motion.recording import Caution
 from app.numerics.arrays import FloatArray
-from app.numerics.rank1 import Rank1
+from app.numerics.tensors.rank1 import Rank1
 
 ANALYSIS_VERSION = 4
 """Raise it with every change of what an array holds; older clips are then analysed again."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.numerics.arrays import FloatArray
-from app.numerics.hmm import GaussianHMM
+from app.numerics.hmm.model import GaussianHMM
 
 SYMBOL_STATES = 30
 """States of a symbol (Takano, section 3); fewer for clips under three seconds."""
@@ -22,7 +22,7 @@ def motion_symbol(features: FloatArray) -> GaussianHMM:
 
     features: as from `symbol_features`. Raises ValueError where one is not finite.
     """
-    from app.numerics.hmm_fit import fit_left_to_right  # hmmlearn is slow to load
+    from app.numerics.hmm.fit import fit_left_to_right  # hmmlearn is slow to load
 
     floor = np.full(features.shape[1], VARIANCE_FLOOR)
     return fit_left_to_right(features, states=SYMBOL_STATES, variance_floor=floor)

@@ -12,10 +12,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.motion.body_frame import BodyTrack
+from app.numerics.alignment.cross_correlation import (
+    max_cross_correlations,
+    max_cross_correlations_of_rows,
+)
+from app.numerics.alignment.dtw import dtw_distances
 from app.numerics.arrays import FloatArray
-from app.numerics.cross_correlation import max_cross_correlations, max_cross_correlations_of_rows
-from app.numerics.dtw import dtw_distances
-from app.numerics.rank1 import Rank1, symmetric_rank1
+from app.numerics.tensors.rank1 import Rank1, symmetric_rank1
 
 LARGEST_CROSS_CORRELATION = 3.0
 """Of equation 6: three components, each of unit vectors."""

@@ -23,7 +23,7 @@ from app.analysis.symbol_features import CHANNEL_SCALES, CHANNELS, symbol_featur
 from app.motion.body_frame import BodyTrack, turned
 from app.motion.joint_roles import SUN_PARENTS
 from app.numerics.arrays import FloatArray
-from app.numerics.hmm import GaussianHMM
+from app.numerics.hmm.model import GaussianHMM
 
 _HEIGHT, _LEFT, _FORWARD, _YAW = (
     CHANNELS.index(name) for name in ("height", "speed_left", "speed_forward", "yaw_rate")
@@ -58,7 +58,7 @@ def symbol_motion(symbol: GaussianHMM, track: BodyTrack) -> SymbolMotion:
 
     Deterministic. A symbol of one state holds one pose while it travels.
     """
-    from app.numerics.hmm_fit import occupancy  # hmmlearn is slow to load
+    from app.numerics.hmm.fit import occupancy  # hmmlearn is slow to load
 
     weights = occupancy(symbol, symbol_features(track))
     poses = _means_by_state(track.local.reshape(track.frames, -1), weights)

@@ -16,11 +16,7 @@ from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json, print_table, print_text
 from app.search.methods import Method
 from app.services import evaluate, pictures
-from app.services.evaluate import (
-    RetrievalEvaluation,
-    VolumeEvaluation,
-    retrieval_pictures,
-)
+from app.services.evaluate import RetrievalEvaluation, VolumeEvaluation, retrieval_pictures
 
 Classes = Annotated[
     str | None,

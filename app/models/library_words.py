@@ -22,7 +22,7 @@ from app.models.word_model import WordModel, fit_word_model
 from app.models.word_query import WordsAsked, understand
 from app.models.word_vocabulary import WordVocabulary
 from app.numerics.arrays import FloatArray
-from app.numerics.hmm import GaussianHMM
+from app.numerics.hmm.model import GaussianHMM
 
 Arrays = dict[str, np.ndarray[Any, Any]]
 _Part = WordModel | WordCalibration | SymbolSpace | CorrelatedSpace | CosineCalibration

@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from app.numerics.arrays import FloatArray
-from app.numerics.hmm import GaussianHMM, log_likelihoods
+from app.numerics.hmm.model import GaussianHMM, log_likelihoods
 
 NEAREST = 20
 _UNASKED = -1e30

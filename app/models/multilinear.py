@@ -21,9 +21,9 @@ from app.models.cells import Cells, cell_means, find_cells, fit_effects
 from app.models.recognition import Recognition, answer, given
 from app.models.task_means import TaskMeans, fit_task_means
 from app.numerics.arrays import FloatArray
-from app.numerics.nmode_svd import NModeSVD, nmode_svd
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
-from app.numerics.tensor import mode_product
+from app.numerics.tensors.nmode_svd import NModeSVD, nmode_svd
+from app.numerics.tensors.tensor import mode_product
 
 MULTILINEAR_VERSION = 2
 

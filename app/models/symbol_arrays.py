@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.numerics.hmm import GaussianHMM
+from app.numerics.hmm.model import GaussianHMM
 
 
 def pack_symbols(symbols: Sequence[GaussianHMM]) -> dict[str, np.ndarray[Any, Any]]:

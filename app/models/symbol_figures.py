@@ -17,8 +17,8 @@ import scipy
 from app.errors import NotEnoughLabels
 from app.models.symbol_space import DIMENSIONS, landmark_rows, symbol_distances
 from app.numerics.arrays import FloatArray
-from app.numerics.hmm import GaussianHMM
-from app.numerics.hmm_divergence import expected_path_divergences, monte_carlo_divergence
+from app.numerics.hmm.divergence import expected_path_divergences, monte_carlo_divergence
+from app.numerics.hmm.model import GaussianHMM
 from app.numerics.mds import classical_mds, metric_mds, place, stress
 from app.numerics.smacof import smacof
 

@@ -17,8 +17,8 @@ import numpy as np
 
 from app.models.symbol_arrays import pack_symbols, unpack_symbols
 from app.numerics.arrays import FloatArray, IntArray
-from app.numerics.hmm import GaussianHMM
-from app.numerics.hmm_divergence import symmetric_divergences
+from app.numerics.hmm.divergence import symmetric_divergences
+from app.numerics.hmm.model import GaussianHMM
 from app.numerics.mds import metric_mds, place
 
 SYMBOL_SPACE_VERSION = 1

@@ -2,7 +2,7 @@
 
 Of takes that are not cycles, one begins late and another is slow; the mean of the takes as they
 are would show half a gesture twice. Each is warped onto the mean of its group
-(app.numerics.group_warping). The difference between its time and that of the group is its
+(app.numerics.alignment.group_warping). The difference between its time and that of the group is its
 *timing*, which is learned and carried over like the rest of a motion. Cycles are aligned where
 they are cut, so they are not warped.
 """
@@ -16,9 +16,7 @@ import numpy as np
 from app.analysis.motion_sample import SAMPLES
 from app.analysis.motion_shape import CHANNELS
 from app.models.synthesis_basis import weights
-from app.numerics.arrays import BoolArray, FloatArray, IntArray
-from app.numerics.euclidean import distances
-from app.numerics.group_warping import (
+from app.numerics.alignment.group_warping import (
     ROUNDS,
     group_means,
     group_members,
@@ -29,6 +27,8 @@ from app.numerics.group_warping import (
     smooth_times,
     warping_times,
 )
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.numerics.euclidean import distances
 
 _TIE = 1e-6
 """Relative: distances that are this close count as equal, so that rounding does not decide."""

@@ -1,8 +1,8 @@
 """The mean motion of each task, onto which takes of the task are warped for recognition.
 
 Gait cycles are aligned where they are cut (app.motion.gait). Takes of other tasks are warped onto
-the mean of their task; see app.numerics.group_warping. The task of a probe is not known: it is
-warped onto the mean of each task with which it is compared.
+the mean of their task; see app.numerics.alignment.group_warping. The task of a probe is not known:
+it is warped onto the mean of each task with which it is compared.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.numerics.alignment.group_warping import group_means, means_of_warped, warped
 from app.numerics.arrays import FloatArray, IntArray
-from app.numerics.group_warping import group_means, means_of_warped, warped
 
 
 @dataclass(frozen=True, slots=True)

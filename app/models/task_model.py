@@ -25,8 +25,8 @@ from app.models.multilinear import MOST_CELLS, complete_tensor
 from app.motion.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.euclidean import squared_distances
-from app.numerics.nmode_svd import NModeSVD, nmode_svd
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
+from app.numerics.tensors.nmode_svd import NModeSVD, nmode_svd
 
 JOINTS = len(SUN_ROLES)
 

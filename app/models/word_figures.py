@@ -31,7 +31,7 @@ from app.models.word_methods import CCA_SCORE, DEFAULT, PRIOR, LabelledClips, sc
 from app.models.word_vocabulary import WordVocabulary
 from app.numerics.area_under_curve import area_under_curve
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
-from app.numerics.hmm import GaussianHMM
+from app.numerics.hmm.model import GaussianHMM
 
 FOLDS = 5
 MOST_CLIPS = 1000

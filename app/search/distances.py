@@ -17,8 +17,8 @@ from app.analysis.motion_volume import (
     warping_distances,
 )
 from app.deadline import check
+from app.numerics.alignment.dtw import dtw_distances
 from app.numerics.arrays import FloatArray
-from app.numerics.dtw import dtw_distances
 from app.search.methods import Method
 
 FEATURES, RHO, EPSILON = "features_10hz", "msv_rho", "msv_epsilon"

@@ -9,8 +9,8 @@ import numpy as np
 
 from app.analysis.frame_features import WARPING_RATE
 from app.deadline import check
+from app.numerics.alignment.subsequence_dtw import subsequence_dtw
 from app.numerics.arrays import FloatArray
-from app.numerics.subsequence_dtw import subsequence_dtw
 from app.search.distances import FEATURES, Loader
 from app.search.places import Candidates
 from app.search.rank import IdArray

@@ -12,7 +12,7 @@ from app.models.folds import recording_of
 from app.models.learned_metric import INPUTS, Described
 from app.models.recogniser_views import full_samples
 from app.numerics.arrays import FloatArray
-from app.numerics.hmm import GaussianHMM
+from app.numerics.hmm.model import GaussianHMM
 from app.search import usable_arrays
 from app.services.synthesized import SYNTHESIZED, is_synthesized
 from app.store import clip_listing, clips, library

@@ -8,13 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.analysis import pose_cover as module
-from app.analysis.pose_cover import (
-    FRAMES_PER_POSE,
-    POSE_WIDTH,
-    TOLERANCE,
-    pose_cover,
-    pose_vectors,
-)
+from app.analysis.pose_cover import FRAMES_PER_POSE, POSE_WIDTH, TOLERANCE, pose_cover, pose_vectors
 from app.motion.body_pose import body_poses
 from app.motion.joint_roles import SUN_ROLES, JointRole
 from tests.bodies import standing, turned_about_y, walking, waving

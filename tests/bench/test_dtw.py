@@ -16,7 +16,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from app.numerics.dtw import dtw_distances
+from app.numerics.alignment.dtw import dtw_distances
 from app.search.distances import FEATURES
 from tests.bench.described_clips import described_clips
 from tests.bench.page import Section

@@ -25,10 +25,10 @@ from sklearn.neighbors import NearestNeighbors
 
 from app.motion import rotations
 from app.numerics import kernel_ridge
-from app.numerics.cross_correlation import max_cross_correlations
-from app.numerics.hmm import log_likelihoods
-from app.numerics.hmm_divergence import symmetric_divergences
-from app.numerics.hmm_fit import fit_left_to_right
+from app.numerics.alignment.cross_correlation import max_cross_correlations
+from app.numerics.hmm.divergence import symmetric_divergences
+from app.numerics.hmm.fit import fit_left_to_right
+from app.numerics.hmm.model import log_likelihoods
 from app.numerics.mds import classical_mds, metric_mds, stress
 from app.numerics.nearest import Block, nearest
 from app.numerics.principal_axes import principal_axes

@@ -45,7 +45,7 @@ from app.models.ranking_figures import average_precision
 from app.motion.body_frame import body_track
 from app.motion.canonical import canonicalise
 from app.numerics import diffusion
-from app.numerics.dtw import dtw_distances
+from app.numerics.alignment.dtw import dtw_distances
 from app.search import fusion
 from app.search.methods import LEARNED, Method
 from app.services import clips, find, imports, jobs

@@ -25,7 +25,7 @@ from app.analysis.motion_symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.config import Settings
 from app.models.symbol_space import LANDMARKS, symbol_distances
 from app.numerics.arrays import FloatArray
-from app.numerics.hmm import GaussianHMM
+from app.numerics.hmm.model import GaussianHMM
 from app.services.training import NAMES
 from app.store import identity
 from app.store import tables as t

@@ -11,12 +11,7 @@ import pytest
 from app.errors import BadField, FormatNotSupported, Unreadable
 from app.formats.fbx import read_fbx
 from app.formats.read import read_recording
-from tests.formats.fbx_files import (
-    Bone,
-    Curve,
-    Take,
-    fbx,
-)
+from tests.formats.fbx_files import Bone, Curve, Take, fbx
 from tests.formats.fbx_takes import (
     CHAIN,
     FRAMES,

@@ -5,7 +5,7 @@ import pytest
 from app.errors import NotEnoughLabels
 from app.models import word_figures
 from app.models.word_figures import held_out_word_figures
-from app.numerics.hmm import mean_trajectory
+from app.numerics.hmm.model import mean_trajectory
 from tests.models.word_clips import word_clips
 
 

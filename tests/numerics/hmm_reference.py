@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.numerics.hmm import GaussianHMM, log_emissions
-from app.numerics.hmm_fit import TRANSITION_PRIOR
+from app.numerics.hmm.fit import TRANSITION_PRIOR
+from app.numerics.hmm.model import GaussianHMM, log_emissions
 
 
 def naive_forward(emissions: np.ndarray, transitions: np.ndarray) -> np.ndarray:

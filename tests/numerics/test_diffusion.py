@@ -8,13 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.numerics.arrays import FloatArray
-from app.numerics.diffusion import (
-    DAMPING,
-    LEAST_DEGREE,
-    REACH,
-    diffused_closeness,
-    neighbour_radii,
-)
+from app.numerics.diffusion import DAMPING, LEAST_DEGREE, REACH, diffused_closeness, neighbour_radii
 
 
 def between(points: FloatArray) -> FloatArray:

@@ -8,8 +8,8 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from app.numerics.alignment.dtw import dtw_distances
 from app.numerics.arrays import FloatArray
-from app.numerics.dtw import dtw_distances
 from app.search.by_example import rank_by_example
 from app.search.distances import QueryArrays
 from app.search.fusion import SHORTLIST

@@ -9,11 +9,7 @@ from fastapi import APIRouter, Query, Request, Response
 from app.api.admission import heavy
 from app.api.deps import Lib, reads
 from app.api.openapi import ClipId, refusals
-from app.api.schemas.views import (
-    Descriptor,
-    Motion,
-    MotionQueryParameters,
-)
+from app.api.schemas.views import Descriptor, Motion, MotionQueryParameters
 from app.api.streams import OCTETS, as_json, as_octets, wants_octets
 from app.services import views
 

@@ -11,13 +11,7 @@ from app.api.bodies import is_multipart, read_form, read_json, require_json
 from app.api.deps import Lib, reads
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, exactly_one, file_of
-from app.api.schemas.search import (
-    MotionHits,
-    MotionSearch,
-    MotionSearchForm,
-    WordHits,
-    WordSearch,
-)
+from app.api.schemas.search import MotionHits, MotionSearch, MotionSearchForm, WordHits, WordSearch
 from app.services import find
 from app.services.find import MotionQuery, WordQuery
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from app.api.schemas.base import Fps, Incoming, Outgoing
-from app.numerics.rank1 import MAX_ITERATIONS
+from app.numerics.tensors.rank1 import MAX_ITERATIONS
 from app.services.views import DescriptorView
 
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]

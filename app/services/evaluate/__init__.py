@@ -12,10 +12,7 @@ from app.services.evaluate.keyposes import (
     is_any_annotated,
     judge_keyposes,
 )
-from app.services.evaluate.low_dimensional import (
-    LowDimensionalEvaluation,
-    judge_low_dimensional,
-)
+from app.services.evaluate.low_dimensional import LowDimensionalEvaluation, judge_low_dimensional
 from app.services.evaluate.recognition import judge_recognition
 from app.services.evaluate.recognition_methods import METHODS as RECOGNISERS
 from app.services.evaluate.recognition_results import RecognitionEvaluation

@@ -13,11 +13,7 @@ from app.numerics.arrays import FloatArray
 from app.numerics.clusteredness import best_clusters
 from app.services.animated_figure import animated_svg
 from app.services.animations import role_figure
-from app.services.evaluate.low_dimensional import (
-    JudgedClip,
-    LowDimensionalEvaluation,
-    WorstPose,
-)
+from app.services.evaluate.low_dimensional import JudgedClip, LowDimensionalEvaluation, WorstPose
 from app.services.pictures import (
     Cloud,
     Curve,

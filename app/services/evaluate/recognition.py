@@ -13,11 +13,7 @@ from typing import TypeVar
 
 from app.errors import NotEnoughLabels
 from app.services import fields
-from app.services.evaluate.recognition_clips import (
-    JudgedClips,
-    read_judged_clips,
-    read_training,
-)
+from app.services.evaluate.recognition_clips import JudgedClips, read_judged_clips, read_training
 from app.services.evaluate.recognition_methods import (
     DEFAULT,
     METHODS,

@@ -10,7 +10,7 @@ import numpy as np
 from app.motion.body_frame import ANALYSIS_RATE
 from app.motion.joint_roles import SUN_ROLES
 from app.numerics.arrays import FloatArray
-from app.numerics.rank1 import Rank1
+from app.numerics.tensors.rank1 import Rank1
 from app.search.methods import Method
 from app.services.evaluate.retrieval import RetrievalEvaluation
 from app.services.evaluate.volumes import VolumeEvaluation

@@ -10,12 +10,7 @@ import numpy as np
 from app.analysis.symbol_features import symbol_features
 from app.models.correlated_space import fit_correlated_space
 from app.models.symbol_space import fit_symbol_space
-from app.models.word_figures import (
-    RECALLS,
-    WordEvaluation,
-    WordFigures,
-    held_out_word_figures,
-)
+from app.models.word_figures import RECALLS, WordEvaluation, WordFigures, held_out_word_figures
 from app.models.word_query import understand
 from app.models.word_vocabulary import WordVocabulary
 from app.motion.body_frame import body_track

@@ -7,15 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from app.numerics.arrays import FloatArray
-from app.services.pictures.drawing import (
-    Format,
-    add_legend,
-    colour,
-    dashes,
-    drawn,
-    marker,
-    shown,
-)
+from app.services.pictures.drawing import Format, add_legend, colour, dashes, drawn, marker, shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,13 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.services.evaluate.recognition_methods import NO_GUESS, Guess
-from app.services.evaluate.recognition_shares import (
-    Share,
-    chance,
-    confusion,
-    recognised,
-    unknown,
-)
+from app.services.evaluate.recognition_shares import Share, chance, confusion, recognised, unknown
 from app.services.evaluate.recognition_trials import Told, Trial
 
 NOBODY = Told(None, True, NO_GUESS, 0)

@@ -12,7 +12,7 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray
 from app.numerics.signs import fix_signs
-from app.numerics.tensor import multiply_modes, unfold
+from app.numerics.tensors.tensor import multiply_modes, unfold
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ import tensorly
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.numerics.tensor import fold, mode_product, multiply_modes, unfold
+from app.numerics.tensors.tensor import fold, mode_product, multiply_modes, unfold
 
 SHAPE = (3, 4, 5)
 

@@ -5,9 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.numerics import group_warping
-from app.numerics.arrays import FloatArray, IntArray
-from app.numerics.group_warping import (
+from app.numerics.alignment import group_warping
+from app.numerics.alignment.group_warping import (
     group_means,
     inverse,
     means_of_warped,
@@ -16,6 +15,7 @@ from app.numerics.group_warping import (
     warped,
     warping_times,
 )
+from app.numerics.arrays import FloatArray, IntArray
 
 
 def wandering(count: int, size: int = 32, seed: int = 0) -> FloatArray:

@@ -5,8 +5,8 @@ import pytest
 import tensorly
 from tensorly.decomposition import tucker
 
-from app.numerics.nmode_svd import mode_matrix, nmode_svd
-from app.numerics.tensor import unfold
+from app.numerics.tensors.nmode_svd import mode_matrix, nmode_svd
+from app.numerics.tensors.tensor import unfold
 
 
 @pytest.fixture

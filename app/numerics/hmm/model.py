@@ -3,7 +3,7 @@
 A model begins in its first state, stays or moves to the next one, and may end in any
 state: forcing the last one makes short samples impossible and divergences infinite.
 Everything is computed in the log domain. Models are fitted and sampled by hmmlearn
-(app.numerics.hmm_fit); this module holds what they are and scores sequences with them.
+(app.numerics.hmm.fit); this module holds what they are and scores sequences with them.
 Shapes: frames T, states K, channels D, models M.
 """
 

@@ -18,7 +18,7 @@ import numpy as np
 from hmmlearn import hmm
 
 from app.numerics.arrays import FloatArray
-from app.numerics.hmm import GaussianHMM, log_emissions
+from app.numerics.hmm.model import GaussianHMM, log_emissions
 
 TRANSITION_PRIOR = 1.01
 """Dirichlet parameter of the allowed transitions. It keeps the rows of short clips above zero."""

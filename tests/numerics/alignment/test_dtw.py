@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from app.deadline import Deadline, within
 from app.errors import ClientLeft
-from app.numerics import dtw
+from app.numerics.alignment import dtw
+from app.numerics.alignment.dtw import dtw_distances
 from app.numerics.arrays import FloatArray
-from app.numerics.dtw import dtw_distances
 
 
 def naive_dtw(a: FloatArray, b: FloatArray) -> float:

@@ -19,7 +19,7 @@ import numpy as np
 
 from app.deadline import check
 from app.numerics.arrays import FloatArray, IntArray
-from app.numerics.hmm import GaussianHMM, log_likelihood
+from app.numerics.hmm.model import GaussianHMM, log_likelihood
 
 BLOCK = 1000
 """Targets scored at once: bounds memory to BLOCK K^2 floats."""
@@ -73,7 +73,7 @@ def monte_carlo_divergence(
 
     The result is deterministic for a seed.
     """
-    from app.numerics.hmm_fit import sample  # hmmlearn is slow to load
+    from app.numerics.hmm.fit import sample  # hmmlearn is slow to load
 
     rng = np.random.RandomState(seed)
     frames = len(source.expected_path())

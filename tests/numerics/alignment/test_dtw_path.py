@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from app.numerics.alignment.dtw_path import cheapest_paths
 from app.numerics.arrays import BoolArray, FloatArray
-from app.numerics.dtw_path import cheapest_paths
 
 Cells = list[tuple[int, int]]
 

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.numerics import subsequence_dtw as module
+from app.numerics.alignment import subsequence_dtw as module
+from app.numerics.alignment.subsequence_dtw import Matches, subsequence_dtw
 from app.numerics.arrays import FloatArray
-from app.numerics.subsequence_dtw import Matches, subsequence_dtw
 
 Known = dict[tuple[int, int], tuple[float, int]]
 

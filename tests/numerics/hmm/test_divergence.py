@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from scipy.stats import spearmanr
 
-from app.numerics.hmm import GaussianHMM, log_emissions
-from app.numerics.hmm_divergence import (
+from app.numerics.hmm.divergence import (
     expected_path_divergences,
     monte_carlo_divergence,
     symmetric_divergences,
 )
-from app.numerics.hmm_fit import fit_left_to_right
+from app.numerics.hmm.fit import fit_left_to_right
+from app.numerics.hmm.model import GaussianHMM, log_emissions
 from tests.numerics.hmm_reference import wavy
 
 FLOOR = np.full(6, 0.1)

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.numerics import cross_correlation
-from app.numerics.arrays import FloatArray
-from app.numerics.cross_correlation import (
+from app.numerics.alignment import cross_correlation
+from app.numerics.alignment.cross_correlation import (
     max_cross_correlations,
     max_cross_correlations_of_rows,
 )
+from app.numerics.arrays import FloatArray
 
 
 def max_cross_correlation(a: FloatArray, b: FloatArray) -> float:

@@ -17,8 +17,8 @@ from collections.abc import Callable
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from app.numerics.alignment.dtw_path import cheapest_paths
 from app.numerics.arrays import FloatArray, IntArray
-from app.numerics.dtw_path import cheapest_paths
 from app.numerics.euclidean import distances
 
 BAND = 0.2

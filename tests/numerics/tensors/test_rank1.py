@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tensorly.decomposition import parafac
 
 from app.numerics.arrays import FloatArray
-from app.numerics.rank1 import Rank1, symmetric_rank1
+from app.numerics.tensors.rank1 import Rank1, symmetric_rank1
 
 
 def a_volume(seed: int, joints: int = 6, frames: int = 9) -> FloatArray:

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from hmmlearn import hmm as learning
 
-from app.numerics import hmm
-from app.numerics.hmm import (
+from app.numerics.hmm import model as hmm
+from app.numerics.hmm.fit import fit_left_to_right
+from app.numerics.hmm.model import (
     GaussianHMM,
     forward,
     log_emissions,
@@ -13,7 +14,6 @@ from app.numerics.hmm import (
     log_likelihoods,
     mean_trajectory,
 )
-from app.numerics.hmm_fit import fit_left_to_right
 from tests.numerics.hmm_reference import naive_forward, wavy
 
 FLOOR = np.full(6, 0.1)

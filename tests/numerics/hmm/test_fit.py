@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.numerics.hmm import GaussianHMM, log_likelihood
-from app.numerics.hmm_fit import fit_left_to_right, occupancy, sample
+from app.numerics.hmm.fit import fit_left_to_right, occupancy, sample
+from app.numerics.hmm.model import GaussianHMM, log_likelihood
 from tests.numerics.hmm_reference import naive_occupancy, textbook_em, wavy
 
 FLOOR = np.full(6, 0.1)

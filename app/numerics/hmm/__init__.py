@@ -1,0 +1,1 @@
+"""Left-to-right Gaussian hidden Markov models."""

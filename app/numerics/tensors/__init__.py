@@ -1,0 +1,1 @@
+"""Unfolding, N-mode SVD and rank-1 factors."""
