@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion.joint_roles import SUN_ROLES, JointRole
-from app.motion.motion import Motion
+from app.motion.canonical.motion import Motion
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
 
 R = JointRole

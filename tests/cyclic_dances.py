@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from app.motion.joint_roles import JointRole
+from app.motion.roles.joint_roles import JointRole
 from app.numerics.arrays import FloatArray
 from tests.bodies import place, standing, turned_about_y
 from tests.dances import SWUNG

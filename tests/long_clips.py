@@ -11,7 +11,7 @@ from sqlalchemy import insert, update
 
 from app.analysis.analyse import ANALYSIS_VERSION
 from app.config import Settings
-from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
+from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.store import arrays, identity
 from app.store import tables as t
 from app.store.index_feed import IndexedClip

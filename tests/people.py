@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion.joint_roles import JointRole
-from app.motion.kinematics import forward_kinematics, local_translations
-from app.motion.recording import Recording
-from app.motion.rotations import euler_to_quaternions
-from app.motion.skeleton import Skeleton
+from app.motion.roles.joint_roles import JointRole
+from app.motion.skeleton.kinematics import forward_kinematics, local_translations
+from app.motion.skeleton.recording import Recording
+from app.motion.skeleton.rotations import euler_to_quaternions
+from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 R = JointRole

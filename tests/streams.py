@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.formats.read import read_recording
-from app.motion.body_frame import body_length, body_track
-from app.motion.canonical import canonicalise
-from app.motion.joint_roles import SUN_ROLES, JointRole
-from app.motion.resampling import sample_at
+from app.motion.canonical.canonical import canonicalise
+from app.motion.frame.body_frame import body_length, body_track
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.skeleton.resampling import sample_at
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, turned_about_y
 from tests.formats.arrays import npz

@@ -38,10 +38,10 @@ from app.analysis.pose_cover import pose_cover
 from app.analysis.rhythm import NOTHING, Told, find_rhythm, rhythm_arrays
 from app.analysis.symbol_features import symbol_features, symbol_statistics
 from app.analysis.windows import WINDOW_SCALES, window_arrays
-from app.motion.body_frame import BodyTrack, body_track
-from app.motion.gait import exact_gait_cycles
-from app.motion.motion import Motion
-from app.motion.recording import Caution
+from app.motion.canonical.motion import Motion
+from app.motion.frame.body_frame import BodyTrack, body_track
+from app.motion.frame.gait import exact_gait_cycles
+from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1
 

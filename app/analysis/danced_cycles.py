@@ -16,8 +16,8 @@ import numpy as np
 
 from app.analysis.frame_features import WARPING_RATE
 from app.analysis.segments import SEGMENT_CYCLES, SEGMENT_SPANS
-from app.motion.joint_roles import SUN_ROLES
-from app.motion.resampling import resample_to, sample_at
+from app.motion.roles.joint_roles import SUN_ROLES
+from app.motion.skeleton.resampling import resample_to, sample_at
 from app.numerics.arrays import FloatArray, IntArray
 
 POSES = 16

@@ -17,8 +17,8 @@ from app.analysis.candidates import Candidate, Scope, at_beats, at_rests
 from app.analysis.energy import SMOOTHING, EnergyCurve, velocities
 from app.analysis.keyposes import LEAST_APART, T1, T2, are_law, passes
 from app.analysis.rests import Rest, find_rests
-from app.motion.body_frame import BodyTrack
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.frame.body_frame import BodyTrack
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray, IntArray
 
 HANDS = [SUN_ROLES.index(role) for role in (JointRole.LEFT_HAND, JointRole.RIGHT_HAND)]

@@ -17,8 +17,8 @@ import numpy as np
 import scipy
 
 from app.analysis.marker_noise import noise_of_speed, noise_power
-from app.motion.body_frame import BodyTrack
-from app.motion.centre_of_mass import ROLE_MASSES
+from app.motion.canonical.centre_of_mass import ROLE_MASSES
+from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray
 
 SMOOTHING = 1 / 30

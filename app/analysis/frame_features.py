@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion.body_frame import BodyTrack
-from app.motion.resampling import resample
+from app.motion.frame.body_frame import BodyTrack
+from app.motion.skeleton.resampling import resample
 from app.numerics.arrays import FloatArray
 
 FEATURES = 82

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from app.motion.joint_roles import SUN_ROLES, JointRole
-from app.motion.occlusion import LONGEST_GAP, runs
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.skeleton.occlusion import LONGEST_GAP, runs
 from app.numerics.arrays import BoolArray, FloatArray
 
 CUT_OFF = 6.0

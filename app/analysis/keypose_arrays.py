@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.analysis.segments import describe_segments
-from app.motion.body_frame import ANALYSIS_RATE
+from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.numerics.arrays import FloatArray, IntArray
 
 

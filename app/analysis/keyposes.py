@@ -21,7 +21,7 @@ from app.analysis.beats import Beats, BeatSource, find_beats, given_beats
 from app.analysis.candidates import Candidate, Scope, at_beats, at_rests
 from app.analysis.energy import Energies, EnergyMethod, Weights, energies
 from app.analysis.rests import Rest, find_rests
-from app.motion.body_frame import BodyTrack
+from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray, IntArray
 
 T1 = 0.25

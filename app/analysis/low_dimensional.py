@@ -14,7 +14,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from app.motion.body_frame import BodyTrack, turned
+from app.motion.frame.body_frame import BodyTrack, turned
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.signs import fix_signs
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion.body_frame import BodyTrack
-from app.motion.gait import exact_gait_cycles
-from app.motion.resampling import low_pass, resample_to, sample_at
+from app.motion.frame.body_frame import BodyTrack
+from app.motion.frame.gait import exact_gait_cycles
+from app.motion.skeleton.resampling import low_pass, resample_to, sample_at
 from app.numerics.arrays import FloatArray
 
 SAMPLES = 32

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.motion_sample import SAMPLES, mean_over_cycles
-from app.motion.body_frame import BodyTrack
-from app.motion.gait import exact_gait_cycles
-from app.motion.joint_roles import SUN_ROLES
-from app.motion.resampling import resample_to
+from app.motion.frame.body_frame import BodyTrack
+from app.motion.frame.gait import exact_gait_cycles
+from app.motion.roles.joint_roles import SUN_ROLES
+from app.motion.skeleton.resampling import resample_to
 from app.numerics.arrays import FloatArray
 
 CHANNELS = 13 * 3 + 4

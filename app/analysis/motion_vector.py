@@ -24,7 +24,7 @@ import scipy
 from numpy.typing import NDArray
 
 from app.analysis.frame_features import FEATURES
-from app.motion.body_frame import ANALYSIS_RATE
+from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.numerics.arrays import FloatArray
 
 DIMENSIONS = 128

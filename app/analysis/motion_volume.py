@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.motion.body_frame import BodyTrack
+from app.motion.frame.body_frame import BodyTrack
 from app.numerics.alignment.cross_correlation import (
     max_cross_correlations,
     max_cross_correlations_of_rows,

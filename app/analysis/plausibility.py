@@ -24,7 +24,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import BoolArray, FloatArray
 
 FOLDED_LIMIT = 160.0

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion.body_pose import body_poses
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.frame.body_pose import body_poses
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray, IntArray
 
 POSE_WIDTH = 36

@@ -27,8 +27,8 @@ from app.analysis.beats import (
 )
 from app.analysis.energy import Energies, energies
 from app.analysis.onsets import Onsets
-from app.motion.body_frame import BodyTrack
-from app.motion.recording import Caution
+from app.motion.frame.body_frame import BodyTrack
+from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
 
 SOURCES = tuple(BeatSource)

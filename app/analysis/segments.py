@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from app.analysis.frame_features import TRAVEL, WARPING_RATE
 from app.analysis.motion_cycles import find_cycles
-from app.motion.joint_roles import SUN_ROLES, JointRole
-from app.motion.resampling import sample_at
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.skeleton.resampling import sample_at
 from app.numerics.arrays import FloatArray
 
 SEGMENT_VECTORS, SEGMENT_SPANS, SEGMENT_CYCLES = (

@@ -13,8 +13,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion.body_frame import BodyTrack
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.frame.body_frame import BodyTrack
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
 
 _R = JointRole

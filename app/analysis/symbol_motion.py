@@ -20,8 +20,8 @@ import numpy as np
 import scipy
 
 from app.analysis.symbol_features import CHANNEL_SCALES, CHANNELS, symbol_features
-from app.motion.body_frame import BodyTrack, turned
-from app.motion.joint_roles import SUN_PARENTS
+from app.motion.frame.body_frame import BodyTrack, turned
+from app.motion.roles.joint_roles import SUN_PARENTS
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
 

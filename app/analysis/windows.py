@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.frame_features import FEATURES, TRAVEL, WARPING_RATE
-from app.motion.joint_roles import SUN_ROLES
+from app.motion.roles.joint_roles import SUN_ROLES
 from app.numerics.arrays import FloatArray, IntArray
 
 POSITIONS = slice(0, 3 * len(SUN_ROLES))

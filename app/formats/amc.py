@@ -17,8 +17,8 @@ from app.formats.asf import AcclaimSkeleton, read_asf
 from app.formats.frame_numbers import USUAL_RATE, in_order
 from app.formats.lines import with_plain_newlines
 from app.formats.solving import solve
-from app.motion.recording import Recording
-from app.motion.rotations import (
+from app.motion.skeleton.recording import Recording
+from app.motion.skeleton.rotations import (
     conjugate,
     euler_to_quaternions,
     identity_quaternions,

@@ -19,7 +19,7 @@ from app.formats.acclaim_lines import worded_lines
 from app.formats.bvh_frames import FASTEST_RATE, MAX_FRAMES, SLOWEST_RATE
 from app.formats.numbers import MAX_MAGNITUDE, excerpt
 from app.formats.places import too_large, unreadable
-from app.motion.recording import Caution
+from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray, IntArray
 
 BLOCK_FRAMES = 512

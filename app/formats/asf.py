@@ -19,9 +19,9 @@ from app.formats.lines import with_plain_newlines
 from app.formats.names import readable_name
 from app.formats.numbers import excerpt, parse_numbers
 from app.formats.places import too_large, unreadable
-from app.motion.recording import Caution
-from app.motion.rotations import euler_to_quaternions, identity_quaternions
-from app.motion.skeleton import Skeleton
+from app.motion.skeleton.recording import Caution
+from app.motion.skeleton.rotations import euler_to_quaternions, identity_quaternions
+from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 MAX_ASF_BYTES = 2_000_000

@@ -16,8 +16,8 @@ from app.formats.bvh_hierarchy import Channel, Hierarchy, read_hierarchy
 from app.formats.lines import with_plain_newlines
 from app.formats.places import unreadable
 from app.formats.solving import Solved, solve
-from app.motion.recording import Recording
-from app.motion.rotations import euler_to_quaternions, identity_quaternions
+from app.motion.skeleton.recording import Recording
+from app.motion.skeleton.rotations import euler_to_quaternions, identity_quaternions
 from app.numerics.arrays import FloatArray
 
 _MOTION = re.compile(rb"^[ \t]*MOTION[ \t]*(?::[ \t]*)?$", re.IGNORECASE | re.MULTILINE)

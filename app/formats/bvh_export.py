@@ -13,8 +13,8 @@ import numpy as np
 
 from app.formats.bvh_writer import bvh_blocks
 from app.formats.names import MAX_NAME_LENGTH
-from app.motion.animation import Animation
-from app.motion.skeleton import Skeleton
+from app.motion.skeleton.animation import Animation
+from app.motion.skeleton.skeleton import Skeleton
 
 UNITS_PER_METRE = 100.0
 """BVH does not say its unit; centimetres are usual."""

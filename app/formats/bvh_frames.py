@@ -17,7 +17,7 @@ from app.formats.decimals import plain_table
 from app.formats.lines import filled_lines
 from app.formats.numbers import check_magnitudes, excerpt, parse_any_numbers
 from app.formats.places import too_large, unreadable
-from app.motion.recording import FRAME_RATES, Caution
+from app.motion.skeleton.recording import FRAME_RATES, Caution
 from app.numerics.arrays import FloatArray
 
 MAX_FRAMES = 1_000_000

@@ -19,8 +19,8 @@ from app.errors import Unreadable
 from app.formats.names import readable_name
 from app.formats.numbers import excerpt, parse_numbers
 from app.formats.places import too_large, unreadable
-from app.motion.recording import Caution
-from app.motion.skeleton import Skeleton
+from app.motion.skeleton.recording import Caution
+from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 MAX_JOINTS = 2000

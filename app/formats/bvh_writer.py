@@ -10,8 +10,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from app.motion.rotations import quaternions_to_euler
-from app.motion.skeleton import Skeleton
+from app.motion.skeleton.rotations import quaternions_to_euler
+from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 DECIMALS = 6

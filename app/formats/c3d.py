@@ -16,14 +16,14 @@ import numpy as np
 
 from app.formats.c3d_markers import Markers, gap_cautions, hidden_too_long, labelled_markers
 from app.formats.c3d_points import Points, read_points
-from app.motion.joint_centres import RECIPES, Centre, chosen, joint_centres
-from app.motion.joint_names import roles_by_name
-from app.motion.joint_roles import SUN_ROLES, JointRole
-from app.motion.marker_names import places_of
-from app.motion.occlusion import Gap, fill_gaps
-from app.motion.recording import Recording
-from app.motion.skeleton import Skeleton
-from app.motion.units import METRES_PER_UNIT
+from app.motion.canonical.units import METRES_PER_UNIT
+from app.motion.roles.joint_centres import RECIPES, Centre, chosen, joint_centres
+from app.motion.roles.joint_names import roles_by_name
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.roles.marker_names import places_of
+from app.motion.skeleton.occlusion import Gap, fill_gaps
+from app.motion.skeleton.recording import Recording
+from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 RATE_FOR_GAPS = 100.0

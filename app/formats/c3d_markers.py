@@ -10,9 +10,9 @@ import numpy as np
 
 from app.errors import Place, Unreadable
 from app.formats.c3d_points import Points
-from app.motion.marker_names import is_marker, places_of, subject_and_label
-from app.motion.occlusion import Gap
-from app.motion.recording import Caution
+from app.motion.roles.marker_names import is_marker, places_of, subject_and_label
+from app.motion.skeleton.occlusion import Gap
+from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, FloatArray
 
 SHOWN_MARKERS = 8

@@ -15,7 +15,7 @@ from app.formats.c3d_parameters import BLOCK, Numbers, Parameters, read_paramete
 from app.formats.numbers import MAX_MAGNITUDE
 from app.formats.places import too_large, unreadable_at
 from app.formats.solving import MAX_JOINT_FRAMES
-from app.motion.recording import FRAME_RATES, Caution
+from app.motion.skeleton.recording import FRAME_RATES, Caution
 from app.numerics.arrays import FloatArray
 
 FULL_COUNT = 65535

@@ -23,9 +23,9 @@ from app.formats.fbx_transforms import ANIMATED, FbxNode, Local, World, read_nod
 from app.formats.numbers import MAX_MAGNITUDE
 from app.formats.places import too_large
 from app.formats.solving import MAX_JOINT_FRAMES, Solved, solve
-from app.motion.recording import Caution, Recording
-from app.motion.rotations import matrices_to_quaternions, multiply, rotate
-from app.motion.skeleton import Skeleton
+from app.motion.skeleton.recording import Caution, Recording
+from app.motion.skeleton.rotations import matrices_to_quaternions, multiply, rotate
+from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray, IntArray
 
 METRES_PER_CENTIMETRE = 0.01

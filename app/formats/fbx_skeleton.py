@@ -16,7 +16,7 @@ import numpy as np
 from app.formats.bvh_hierarchy import MAX_JOINTS
 from app.formats.fbx_scene import FbxObject, FbxScene, unreadable_at
 from app.formats.places import too_large
-from app.motion.recording import Caution
+from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, IntArray
 
 LIMBS = frozenset(("LimbNode", "Limb", "Root"))

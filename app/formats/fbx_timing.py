@@ -14,7 +14,7 @@ from app.formats.bvh_frames import FASTEST_RATE, MAX_FRAMES, NEAR_WHOLE, SLOWEST
 from app.formats.fbx_curves import KTIME
 from app.formats.fbx_scene import Numbers
 from app.formats.places import too_large
-from app.motion.recording import Caution
+from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray, IntArray
 
 NTSC = 1000 / 1001

@@ -15,8 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.formats.fbx_scene import FbxObject, FbxScene, refused_at
-from app.motion.kinematics import joints_by_depth
-from app.motion.rotations import euler_to_quaternions, multiply, quaternions_to_matrices, rotate
+from app.motion.skeleton.kinematics import joints_by_depth
+from app.motion.skeleton.rotations import (
+    euler_to_quaternions,
+    multiply,
+    quaternions_to_matrices,
+    rotate,
+)
 from app.numerics.arrays import FloatArray, IntArray
 
 ROTATION_ORDERS = ("XYZ", "XZY", "YZX", "YXZ", "ZXY", "ZYX")

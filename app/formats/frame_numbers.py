@@ -8,7 +8,7 @@ import numpy as np
 
 from app.formats.amc_frames import AmcFrames
 from app.formats.places import unreadable
-from app.motion.recording import Caution
+from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 USUAL_RATE = 120.0

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.motion.kinematics import rest_positions
-from app.motion.skeleton import Skeleton
+from app.motion.skeleton.kinematics import rest_positions
+from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray, IntArray
 
 JOINT_RADIUS = 0.012

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.formats.glb_mesh import Mesh, stick_mesh
-from app.motion.animation import Animation, continuous
-from app.motion.kinematics import rest_positions
+from app.motion.skeleton.animation import Animation, continuous
+from app.motion.skeleton.kinematics import rest_positions
 from app.numerics.arrays import FloatArray
 
 _FLOAT, _USHORT, _UINT = 5126, 5123, 5125

@@ -36,9 +36,9 @@ from app.formats.numbers import MAX_MAGNITUDE
 from app.formats.places import too_large
 from app.formats.smpl import read_smpl
 from app.formats.solving import MAX_JOINT_FRAMES
-from app.motion.recording import Caution, Recording
-from app.motion.skeleton import Skeleton
-from app.motion.units import METRES_PER_UNIT
+from app.motion.canonical.units import METRES_PER_UNIT
+from app.motion.skeleton.recording import Caution, Recording
+from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray, IntArray
 
 FRAME_RATES = (0.1, 10_000.0)

@@ -11,7 +11,7 @@ from app.formats.c3d import read_c3d
 from app.formats.fbx import read_fbx
 from app.formats.npz import read_npy_positions, read_npz
 from app.formats.sniff import archive_names, sniff
-from app.motion.recording import Recording
+from app.motion.skeleton.recording import Recording
 
 
 def read_lone_asf(content: bytes) -> Recording:  # noqa: ARG001

@@ -17,10 +17,10 @@ import numpy as np
 
 from app.errors import Place, Unreadable
 from app.formats.joint_layouts import SMPL_BODY
-from app.motion.kinematics import forward_kinematics, local_translations
-from app.motion.recording import Caution, Recording
-from app.motion.rotations import identity_quaternions, multiply, rotate
-from app.motion.skeleton import Skeleton
+from app.motion.skeleton.kinematics import forward_kinematics, local_translations
+from app.motion.skeleton.recording import Caution, Recording
+from app.motion.skeleton.rotations import identity_quaternions, multiply, rotate
+from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 STATURE = 1.7

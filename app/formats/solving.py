@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.formats.places import too_large
-from app.motion.kinematics import forward_kinematics
-from app.motion.skeleton import Skeleton
+from app.motion.skeleton.kinematics import forward_kinematics
+from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 MAX_JOINT_FRAMES = 20_000_000

@@ -6,7 +6,7 @@ import numpy as np
 
 from app.analysis.motion_sample import SAMPLES
 from app.analysis.motion_shape import CHANNELS
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray, IntArray
 
 VELOCITY_WEIGHT = 0.3

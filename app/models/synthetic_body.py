@@ -17,12 +17,12 @@ import scipy
 
 from app.models.synthetic_feet import LOWEST_QUANTILE, feet_of, floor_of, on_the_floor, sole_depths
 from app.models.synthetic_motion import Course
-from app.motion.animation import Animation, continuous
-from app.motion.body_frame import ANALYSIS_RATE, BodyTrack, turned
-from app.motion.foot_contact import FEET, planted
-from app.motion.joint_roles import SUN_ROLES, JointRole
-from app.motion.posing import ancestors, pose_to
-from app.motion.rotations import conjugate, identity_quaternions, multiply
+from app.motion.frame.body_frame import ANALYSIS_RATE, BodyTrack, turned
+from app.motion.frame.foot_contact import FEET, planted
+from app.motion.posing.posing import ancestors, pose_to
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.skeleton.animation import Animation, continuous
+from app.motion.skeleton.rotations import conjugate, identity_quaternions, multiply
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.euclidean import squared_distances
 

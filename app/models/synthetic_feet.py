@@ -14,12 +14,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy
 
-from app.motion.animation import Animation
-from app.motion.foot_contact import LEVEL_PERCENTILE, Stance, stances
-from app.motion.kinematics import forward_kinematics
-from app.motion.posing import ancestors
-from app.motion.rotations import conjugate, identity_quaternions, multiply
-from app.motion.skeleton import Skeleton
+from app.motion.frame.foot_contact import LEVEL_PERCENTILE, Stance, stances
+from app.motion.posing.posing import ancestors
+from app.motion.skeleton.animation import Animation
+from app.motion.skeleton.kinematics import forward_kinematics
+from app.motion.skeleton.rotations import conjugate, identity_quaternions, multiply
+from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 GIVING = 0.03

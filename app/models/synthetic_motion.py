@@ -17,10 +17,10 @@ import scipy
 from app.analysis.motion_sample import SAMPLES
 from app.analysis.motion_shape import CHANNELS, Shape, clearance, parts_of
 from app.models.synthesis_timing import onto
-from app.motion.body_frame import ANALYSIS_RATE, turned
-from app.motion.foot_contact import FEET, carried_by_feet
-from app.motion.joint_roles import SUN_ROLES
-from app.motion.resampling import resample_to, sample_at
+from app.motion.frame.body_frame import ANALYSIS_RATE, turned
+from app.motion.frame.foot_contact import FEET, carried_by_feet
+from app.motion.roles.joint_roles import SUN_ROLES
+from app.motion.skeleton.resampling import resample_to, sample_at
 from app.numerics.arrays import FloatArray
 
 USUAL_SECONDS = 4.0

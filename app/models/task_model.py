@@ -22,7 +22,7 @@ import numpy as np
 from app.errors import NotEnoughLabels
 from app.models.cells import cell_means, find_cells
 from app.models.multilinear import MOST_CELLS, complete_tensor
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.euclidean import squared_distances
 from app.numerics.principal_axes import PrincipalAxes, principal_axes

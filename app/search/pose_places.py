@@ -8,7 +8,7 @@ from enum import StrEnum
 import numpy as np
 import scipy
 
-from app.motion.body_frame import ANALYSIS_RATE
+from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.numerics.arrays import FloatArray
 from app.numerics.nearest import DECIMALS
 

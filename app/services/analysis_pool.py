@@ -36,7 +36,7 @@ from app.store.checked import read_whole
 if TYPE_CHECKING:
     from app.analysis.analyse import Analysis
     from app.analysis.onsets import Onsets
-    from app.motion.recording import Caution, Recording
+    from app.motion.skeleton.recording import Caution, Recording
 
 _log = logging.getLogger(__name__)
 _Found = TypeVar("_Found")
@@ -181,8 +181,8 @@ def analyse_order(order: Order, limits: Limits) -> Analysis:
     from app.analysis import analyse
     from app.analysis.keyposes import T1, T2
     from app.analysis.rhythm import Told
-    from app.motion.canonical import canonicalise
-    from app.motion.joint_roles import JointRole
+    from app.motion.canonical.canonical import canonicalise
+    from app.motion.roles.joint_roles import JointRole
 
     recording = read_order(order, limits)
     roles = {JointRole(role): joint for role, joint in (order.roles or {}).items()}
@@ -205,7 +205,7 @@ def _listen(path: Path) -> tuple[Onsets | None, tuple[Caution, ...]]:
     """The onsets of a recording; none and why where it cannot be read, which stops no clip."""
     from app.analysis.onsets import find_onsets
     from app.formats.audio import read_audio
-    from app.motion.recording import Caution
+    from app.motion.skeleton.recording import Caution
 
     content = read_whole(path)
     try:

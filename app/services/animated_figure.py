@@ -16,7 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.motion.resampling import resample
+from app.motion.skeleton.resampling import resample
 from app.numerics.arrays import FloatArray
 from app.services.figure_camera import HEIGHT, MARGIN, WIDTH, Camera, Figure, camera_for
 from app.services.stick_figure import GROUND, LEFT, PAPER, RIGHT, TRUNK, colour, limbs, text

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from app.motion.body_frame import ANALYSIS_RATE
-from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
+from app.motion.frame.body_frame import ANALYSIS_RATE
+from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.animated_figure import animated_svg

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.beats import Beats
-from app.motion.body_frame import BodyTrack, body_track
+from app.motion.frame.body_frame import BodyTrack, body_track
 from app.numerics.arrays import FloatArray
 from app.services.keypose_frames import read_beats
 from app.services.stored_motion import read_motion

@@ -27,7 +27,7 @@ from app.logs import configure_logging
 LIBRARIES = [
     "app.analysis.analyse",
     "app.formats.read",
-    "app.motion.canonical",
+    "app.motion.canonical.canonical",
     "hmmlearn.hmm",
     # SciPy imports these parts on first use, and some take half a second.
     "scipy.fft",

@@ -23,13 +23,13 @@ from app.formats.bvh_export import write_animation_bvh
 from app.formats.csv_writer import write_csv
 from app.formats.glb_writer import write_glb
 from app.formats.npz_writer import write_npz
-from app.motion.animation import Animation, animation_of_positions
-from app.motion.body_frame import ANALYSIS_RATE
-from app.motion.canonical_body import on_canonical_body
-from app.motion.file_rotations import animation_of_recording
-from app.motion.joint_roles import SUN_ROLES
-from app.motion.motion import Motion
-from app.motion.resampling import resample
+from app.motion.canonical.motion import Motion
+from app.motion.frame.body_frame import ANALYSIS_RATE
+from app.motion.posing.canonical_body import on_canonical_body
+from app.motion.posing.file_rotations import animation_of_recording
+from app.motion.roles.joint_roles import SUN_ROLES
+from app.motion.skeleton.animation import Animation, animation_of_positions
+from app.motion.skeleton.resampling import resample
 from app.numerics.arrays import FloatArray, IntArray
 from app.services import fields
 from app.services.export_format import ExportFormat, ExportSkeleton

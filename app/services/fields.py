@@ -13,9 +13,9 @@ from collections.abc import Iterable, Mapping
 from app.errors import BadField, Place
 from app.formats.names import MAX_NAME_LENGTH
 from app.models.word_vocabulary import normalise_word, normalise_words
-from app.motion.joint_roles import JointRole
-from app.motion.recording import FRAME_RATES
-from app.motion.units import METRES_PER_UNIT, SCALES
+from app.motion.canonical.units import METRES_PER_UNIT, SCALES
+from app.motion.roles.joint_roles import JointRole
+from app.motion.skeleton.recording import FRAME_RATES
 
 MAX_TEXT = 300
 """Characters in a name or label."""

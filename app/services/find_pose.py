@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from app.motion.body_frame import ANALYSIS_RATE
+from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.numerics.arrays import FloatArray
 from app.search import cursor as cursors
 from app.search.by_pose import POSITIONS, PoseHit, PoseRanking

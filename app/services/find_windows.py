@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from app.analysis.windows import WindowScale
-from app.motion.body_frame import ANALYSIS_RATE
+from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.search import cursor as cursors
 from app.search.cursor import Anchor, Position
 from app.search.distances import FEATURES

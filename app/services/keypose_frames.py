@@ -16,7 +16,7 @@ from app.analysis.keypose_arrays import frames_at, keypose_arrays
 from app.analysis.keyposes import find_keyposes
 from app.analysis.rhythm import BEAT_ARRAYS, beats_of
 from app.errors import NotFound
-from app.motion.body_frame import BodyTrack
+from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray, IntArray
 from app.services.library import Library
 from app.store import arrays, keypose_annotations

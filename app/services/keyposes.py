@@ -13,7 +13,7 @@ from app.analysis.energy import EnergyMethod, Weights
 from app.analysis.keyposes import Keyposes, find_keyposes
 from app.errors import ModelNotFitted
 from app.models.keypose_thresholds import USUAL, Thresholds
-from app.motion.body_frame import body_track
+from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.keypose_frames import store_keyposes, stored_beats

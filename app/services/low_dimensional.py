@@ -19,10 +19,10 @@ from app.analysis.low_dimensional import (
 from app.analysis.plausibility import Plausibility, judge_poses
 from app.deadline import check
 from app.errors import NotEnoughKeyposes, Place
-from app.motion.body_frame import ANALYSIS_RATE, BodyTrack, body_track
-from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES, JointRole
-from app.motion.motion import Motion
-from app.motion.resampling import resample
+from app.motion.canonical.motion import Motion
+from app.motion.frame.body_frame import ANALYSIS_RATE, BodyTrack, body_track
+from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES, JointRole
+from app.motion.skeleton.resampling import resample
 from app.numerics.arrays import FloatArray, IntArray
 from app.services import fields
 from app.services.frame_rates import wanted_rate

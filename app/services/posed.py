@@ -10,10 +10,10 @@ import numpy as np
 
 from app.analysis.pose_cover import pose_vectors
 from app.errors import BadField, Place
-from app.motion.body_frame import ANALYSIS_RATE
-from app.motion.body_pose import SIDES
-from app.motion.joint_roles import SUN_ROLES
-from app.motion.resampling import sample_at
+from app.motion.frame.body_frame import ANALYSIS_RATE
+from app.motion.frame.body_pose import SIDES
+from app.motion.roles.joint_roles import SUN_ROLES
+from app.motion.skeleton.resampling import sample_at
 from app.numerics.arrays import FloatArray
 from app.services import fields
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.errors import BadField, ClipNotFound, ClipNotReady, EmptyFile, Place, TooLarge
-from app.motion.motion import Motion
+from app.motion.canonical.motion import Motion
 from app.numerics.arrays import FloatArray
 from app.search import usable_arrays
 from app.services import fields

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from app.analysis.segments import SEGMENT_CYCLES, SEGMENT_SPANS, SEGMENT_VECTORS, describe_segments
 from app.errors import NotFound
-from app.motion.body_frame import ANALYSIS_RATE, body_track
+from app.motion.frame.body_frame import ANALYSIS_RATE, body_track
 from app.search.distances import FEATURES
 from app.services.keypose_frames import keypose_frames
 from app.services.library import Library

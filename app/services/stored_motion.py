@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.deadline import check
-from app.motion.joint_roles import JointRole
-from app.motion.motion import Motion
+from app.motion.canonical.motion import Motion
+from app.motion.roles.joint_roles import JointRole
 from app.services.library import Library
 from app.store import arrays
 from app.store.clip_record import ClipRecord

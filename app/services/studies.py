@@ -18,8 +18,8 @@ from enum import StrEnum
 import numpy as np
 
 from app.analysis.low_dimensional import SHOWN, Basis
-from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
-from app.motion.resampling import resample
+from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
+from app.motion.skeleton.resampling import resample
 from app.numerics.binomial import fair_coin_probability, wilson_interval
 from app.services import fields
 from app.services.animated_figure import animated_svg

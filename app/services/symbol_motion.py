@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from app.analysis.motion_symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.analysis.symbol_motion import SymbolMotion
 from app.analysis.symbol_motion import symbol_motion as generate
-from app.motion.body_frame import body_track
-from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
+from app.motion.frame.body_frame import body_track
+from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.services.library import Library
 from app.services.query import ready_clip
 from app.services.stored_motion import load_motion

@@ -12,12 +12,12 @@ from app.analysis.motion_shape import CHANNELS, moments_of
 from app.errors import ClipNotFound, ClipNotReady, NotEnoughLabels
 from app.models.synthesis import Synthesis
 from app.models.synthetic_body import Donor, same_body
-from app.motion.animation import Animation
-from app.motion.body_frame import ANALYSIS_RATE, body_track
-from app.motion.canonical_body import on_canonical_body
-from app.motion.joint_roles import JointRole
-from app.motion.motion import Motion
-from app.motion.posed_start import without_posed_start
+from app.motion.canonical.motion import Motion
+from app.motion.frame.body_frame import ANALYSIS_RATE, body_track
+from app.motion.posing.canonical_body import on_canonical_body
+from app.motion.posing.posed_start import without_posed_start
+from app.motion.roles.joint_roles import JointRole
+from app.motion.skeleton.animation import Animation
 from app.numerics.arrays import FloatArray
 from app.search import usable_arrays
 from app.services.export import own_animation

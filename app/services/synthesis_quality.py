@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from app.models.synthesis import Synthesis
-from app.motion.foot_contact import FEET, skating
-from app.motion.motion import Motion
+from app.motion.canonical.motion import Motion
+from app.motion.frame.foot_contact import FEET, skating
 from app.numerics.arrays import FloatArray
 from app.services.library import Library
 from app.services.model_shelf import Fitted

@@ -14,10 +14,10 @@ from app.formats.bvh_export import write_animation_bvh
 from app.models.synthesis import Synthesis
 from app.models.synthetic_body import embody
 from app.models.synthetic_motion import course_of
-from app.motion.animation import Animation
-from app.motion.body_frame import body_track
-from app.motion.joint_roles import SUN_ROLES, JointRole
-from app.motion.motion import Motion
+from app.motion.canonical.motion import Motion
+from app.motion.frame.body_frame import body_track
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.skeleton.animation import Animation
 from app.services import clips, fields
 from app.services.library import Library
 from app.services.model_shelf import Fitted

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
 from app.services.stick_figure import GROUND, LEFT, PAPER, RIGHT, TRUNK, text, widest_direction
 

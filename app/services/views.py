@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
-from app.motion.resampling import resample
+from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
+from app.motion.skeleton.resampling import resample
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.frame_rates import wanted_rate

@@ -4,7 +4,7 @@ import numpy as np
 
 from app.analysis.angle_sample import angle_sample
 from app.analysis.motion_sample import SAMPLES, motion_sample
-from app.motion.body_frame import body_track
+from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, walking, waving
 

@@ -9,8 +9,8 @@ from scipy.ndimage import gaussian_filter1d
 from app.analysis.beats import BeatSource, beats_of_tempo, find_beats, given_beats
 from app.analysis.energy import energies
 from app.formats.read import read_recording
-from app.motion.body_frame import body_track
-from app.motion.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalise
+from app.motion.frame.body_frame import body_track
 from app.services.demo import DemoClip
 from app.services.demo.dances import dance as drifting_dance
 from tests.bodies import motion_of, standing

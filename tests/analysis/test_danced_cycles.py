@@ -6,7 +6,7 @@ import pytest
 from app.analysis.danced_cycles import POSES, danced_cycles
 from app.analysis.frame_features import features_at_10hz, frame_features
 from app.analysis.keypose_arrays import keypose_arrays
-from app.motion.body_frame import body_track
+from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of
 from tests.cyclic_dances import CyclicDance, cyclic_dance

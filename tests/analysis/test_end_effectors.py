@@ -7,8 +7,8 @@ import numpy as np
 from app.analysis.beats import given_beats
 from app.analysis.end_effectors import end_effector_candidates, end_effector_speeds
 from app.analysis.keyposes import find_keyposes
-from app.motion.body_frame import body_track
-from app.motion.joint_roles import JointRole
+from app.motion.frame.body_frame import body_track
+from app.motion.roles.joint_roles import JointRole
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, place, standing, waving
 from tests.dances import dance, precision_and_recall

@@ -7,9 +7,9 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from app.analysis.energy import EnergyMethod, Weights, energies
-from app.motion.body_frame import body_track
-from app.motion.centre_of_mass import ROLE_MASSES, centre_of_mass
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.canonical.centre_of_mass import ROLE_MASSES, centre_of_mass
+from app.motion.frame.body_frame import body_track
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from tests.bodies import motion_of, place, standing, turned_about_y, walking, waving
 from tests.dances import dance
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.analysis.frame_features import FEATURES, TRAVEL, features_at_10hz, frame_features
-from app.motion.body_frame import body_track
+from app.motion.frame.body_frame import body_track
 from tests.bodies import motion_of, standing, turned_about_y, walking
 
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from app.analysis.joint_angles import ANGLES, CUT_OFF, filtered, joint_angles, spanned
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
 from tests.bodies import standing, turned_about_y, walking, waving
 

@@ -11,7 +11,7 @@ from app.analysis.beats import Beats, BeatSource
 from app.analysis.candidates import Scope
 from app.analysis.energy import EnergyMethod, Weights
 from app.analysis.keyposes import Keyposes, find_candidates, find_keyposes
-from app.motion.body_frame import BodyTrack, body_track
+from app.motion.frame.body_frame import BodyTrack, body_track
 from tests.bodies import motion_of, standing, turned_about_y, walking
 from tests.dances import Dance, dance, precision_and_recall
 

@@ -15,7 +15,7 @@ from app.analysis.low_dimensional import (
     reconstruction_errors,
     uniform_frames,
 )
-from app.motion.body_frame import BodyTrack, body_track
+from app.motion.frame.body_frame import BodyTrack, body_track
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, standing, turned_about_y, walking
 from tests.dances import dance

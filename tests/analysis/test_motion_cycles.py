@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from app.analysis.keyposes import find_keyposes
 from app.analysis.motion_cycles import Cycle, find_cycles
-from app.motion.body_frame import BodyTrack, body_track
+from app.motion.frame.body_frame import BodyTrack, body_track
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of
 from tests.cyclic_dances import CyclicDance, cyclic_dance

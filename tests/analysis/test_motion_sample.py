@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.analysis.motion_sample import SAMPLE_LENGTH, motion_sample
-from app.motion.body_frame import body_track
+from app.motion.frame.body_frame import body_track
 from tests.bodies import motion_of, standing, walking, waving
 
 

@@ -11,8 +11,8 @@ from app.analysis.motion_shape import (
     motion_shape,
     parts_of,
 )
-from app.motion.body_frame import body_track
-from app.motion.joint_roles import SUN_ROLES
+from app.motion.frame.body_frame import body_track
+from app.motion.roles.joint_roles import SUN_ROLES
 from tests.bodies import motion_of, standing, walking, waving
 
 

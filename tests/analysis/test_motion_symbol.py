@@ -6,7 +6,7 @@ import pytest
 from app.analysis.motion_symbol import describe_symbol, symbol_from_arrays
 from app.analysis.symbol_features import symbol_features
 from app.models.symbol_space import symbol_distances
-from app.motion.body_frame import body_track
+from app.motion.frame.body_frame import body_track
 from app.numerics.hmm.model import GaussianHMM
 from tests.bodies import motion_of, standing, turned_about_y, walking, waving
 

@@ -14,7 +14,7 @@ from app.analysis.motion_volume import (
     self_similarity,
     warping_distances,
 )
-from app.motion.body_frame import body_track
+from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, standing, turned_about_y, walking, waving
 

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.analysis.plausibility import Fault, judge_poses
-from app.motion.body_frame import body_track
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.frame.body_frame import body_track
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, standing, walking, waving
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from app.analysis import pose_cover as module
 from app.analysis.pose_cover import FRAMES_PER_POSE, POSE_WIDTH, TOLERANCE, pose_cover, pose_vectors
-from app.motion.body_pose import body_poses
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.frame.body_pose import body_poses
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from tests.bodies import standing, turned_about_y, walking, waving
 
 FRAME, RADIUS, VECTOR = 0, 1, slice(2, None)

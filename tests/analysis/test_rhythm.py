@@ -14,8 +14,8 @@ from app.analysis.onsets import Onsets, find_onsets
 from app.analysis.rhythm import SOURCES, Told, beats_of, find_rhythm, rhythm_arrays
 from app.formats.audio import read_audio
 from app.formats.read import read_recording
-from app.motion.body_frame import BodyTrack, body_track
-from app.motion.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalise
+from app.motion.frame.body_frame import BodyTrack, body_track
 from app.services.demo import DemoClip
 from app.services.demo.dances import Sound, dance
 from tests.bodies import motion_of, standing

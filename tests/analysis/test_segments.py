@@ -15,7 +15,7 @@ from app.analysis.segments import (
     segment_spans,
     segment_vectors,
 )
-from app.motion.body_frame import body_track
+from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, standing, turned_about_y, waving
 from tests.cyclic_dances import CyclicDance, cyclic_dance

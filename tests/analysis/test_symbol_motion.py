@@ -8,8 +8,8 @@ import pytest
 from app.analysis.motion_symbol import motion_symbol
 from app.analysis.symbol_features import CHANNEL_SCALES, CHANNELS, symbol_features
 from app.analysis.symbol_motion import SymbolMotion, symbol_motion
-from app.motion.body_frame import BodyTrack, body_track
-from app.motion.joint_roles import SUN_PARENTS
+from app.motion.frame.body_frame import BodyTrack, body_track
+from app.motion.roles.joint_roles import SUN_PARENTS
 from tests.bodies import motion_of, walking
 
 HIPS = 4

@@ -18,7 +18,7 @@ from app.analysis.windows import (
     window_arrays,
     window_frames,
 )
-from app.motion.body_frame import body_track
+from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, standing, turned_about_y, walking, waving
 

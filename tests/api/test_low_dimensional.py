@@ -11,7 +11,7 @@ import httpx2
 import numpy as np
 import pytest
 
-from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
+from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
 from tests.api.conftest import assert_problem
 from tests.bodies import standing
 from tests.formats.arrays import npz

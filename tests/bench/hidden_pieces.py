@@ -13,7 +13,7 @@ import numpy as np
 
 from app.analysis.frame_features import frame_features
 from app.errors import BadContent
-from app.motion.body_frame import body_track
+from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from app.services import clips
 from app.services.clips import NewClip

@@ -18,7 +18,7 @@ from sqlalchemy import insert, update
 from app.analysis.analyse import ANALYSIS_VERSION, analyse
 from app.errors import BadContent
 from app.formats.read import read_recording
-from app.motion.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalise
 from app.store import tables as t
 from app.store.blobs import to_blob
 from app.store.clip_record import ClipState

@@ -13,7 +13,7 @@ import pytest
 from app.analysis.analyse import analyse
 from app.errors import BadContent
 from app.formats.read import read_recording
-from app.motion.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalise
 from tests.real_clips import manifest, real_clips
 
 pytestmark = pytest.mark.bench

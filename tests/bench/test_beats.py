@@ -24,8 +24,8 @@ from app.analysis.energy import energies
 from app.analysis.onsets import find_onsets
 from app.formats.audio import read_audio
 from app.formats.read import read_recording
-from app.motion.body_frame import body_track
-from app.motion.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalise
+from app.motion.frame.body_frame import body_track
 from app.services.demo import DemoClip
 from app.services.demo.dances import Sound, dance
 from app.services.demo.dances.music import STYLES

@@ -25,8 +25,8 @@ from app.analysis.motion_volume import decompose
 from app.analysis.symbol_features import symbol_features, symbol_statistics
 from app.errors import BadContent
 from app.formats.read import read_recording
-from app.motion.body_frame import body_track
-from app.motion.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalise
+from app.motion.frame.body_frame import body_track
 from tests.bench.page import Section
 from tests.bench.processes import MB, Meter, Tree
 from tests.bench.product import API, WORKER, Product, serving, zip_of_real_clips

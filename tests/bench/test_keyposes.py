@@ -25,9 +25,9 @@ from app.analysis.keyposes import T1, T2, find_candidates, find_keyposes
 from app.formats.read import read_recording
 from app.models.keypose_matching import Counts, match, total
 from app.models.keypose_thresholds import Example, Selectable, Thresholds, lesson
-from app.motion.body_frame import BodyTrack, body_track
-from app.motion.canonical import canonicalise
-from app.motion.motion import Motion
+from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.motion import Motion
+from app.motion.frame.body_frame import BodyTrack, body_track
 from app.services.demo.dances import dance
 from tests.bench.page import Section
 from tests.bodies import motion_of

@@ -23,7 +23,7 @@ from sklearn.manifold import ClassicalMDS
 from sklearn.model_selection import GridSearchCV
 from sklearn.neighbors import NearestNeighbors
 
-from app.motion import rotations
+from app.motion.skeleton import rotations
 from app.numerics import kernel_ridge
 from app.numerics.alignment.cross_correlation import max_cross_correlations
 from app.numerics.hmm.divergence import symmetric_divergences

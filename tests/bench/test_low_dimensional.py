@@ -26,8 +26,8 @@ from app.analysis.low_dimensional import (
 )
 from app.analysis.plausibility import judge_poses
 from app.formats.read import read_recording
-from app.motion.body_frame import BodyTrack, body_track
-from app.motion.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalise
+from app.motion.frame.body_frame import BodyTrack, body_track
 from app.numerics.arrays import FloatArray
 from app.numerics.clusteredness import clusteredness
 from tests.bench.page import Section

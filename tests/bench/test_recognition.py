@@ -30,8 +30,8 @@ from app.models.recognition import Answer, Recognition
 from app.models.recognition_figures import held_out_recognition_figures, unknown_figures
 from app.models.task_model import Reading
 from app.models.tensor_recogniser import fit_tensor_recogniser, recognise_by_tensor
-from app.motion.body_frame import body_track
-from app.motion.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalise
+from app.motion.frame.body_frame import body_track
 from app.numerics.area_under_curve import area_under_curve
 from tests.bench.page import Section
 from tests.real_clips import manifest, real_clips

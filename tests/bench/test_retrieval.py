@@ -42,8 +42,8 @@ from app.analysis.frame_features import features_at_10hz, frame_features
 from app.config import Settings
 from app.formats.read import read_recording
 from app.models.ranking_figures import average_precision
-from app.motion.body_frame import body_track
-from app.motion.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalise
+from app.motion.frame.body_frame import body_track
 from app.numerics import diffusion
 from app.numerics.alignment.dtw import dtw_distances
 from app.search import fusion

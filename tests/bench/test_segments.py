@@ -21,9 +21,9 @@ from app.analysis.motion_cycles import find_cycles
 from app.analysis.motion_vector import motion_vector
 from app.analysis.segments import describe_segments, segment_spans, segment_vectors
 from app.formats.read import read_recording
-from app.motion.body_frame import BodyTrack, body_track
-from app.motion.canonical import canonicalise
-from app.motion.gait import gait_cycles
+from app.motion.canonical.canonical import canonicalise
+from app.motion.frame.body_frame import BodyTrack, body_track
+from app.motion.frame.gait import gait_cycles
 from app.numerics.arrays import FloatArray
 from tests.bench.page import Section
 from tests.bodies import motion_of

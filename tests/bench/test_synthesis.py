@@ -31,14 +31,14 @@ from app.models.synthesis_figures import (
 )
 from app.models.synthetic_body import Donor, embody, same_body
 from app.models.synthetic_motion import course_of
-from app.motion.animation import Animation
-from app.motion.body_frame import ANALYSIS_RATE, BodyTrack, body_track
-from app.motion.canonical import canonicalise
-from app.motion.file_rotations import animation_of_recording
-from app.motion.foot_contact import FEET, skating
-from app.motion.joint_roles import SUN_ROLES
-from app.motion.motion import Motion
-from app.motion.recording import Recording
+from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.motion import Motion
+from app.motion.frame.body_frame import ANALYSIS_RATE, BodyTrack, body_track
+from app.motion.frame.foot_contact import FEET, skating
+from app.motion.posing.file_rotations import animation_of_recording
+from app.motion.roles.joint_roles import SUN_ROLES
+from app.motion.skeleton.animation import Animation
+from app.motion.skeleton.recording import Recording
 from app.services.demo import demo_clips
 from tests.bench.page import Section
 from tests.real_clips import manifest, real_clips

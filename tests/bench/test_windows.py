@@ -33,7 +33,7 @@ from app.analysis.windows import (
     window_frames,
 )
 from app.config import Settings
-from app.motion.body_frame import body_track
+from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray, IntArray
 from app.search import in_windows
 from app.search.places import Candidates, places

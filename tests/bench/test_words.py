@@ -19,8 +19,8 @@ from app.formats.read import read_recording
 from app.models.folds import recording_of
 from app.models.symbol_space import symbol_distances
 from app.models.word_figures import WordFigures, held_out_word_figures
-from app.motion.body_frame import BodyTrack, body_track
-from app.motion.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalise
+from app.motion.frame.body_frame import BodyTrack, body_track
 from app.numerics.arrays import FloatArray
 from tests.bench.page import Section
 from tests.real_clips import manifest, real_clips

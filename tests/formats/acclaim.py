@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.motion.joint_roles import JointRole
-from app.motion.rotations import quaternions_to_euler
+from app.motion.roles.joint_roles import JointRole
+from app.motion.skeleton.rotations import quaternions_to_euler
 from app.numerics.arrays import FloatArray
 from tests.people import BODY, CONVENTIONS, ROLES, person
 

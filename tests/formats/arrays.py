@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.motion.recording import Recording
+from app.motion.skeleton.recording import Recording
 from tests.people import CONVENTIONS, person
 
 

@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from app.motion.joint_roles import JointRole
-from app.motion.kinematics import joints_by_depth
-from app.motion.recording import Recording
-from app.motion.rotations import multiply, rotate
+from app.motion.roles.joint_roles import JointRole
+from app.motion.skeleton.kinematics import joints_by_depth
+from app.motion.skeleton.recording import Recording
+from app.motion.skeleton.rotations import multiply, rotate
 from app.numerics.arrays import FloatArray
 from tests.people import ROLES, person
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from app.motion.kinematics import forward_kinematics, local_translations
-from app.motion.recording import Recording
+from app.motion.skeleton.kinematics import forward_kinematics, local_translations
+from app.motion.skeleton.recording import Recording
 from app.numerics.arrays import FloatArray
 from tests.formats.fbx_files import Bone, Curve, Curves, Take, fbx
 from tests.formats.fbx_twin import world_positions

@@ -20,9 +20,9 @@ from app.errors import (
 from app.formats.amc import read_amc
 from app.formats.bvh import read_bvh
 from app.formats.read import read_recording
-from app.motion.canonical import canonicalise
-from app.motion.joint_roles import SUN_ROLES
-from app.motion.recording import Recording
+from app.motion.canonical.canonical import canonicalise
+from app.motion.roles.joint_roles import SUN_ROLES
+from app.motion.skeleton.recording import Recording
 from tests.cpu_time import cpu_seconds_below
 from tests.formats import mutations
 from tests.formats.acclaim import (

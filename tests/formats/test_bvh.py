@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from app.errors import KinedexError, TooLarge, Unreadable
 from app.formats.bvh import read_bvh
 from app.formats.bvh_hierarchy import MAX_JOINTS
-from app.motion.rotations import euler_to_quaternions, rotate
+from app.motion.skeleton.rotations import euler_to_quaternions, rotate
 from tests.cpu_time import cpu_seconds_below
 from tests.formats.samples import HIERARCHY, ROWS, SPINE, bvh
 from tests.real_clips import real_clips

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from app.formats.bvh import read_bvh
 from app.formats.bvh_export import bvh_name, write_animation_bvh
-from app.motion.animation import Animation, animation_of_positions
-from app.motion.recording import Recording
+from app.motion.skeleton.animation import Animation, animation_of_positions
+from app.motion.skeleton.recording import Recording
 from tests.formats.test_glb_writer import ANIMATIONS, a_person
 
 TENTH_OF_MM = 1e-4

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.formats.bvh import read_bvh
-from app.motion.recording import Recording
+from app.motion.skeleton.recording import Recording
 from app.services.demo import demo_clips
 from tests.formats import mutations
 from tests.formats.samples import bvh

@@ -12,9 +12,9 @@ from hypothesis.extra.numpy import arrays
 
 from app.formats.bvh import read_bvh
 from app.formats.bvh_writer import write_bvh
-from app.motion.kinematics import forward_kinematics, local_translations
-from app.motion.rotations import euler_to_quaternions
-from app.motion.skeleton import Skeleton
+from app.motion.skeleton.kinematics import forward_kinematics, local_translations
+from app.motion.skeleton.rotations import euler_to_quaternions
+from app.motion.skeleton.skeleton import Skeleton
 from tests.people import CONVENTIONS, person
 
 ORDERS = ["".join(order) for order in permutations("XYZ")]

@@ -10,10 +10,10 @@ import pytest
 from app.errors import NotHuman, TooLarge, Unreadable
 from app.formats.c3d import read_c3d
 from app.formats.read import read_recording
-from app.motion.canonical import canonicalise
-from app.motion.joint_roles import SUN_ROLES, JointRole
-from app.motion.motion import Motion
-from app.motion.recording import Recording
+from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.motion import Motion
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.skeleton.recording import Recording
 from app.numerics.arrays import FloatArray
 from tests.cpu_time import cpu_seconds_below
 from tests.formats import mutations

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.formats.fbx import read_fbx
-from app.motion.rotations import quaternions_to_matrices
+from app.motion.skeleton.rotations import quaternions_to_matrices
 from app.numerics.arrays import FloatArray
 from tests.real_clips import real_clips
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from app.errors import FormatNotSupported, TooLarge, Unreadable
 from app.formats.fbx import read_fbx
 from app.formats.read import read_recording
-from app.motion.canonical import canonicalise
-from app.motion.joint_roles import SUN_ROLES
+from app.motion.canonical.canonical import canonicalise
+from app.motion.roles.joint_roles import SUN_ROLES
 from tests.formats.fbx_files import CONSTANT, LINEAR, NEXT, Bone, Curve, Record, Take, fbx
 from tests.formats.fbx_takes import (
     CHAIN,

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from app.formats.glb_writer import write_glb
-from app.motion.animation import Animation, animation_of_positions, animation_of_rotations
-from app.motion.canonical import canonicalise
-from app.motion.canonical_body import on_canonical_body
-from app.motion.skeleton import Skeleton
+from app.motion.canonical.canonical import canonicalise
+from app.motion.posing.canonical_body import on_canonical_body
+from app.motion.skeleton.animation import Animation, animation_of_positions, animation_of_rotations
+from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 from tests.formats.glb import Glb, Validator
 from tests.people import CONVENTIONS, person

@@ -8,8 +8,8 @@ import pytest
 from app.formats.joint_layouts import LAYOUTS, JointLayout, layout_of
 from app.formats.joint_trees import in_tree_order
 from app.formats.read import read_recording
-from app.motion.canonical import canonicalise
-from app.motion.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
+from app.motion.canonical.canonical import canonicalise
+from app.motion.roles.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
 from tests.formats.arrays import npy
 from tests.people import person

@@ -15,8 +15,8 @@ from app.errors import FormatNotSupported, KinedexError, NotHuman, TooLarge, Unr
 from app.formats.npz import read_npz
 from app.formats.npz_writer import write_npz
 from app.formats.read import read_recording
-from app.motion.canonical import canonicalise
-from app.motion.joint_roles import SUN_ROLES
+from app.motion.canonical.canonical import canonicalise
+from app.motion.roles.joint_roles import SUN_ROLES
 from tests.cpu_time import cpu_seconds_below
 from tests.formats.arrays import a_person, npy, npz, person_arrays, zipped
 

@@ -9,9 +9,9 @@ from scipy.spatial.transform import Rotation
 from app.errors import Unreadable
 from app.formats.npz import read_npz
 from app.formats.smpl import STATURE, generic_body, read_smpl, rotation_vectors_to_quaternions
-from app.motion.canonical import canonicalise
-from app.motion.joint_roles import JointRole
-from app.motion.kinematics import rest_positions
+from app.motion.canonical.canonical import canonicalise
+from app.motion.roles.joint_roles import JointRole
+from app.motion.skeleton.kinematics import rest_positions
 from app.numerics.arrays import FloatArray
 from tests.formats.arrays import npz
 

@@ -19,7 +19,7 @@ from app.models.keypose_thresholds import (
     curve_of_t2,
     lesson,
 )
-from app.motion.body_frame import body_track
+from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of
 from tests.dances import dance

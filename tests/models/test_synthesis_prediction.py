@@ -10,7 +10,7 @@ from app.analysis.motion_shape import CHANNELS, SHAPE_LENGTH, mirrored
 from app.models.synthesis import Synthesis, fit_synthesis, mean_of_takes
 from app.models.synthesis_agreement import AGREED
 from app.models.synthesis_prediction import predict
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
 
 HANDS = {role: SUN_ROLES.index(role) for role in (JointRole.LEFT_HAND, JointRole.RIGHT_HAND)}

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from app.models.synthetic_feet import feet_of, floor_of, on_the_floor, sole_depths
-from app.motion.animation import Animation
-from app.motion.rotations import euler_to_quaternions, identity_quaternions
-from app.motion.skeleton import Skeleton
+from app.motion.skeleton.animation import Animation
+from app.motion.skeleton.rotations import euler_to_quaternions, identity_quaternions
+from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 RATE = 30.0

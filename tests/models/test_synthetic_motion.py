@@ -6,9 +6,9 @@ import pytest
 from app.analysis.motion_shape import clearance, moments_of, motion_shape
 from app.models.synthetic_body import Donor, embody, same_body
 from app.models.synthetic_motion import course_of
-from app.motion.animation import Animation, animation_of_positions
-from app.motion.body_frame import BodyTrack, body_track
-from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES, JointRole
+from app.motion.frame.body_frame import BodyTrack, body_track
+from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES, JointRole
+from app.motion.skeleton.animation import Animation, animation_of_positions
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, standing, walking, waving
 

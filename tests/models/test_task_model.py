@@ -5,7 +5,7 @@ import pytest
 
 from app.errors import NotEnoughLabels
 from app.models.task_model import LINKS, Reading, fit_task_model, link_weights, objective
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from tests.models.danced import danced_by
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
+from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.services import clips
 from app.services.clips import NewClip
 from app.services.library import Library

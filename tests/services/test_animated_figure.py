@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from app.motion.joint_roles import SUN_PARENTS, SUN_ROLES
+from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.numerics.arrays import FloatArray
 from app.services.animated_figure import MOST_FRAMES, animated_svg
 from app.services.animations import role_figure

@@ -11,7 +11,7 @@ import pytest
 
 from app.analysis.pose_cover import pose_vectors
 from app.errors import BadField, ClipNotFound, ClipNotReady
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.search.by_pose import pose_distances
 from app.services import clips
 from app.services.clips import NewClip

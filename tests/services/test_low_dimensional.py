@@ -9,9 +9,9 @@ import pytest
 
 from app.errors import BadField, ClipNotFound, NotEnoughKeyposes
 from app.formats.read import read_recording
-from app.motion.canonical import canonicalise
-from app.motion.canonical_body import BODY_ROLES
-from app.motion.joint_roles import SUN_ROLES
+from app.motion.canonical.canonical import canonicalise
+from app.motion.posing.canonical_body import BODY_ROLES
+from app.motion.roles.joint_roles import SUN_ROLES
 from app.numerics.arrays import FloatArray
 from app.services import keyposes as services_keyposes
 from app.services import low_dimensional, views

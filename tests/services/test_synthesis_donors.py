@@ -5,8 +5,8 @@ import pytest
 
 from app.analysis.motion_shape import moments_of, motion_shape
 from app.models.synthetic_motion import course_of
-from app.motion.body_frame import body_track
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.frame.body_frame import body_track
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
 from app.services.synthesis_donors import detail_of
 from tests.bodies import motion_of, waving

@@ -16,13 +16,13 @@ from app.formats.read import read_recording
 from app.models.synthesis_agreement import AGREED
 from app.models.synthetic_body import embody
 from app.models.synthetic_motion import course_of
-from app.motion.animation import animation_of_positions
-from app.motion.body_frame import ANALYSIS_RATE, body_track
-from app.motion.canonical import canonicalise
-from app.motion.canonical_body import canonical_body
-from app.motion.foot_contact import FEET, skating
-from app.motion.joint_roles import SUN_ROLES, JointRole
-from app.motion.motion import Motion
+from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.motion import Motion
+from app.motion.frame.body_frame import ANALYSIS_RATE, body_track
+from app.motion.frame.foot_contact import FEET, skating
+from app.motion.posing.canonical_body import canonical_body
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.skeleton.animation import animation_of_positions
 from app.services import clips, models, persons
 from app.services.demo import demo_clips
 from app.services.fit import fit_library

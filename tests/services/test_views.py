@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.errors import BadField, ClipNotFound, ClipNotReady
-from app.motion.joint_roles import SUN_ROLES
+from app.motion.roles.joint_roles import SUN_ROLES
 from app.services import clips, keyposes, views
 from app.services.clips import NewClip
 from app.services.library import Library

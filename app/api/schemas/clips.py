@@ -23,7 +23,7 @@ from app.api.schemas.base import (
 from app.api.schemas.filters import Filter
 from app.api.schemas.jobs import Job
 from app.api.schemas.problem import Problem
-from app.motion.recording import FRAME_RATES
+from app.motion.skeleton.recording import FRAME_RATES
 from app.search.filters import parse_filter
 from app.services.fields import MAX_KEYPOSES, MAX_OFFSET, TEMPI
 from app.store.clip_filter import ClipFilter

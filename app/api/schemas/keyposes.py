@@ -8,7 +8,7 @@ from pydantic import Field
 
 from app.api.schemas.base import Incoming, Outgoing, Seconds
 from app.api.schemas.views import Point, plain
-from app.motion.joint_roles import SUN_ROLES
+from app.motion.roles.joint_roles import SUN_ROLES
 from app.services.fields import MAX_KEYPOSES
 from app.services.keyposes import KeyposesView
 

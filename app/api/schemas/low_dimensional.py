@@ -11,8 +11,8 @@ from app.analysis.plausibility import Fault, Implausible, Plausibility
 from app.api.schemas.base import Fps, Incoming, Outgoing, Seconds
 from app.api.schemas.views import Motion, Point, plain
 from app.errors import BadField, Place
-from app.motion.body_frame import ANALYSIS_RATE
-from app.motion.joint_roles import JointRole
+from app.motion.frame.body_frame import ANALYSIS_RATE
+from app.motion.roles.joint_roles import JointRole
 from app.services.low_dimensional import (
     MOST_MODEL_CLIPS,
     MOST_POSES,

@@ -9,7 +9,7 @@ from pydantic import ConfigDict, Field, WithJsonSchema
 from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, Seconds
 from app.api.schemas.filters import Filter
 from app.api.schemas.search import ClipId, Hit, MotionHits
-from app.motion.joint_roles import SUN_ROLES
+from app.motion.roles.joint_roles import SUN_ROLES
 from app.search.pose_places import Places
 from app.services import hits as services
 

@@ -121,7 +121,7 @@ def read_at(motions: FloatArray, times: FloatArray) -> FloatArray:
     """(n, m, d) the values of `motions` (n, m, d) at their own `times` (n, m).
 
     Between moments a motion is a cubic curve with Catmull-Rom tangents, as in
-    `app.motion.resampling`, which reads one motion.
+    `app.motion.skeleton.resampling`, which reads one motion.
     """
     last = motions.shape[1] - 1
     before = np.clip(np.floor(times).astype(np.int64), 0, last - 1)

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.motion.rotations import matrices_to_quaternions
+from app.motion.skeleton.rotations import matrices_to_quaternions
 from app.numerics.arrays import FloatArray
 from app.services.demo.controls import Arm, Controls, Foot, Turn
 from app.services.demo.curves import softened

@@ -11,7 +11,7 @@ from math import cos, sin
 
 import numpy as np
 
-from app.motion.skeleton import Skeleton
+from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 from app.services.demo.actors import Actor, Naming
 

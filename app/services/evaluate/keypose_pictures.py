@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.analysis.candidates import Scope
-from app.motion.body_frame import turned
-from app.motion.joint_roles import SUN_ROLES, JointRole
+from app.motion.frame.body_frame import turned
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
 from app.services.evaluate.keyposes import KeyposeEvaluation
 from app.services.keyposes import KeyposesView, view

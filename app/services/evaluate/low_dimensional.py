@@ -24,7 +24,7 @@ from app.analysis.low_dimensional import (
 )
 from app.analysis.plausibility import Fault, Implausible, Plausibility, judge_poses
 from app.errors import NotEnoughKeyposes
-from app.motion.body_frame import BodyTrack, body_track
+from app.motion.frame.body_frame import BodyTrack, body_track
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.clusteredness import best_clusters, clusteredness
 from app.services.keypose_frames import keypose_frames

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from app.motion.body_frame import ANALYSIS_RATE
-from app.motion.joint_roles import SUN_ROLES
+from app.motion.frame.body_frame import ANALYSIS_RATE
+from app.motion.roles.joint_roles import SUN_ROLES
 from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1
 from app.search.methods import Method

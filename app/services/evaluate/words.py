@@ -13,7 +13,7 @@ from app.models.symbol_space import fit_symbol_space
 from app.models.word_figures import RECALLS, WordEvaluation, WordFigures, held_out_word_figures
 from app.models.word_query import understand
 from app.models.word_vocabulary import WordVocabulary
-from app.motion.body_frame import body_track
+from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.library import Library

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from app.formats.read import read_recording
-from app.motion.canonical import canonicalise
-from app.motion.motion import Motion
+from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.motion import Motion
 from app.services.demo import DemoClip, demo_clips
 
 

@@ -9,9 +9,9 @@ import pytest
 
 from app.analysis.energy import energies
 from app.formats.read import read_recording
-from app.motion.body_frame import body_track
-from app.motion.canonical import canonicalise
-from app.motion.motion import Motion
+from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.motion import Motion
+from app.motion.frame.body_frame import body_track
 from app.services.demo import DemoClip
 from app.services.demo.dances import dance
 

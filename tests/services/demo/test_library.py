@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from app.errors import NotFound
-from app.motion.joint_roles import JointRole
-from app.motion.motion import Motion
+from app.motion.canonical.motion import Motion
+from app.motion.roles.joint_roles import JointRole
 from app.services.demo import DemoClip, demo_clips, write_demo
 from app.services.demo.actors import ACTORS
 from app.services.demo.tasks import TASKS

@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from app.motion.joint_roles import JointRole as Role
-from app.motion.motion import Motion
+from app.motion.canonical.motion import Motion
+from app.motion.roles.joint_roles import JointRole as Role
 from app.services.demo import DemoClip
 from app.services.demo.actors import ACTORS
 

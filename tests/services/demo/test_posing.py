@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.motion.kinematics import forward_kinematics, local_translations
+from app.motion.skeleton.kinematics import forward_kinematics, local_translations
 from app.services.demo.actors import ACTORS, Actor
 from app.services.demo.controls import Controls, bent, mirrored, standing
 from app.services.demo.posing import ankle_position, local_rotations

@@ -7,7 +7,7 @@ import random
 import pytest
 
 from app.formats.read import read_recording
-from app.motion.roles import find_roles
+from app.motion.roles.roles import find_roles
 from app.services.demo import demo_clips
 from app.services.demo.actors import ACTORS
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from app.formats.bvh_writer import write_bvh
 from app.formats.npz_writer import write_npz
-from app.motion.kinematics import forward_kinematics, local_translations
+from app.motion.skeleton.kinematics import forward_kinematics, local_translations
 from app.numerics.arrays import FloatArray
 from app.services.demo.actors import ACTORS, Actor
 from app.services.demo.clip import DemoClip

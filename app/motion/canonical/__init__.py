@@ -1,0 +1,1 @@
+"""Canonical motion: metres, Y up, the true frame rate."""

@@ -1,0 +1,157 @@
+"""From a recording as its file tells it to the one form that all else works on (DESIGN 4)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from app.errors import BadField, NotHuman, Place, Unreadable
+from app.motion.canonical.extent import check_extent
+from app.motion.canonical.frame_rate import judge_frame_rate
+from app.motion.canonical.motion import Motion
+from app.motion.canonical.units import SCALES, Unit, confirm_unit, judge_unit
+from app.motion.canonical.up_axis import judge_up_axis, to_y_up
+from app.motion.roles.bodies import roles_of_one_body
+from app.motion.roles.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
+from app.motion.roles.roles import given_roles
+from app.motion.skeleton.kinematics import joints_by_depth
+from app.motion.skeleton.recording import FRAME_RATES, Caution, Recording
+from app.motion.skeleton.skeleton import Skeleton
+from app.numerics.arrays import FloatArray
+
+
+def canonicalise(
+    recording: Recording,
+    *,
+    frame_rate: float | None = None,
+    metres_per_unit: float | None = None,
+    roles: Mapping[JointRole, str] | Mapping[str, str] | None = None,
+) -> Motion:
+    """The motion in metres, Y up, right-handed, with roles, rate and unit settled.
+
+    frame_rate (Hz), metres_per_unit and roles (role -> joint name) are what the client
+    says; it wins over the file. Raises BadField where that cannot be, NotHuman where
+    essential roles are missing, Unreadable where no usable frame rate is known, BadContent where
+    the body is beyond human measure.
+    """
+    names, parents = recording.skeleton.names, recording.skeleton.parents
+    rate = _rate_in_force(recording, frame_rate)
+    given = given_roles(names, {str(role): name for role, name in (roles or {}).items()})
+    found, others = roles_of_one_body(names, parents, recording.positions, given)
+    missing = _missing(found)
+    up_axis = judge_up_axis(
+        recording.positions, _rest(recording.skeleton), found, recording.up_axis
+    )
+    unit = _unit_in_force(recording, found, metres_per_unit)
+    positions = to_y_up(recording.positions, up_axis) * np.float32(unit.metres_per_unit)
+    motion = Motion(
+        format=recording.format,
+        names=names,
+        parents=parents,
+        positions=np.ascontiguousarray(positions, dtype=np.float32),
+        roles=found,
+        missing_roles=missing,
+        frame_rate=rate,
+        declared_frame_rate=recording.frame_rate,
+        metres_per_unit=unit.metres_per_unit,
+        cautions=recording.cautions + others + _axis_caution(recording, up_axis) + unit.cautions,
+    )
+    doubts = (
+        check_extent(motion)
+        + _roles_caution(missing)
+        + _assumption(recording, frame_rate)
+        + _rate_cautions(motion)
+    )
+    return _with_cautions(motion, doubts)
+
+
+def _rate_in_force(recording: Recording, said: float | None) -> float:
+    if said is not None:
+        return _within("frame_rate", said, FRAME_RATES, "Hz")
+    if recording.frame_rate is None and recording.assumed_frame_rate is not None:
+        return recording.assumed_frame_rate
+    if recording.frame_rate is None:
+        reasons = [c.detail for c in recording.cautions if c.code == "frame_time_unusable"]
+        message = reasons[0] if reasons else "expected a frame rate, found none"
+        raise Unreadable(
+            f"The file does not say its frame rate ({message}); send frame_rate",
+            places=[Place("frame_rate", message)],
+        )
+    least, most = FRAME_RATES
+    if not least <= recording.frame_rate <= most:
+        message = f"expected {least:g} to {most:g} Hz, found {recording.frame_rate:g}"
+        raise Unreadable(
+            f"The file's frame rate cannot be ({message}); send frame_rate",
+            places=[Place("frame_rate", message)],
+        )
+    return recording.frame_rate
+
+
+def _within(field: str, value: float, limits: tuple[float, float], unit: str) -> float:
+    if not (math.isfinite(value) and limits[0] <= value <= limits[1]):
+        message = f"expected {limits[0]:g} to {limits[1]:g} {unit}, found {value!r}"
+        raise BadField(f"{field}: {message}", places=[Place(field, message)])
+    return float(value)
+
+
+def _missing(found: Mapping[JointRole, int]) -> tuple[JointRole, ...]:
+    essential = [role for role in ESSENTIAL_ROLES if role not in found]
+    if essential:
+        raise NotHuman(
+            f"The skeleton has no joint for: {', '.join(essential)}",
+            places=[Place(f"roles.{role}", "expected a joint, found none") for role in essential],
+        )
+    return tuple(role for role in SUN_ROLES if role not in found)
+
+
+def _unit_in_force(
+    recording: Recording, roles: Mapping[JointRole, int], said: float | None
+) -> Unit:
+    if said is not None:
+        return Unit(_within("unit", said, SCALES, "metres per unit"))
+    if recording.metres_per_unit is not None:
+        return confirm_unit(recording.metres_per_unit, recording.positions, roles)
+    return judge_unit(recording.positions, roles)
+
+
+def _rest(skeleton: Skeleton) -> FloatArray:
+    """(joints, 3): positions with all rotations 0, roots at their offsets."""
+    rest = np.array(skeleton.offsets, dtype=np.float64)
+    for joints in joints_by_depth(skeleton.parents)[1:]:
+        rest[joints] += rest[skeleton.parents[joints]]
+    return rest
+
+
+def _axis_caution(recording: Recording, up_axis: str) -> tuple[Caution, ...]:
+    if up_axis == recording.up_axis:
+        return ()
+    detail = f"the body stands along {up_axis}, not {recording.up_axis}; turned to Y up"
+    return (Caution("up_axis_guessed", detail),)
+
+
+def _roles_caution(missing: tuple[JointRole, ...]) -> tuple[Caution, ...]:
+    if not missing:
+        return ()
+    return (Caution("roles_missing", f"no joint was found for: {', '.join(missing)}"),)
+
+
+def _rate_cautions(motion: Motion) -> tuple[Caution, ...]:
+    return tuple(judge_frame_rate(motion.role_positions(), motion.frame_rate))
+
+
+def _assumption(recording: Recording, said: float | None) -> tuple[Caution, ...]:
+    """A caution where the rate in force is neither the client's nor the file's."""
+    if said is not None or recording.frame_rate is not None:
+        return ()
+    rate = recording.assumed_frame_rate
+    detail = f"the file does not say its frame rate; {rate:g} Hz is usual for this format"
+    return (Caution("frame_rate_assumed", detail, likely=rate),)
+
+
+def _with_cautions(motion: Motion, more: tuple[Caution, ...]) -> Motion:
+    if not more:
+        return motion
+    return replace(motion, cautions=motion.cautions + more)

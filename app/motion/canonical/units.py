@@ -1,0 +1,117 @@
+"""What a file's numbers measure, judged from the stature of the body in them.
+
+Stature comes from the shanks, thighs and arms by the proportions of Drillis and Contini
+(1966; Winter, "Biomechanics and motor control of human movement", fig. 4.1): shank .246,
+thigh .245, upper arm .186, forearm .146 of stature. Medians over frames and segments, so
+that a bad frame or an odd bone does not matter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.motion.roles.joint_roles import JointRole
+from app.motion.skeleton.recording import Caution
+from app.numerics.arrays import FloatArray
+
+METRES_PER_UNIT: dict[str, float] = {
+    "m": 1.0,
+    "cm": 0.01,
+    "mm": 0.001,
+    "in": 0.0254,
+    "ft": 0.3048,
+    "dm": 0.1,
+    "cmu": 0.056444,
+}
+"""Names that a client may use; "cmu" is the unit of CMU's ASF/AMC files (1 / .45 inch)."""
+SCALES = (1e-6, 1e3)
+"""Metres per unit, the least and the most that a client may say."""
+TYPICAL_STATURE = 1.7
+"""Metres."""
+SMALLEST_STATURE = 1e-6
+"""In any unit; below it a body has no size."""
+USUAL_STATURES = (1.35, 2.15)
+"""Metres; outside we say that the unit is a guess."""
+FARTHEST_FACTOR = 1.6
+"""If no unit brings stature within this factor of the typical one, it is scaled to it."""
+BELIEVED_FACTOR = 2.5
+"""A file's own unit is believed while stature is within this factor of the typical one."""
+
+_R = JointRole
+_SEGMENTS: tuple[tuple[JointRole, JointRole, float], ...] = (
+    (_R.LEFT_KNEE, _R.LEFT_FOOT, 0.246),
+    (_R.RIGHT_KNEE, _R.RIGHT_FOOT, 0.246),
+    (_R.LEFT_UPPER_LEG, _R.LEFT_KNEE, 0.245),
+    (_R.RIGHT_UPPER_LEG, _R.RIGHT_KNEE, 0.245),
+    (_R.LEFT_SHOULDER, _R.LEFT_ELBOW, 0.186),
+    (_R.RIGHT_SHOULDER, _R.RIGHT_ELBOW, 0.186),
+    (_R.LEFT_ELBOW, _R.LEFT_HAND, 0.146),
+    (_R.RIGHT_ELBOW, _R.RIGHT_HAND, 0.146),
+    (_R.HIPS, _R.NECK, 0.29),
+    (_R.HIPS, _R.LEFT_KNEE, 0.26),
+    (_R.HIPS, _R.RIGHT_KNEE, 0.26),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """metres_per_unit, and a caution where it is a guess."""
+
+    metres_per_unit: float
+    cautions: tuple[Caution, ...] = ()
+
+
+def stature(positions: FloatArray, roles: Mapping[JointRole, int]) -> float:
+    """Height of the person, in the unit of positions (frames, joints, 3); 0 if unknown."""
+    estimates = []
+    for start, end, share in _SEGMENTS:
+        if start in roles and end in roles:
+            bone = positions[:, roles[end]] - positions[:, roles[start]]
+            length = float(np.median(np.linalg.norm(bone, axis=-1)))
+            if length > 0:
+                estimates.append(length / share)
+    return float(np.median(estimates)) if estimates else 0.0
+
+
+def judge_unit(positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
+    """The unit of positions (frames, joints, 3) that makes the person most ordinary."""
+    height = stature(positions, roles)
+    if height < SMALLEST_STATURE:
+        detail = "the body has no size, so its unit cannot be judged; taken as metres"
+        return Unit(1.0, (Caution("unit_guessed", detail),))
+    scales = np.array(list(METRES_PER_UNIT.values()))
+    odds = np.abs(np.log(height * scales / TYPICAL_STATURE))
+    best = float(scales[np.argmin(odds)])
+    if odds.min() > np.log(FARTHEST_FACTOR):
+        best = TYPICAL_STATURE / height
+        detail = f"no known unit fits; scaled so that the person is {TYPICAL_STATURE} m tall"
+        return Unit(best, (Caution("unit_guessed", detail, likely=best),))
+    if USUAL_STATURES[0] <= height * best <= USUAL_STATURES[1]:
+        return Unit(best)
+    name = next(name for name, scale in METRES_PER_UNIT.items() if scale == best)
+    detail = f"in {name} the person would be {height * best:.2f} m tall"
+    return Unit(best, (Caution("unit_guessed", detail, likely=best),))
+
+
+def confirm_unit(declared: float, positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
+    """The file's own metres per unit, unless the person would be no human: then as judged.
+
+    Exporters often write a scale that their numbers do not follow.
+    """
+    height = stature(positions, roles) * declared
+    if height < SMALLEST_STATURE or abs(np.log(height / TYPICAL_STATURE)) <= np.log(
+        BELIEVED_FACTOR
+    ):
+        return Unit(declared)
+    judged = judge_unit(positions, roles)
+    detail = (
+        f"by the file's own unit the person would be {height:.3g} m tall; "
+        f"taken as {judged.metres_per_unit:g} m instead of {declared:g} m"
+    )
+    return Unit(
+        judged.metres_per_unit,
+        (Caution("unit_suspect", detail, likely=judged.metres_per_unit), *judged.cautions),
+    )

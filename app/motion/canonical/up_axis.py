@@ -1,0 +1,76 @@
+"""Which way is up, and turning it to Y.
+
+People mostly have the head above the feet. The axis along which that is so in the motion
+is up; where it speaks against the file's own axis, the rest pose must not contradict it,
+since people also lie down.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from app.motion.roles.joint_roles import JointRole
+from app.numerics.arrays import FloatArray
+
+CLEARLY = 2.0
+"""Head over feet along another axis has to be this many times that along the declared one."""
+
+_TO_Y_UP: dict[str, list[list[int]]] = {
+    "x": [[0, -1, 0], [1, 0, 0], [0, 0, 1]],
+    "y": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+    "z": [[1, 0, 0], [0, 0, 1], [0, -1, 0]],
+    "-x": [[0, 1, 0], [-1, 0, 0], [0, 0, 1]],
+    "-y": [[1, 0, 0], [0, -1, 0], [0, 0, -1]],
+    "-z": [[1, 0, 0], [0, 0, -1], [0, 1, 0]],
+}
+"""Proper rotations (right-handed stays right-handed) that bring the axis to Y."""
+
+
+def judge_up_axis(
+    positions: FloatArray,
+    rest: FloatArray,
+    roles: Mapping[JointRole, int],
+    declared: str,
+) -> str:
+    """The axis that is up: "x", "y", "z" or one of them with a minus sign.
+
+    positions: (frames, joints, 3); rest: (joints, 3) positions with all rotations 0.
+    """
+    upright = _head_over_feet(positions, roles).mean(axis=0)
+    moving = _axis(upright)
+    along_declared = abs(float(upright["xyz".index(declared[-1])]))
+    if moving in (declared, None) or np.abs(upright).max() < CLEARLY * along_declared:
+        return moving if moving and moving[-1] == declared[-1] else declared
+    resting = _axis(_head_over_feet(rest[None], roles)[0])
+    return declared if resting == declared or moving is None else moving
+
+
+def to_y_up(positions: FloatArray, up_axis: str) -> FloatArray:
+    """Positions (..., 3) turned so that `up_axis` becomes Y."""
+    if up_axis == "y":
+        return positions
+    turn = np.array(_TO_Y_UP[up_axis], dtype=positions.dtype)
+    return np.asarray(positions @ turn.T)
+
+
+def _head_over_feet(positions: FloatArray, roles: Mapping[JointRole, int]) -> FloatArray:
+    """(frames, 3): from the middle of the feet (else knees) to the head (else neck)."""
+    top = roles.get(JointRole.HEAD, roles.get(JointRole.NECK))
+    pairs = (
+        (JointRole.LEFT_FOOT, JointRole.RIGHT_FOOT),
+        (JointRole.LEFT_KNEE, JointRole.RIGHT_KNEE),
+    )
+    low = next(([roles[a], roles[b]] for a, b in pairs if a in roles and b in roles), None)
+    if top is None or low is None:
+        return np.zeros((len(positions), 3))
+    return np.asarray(positions[:, top] - positions[:, low].mean(axis=1))
+
+
+def _axis(direction: FloatArray) -> str | None:
+    """The signed axis that a direction (3,) is nearest to."""
+    if not np.any(direction):
+        return None
+    index = int(np.argmax(np.abs(direction)))
+    return ("-" if direction[index] < 0 else "") + "xyz"[index]

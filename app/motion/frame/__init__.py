@@ -1,0 +1,1 @@
+"""The body frame, gait cycles and foot contacts."""

@@ -1,0 +1,175 @@
+"""The body frame (DESIGN 4): a motion without its place, heading, size and frame rate.
+
+Origin at the hips, X to the body's left along the shoulders' horizontal, Y up, Z forward
+(right-handed), scaled by the body length: torso + neck to head + shin.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.errors import NotHuman, Place, TooShort
+from app.motion.canonical.motion import Motion
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.skeleton.resampling import resample
+from app.numerics.arrays import BoolArray, FloatArray
+
+ANALYSIS_RATE = 30.0
+"""Hz; all analyses see motion at this rate."""
+
+MIN_FRAMES = 2
+"""At the analysis rate; fewer hold no movement."""
+
+NECK_TO_HEAD_PER_TORSO = 0.3
+SHIN_PER_TORSO = 0.85
+"""Usual proportions, put in for what a skeleton lacks."""
+
+MIN_AXIS_SHARE = 0.2
+"""Where less than this share of the left-right line is horizontal it gives no heading."""
+
+SMALLEST_BODY = 1e-6
+
+_LEFT_RIGHT: tuple[tuple[JointRole, JointRole], ...] = (
+    (JointRole.LEFT_SHOULDER, JointRole.RIGHT_SHOULDER),
+    (JointRole.LEFT_UPPER_LEG, JointRole.RIGHT_UPPER_LEG),
+    (JointRole.LEFT_KNEE, JointRole.RIGHT_KNEE),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class BodyTrack:
+    """A body through time at ANALYSIS_RATE; n frames, 13 joints in SUN_ROLES order, float64.
+
+    positions: (n, 13, 3) metres, world, Y up; local: (n, 13, 3) body lengths, body frame;
+    origin: (n, 3) metres, the hips in the world; heading: (n,) radians, unwrapped, turn
+    about Y that takes world Z to the body's forward; body_length: metres; rate: Hz.
+    """
+
+    positions: FloatArray
+    local: FloatArray
+    origin: FloatArray
+    heading: FloatArray
+    body_length: float
+    rate: float = ANALYSIS_RATE
+
+    @property
+    def frames(self) -> int:
+        """Number of frames."""
+        return len(self.heading)
+
+    @property
+    def duration(self) -> float:
+        """Seconds: frames / rate."""
+        return self.frames / self.rate
+
+    def part(self, first: int, stop: int) -> BodyTrack:
+        """The frames first..stop-1, with the body length of the whole."""
+        cut = slice(first, stop)
+        return BodyTrack(
+            positions=self.positions[cut],
+            local=self.local[cut],
+            origin=self.origin[cut],
+            heading=self.heading[cut],
+            body_length=self.body_length,
+            rate=self.rate,
+        )
+
+    def velocity(self) -> FloatArray:
+        """(n, 3) velocity of the hips in the body frame, body lengths per second."""
+        steps = np.gradient(self.origin, axis=0) * (self.rate / self.body_length)
+        return turned(steps[:, None], -self.heading)[:, 0]
+
+    def yaw_rate(self) -> FloatArray:
+        """(n,) turning about Y, radians per second, positive to the left."""
+        return np.asarray(np.gradient(self.heading) * self.rate)
+
+
+def body_track(motion: Motion) -> BodyTrack:
+    """The body's track through `motion`, at ANALYSIS_RATE.
+
+    Raises TooShort below MIN_FRAMES frames at that rate, NotHuman for a body of no size.
+    """
+    positions = _at_analysis_rate(motion.role_positions(), motion.frame_rate)
+    if len(positions) < MIN_FRAMES:
+        seconds = MIN_FRAMES / ANALYSIS_RATE
+        message = f"expected at least {seconds:.2f} s, found {motion.duration:.3f} s"
+        raise TooShort(
+            f"The motion has {motion.frames} frames; {seconds:.2f} s are needed.",
+            places=[Place("frames", message)],
+        )
+    length = body_length(motion)
+    heading = _heading(_left_axis(motion), len(positions))
+    origin = positions[:, SUN_ROLES.index(JointRole.HIPS)]
+    local = turned(positions - origin[:, None], -heading) / length
+    return BodyTrack(positions, local, origin, heading, length)
+
+
+def body_length(motion: Motion) -> float:
+    """Torso + neck to head + shin, metres: medians over the frames of `motion`.
+
+    A missing head or foot counts with its usual proportion to the torso.
+    """
+    roles, r = motion.roles, JointRole
+    torso = _distance(motion, r.HIPS, r.NECK)
+    shins = [
+        _distance(motion, knee, foot)
+        for knee, foot in ((r.LEFT_KNEE, r.LEFT_FOOT), (r.RIGHT_KNEE, r.RIGHT_FOOT))
+        if knee in roles and foot in roles
+    ]
+    has_head = r.HEAD in roles and r.NECK in roles
+    head = _distance(motion, r.NECK, r.HEAD) if has_head else torso * NECK_TO_HEAD_PER_TORSO
+    length = torso + head + (float(np.mean(shins)) if shins else torso * SHIN_PER_TORSO)
+    if not length > SMALLEST_BODY:
+        message = "hips, neck, head, knees and feet are all in one place"
+        raise NotHuman(f"The body has no size: {message}.", places=[Place("joints", message)])
+    return length
+
+
+def turned(points: FloatArray, angles: FloatArray) -> FloatArray:
+    """`points` (n, joints, 3) turned about Y by `angles` (n,), radians, Z towards X."""
+    cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
+    x, y, z = np.moveaxis(points, -1, 0)
+    return np.stack([cos * x + sin * z, y, cos * z - sin * x], axis=-1)
+
+
+def _at_analysis_rate(positions: FloatArray, rate: float) -> FloatArray:
+    return resample(positions.astype(np.float64), rate, ANALYSIS_RATE)
+
+
+def _distance(motion: Motion, one: JointRole, other: JointRole) -> float:
+    if one not in motion.roles or other not in motion.roles:
+        return 0.0
+    line = motion.positions[:, motion.roles[one]] - motion.positions[:, motion.roles[other]]
+    return float(np.median(np.linalg.norm(line.astype(np.float64), axis=-1)))
+
+
+def _left_axis(motion: Motion) -> FloatArray | None:
+    """(n, 3) line from the right to the left of the first pair of joints that has a width."""
+    for left, right in _LEFT_RIGHT:
+        if left not in motion.roles or right not in motion.roles:
+            continue
+        ends = motion.positions[:, [motion.roles[left], motion.roles[right]]]
+        line = _at_analysis_rate(ends[:, 0] - ends[:, 1], motion.frame_rate)
+        if _gives_heading(line).any():
+            return line
+    return None
+
+
+def _gives_heading(line: FloatArray) -> BoolArray:
+    across = np.hypot(line[:, 0], line[:, 2])
+    least = np.maximum(MIN_AXIS_SHARE * np.linalg.norm(line, axis=1), SMALLEST_BODY)
+    return np.asarray(across > least)
+
+
+def _heading(left: FloatArray | None, frames: int) -> FloatArray:
+    """(frames,) unwrapped heading from the left axis (frames, 3), bridged where that is upright.
+
+    A body that shows no left and right is said to look along Z.
+    """
+    if left is None:
+        return np.zeros(frames)
+    good = np.flatnonzero(_gives_heading(left))
+    angles = np.unwrap(np.arctan2(-left[good, 2], left[good, 0]))
+    return np.asarray(np.interp(np.arange(frames), good, angles))

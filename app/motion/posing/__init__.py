@@ -1,0 +1,1 @@
+"""Inverse kinematics, one body for all clips, bind poses."""

@@ -1,0 +1,134 @@
+"""One body for all: any clip's movement on a skeleton of fixed bones.
+
+The body has Sun's 13 roles and those around them, 1.7 m tall, segments by Drillis and
+Contini (1966; Winter, "Biomechanics and motor control of human movement", fig. 4.1), in a
+T-pose facing Z with left at +X. Its joints turn so that its bones point where the clip's
+do. The way over ground is scaled by the length of the legs, and in each frame the lower
+foot is as far above the floor as the clip's, scaled likewise: feet that stand stay on it.
+Roles that a clip lacks keep the T-pose in their parent's frame.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.motion.canonical.motion import Motion
+from app.motion.roles.joint_roles import JointRole
+from app.motion.skeleton.animation import Animation, solve_rotations
+from app.motion.skeleton.kinematics import forward_kinematics, local_translations
+from app.motion.skeleton.skeleton import Skeleton
+from app.numerics.arrays import FloatArray
+
+STATURE = 1.7
+"""Metres."""
+ANKLE_HEIGHT = 0.039 * STATURE
+"""Of the ankle above the sole that stands (Winter)."""
+FLOOR_PERCENTILE = 5.0
+"""Of the lower foot's heights over a clip: where the floor is. A few frames may be lower."""
+CHEST_SHARE = 0.6
+"""Where on the line from hips to neck a chest is put that a clip lacks."""
+SHORTEST_LEG = 1e-3
+"""Metres; below it legs have no length to scale by."""
+
+_R = JointRole
+# role: role that it hangs on, offset in shares of stature
+_BODY: dict[JointRole, tuple[JointRole | None, tuple[float, float, float]]] = {
+    _R.HIPS: (None, (0, 0.569, 0)),
+    _R.CHEST: (_R.HIPS, (0, 0.17, -0.01)),
+    _R.NECK: (_R.CHEST, (0, 0.118, 0.005)),
+    _R.HEAD: (_R.NECK, (0, 0.07, 0.015)),
+    _R.LEFT_SHOULDER: (_R.CHEST, (0.11, 0.1, 0)),
+    _R.LEFT_ELBOW: (_R.LEFT_SHOULDER, (0.186, 0, 0)),
+    _R.LEFT_HAND: (_R.LEFT_ELBOW, (0.146, 0, 0)),
+    _R.RIGHT_SHOULDER: (_R.CHEST, (-0.11, 0.1, 0)),
+    _R.RIGHT_ELBOW: (_R.RIGHT_SHOULDER, (-0.186, 0, 0)),
+    _R.RIGHT_HAND: (_R.RIGHT_ELBOW, (-0.146, 0, 0)),
+    _R.LEFT_UPPER_LEG: (_R.HIPS, (0.055, -0.039, 0)),
+    _R.LEFT_KNEE: (_R.LEFT_UPPER_LEG, (0, -0.245, 0)),
+    _R.LEFT_FOOT: (_R.LEFT_KNEE, (0, -0.246, 0)),
+    _R.LEFT_TOES: (_R.LEFT_FOOT, (0, -0.03, 0.08)),
+    _R.RIGHT_UPPER_LEG: (_R.HIPS, (-0.055, -0.039, 0)),
+    _R.RIGHT_KNEE: (_R.RIGHT_UPPER_LEG, (0, -0.245, 0)),
+    _R.RIGHT_FOOT: (_R.RIGHT_KNEE, (0, -0.246, 0)),
+    _R.RIGHT_TOES: (_R.RIGHT_FOOT, (0, -0.03, 0.08)),
+}
+BODY_ROLES: tuple[JointRole, ...] = tuple(_BODY)
+"""The body's joints, in its order."""
+
+_COLUMN = {role: column for column, role in enumerate(BODY_ROLES)}
+_LEGS = (
+    (_R.LEFT_UPPER_LEG, _R.LEFT_KNEE, _R.LEFT_FOOT),
+    (_R.RIGHT_UPPER_LEG, _R.RIGHT_KNEE, _R.RIGHT_FOOT),
+)
+_FEET = [_COLUMN[_R.LEFT_FOOT], _COLUMN[_R.RIGHT_FOOT]]
+_Points = dict[JointRole, FloatArray]
+
+
+def canonical_body() -> Skeleton:
+    """The body at rest, metres, Y up, standing on the floor; joints are called by role."""
+    above = (role for role, _ in _BODY.values())
+    return Skeleton(
+        names=tuple(role.value for role in BODY_ROLES),
+        parents=np.array([-1 if role is None else _COLUMN[role] for role in above]),
+        offsets=STATURE * np.array([offset for _, offset in _BODY.values()], dtype=np.float64),
+    )
+
+
+def on_canonical_body(motion: Motion) -> Animation:
+    """The movement of `motion` on the canonical body, at the same frame rate."""
+    body, points = canonical_body(), _points(motion)
+    rotations = solve_rotations(body, _bones(body, points, motion.frames))
+    scale = _leg_length(body.offsets) / max(_leg_length_of(points), SHORTEST_LEG)
+    roots = points[_R.HIPS] * scale
+    posed = forward_kinematics(body, rotations, local_translations(body, roots))
+    roots[:, 1] += _wanted_height(points, scale) - posed[:, _FEET, 1].min(axis=1)
+    return Animation(body, rotations, local_translations(body, roots), motion.frame_rate)
+
+
+def _points(motion: Motion) -> _Points:
+    """(frames, 3) float64 metres by role; chest and upper legs are put in where they lack."""
+    points: _Points = {
+        role: motion.positions[:, joint].astype(np.float64) for role, joint in motion.roles.items()
+    }
+    hips, neck = points[_R.HIPS], points[_R.NECK]
+    points.setdefault(_R.CHEST, hips + CHEST_SHARE * (neck - hips))
+    left, right = points[_R.LEFT_KNEE], points[_R.RIGHT_KNEE]
+    across = points.get(_R.LEFT_SHOULDER, left) - points.get(_R.RIGHT_SHOULDER, right)
+    width = np.linalg.norm(across, axis=-1, keepdims=True)
+    side = across / np.maximum(width, 1e-9) * 0.3 * np.linalg.norm(neck - hips, axis=-1)[:, None]
+    points.setdefault(_R.LEFT_UPPER_LEG, hips + 0.5 * side)
+    points.setdefault(_R.RIGHT_UPPER_LEG, hips - 0.5 * side)
+    return points
+
+
+def _bones(body: Skeleton, points: _Points, frames: int) -> FloatArray:
+    """(frames, joints, 3) world vectors along the body's bones; 0 where an end is unknown."""
+    bones = np.zeros((frames, len(body), 3))
+    for role, column in _COLUMN.items():
+        above = _BODY[role][0]
+        if above in points and role in points:
+            bones[:, column] = points[role] - points[above]
+    return bones
+
+
+def _leg_length(offsets: FloatArray) -> float:
+    """Thigh and shank of the body at rest."""
+    return float(sum(np.linalg.norm(offsets[_COLUMN[role]]) for role in _LEGS[0][1:]))
+
+
+def _leg_length_of(points: _Points) -> float:
+    """Median thigh and shank of a clip's legs; a thigh counts twice where no foot is known."""
+    lengths = []
+    for hip, knee, foot in _LEGS:
+        thigh = np.linalg.norm(points[hip] - points[knee], axis=-1)
+        shank = np.linalg.norm(points[foot] - points[knee], axis=-1) if foot in points else thigh
+        lengths.append(float(np.median(thigh) + np.median(shank)))
+    return float(np.mean(lengths))
+
+
+def _wanted_height(points: _Points, scale: float) -> FloatArray:
+    """(frames,) height of the body's lower ankle: the clip's above its floor, scaled."""
+    feet = [points.get(foot, points[knee])[:, 1] for _, knee, foot in _LEGS]
+    lower = np.min(feet, axis=0)
+    floor = np.percentile(lower, FLOOR_PERCENTILE)
+    return np.asarray(ANKLE_HEIGHT + scale * (lower - floor))

@@ -1,0 +1,150 @@
+"""Bringing a skeleton into poses of which only the joint roles are known.
+
+Damped Gauss-Newton on the joints' turns (inverse kinematics), all frames at once: joints on
+the way to a role turn so that the roles come where they are wanted, and stay near the poses
+that they start from, which decide what the roles leave open (twists, fingers, toes).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.skeleton.animation import Animation
+from app.motion.skeleton.kinematics import forward_kinematics, joints_by_depth
+from app.motion.skeleton.rotations import conjugate, multiply, rotate
+from app.motion.skeleton.skeleton import Skeleton
+from app.numerics.arrays import FloatArray, IntArray
+
+ITERATIONS = 12
+DAMPING = 3e-3
+"""Square metres per square radian: of a step."""
+STAYING = 1e-3
+"""Likewise: of leaving the pose that was started from."""
+LARGEST_STEP = 0.4
+"""Radians that a joint turns in one step."""
+
+SMALLEST_STEP = 2e-3
+"""Radians and metres: below it all frames are there."""
+
+_WEIGHTS = {
+    JointRole.HIPS: 2.0,
+    JointRole.LEFT_FOOT: 3.0,
+    JointRole.RIGHT_FOOT: 3.0,
+    JointRole.LEFT_SHOULDER: 1.5,
+    JointRole.RIGHT_SHOULDER: 1.5,
+    JointRole.LEFT_KNEE: 0.7,
+    JointRole.RIGHT_KNEE: 0.7,
+}
+"""Of joint roles, 1 where not named: proportions differ, feet must stand, and the shoulders'
+line is the body's heading."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Body:
+    """Which joints may turn (t,), which are wanted somewhere (w,), their weights (w,), and
+    whether a turn moves a wanted joint (w, t)."""
+
+    turning: IntArray
+    wanted: IntArray
+    weights: FloatArray
+    moves: FloatArray
+
+
+def pose_to(start: Animation, joints: dict[JointRole, int], wanted: FloatArray) -> Animation:
+    """The poses near `start` whose roles, at the indices `joints`, come nearest to `wanted`.
+
+    wanted: (frames, 13, 3) metres in SUN_ROLES order; roles that the skeleton lacks are not
+    looked at. Only the first root's place and turns change, of the hips and what is below.
+    """
+    body = _body(start.skeleton, joints)
+    columns = [SUN_ROLES.index(role) for role in SUN_ROLES if role in joints]
+    aim = np.asarray(wanted, dtype=np.float64)[:, columns]
+    rotations = np.array(start.rotations, dtype=np.float64)
+    translations = np.array(start.translations, dtype=np.float64)
+    left = np.zeros((len(aim), 3 * len(body.turning)))
+    for _ in range(ITERATIONS):
+        places, above = _world(start.skeleton, rotations, translations)
+        step = _step(body, places, aim, left)
+        translations[:, 0] += step[:, :3]
+        turns = step[:, 3:]
+        left += turns
+        _turn(rotations, above, body.turning, turns.reshape(len(aim), -1, 3))
+        if np.abs(step).max() < SMALLEST_STEP:
+            break
+    return Animation(start.skeleton, rotations, translations, start.frame_rate)
+
+
+def ancestors(skeleton: Skeleton, joint: int) -> list[int]:
+    """The joints on the way from a joint's parent to its root."""
+    found = []
+    parent = int(skeleton.parents[joint])
+    while parent >= 0:
+        found.append(parent)
+        parent = int(skeleton.parents[parent])
+    return found
+
+
+def _body(skeleton: Skeleton, joints: dict[JointRole, int]) -> _Body:
+    roles = [role for role in SUN_ROLES if role in joints]
+    wanted = np.array([joints[role] for role in roles])
+    below = np.zeros((len(skeleton), len(roles)))
+    for column, joint in enumerate(wanted):
+        below[ancestors(skeleton, joint), column] = 1.0
+    # what is above the hips is no part of the body: it would turn the world
+    below[ancestors(skeleton, joints[JointRole.HIPS])] = 0.0
+    turning = np.flatnonzero(below.sum(axis=1))
+    weights = np.array([_WEIGHTS.get(role, 1.0) for role in roles])
+    return _Body(turning, wanted, weights, below[turning].T)
+
+
+def _world(
+    skeleton: Skeleton, rotations: FloatArray, translations: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """World positions (frames, joints, 3) and world turns of the joints' parents (.., 4)."""
+    places = forward_kinematics(skeleton, rotations, translations)
+    world, above = np.array(rotations), np.zeros_like(rotations)
+    above[..., 0] = 1.0
+    for joints in joints_by_depth(skeleton.parents)[1:]:
+        above[:, joints] = world[:, skeleton.parents[joints]]
+        world[:, joints] = multiply(above[:, joints], world[:, joints])
+    return places, above
+
+
+def _step(body: _Body, places: FloatArray, aim: FloatArray, left: FloatArray) -> FloatArray:
+    """(frames, 3 + 3 t) a damped Gauss-Newton step: the root's way, then turns in the world."""
+    frames, count = len(aim), len(body.turning)
+    off = (aim - places[:, body.wanted]) * body.weights[:, None]
+    arms = places[:, body.wanted][:, :, None] - places[:, body.turning][:, None]
+    arms = arms * (body.moves * body.weights[:, None])[:, :, None]  # (frames, w, t, 3)
+    slope = np.zeros((frames, len(body.wanted), 3, 3 + 3 * count))
+    slope[:, :, [0, 1, 2], [0, 1, 2]] = body.weights[:, None]
+    # d place = turn x arm
+    crossed = np.zeros((frames, len(body.wanted), 3, count, 3))
+    for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        crossed[:, :, a, :, b] = arms[..., c]
+        crossed[:, :, a, :, c] = -arms[..., b]
+    slope[..., 3:] = crossed.reshape(frames, len(body.wanted), 3, 3 * count)
+    rows = slope.reshape(frames, -1, 3 + 3 * count)
+    across = rows.transpose(0, 2, 1)
+    normal = across @ rows
+    damping = np.concatenate([np.zeros(3), np.full(3 * count, DAMPING + STAYING)])
+    aimed = (across @ off.reshape(frames, -1, 1))[..., 0]
+    aimed[:, 3:] -= STAYING * left
+    step = np.linalg.solve(normal + np.diag(damping + 1e-9), aimed[..., None])[..., 0]
+    step[:, 3:] = np.clip(step[:, 3:], -LARGEST_STEP, LARGEST_STEP)
+    return np.asarray(step)
+
+
+def _turn(rotations: FloatArray, above: FloatArray, joints: IntArray, turns: FloatArray) -> None:
+    """Turn `joints` by rotation vectors (frames, t, 3) of the world."""
+    parents = above[:, joints]
+    seen = rotate(conjugate(parents), turns)
+    angle = np.linalg.norm(seen, axis=-1, keepdims=True)
+    half = 0.5 * angle
+    axis = seen * (np.sinc(half / np.pi) * 0.5)
+    delta = np.concatenate([np.cos(half), axis], axis=-1)
+    turned = multiply(delta, rotations[:, joints])
+    rotations[:, joints] = turned / np.linalg.norm(turned, axis=-1, keepdims=True)

@@ -1,0 +1,1 @@
+"""Which joint of a skeleton is the left knee."""

@@ -1,0 +1,80 @@
+"""Several bodies in one file: one is taken whole, and the others are told.
+
+A skeleton may have several roots: people, props, loose markers. Roles must not be mixed from
+two people, so that where two trees are bodies by themselves, only one is looked at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from app.motion.roles.joint_roles import ESSENTIAL_ROLES, JointRole
+from app.motion.roles.roles import find_roles
+from app.motion.skeleton.kinematics import joints_by_depth
+from app.motion.skeleton.recording import Caution
+from app.numerics.arrays import FloatArray, IntArray
+
+LEAST_JOINTS = 8
+"""A tree of fewer joints is a prop or markers, no person."""
+
+Roles = dict[JointRole, int]
+
+
+def roles_of_one_body(
+    names: Sequence[str],
+    parents: IntArray,
+    positions: FloatArray,
+    given: Mapping[JointRole, int],
+) -> tuple[Roles, tuple[Caution, ...]]:
+    """Joint index by role, all of one body, and a caution where there are others.
+
+    names, parents: (joints,); positions: (frames, joints, 3) in any unit and axes. Of several
+    bodies the one that most of `given` belong to is taken, else the first.
+    """
+    found = _bodies(names, parents, positions)
+    if len(found) < 2:
+        return find_roles(names, parents, positions, given), ()
+    ours = max(found, key=lambda joints: len(set(joints.tolist()) & set(given.values())))
+    others = ", ".join(names[int(joints[0])] for joints in found if joints is not ours)
+    detail = (
+        f"the file holds {len(found)} people; taken is the one below {names[int(ours[0])]}, "
+        f"left out: {others}"
+    )
+    roles = _roles_in(ours, names, parents, positions) | dict(given)
+    return roles, (Caution("several_people", detail),)
+
+
+def _bodies(names: Sequence[str], parents: IntArray, positions: FloatArray) -> list[IntArray]:
+    """The trees that have all that a body needs, each as its joints, the root first."""
+    if np.count_nonzero(parents < 0) < 2:
+        return []
+    root_of = _roots(parents)
+    trees = [np.flatnonzero(root_of == root) for root in np.flatnonzero(parents < 0)]
+    large = [tree for tree in trees if len(tree) >= LEAST_JOINTS]
+    if len(large) < 2:
+        return []
+    return [tree for tree in large if _is_body(_roles_in(tree, names, parents, positions))]
+
+
+def _is_body(roles: Roles) -> bool:
+    return all(role in roles for role in ESSENTIAL_ROLES)
+
+
+def _roles_in(
+    joints: IntArray, names: Sequence[str], parents: IntArray, positions: FloatArray
+) -> Roles:
+    """Roles found in one tree alone, as joints of the whole."""
+    place = {joint: index for index, joint in enumerate(joints.tolist())}
+    inner = np.array([place.get(int(parent), -1) for parent in parents[joints]])
+    found = find_roles([names[joint] for joint in joints], inner, positions[:, joints])
+    return {role: int(joints[index]) for role, index in found.items()}
+
+
+def _roots(parents: IntArray) -> IntArray:
+    """(joints,): the root of each joint's tree."""
+    roots = np.arange(len(parents))
+    for joints in joints_by_depth(parents)[1:]:
+        roots[joints] = roots[parents[joints]]
+    return roots

@@ -1,0 +1,102 @@
+"""Joint centres from markers, simply: means of the markers around a joint.
+
+Hips are the mean of the pelvis markers, the neck that of C7 and the clavicle, the head that
+of its band, knee, ankle, elbow and wrist the middle between their two markers, or the outer
+one alone: up to 5 cm beside the true centre, always on the same side. The hip joints lie by
+Bell, Pedersen and Brand (1990) 14 % of the distance between the front pelvis markers
+inwards, 30 % down and 22 % back from them. No model of the person is fitted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.motion.roles.joint_roles import JointRole
+from app.numerics.arrays import FloatArray
+
+_R = JointRole
+Recipe = tuple[str, ...]
+"""Places of markers whose mean is a joint's centre."""
+
+_SIDED: dict[str, tuple[Recipe, ...]] = {
+    "knee": (("?KJC",), ("?KNE", "?KNM"), ("?KNE",)),
+    "foot": (("?AJC",), ("?ANK", "?ANM"), ("?ANK",)),
+    "toes": (("?TOE",), ("?MT1", "?MT5"), ("?MT5",)),
+    "shoulder": (("?SJC",), ("?SHO",)),
+    "elbow": (("?EJC",), ("?ELB", "?ELM"), ("?ELB",)),
+    "hand": (("?WJC",), ("?WRA", "?WRB"), ("?WRI",), ("?WRA",), ("?WRB",), ("?FIN",)),
+    "upper_leg": (("?HJC",),),
+}
+_PELVES: tuple[Recipe, ...] = (("LASI", "RASI", "LPSI", "RPSI"), ("LASI", "RASI", "SACR"))
+RECIPES: dict[JointRole, tuple[Recipe, ...]] = {
+    _R.HIPS: (*_PELVES, ("LHJC", "RHJC"), ("LASI", "RASI")),
+    _R.CHEST: (("STRN", "T10"), ("CLAV", "T10"), ("STRN",), ("T10",)),
+    _R.NECK: (("C7", "CLAV"), ("C7",), ("LSHO", "RSHO"), ("LSJC", "RSJC")),
+    _R.HEAD: (
+        ("LFHD", "RFHD", "LBHD", "RBHD"), ("TOPHD", "FRONTHD", "REARHD"), ("FRONTHD", "REARHD"),
+        ("LBHD", "RBHD"), ("LFHD", "RFHD"), ("TOPHD",),
+    ),
+    **{
+        JointRole(f"{side}_{part}"): tuple(
+            tuple(place.replace("?", side[0].upper()) for place in recipe) for recipe in recipes
+        )
+        for part, recipes in _SIDED.items()
+        for side in ("left", "right")
+    },
+}  # fmt: skip
+"""By role: what to take the mean of, the best first."""
+_INWARDS, _DOWN, _BACK = 0.14, 0.30, 0.22
+
+
+@dataclass(frozen=True, slots=True)
+class Centre:
+    """A joint's centre (frames, 3) and the places of the markers that it comes from."""
+
+    positions: FloatArray
+    places: Recipe
+
+
+def joint_centres(markers: Mapping[str, FloatArray]) -> dict[JointRole, Centre]:
+    """The centres that markers (frames, 3) by place tell, in the markers' unit and axes."""
+    found: dict[JointRole, Centre] = {}
+    for role, recipes in RECIPES.items():
+        recipe = chosen(recipes, markers.__contains__)
+        if recipe is not None:
+            found[role] = Centre(_mean(markers, recipe), recipe)
+    pelvis = chosen(_PELVES, markers.__contains__)
+    if pelvis is not None:
+        _add_hip_joints(found, markers, pelvis)
+    return {role: found[role] for role in JointRole if role in found}
+
+
+def chosen(recipes: tuple[Recipe, ...], has: Callable[[str], bool]) -> Recipe | None:
+    """The first recipe all of whose places there are."""
+    return next((recipe for recipe in recipes if all(map(has, recipe))), None)
+
+
+def _add_hip_joints(
+    found: dict[JointRole, Centre], markers: Mapping[str, FloatArray], pelvis: Recipe
+) -> None:
+    left, right = markers["LASI"].astype(np.float64), markers["RASI"].astype(np.float64)
+    back = _mean(markers, pelvis[2:])
+    width = np.linalg.norm(left - right, axis=-1, keepdims=True)
+    outwards = _unit(left - right)
+    forward: FloatArray = (left + right) / 2 - back
+    forward = _unit(forward - np.sum(forward * outwards, axis=-1, keepdims=True) * outwards)
+    up = np.cross(forward, outwards)
+    for role, front, side in ((_R.LEFT_UPPER_LEG, left, 1.0), (_R.RIGHT_UPPER_LEG, right, -1.0)):
+        inwards = -side * _INWARDS * outwards
+        centre = front + width * (inwards - _DOWN * up - _BACK * forward)
+        found.setdefault(role, Centre(centre, pelvis))
+
+
+def _mean(markers: Mapping[str, FloatArray], recipe: Recipe) -> FloatArray:
+    return np.asarray(np.mean([markers[place] for place in recipe], axis=0, dtype=np.float64))
+
+
+def _unit(vectors: FloatArray) -> FloatArray:
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.where(lengths > 0, lengths, 1.0))

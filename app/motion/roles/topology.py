@@ -1,0 +1,227 @@
+"""Joint roles from a skeleton's shape, where its names say nothing.
+
+Legs and arms are the two mirrored pairs of chains with the longest two neighbouring
+bones: thigh and shank make .49 of stature, upper arm and forearm .33 (Drillis and
+Contini 1966, as tabled by Winter, "Biomechanics and motor control", fig. 4.1). Left is
+told from right by geometry: up the trunk x forward, forward being where the toes point
+and knees bend. A mirrored motion gets mirrored answers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+import numpy as np
+
+from app.motion.roles.joint_roles import JointRole
+from app.numerics.arrays import FloatArray, IntArray
+
+SAMPLED_FRAMES = 64
+"""Shape and sides are judged on at most so many frames, evenly chosen."""
+SAME_LENGTH = 0.85
+"""Mirrored bones are at least this much alike (shorter / longer)."""
+NEAR_LONGEST = 0.85
+NO_LENGTH = 0.02
+"""A bone below this part of its chain only doubles a joint."""
+SHORTEST_ARM = 0.35
+"""Upper arm and forearm are at least this part of thigh and shank; fingers are not."""
+CLEAR_SIDE = 0.02
+"""Sides are told only where the evidence is this part of its possible size."""
+MAX_PAIRED_CHILDREN = 12
+"""Children of one joint that are compared pairwise; bodies branch less."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Chain:
+    """A limb from the joint where it branches off by the child `branch` outwards.
+
+    joints: one more than `lengths`; bone i runs from joint i to joint i + 1.
+    """
+
+    branch: int
+    joints: tuple[int, ...]
+    lengths: tuple[float, ...]
+
+    def main_bones(self) -> int:
+        """Index of the first of the two main bones: neighbours that are longest together.
+
+        A collar bone can be as long as a forearm, so the outermost of near equals is it.
+        """
+        sums = np.array([a + b for a, b in pairwise(self.lengths)])
+        return int(np.flatnonzero(sums >= NEAR_LONGEST * sums.max())[-1])
+
+    def reach(self) -> float:
+        """Length of the two main bones."""
+        first = self.main_bones()
+        return self.lengths[first] + self.lengths[first + 1]
+
+
+_Pair = tuple[int, _Chain, _Chain]
+"""The joint where two mirrored chains branch off, and the chains."""
+
+
+def roles_by_shape(parents: IntArray, positions: FloatArray) -> dict[JointRole, int]:
+    """Roles told by the tree `parents` (joints,) and positions (frames, joints, 3).
+
+    Empty where there are no two legs; limbs whose side cannot be told are left out.
+    """
+    chosen = np.unique(np.linspace(0, len(positions) - 1, SAMPLED_FRAMES).astype(int))
+    tree = _Tree(parents, np.asarray(positions[chosen], dtype=np.float64))
+    pairs = sorted(tree.mirrored_pairs(), key=lambda pair: -pair[1].reach())
+    if not pairs:
+        return {}
+    legs = pairs[0]
+    arms = next((pair for pair in pairs[1:] if tree.could_be_arms(legs, pair)), None)
+    roles = tree.trunk_roles(legs, arms)
+    left = _left_of_body(roles, tree.positions, legs)
+    for pair, parts in ((legs, _LEG), (arms, _ARM)):
+        sided = _left_first(pair, tree.positions, left) if pair and left is not None else None
+        if sided is not None:
+            roles |= _limb_roles(sided, parts)
+    return roles
+
+
+class _Tree:
+    def __init__(self, parents: IntArray, positions: FloatArray) -> None:
+        self.parents = parents
+        self.positions = positions
+        self.children: list[list[int]] = [[] for _ in parents]
+        bones = positions - positions[:, np.maximum(parents, 0)]
+        self.length = np.median(np.linalg.norm(bones, axis=-1), axis=0)
+        self.reach = np.zeros(len(parents))
+        for joint in range(len(parents) - 1, -1, -1):
+            parent = int(parents[joint])
+            if parent >= 0:
+                self.children[parent].insert(0, joint)
+                along = self.length[joint] + self.reach[joint]
+                self.reach[parent] = max(self.reach[parent], along)
+
+    def mirrored_pairs(self) -> Iterator[_Pair]:
+        """Every two chains that leave one joint, have two bones or more and look alike."""
+        for joint, children in enumerate(self.children):
+            chains = [self.chain(joint, child) for child in children[:MAX_PAIRED_CHILDREN]]
+            for one, other in combinations(chains, 2):
+                if _alike(one, other):
+                    yield joint, one, other
+
+    def chain(self, start: int, child: int) -> _Chain:
+        """From `start` by `child` along the longest way out, doubled joints dropped."""
+        path = [start, child]
+        while self.children[path[-1]]:
+            onward = self.children[path[-1]]
+            path.append(max(onward, key=lambda joint: self.length[joint] + self.reach[joint]))
+        small = NO_LENGTH * float(self.length[path[1:]].sum())
+        joints, lengths = [start], []
+        for joint in path[1:]:
+            if self.length[joint] <= small:
+                joints[-1] = joint
+            else:
+                joints.append(joint)
+                lengths.append(float(self.length[joint]))
+        return _Chain(child, tuple(joints), tuple(lengths))
+
+    def could_be_arms(self, legs: _Pair, arms: _Pair) -> bool:
+        """Whether the pair is long enough, and apart from the legs' chains."""
+        if arms[1].reach() < SHORTEST_ARM * legs[1].reach():
+            return False
+        taken = {joint for chain in legs[1:] for joint in chain.joints if joint != legs[0]}
+        others = {joint for chain in arms[1:] for joint in chain.joints if joint != arms[0]}
+        return not taken & (others | {arms[0]})
+
+    def trunk_roles(self, legs: _Pair, arms: _Pair | None) -> dict[JointRole, int]:
+        """Hips, chest, neck and head: what leaves the arms' (else legs') joint upwards."""
+        found = {JointRole.HIPS: legs[0]}
+        top, *limbs = legs if arms is None else arms
+        if top != legs[0]:
+            found[JointRole.CHEST] = top
+        taken = {limb.branch for limb in (*limbs, *legs[1:])} | self._ancestors(legs[0])
+        free = [child for child in self.children[top] if child not in taken]
+        if not free:
+            return found
+        column = self._unbranched(max(free, key=lambda j: self.length[j] + self.reach[j]))
+        if arms is None:
+            column = column[-2:]
+        neck = column[0] if len(column) > 1 else top
+        if neck != legs[0]:
+            found[JointRole.NECK] = neck
+        return found | {JointRole.HEAD: column[-1]}
+
+    def _ancestors(self, joint: int) -> set[int]:
+        """The joint and all above it."""
+        found = set()
+        while joint >= 0:
+            found.add(joint)
+            joint = int(self.parents[joint])
+        return found
+
+    def _unbranched(self, joint: int) -> list[int]:
+        column = [joint]
+        while len(self.children[column[-1]]) == 1:
+            column += self.children[column[-1]]
+        return column
+
+
+def _alike(one: _Chain, other: _Chain) -> bool:
+    """Whether the main bones are; what comes after them may hang on another finger."""
+    if min(len(one.lengths), len(other.lengths)) < 2 or one.main_bones() != other.main_bones():
+        return False
+    main = slice(one.main_bones(), one.main_bones() + 2)
+    pairs = zip(one.lengths[main], other.lengths[main], strict=True)
+    return all(min(pair) >= SAME_LENGTH * max(pair) for pair in pairs)
+
+
+def _left_of_body(
+    trunk: dict[JointRole, int], positions: FloatArray, legs: _Pair
+) -> FloatArray | None:
+    """(frames, 3): where left is in each frame, or None without a trunk."""
+    top = trunk.get(JointRole.NECK, trunk.get(JointRole.CHEST))
+    if top is None:
+        return None
+    up = positions[:, top] - positions[:, legs[0]]
+    forward = sum(_forward_of_leg(chain, positions) for chain in legs[1:])
+    return np.cross(up, forward)
+
+
+def _forward_of_leg(chain: _Chain, positions: FloatArray) -> FloatArray:
+    """(frames, 3): how far the toes are before the ankle, and the knee before the leg."""
+    first = chain.main_bones()
+    hip, knee, ankle = (positions[:, joint] for joint in chain.joints[first : first + 3])
+    leg = ankle - hip
+    along = np.sum((knee - hip) * leg, axis=-1) / np.maximum(np.sum(leg * leg, axis=-1), 1e-12)
+    bend = knee - hip - along[:, None] * leg
+    toes = positions[:, chain.joints[min(first + 3, len(chain.joints) - 1)]] - ankle
+    return np.asarray(bend + toes)
+
+
+def _left_first(pair: _Pair, positions: FloatArray, left: FloatArray) -> _Pair | None:
+    """The pair with its left chain first, or None where that is not clear."""
+    branching, one, other = pair
+    apart = _root_of_limb(one, positions) - _root_of_limb(other, positions)
+    evidence = np.sum(apart * left, axis=-1)
+    possible = np.linalg.norm(apart, axis=-1) * np.linalg.norm(left, axis=-1)
+    if abs(evidence.sum()) <= CLEAR_SIDE * possible.sum():
+        return None
+    return (branching, one, other) if evidence.sum() > 0 else (branching, other, one)
+
+
+def _root_of_limb(chain: _Chain, positions: FloatArray) -> FloatArray:
+    """(frames, 3): where the upper main bone begins, or its middle if that is the trunk's."""
+    first = chain.main_bones()
+    joints = chain.joints[first : first + 1 if first else 2]
+    return np.asarray(positions[:, list(joints)].mean(axis=1))
+
+
+_LEG = ("upper_leg", "knee", "foot", "toes")
+_ARM = ("shoulder", "elbow", "hand")
+
+
+def _limb_roles(pair: _Pair, parts: tuple[str, ...]) -> dict[JointRole, int]:
+    """Roles of a pair whose left chain comes first."""
+    found = {}
+    for side, chain in zip(("left", "right"), pair[1:], strict=True):
+        main = chain.joints[chain.main_bones() :]
+        for part, joint in zip(parts, main, strict=False):
+            found[JointRole(f"{side}_{part}")] = joint
+    return found

@@ -1,0 +1,1 @@
+"""Skeletons, rotations, forward kinematics, sampling in time."""

@@ -1,0 +1,87 @@
+"""Frame rates that no body could keep are doubted, and only those."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.formats.bvh import read_bvh
+from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.frame_rate import judge_frame_rate
+from app.numerics.arrays import FloatArray
+from tests.bodies import standing, walking, waving
+from tests.real_clips import manifest, real_clips
+
+
+def jumping(rate: float) -> FloatArray:
+    """(frames, 13, 3): one jump of half a second in the air, at 9.81 m/s2."""
+    t = np.arange(round(2 * rate)) / rate
+    airborne = np.clip(t - 0.75, 0, 0.5)
+    height = 0.5 * 9.81 * airborne * (0.5 - airborne)
+    body = standing(len(t)).copy()
+    body[..., 1] += height[:, None]
+    return body
+
+
+@pytest.mark.parametrize("body", [standing(200), walking(6), waving(6), jumping(60)])
+def test_honest_bodies_are_not_blamed(body: FloatArray) -> None:
+    rate = 60.0 if len(body) == 120 else 30.0
+    assert judge_frame_rate(body, rate) == []
+
+
+@pytest.mark.parametrize("factor", [0.25, 0.5, 2.0, 4.0])
+def test_free_fall_tells_the_true_rate(factor: float) -> None:
+    (caution,) = judge_frame_rate(jumping(60), 60 * factor)
+    assert caution.code == "frame_rate_suspect"
+    assert caution.likely == 60
+
+
+def test_a_body_cannot_slide_to_and_fro() -> None:
+    body = standing(400).copy()
+    t = np.arange(400) / 60
+    body[..., 0] += 0.25 * np.sin(2 * np.pi * t)[:, None]  # 1 g at most, .7 g for half the time
+    (caution,) = judge_frame_rate(body, 60)
+    assert caution.likely == 30
+
+
+def test_legs_cannot_step_nine_times_a_second() -> None:
+    body = walking(8, rate=120, steps_hz=4.5, speed=2.0)
+    (caution,) = judge_frame_rate(body, 120)
+    assert caution.likely is not None
+    assert caution.likely < 120
+
+
+@pytest.mark.parametrize("frames", [1, 2, 5, 30])
+def test_short_clips_are_not_judged_on_what_they_cannot_tell(frames: int) -> None:
+    assert judge_frame_rate(standing(frames), 30) == []
+
+
+@pytest.mark.parametrize("rate", [1.0, 2.0, 7.3, 29.97, 2000.0])
+@pytest.mark.parametrize("frames", [1, 3, 40, 500])
+def test_any_rate_and_length_is_judged_without_a_crash(rate: float, frames: int) -> None:
+    noise = np.random.default_rng(0).normal(size=(frames, 13, 3))
+    for caution in judge_frame_rate(noise, rate):
+        assert caution.likely is not None
+        assert np.isfinite(caution.likely)
+
+
+def test_the_salsa_clips_are_found_out() -> None:
+    for number in (1, 2, 3):
+        content = (real_clips() / "cmu-daz" / f"salsa_0{number}.bvh").read_bytes()
+        motion = canonicalise(read_bvh(content))
+        suspect = [caution for caution in motion.cautions if caution.code == "frame_rate_suspect"]
+        assert [caution.likely for caution in suspect] == [60]
+        assert motion.frame_rate == 120
+
+
+@pytest.mark.slow
+def test_no_other_real_clip_is_blamed() -> None:
+    blamed = []
+    for row in manifest():
+        if not row["path"].endswith(".bvh"):
+            continue
+        motion = canonicalise(read_bvh((real_clips() / row["path"]).read_bytes()))
+        suspect = any(caution.code == "frame_rate_suspect" for caution in motion.cautions)
+        if suspect != (abs(motion.frame_rate - float(row["fps"])) > 1):
+            blamed.append(row["path"])
+    assert blamed == []

@@ -1,0 +1,39 @@
+"""Labels of markers as the marker sets write them."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.motion.roles.marker_names import is_marker, place_of, places_of, subject_and_label
+
+
+@pytest.mark.parametrize(
+    ("label", "place"),
+    [
+        ("LKNE", "LKNE"), ("rkne", "RKNE"), ("L.Knee", "LKNE"), ("R.Knee.Medial", "RKNM"),
+        ("Left Knee", "LKNE"), ("LFWT", "LASI"), ("RBWT", "RPSI"), ("L.ASIS", "LASI"),
+        ("V.Sacral", "SACR"), ("RTAM", "RANM"), ("WaistLFront", "LASI"), ("WaistRBack", "RPSI"),
+        ("LKneeOut", "LKNE"), ("RShoulderTop", "RSHO"), ("C7", "C7"), ("CV7", "C7"),
+        ("Top.Head", "TOPHD"), ("LFHD", "LFHD"), ("RIEL", "RELM"), ("LHJC", "LHJC"),
+        ("LTHI", None), ("", None), ("L", None), ("LEFT", None), ("\N{KELVIN SIGN}", None),
+    ],
+)  # fmt: skip
+def test_places(label: str, place: str | None) -> None:
+    assert place_of(label) == place
+
+
+def test_subjects() -> None:
+    assert subject_and_label("Bob:LKNE") == ("Bob", "LKNE")
+    assert subject_and_label(" LKNE ") == ("", "LKNE")
+    assert subject_and_label("Lab:Bob: LKNE") == ("Lab:Bob", "LKNE")
+
+
+def test_what_is_no_marker() -> None:
+    for label in ("", "*12", "*", "U12", "Unlabeled 7", "LKneeAngles", "RGroundReactionForce"):
+        assert not is_marker(label), label
+    for label in ("LKNE", "C7", "M1", "Ulna", "Forehead"):
+        assert is_marker(label), label
+
+
+def test_the_first_of_a_place_counts() -> None:
+    assert places_of(["LTHI", "LASI", "L.ASIS", "C7"]) == {"LASI": 1, "C7": 3}

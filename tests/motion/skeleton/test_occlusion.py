@@ -1,0 +1,74 @@
+"""Gaps: short ones filled near the truth, long ones told, what was seen untouched."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.motion.skeleton.occlusion import LONGEST_GAP, fill_gaps, runs
+from app.numerics.arrays import FloatArray
+
+
+def circle(frames: int = 200) -> FloatArray:
+    """(frames, 1, 3): round a metre's circle in two seconds at 100 Hz, millimetres."""
+    t = np.arange(frames) * np.pi / 100
+    return np.stack([np.cos(t), np.sin(t), t], axis=-1)[:, None] * 1000
+
+
+@pytest.mark.parametrize("length", [1, 5, 25])
+def test_a_short_gap_is_filled_near_the_truth(length: int) -> None:
+    truth = circle()
+    holed = truth.copy()
+    holed[80 : 80 + length] = np.nan
+    filled = fill_gaps(holed, 100.0)
+    assert np.abs(filled.positions - truth).max() < 2.0
+    assert (filled.frames, filled.long_gaps) == (length, ())
+
+
+def test_a_long_gap_is_told_and_left() -> None:
+    holed = circle()
+    holed[80:106] = np.nan
+    holed[:3] = np.nan
+    filled = fill_gaps(holed, 100.0)
+    (gap,) = filled.long_gaps
+    assert (gap.marker, gap.start, gap.end) == (0, 80, 106)
+    assert np.isnan(filled.positions[80:106]).all()
+    assert np.allclose(filled.positions[:3], holed[3])
+    assert filled.frames == 3
+
+
+@pytest.mark.parametrize("rate", [10.0, 50.0, 240.0])
+def test_what_is_long_is_a_matter_of_seconds(rate: float) -> None:
+    most = round(LONGEST_GAP * rate)
+    for length, long_gaps in ((most, 0), (most + 1, 1)):
+        holed = circle()
+        holed[20 : 20 + length] = np.nan
+        assert len(fill_gaps(holed, rate).long_gaps) == long_gaps
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.booleans(), min_size=1, max_size=60), st.integers(0, 1000))
+def test_what_was_seen_stays_and_nothing_strange_comes(flags: list[bool], seed: int) -> None:
+    truth = np.random.default_rng(seed).normal(size=(len(flags), 2, 3))
+    holed = truth.copy()
+    holed[np.array(flags), 0] = np.nan
+    filled = fill_gaps(holed, 100.0)
+    assert np.array_equal(filled.positions[:, 1], truth[:, 1])
+    assert np.array_equal(filled.positions[~np.array(flags), 0], truth[~np.array(flags), 0])
+    left = [gap.end - gap.start for gap in filled.long_gaps]
+    if not all(flags):
+        assert np.isnan(filled.positions[:, 0, 0]).sum() == sum(left)
+        assert filled.frames == sum(flags) - sum(left)
+
+
+@given(st.lists(st.booleans(), max_size=40))
+def test_runs_are_those_of_the_slow_twin(flags: list[bool]) -> None:
+    slow: list[list[int]] = []
+    for index, flag in enumerate(flags):
+        if flag and index and flags[index - 1]:
+            slow[-1][1] = index + 1
+        elif flag:
+            slow.append([index, index + 1])
+    assert runs(np.array(flags, dtype=bool)) == slow
