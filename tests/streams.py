@@ -17,7 +17,7 @@ from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.resampling import sample_at
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, turned_about_y
-from tests.formats.arrays import npz
+from tests.formats.npz.files import npz
 
 GAP_SECONDS = 0.6
 """How long the body takes from the end of one piece to the start of the next."""

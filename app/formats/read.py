@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from app.errors import BadField, FormatNotSupported, MotionNeeded, Place, SkeletonNotNeeded
-from app.formats.amc import read_amc
-from app.formats.bvh import read_bvh
-from app.formats.c3d import read_c3d
-from app.formats.fbx import read_fbx
-from app.formats.npz import read_npy_positions, read_npz
+from app.formats.acclaim.amc import read_amc
+from app.formats.bvh.reader import read_bvh
+from app.formats.c3d.reader import read_c3d
+from app.formats.fbx.reader import read_fbx
+from app.formats.npz.reader import read_npy_positions, read_npz
 from app.formats.sniff import archive_names, sniff
 from app.motion.skeleton.recording import Recording
 

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 
 from app.errors import EmptyFile, UnknownFormat
-from app.formats.npz_keys import is_known
+from app.formats.npz.keys import is_known
 
 HEAD_BYTES = 4096
 """The head that text formats are recognised in."""

@@ -204,7 +204,7 @@ def analyse_order(order: Order, limits: Limits) -> Analysis:
 def _listen(path: Path) -> tuple[Onsets | None, tuple[Caution, ...]]:
     """The onsets of a recording; none and why where it cannot be read, which stops no clip."""
     from app.analysis.onsets import find_onsets
-    from app.formats.audio import read_audio
+    from app.formats.audio.reader import read_audio
     from app.motion.skeleton.recording import Caution
 
     content = read_whole(path)

@@ -19,10 +19,10 @@ from typing import TypeVar
 import numpy as np
 
 from app.errors import BadContent, FileDamaged, StoredFileMissing
-from app.formats.bvh_export import write_animation_bvh
+from app.formats.bvh.export import write_animation_bvh
 from app.formats.csv_writer import write_csv
-from app.formats.glb_writer import write_glb
-from app.formats.npz_writer import write_npz
+from app.formats.gltf.writer import write_glb
+from app.formats.npz.writer import write_npz
 from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.motion.posing.canonical_body import on_canonical_body

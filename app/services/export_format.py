@@ -13,7 +13,7 @@ class ExportFormat(StrEnum):
     GLB = "glb"
     """Binary glTF 2.0 with a skinned body of sticks, metres, Y up."""
     NPZ = "npz"
-    """NumPy arrays (see `app.formats.npz`), metres, Y up."""
+    """NumPy arrays (see `app.formats.npz.reader`), metres, Y up."""
     CSV = "csv"
     """A row a frame: time, then x, y, z of each joint; seconds, metres, Y up."""
 

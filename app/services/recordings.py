@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.errors import BadContent
-from app.formats.audio import HEAD_BYTES, sniff_audio
+from app.formats.audio.reader import HEAD_BYTES, sniff_audio
 from app.services import fields
 from app.services.library import Library
 from app.store.files import Readable, StagedFile

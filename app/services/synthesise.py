@@ -10,7 +10,7 @@ import numpy as np
 
 from app.analysis.motion_shape import motion_shape
 from app.errors import ModelNotFitted
-from app.formats.bvh_export import write_animation_bvh
+from app.formats.bvh.export import write_animation_bvh
 from app.models.synthesis import Synthesis
 from app.models.synthetic_body import embody
 from app.models.synthetic_motion import course_of

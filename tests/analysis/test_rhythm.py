@@ -12,7 +12,7 @@ from app.analysis.beats import BeatSource
 from app.analysis.energy import energies
 from app.analysis.onsets import Onsets, find_onsets
 from app.analysis.rhythm import SOURCES, Told, beats_of, find_rhythm, rhythm_arrays
-from app.formats.audio import read_audio
+from app.formats.audio.reader import read_audio
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
 from app.motion.frame.body_frame import BodyTrack, body_track

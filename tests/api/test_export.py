@@ -11,7 +11,7 @@ import pytest
 
 from app.formats.read import read_recording
 from tests.api.conftest import assert_problem
-from tests.formats.glb import Glb
+from tests.formats.gltf.files import Glb
 from tests.live import Live
 
 TYPES = {

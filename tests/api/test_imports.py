@@ -9,7 +9,7 @@ import httpx2
 
 from app.services.demo import demo_clips
 from tests.api.conftest import assert_problem
-from tests.formats.arrays import npy
+from tests.formats.npz.files import npy
 from tests.live import Live
 from tests.people import CONVENTIONS, person
 

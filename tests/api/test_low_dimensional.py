@@ -14,7 +14,7 @@ import pytest
 from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
 from tests.api.conftest import assert_problem
 from tests.bodies import standing
-from tests.formats.arrays import npz
+from tests.formats.npz.files import npz
 from tests.live import Live
 
 NAMES = np.array([role.value for role in SUN_ROLES])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import httpx2
 
 from tests.api.conftest import assert_problem
-from tests.formats.acclaim import acclaim_person
+from tests.formats.acclaim.files import acclaim_person
 from tests.formats.samples import bvh
 from tests.live import Live
 

@@ -8,7 +8,7 @@ import httpx2
 
 from tests.api.conftest import assert_problem
 from tests.api.test_clips import CLIP_FIELDS
-from tests.formats.fbx_takes import person_takes
+from tests.formats.fbx.takes import person_takes
 from tests.formats.samples import bvh
 from tests.live import Live
 

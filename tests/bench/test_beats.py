@@ -22,7 +22,7 @@ from app.analysis.audio_offset import estimate_offset
 from app.analysis.beats import find_beats, find_stops
 from app.analysis.energy import energies
 from app.analysis.onsets import find_onsets
-from app.formats.audio import read_audio
+from app.formats.audio.reader import read_audio
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
 from app.motion.frame.body_frame import body_track

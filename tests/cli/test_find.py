@@ -9,8 +9,8 @@ import pytest
 from app.api.schemas.recognition import Recognition
 from app.api.schemas.search import MotionHits, WordHits
 from tests.cli.conftest import Kinedex
-from tests.formats.acclaim import acclaim_person
-from tests.formats.fbx_takes import person_takes
+from tests.formats.acclaim.files import acclaim_person
+from tests.formats.fbx.takes import person_takes
 
 
 def _file(folder: Path, task: str) -> str:

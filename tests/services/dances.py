@@ -13,7 +13,7 @@ from app.services.clips import NewClip
 from app.services.library import Library
 from app.store.clip_record import ClipRecord
 from tests.cyclic_dances import CyclicDance
-from tests.formats.arrays import npz
+from tests.formats.npz.files import npz
 
 
 def dance_file(dance: CyclicDance) -> bytes:

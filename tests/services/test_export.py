@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from app.errors import BadField, ClipNotFound, ClipNotReady
-from app.formats.bvh import read_bvh
+from app.formats.bvh.reader import read_bvh
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
 from app.motion.canonical.motion import Motion
@@ -23,8 +23,8 @@ from app.services.export_format import ExportFormat
 from app.services.library import Library
 from app.services.stored_motion import load_motion
 from app.store.clip_record import ClipRecord, ClipState
-from tests.formats.arrays import npz
-from tests.formats.glb import Glb
+from tests.formats.gltf.files import Glb
+from tests.formats.npz.files import npz
 from tests.people import CONVENTIONS, person
 from tests.services.conftest import FindClip, upload, work
 

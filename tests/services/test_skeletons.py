@@ -24,8 +24,8 @@ from app.services.find import MotionQuery
 from app.services.library import Library
 from app.services.recognise import RecogniseQuery
 from app.store.clip_record import ClipRecord, ClipState
-from tests.formats.acclaim import acclaim_person
-from tests.formats.c3d_files import c3d, marker_person, stacked
+from tests.formats.acclaim.files import acclaim_person
+from tests.formats.c3d.files import c3d, marker_person, stacked
 from tests.formats.samples import bvh
 from tests.services.conftest import settings_for, work
 

@@ -13,7 +13,7 @@ from itertools import chain
 from pathlib import Path
 
 from app.errors import NotFound
-from app.formats.bvh_writer import write_bvh
+from app.formats.bvh.writer import write_bvh
 from app.services.demo.actors import ACTORS, Actor
 from app.services.demo.clip import DemoClip
 from app.services.demo.dances import Sound, dance

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.formats.bvh import read_bvh
+from app.formats.bvh.reader import read_bvh
 from app.motion.canonical.canonical import canonicalise
 from app.motion.canonical.frame_rate import judge_frame_rate
 from app.numerics.arrays import FloatArray

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.formats.bvh import read_bvh
+from app.formats.bvh.reader import read_bvh
 from app.motion.canonical.canonical import canonicalise
 from app.motion.canonical.motion import Motion
 from app.motion.posing.canonical_body import (

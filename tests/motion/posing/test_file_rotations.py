@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from app.formats.bvh import read_bvh
-from app.formats.bvh_export import write_animation_bvh
+from app.formats.bvh.export import write_animation_bvh
+from app.formats.bvh.reader import read_bvh
 from app.motion.canonical.canonical import canonicalise
 from app.motion.canonical.up_axis import to_y_up
 from app.motion.posing.file_rotations import UP_AXES, animation_of_recording

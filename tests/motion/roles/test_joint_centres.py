@@ -8,7 +8,7 @@ import pytest
 from app.motion.roles.joint_centres import RECIPES, joint_centres
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.rotations import euler_to_quaternions, rotate
-from tests.formats.c3d_files import marker_person
+from tests.formats.c3d.files import marker_person
 
 TRACKS, _ = marker_person(frames=10)
 

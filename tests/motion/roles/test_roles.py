@@ -132,7 +132,7 @@ def test_a_mapping_that_does_not_fit_is_refused(mapping: dict[str, str], locatio
     ],
 )
 def test_shape_agrees_with_names_on_real_clips(path: str) -> None:
-    from app.formats.bvh import read_bvh
+    from app.formats.bvh.reader import read_bvh
 
     recording = read_bvh((real_clips() / path).read_bytes())
     by_name, parents = roles_of(recording), recording.skeleton.parents

@@ -12,8 +12,8 @@ from math import radians
 
 import numpy as np
 
-from app.formats.bvh_writer import write_bvh
-from app.formats.npz_writer import write_npz
+from app.formats.bvh.writer import write_bvh
+from app.formats.npz.writer import write_npz
 from app.motion.skeleton.kinematics import forward_kinematics, local_translations
 from app.numerics.arrays import FloatArray
 from app.services.demo.actors import ACTORS, Actor

@@ -1,0 +1,125 @@
+"""Acclaim motion (AMC) on its skeleton (ASF): bytes in, Recording out.
+
+A bone's local rotation is C M C^-1: C turns to the bone's axes, M is the product of the
+channels' turns about fixed axes in their order; tx ty tz move the bone's beginning along
+the same axes, l stretches it. Sources: as in `asf.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.errors import Place, SkeletonNeeded, Unreadable
+from app.formats.acclaim.amc_frames import AmcFrames, read_amc_frames
+from app.formats.acclaim.asf import AcclaimSkeleton, read_asf
+from app.formats.acclaim.frame_order import USUAL_RATE, in_order
+from app.formats.common.lines import with_plain_newlines
+from app.formats.common.world_positions import solve
+from app.motion.skeleton.recording import Recording
+from app.motion.skeleton.rotations import (
+    conjugate,
+    euler_to_quaternions,
+    identity_quaternions,
+    multiply,
+    rotate,
+)
+from app.numerics.arrays import FloatArray
+
+
+def read_amc(content: bytes, skeleton: bytes | None = None) -> Recording:
+    """Read an AMC file with its ASF file.
+
+    Raises SkeletonNeeded without one, Unreadable naming the line of the file that it is in,
+    and TooLarge. Where the file says no frame rate, `assumed_frame_rate` is the usual one.
+    """
+    if skeleton is None:
+        raise SkeletonNeeded(places=[Place("skeleton", "expected the ASF file, found none")])
+    body = _asf(skeleton)
+    text = with_plain_newlines(content)
+    frames = read_amc_frames(text, body.skeleton.names, body.channels)
+    ordered = in_order(frames)
+    numbers = _in_radians(body, frames, ordered.numbers)
+    moving = any(c[0] == "t" or c == "l" for bone in body.channels[1:] for c in bone)
+
+    def local_pose(block: slice) -> tuple[FloatArray, FloatArray]:
+        rotations = _local_rotations(body, numbers[block])
+        return rotations, _local_translations(body, numbers[block])
+
+    solved = solve(body.skeleton, len(numbers), local_pose, moving=moving)
+    return Recording(
+        format="amc",
+        skeleton=body.skeleton,
+        positions=solved.positions,
+        rotations=solved.rotations,
+        translations=solved.translations,
+        frame_rate=frames.frame_rate,
+        metres_per_unit=body.metres_per_unit,
+        cautions=body.cautions + frames.cautions + ordered.cautions,
+        assumed_frame_rate=USUAL_RATE / ordered.step,
+    )
+
+
+def _asf(content: bytes) -> AcclaimSkeleton:
+    """The skeleton, whose failures say that they are in that file."""
+    try:
+        return read_asf(content)
+    except Unreadable as problem:
+        places = [Place(f"skeleton {place.location}", place.message) for place in problem.places]
+        raise Unreadable(f"The skeleton cannot be read: {problem.detail}", places=places) from None
+
+
+def _in_radians(body: AcclaimSkeleton, frames: AmcFrames, numbers: FloatArray) -> FloatArray:
+    """`numbers` (frames, channels) with all turns in radians."""
+    said = body.in_degrees if frames.in_degrees is None else frames.in_degrees
+    if not said:
+        return numbers
+    turns = np.array([channel[0] == "r" for bone in body.channels for channel in bone])
+    return np.where(turns, np.radians(numbers), numbers)
+
+
+def _local_rotations(body: AcclaimSkeleton, numbers: FloatArray) -> FloatArray:
+    """(frames, joints, 4): joints that turn in the same order go together."""
+    result = identity_quaternions((len(numbers), len(body.channels)))
+    for order, joints, columns in _turning_groups(body.channels):
+        axes = body.axes[joints]
+        turned = euler_to_quaternions(numbers[:, columns], order)
+        result[:, joints] = multiply(multiply(axes, turned), conjugate(axes))
+    # The root's pre-set orientation offsets all its turns.
+    result[:, 0] = multiply(result[:, 0], body.orientation)
+    return result
+
+
+def _turning_groups(
+    channels: Sequence[tuple[str, ...]],
+) -> list[tuple[str, list[int], list[list[int]]]]:
+    """By order of turning, outermost (last in the file) first: joints and their columns."""
+    groups: dict[str, tuple[list[int], list[list[int]]]] = {}
+    start = 0
+    for joint, bone in enumerate(channels):
+        turns = [(c[1].upper(), start + i) for i, c in enumerate(bone) if c[0] == "r"][::-1]
+        start += len(bone)
+        if turns:
+            joints, columns = groups.setdefault("".join(axis for axis, _ in turns), ([], []))
+            joints.append(joint)
+            columns.append([column for _, column in turns])
+    return [(order, joints, columns) for order, (joints, columns) in groups.items()]
+
+
+def _local_translations(body: AcclaimSkeleton, numbers: FloatArray) -> FloatArray:
+    """(frames, joints, 3): offsets, moved along the bone's axes, and by stretched parents."""
+    offsets = body.skeleton.offsets
+    result = np.broadcast_to(offsets, (len(numbers), *offsets.shape)).copy()
+    start = 0
+    for joint, bone in enumerate(body.channels):
+        for column, channel in enumerate(bone, start):
+            if channel[0] == "t":
+                along = np.eye(3)["xyz".index(channel[1])]
+                result[:, joint] += numbers[:, column, None] * rotate(body.axes[joint], along)
+            elif channel == "l":
+                children = body.skeleton.children(joint)
+                stretched = numbers[:, column, None, None] * body.directions[joint]
+                result[:, children] += stretched
+        start += len(bone)
+    return result

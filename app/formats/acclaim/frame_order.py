@@ -1,0 +1,66 @@
+"""The frames of an AMC file in the order of their own numbers, without gaps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.formats.acclaim.amc_frames import AmcFrames
+from app.formats.common.failures import unreadable
+from app.motion.skeleton.recording import Caution
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+
+USUAL_RATE = 120.0
+"""Hz of CMU's and of most AMC files, whose format has no obligatory place for it."""
+MOST_MISSING = 0.5
+"""More missing frames than this part of those that are there are no gaps but a lie."""
+
+
+@dataclass(frozen=True, slots=True)
+class OrderedFrames:
+    """numbers: (frames, channels) by rising frame number; step: from number to number."""
+
+    numbers: FloatArray
+    step: int
+    cautions: tuple[Caution, ...]
+
+
+def in_order(frames: AmcFrames) -> OrderedFrames:
+    """Sort frames by number and fill gaps by the frame before, each with a caution.
+
+    Numbers that rise evenly by more than one are a motion at a lower rate. Raises
+    Unreadable naming the line of a number that comes twice, or after too wide a gap.
+    """
+    cautions: list[Caution] = []
+    order = np.argsort(frames.numbering, kind="stable")
+    numbering, lines = frames.numbering[order], frames.lines[order]
+    if not np.array_equal(order, np.arange(len(order))):
+        first = int(lines[np.flatnonzero(order != np.arange(len(order)))[0]])
+        detail = f"line {first}: frames do not come in the order of their numbers; sorted"
+        cautions.append(Caution("frames_out_of_order", detail))
+    steps = np.diff(numbering)
+    if (steps == 0).any():
+        line = int(lines[1:][steps == 0][0])
+        raise unreadable(
+            line, f"expected each frame once, found {_at(numbering, steps == 0)} twice"
+        )
+    step = int(steps.min()) if len(steps) else 1
+    if (steps % step).any():
+        step = 1
+    missing = int((steps // step - 1).sum())
+    if missing > MOST_MISSING * len(numbering):
+        wide = steps == steps.max()
+        raise unreadable(
+            int(lines[1:][wide][0]), f"expected frames without gaps, found {_at(numbering, wide)}"
+        )
+    if missing:
+        detail = f"{missing} frames are missing, which repeat the frame before them"
+        cautions.append(Caution("frames_missing", detail))
+    repeats = np.append(steps // step, 1).astype(np.int64)
+    return OrderedFrames(np.repeat(frames.numbers[order], repeats, axis=0), step, tuple(cautions))
+
+
+def _at(numbering: IntArray, chosen: BoolArray) -> int:
+    """The first number whose step from the one before is chosen."""
+    return int(numbering[1:][chosen][0])

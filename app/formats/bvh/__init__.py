@@ -1,0 +1,1 @@
+"""BVH: reading every dialect, writing, exporting."""

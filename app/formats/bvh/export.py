@@ -1,0 +1,62 @@
+"""An animation as a BVH file: centimetres, Y up, as most programs expect.
+
+Joints that move along their bone have position channels of their own. Leaves that have no
+end site get one, which readers other than ours insist on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from app.formats.bvh.writer import bvh_blocks
+from app.formats.common.names import MAX_NAME_LENGTH
+from app.motion.skeleton.animation import Animation
+from app.motion.skeleton.skeleton import Skeleton
+
+UNITS_PER_METRE = 100.0
+"""BVH does not say its unit; centimetres are usual."""
+ROTATION_ORDER = "ZXY"
+END_SHARE = 0.5
+"""Length of an end site that we add, in parts of the bone before it."""
+
+
+def write_animation_bvh(animation: Animation) -> Iterator[bytes]:
+    """A BVH file of the animation, piece by piece."""
+    skeleton = _scaled(_with_end_sites(animation.skeleton))
+    return bvh_blocks(
+        replace(skeleton, names=tuple(bvh_name(name) for name in skeleton.names)),
+        animation.rotations,
+        animation.translations * UNITS_PER_METRE,
+        animation.frame_rate,
+        ROTATION_ORDER,
+        np.flatnonzero(animation.moving_joints()).tolist(),
+    )
+
+
+def bvh_name(name: str) -> str:
+    """A name that stands on a line of a BVH file and reads back: printable, without braces."""
+    kept = "".join(char if char.isprintable() and char not in "{}" else "_" for char in name)
+    return " ".join(kept.split())[:MAX_NAME_LENGTH].strip() or "joint"
+
+
+def _scaled(skeleton: Skeleton) -> Skeleton:
+    return replace(
+        skeleton,
+        offsets=skeleton.offsets * UNITS_PER_METRE,
+        end_offsets=skeleton.end_offsets * UNITS_PER_METRE,
+    )
+
+
+def _with_end_sites(skeleton: Skeleton) -> Skeleton:
+    inner = {*skeleton.parents.tolist(), *skeleton.end_parents.tolist()}
+    leaves = np.array([joint for joint in range(len(skeleton)) if joint not in inner], dtype=int)
+    is_child = (skeleton.parents[leaves] >= 0)[:, None]
+    ends = END_SHARE * np.where(is_child, skeleton.offsets[leaves], 0.0)
+    return replace(
+        skeleton,
+        end_parents=np.concatenate([skeleton.end_parents, leaves]),
+        end_offsets=np.concatenate([skeleton.end_offsets, ends]),
+    )

@@ -1,0 +1,96 @@
+"""Biovision hierarchy (BVH) files, every dialect that we have met (DESIGN 4).
+
+Bytes in, Recording out. Position channels replace their joint's OFFSET axis by axis,
+whichever joint they stand on; rotation channels turn in the order in which they are
+listed. Source: Meredith and Maddock, "Motion capture file formats explained" (2001).
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from app.formats.bvh.frames import read_frames
+from app.formats.bvh.hierarchy import Channel, Hierarchy, read_hierarchy
+from app.formats.common.failures import unreadable
+from app.formats.common.lines import with_plain_newlines
+from app.formats.common.world_positions import Solved, solve
+from app.motion.skeleton.recording import Recording
+from app.motion.skeleton.rotations import euler_to_quaternions, identity_quaternions
+from app.numerics.arrays import FloatArray
+
+_MOTION = re.compile(rb"^[ \t]*MOTION[ \t]*(?::[ \t]*)?$", re.IGNORECASE | re.MULTILINE)
+
+
+def read_bvh(content: bytes) -> Recording:
+    """Read a BVH file.
+
+    Units and axes stay the file's. Raises Unreadable naming the line, and TooLarge.
+    A frame time that is no time leaves `frame_rate` None, with a caution.
+    """
+    text = with_plain_newlines(content)
+    motion = _MOTION.search(text)
+    hierarchy = read_hierarchy(text[: motion.start()] if motion else text)
+    if motion is None:
+        raise unreadable(text.count(b"\n") + 1, "expected MOTION, found the end of the file")
+    if not hierarchy.channels:
+        raise unreadable(1, "expected channels on some joint, found none")
+    first_line = text.count(b"\n", 0, motion.end()) + 2
+    frames = read_frames(text[motion.end() + 1 :], first_line, len(hierarchy.channels))
+    solved = _solve(hierarchy, frames.numbers)
+    return Recording(
+        format="bvh",
+        skeleton=hierarchy.skeleton,
+        positions=solved.positions,
+        rotations=solved.rotations,
+        translations=solved.translations,
+        frame_rate=frames.frame_rate,
+        cautions=hierarchy.cautions + frames.cautions,
+    )
+
+
+def _solve(hierarchy: Hierarchy, numbers: FloatArray) -> Solved:
+    def local_pose(block: slice) -> tuple[FloatArray, FloatArray]:
+        rows = numbers[block]
+        return _local_rotations(hierarchy, rows), _local_translations(hierarchy, rows)
+
+    moving = any(
+        c.is_position and hierarchy.skeleton.parents[c.joint] >= 0 for c in hierarchy.channels
+    )
+    return solve(hierarchy.skeleton, len(numbers), local_pose, moving=moving)
+
+
+def _local_translations(hierarchy: Hierarchy, numbers: FloatArray) -> FloatArray:
+    offsets = hierarchy.skeleton.offsets
+    result = np.broadcast_to(offsets, (len(numbers), *offsets.shape)).copy()
+    for column, channel in enumerate(hierarchy.channels):
+        if channel.is_position:
+            result[:, channel.joint, channel.axis] = numbers[:, column]
+    return result
+
+
+def _local_rotations(hierarchy: Hierarchy, numbers: FloatArray) -> FloatArray:
+    """(frames, joints, 4): joints whose channels turn in the same order go together."""
+    result = identity_quaternions((len(numbers), len(hierarchy.skeleton)))
+    for order, joints, columns in _rotation_groups(hierarchy.channels):
+        angles = np.radians(numbers[:, columns])  # (frames, joints of the group, axes)
+        result[:, joints] = euler_to_quaternions(angles, order)
+    return result
+
+
+def _rotation_groups(
+    channels: tuple[Channel, ...],
+) -> list[tuple[str, list[int], list[list[int]]]]:
+    """By rotation order: the joints that have it and their columns (joints, axes)."""
+    by_joint: dict[int, list[int]] = {}
+    for column, channel in enumerate(channels):
+        if not channel.is_position:
+            by_joint.setdefault(channel.joint, []).append(column)
+    groups: dict[str, tuple[list[int], list[list[int]]]] = {}
+    for joint, columns in by_joint.items():
+        order = "".join("XYZ"[channels[column].axis] for column in columns)
+        group = groups.setdefault(order, ([], []))
+        group[0].append(joint)
+        group[1].append(columns)
+    return [(order, joints, columns) for order, (joints, columns) in groups.items()]

@@ -1,0 +1,156 @@
+"""The parameters of a C3D file: named arrays in groups, in the bytes of three processors.
+
+Source: "The C3D file format user guide" (Motion Lab Systems 2008), chapters 4 and 5.
+Numbers come as Intel's, as DEC's (little-endian integers, VAX F floats) or as MIPS's
+(big-endian).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import prod
+
+import numpy as np
+
+from app.formats.common.failures import unreadable_at
+from app.numerics.arrays import FloatArray
+
+BLOCK = 512
+"""Bytes; header, parameters and data begin at whole blocks, counted from 1."""
+MAX_RECORDS = 10_000
+"""Groups and parameters; each has at most 127 letters of name."""
+_PROCESSORS = {84: "intel", 85: "dec", 86: "mips"}
+_VALUE_BYTES = {-1: 1, 1: 1, 2: 2, 4: 4}
+"""By type of a parameter: letters, bytes, 16-bit integers, floats."""
+
+
+@dataclass(frozen=True, slots=True)
+class Numbers:
+    """How a processor writes numbers."""
+
+    processor: str
+
+    def integers(self, raw: bytes) -> FloatArray:
+        """16-bit integers, as floats."""
+        kind = ">i2" if self.processor == "mips" else "<i2"
+        return np.frombuffer(raw, dtype=kind).astype(np.float64)
+
+    def floats(self, raw: bytes) -> FloatArray:
+        """32-bit floats (n,) float32."""
+        if self.processor == "mips":
+            return np.frombuffer(raw, dtype=">f4").astype(np.float32)
+        if self.processor == "intel":
+            return np.frombuffer(raw, dtype="<f4")
+        # VAX F: as IEEE with the halves exchanged and the exponent two higher.
+        halves = np.frombuffer(raw, dtype="<u2").reshape(-1, 2)[:, ::-1]
+        with np.errstate(invalid="ignore"):
+            return np.ascontiguousarray(halves).view("<f4")[:, 0] / np.float32(4)
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One parameter: numbers (n,) flat, or texts; one of them is empty."""
+
+    values: tuple[float, ...] = ()
+    texts: tuple[str, ...] = ()
+
+    @property
+    def first(self) -> float | None:
+        """The first number, if there is any."""
+        return self.values[0] if self.values else None
+
+
+Parameters = Mapping[str, Parameter]
+"""By "GROUP:NAME", upper case."""
+
+
+def read_parameters(content: bytes) -> tuple[Numbers, Parameters]:
+    """The file's way of writing numbers, and its parameters.
+
+    Raises Unreadable naming the byte where the section is not what it should be.
+    """
+    start = (content[0] - 1) * BLOCK
+    if start + 4 > len(content):
+        raise unreadable_at(start, "expected parameters, found the end of the file")
+    processor = _PROCESSORS.get(content[start + 3])
+    if processor is None:
+        known = "84, 85 or 86"
+        raise unreadable_at(start + 3, f"expected processor {known}, found {content[start + 3]}")
+    return Numbers(processor), _Reader(content, start + 4, Numbers(processor)).read()
+
+
+class _Reader:
+    def __init__(self, content: bytes, at: int, numbers: Numbers) -> None:
+        self.content = content
+        self.at = at
+        self.numbers = numbers
+        self.groups: dict[int, str] = {}
+        self.found: list[tuple[int, str, Parameter]] = []
+
+    def read(self) -> Parameters:
+        for _ in range(MAX_RECORDS):
+            if not self._record():
+                break
+        named = ((f"{self.groups.get(g, '')}:{name}", value) for g, name, value in self.found)
+        result: dict[str, Parameter] = {}
+        for name, value in named:
+            result.setdefault(name, value)
+        return result
+
+    def _record(self) -> bool:
+        """Read one group or parameter; False at the end."""
+        if self.at + 2 > len(self.content):
+            return False
+        length, group = (int(x) for x in np.frombuffer(self.content, "i1", 2, self.at))
+        if length == 0 or group == 0:
+            return False
+        name_at = self.at + 2
+        name = self._bytes(name_at, abs(length)).decode("latin-1").strip().upper()
+        offset_at = name_at + abs(length)
+        offset = int(self.numbers.integers(self._bytes(offset_at, 2))[0])
+        if group < 0:
+            self.groups[-group] = name
+        else:
+            self.found.append((group, name, self._parameter(offset_at + 2)))
+        if offset < 0:
+            raise unreadable_at(offset_at, f"expected the next parameter, found offset {offset}")
+        self.at = offset_at + offset
+        return offset > 0
+
+    def _parameter(self, at: int) -> Parameter:
+        kind, dimensions = (int(x) for x in np.frombuffer(self._bytes(at, 2), "i1"))
+        size = _VALUE_BYTES.get(kind)
+        if size is None or not 0 <= dimensions <= 7:
+            message = f"expected a parameter, found type {kind} with {dimensions} dimensions"
+            raise unreadable_at(at, message)
+        shape = list(self._bytes(at + 2, dimensions))
+        raw = self._bytes(at + 2 + dimensions, size * prod(shape))
+        if kind == -1:
+            return Parameter(texts=_texts(raw, shape))
+        if kind == 4:
+            return Parameter(tuple(self.numbers.floats(raw).tolist()))
+        values = self.numbers.integers(raw) if kind == 2 else np.frombuffer(raw, "i1")
+        return Parameter(tuple(float(value) for value in values))
+
+    def _bytes(self, start: int, length: int) -> bytes:
+        if start + length > len(self.content):
+            raise unreadable_at(start, f"expected {length} bytes, found the end of the file")
+        return self.content[start : start + length]
+
+
+def _texts(raw: bytes, shape: list[int]) -> tuple[str, ...]:
+    """The texts of letters whose first dimension is a text's length."""
+    length = shape[0] if shape else len(raw)
+    if not length:
+        return ()
+    pieces = (raw[start : start + length] for start in range(0, len(raw), length))
+    return tuple(_text(piece) for piece in pieces)
+
+
+def _text(raw: bytes) -> str:
+    plain = raw.rstrip(b"\x00 ").lstrip()
+    try:
+        return plain.decode("utf-8")
+    except UnicodeDecodeError:
+        return plain.decode("latin-1")

@@ -1,0 +1,1 @@
+"""What several formats share: numbers, lines, names, limits, forward kinematics in blocks."""

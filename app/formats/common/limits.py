@@ -1,0 +1,6 @@
+"""Limits that all readers hold."""
+
+from __future__ import annotations
+
+MAX_JOINTS = 2000
+"""More joints than any body, hands and face together."""

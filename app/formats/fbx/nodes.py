@@ -1,0 +1,208 @@
+"""The records of a binary FBX file, read where they are asked for.
+
+A record is a header (end, number of properties, their length, name), its properties and
+its children; a header of zeros ends a list of children. Offsets are 32 bits wide before
+version 7500, then 64. Nothing is parsed before it is asked for, so depth costs nothing,
+and no number of the file is trusted with memory before it is held against its bytes.
+
+Source: "FBX binary file format specification" (Blender developers' blog, 2013), and files.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.errors import FormatNotSupported, Place, Unreadable
+from app.formats.common.failures import too_large
+from app.formats.common.numbers import excerpt
+from app.numerics.arrays import FloatArray, IntArray
+
+MAGIC = b"Kaydara FBX Binary  \x00\x1a\x00"
+FIRST_VERSION, LAST_VERSION = 7000, 7999
+WIDE_VERSION = 7500
+"""From here on offsets have 64 bits."""
+MAX_ARRAY_BYTES = 64_000_000
+"""Inflated, of one array: more keys than a curve may have frames."""
+MAX_DEFLATE_RATIO = 1040
+"""Deflate cannot do better."""
+MAX_INFLATED_RATIO = 200
+"""Of all arrays that are read to the file; MAX_ARRAY_BYTES are free."""
+
+_HEADER_BYTES = len(MAGIC) + 4
+_SCALARS = {
+    "C": struct.Struct("<?"),
+    "B": struct.Struct("<b"),
+    "Y": struct.Struct("<h"),
+    "I": struct.Struct("<i"),
+    "F": struct.Struct("<f"),
+    "D": struct.Struct("<d"),
+    "L": struct.Struct("<q"),
+}
+_ARRAYS = {"f": "<f4", "d": "<f8", "i": "<i4", "l": "<i8", "b": "|u1", "c": "|u1"}
+
+
+@dataclass(frozen=True, slots=True)
+class ArrayProperty:
+    """Where an array stands: `count` numbers of `dtype` in `length` bytes from `offset`."""
+
+    dtype: str
+    count: int
+    deflated: bool
+    offset: int
+    length: int
+
+
+Property = bool | int | float | bytes | ArrayProperty
+
+
+class FbxFile:
+    """The bytes of a binary FBX file of version 7, and what was inflated of them."""
+
+    def __init__(self, content: bytes) -> None:
+        """Raises FormatNotSupported for text, encryption and versions other than 7, Unreadable."""
+        if not content.startswith(MAGIC[:18]):
+            raise FormatNotSupported("This is an FBX file in text form; save it as binary FBX")
+        if len(content) < _HEADER_BYTES:
+            raise unreadable_byte(len(content), "expected the version, found the end of the file")
+        self.content = content
+        self.version = int.from_bytes(content[len(MAGIC) : _HEADER_BYTES], "little")
+        if not FIRST_VERSION <= self.version <= LAST_VERSION:
+            shown = f"{self.version / 1000:.1f}"
+            raise FormatNotSupported(f"This is FBX {shown}; save it as binary FBX 7")
+        wide = self.version >= WIDE_VERSION
+        self.header = struct.Struct("<QQQB" if wide else "<IIIB")
+        self._inflatable = MAX_ARRAY_BYTES + MAX_INFLATED_RATIO * len(content)
+
+    def records(self) -> Iterator[FbxRecord]:
+        """The records at the top."""
+        return self.records_between(_HEADER_BYTES, len(self.content))
+
+    def top(self, name: str) -> FbxRecord | None:
+        """The first record of this name at the top."""
+        return next((record for record in self.records() if record.name == name), None)
+
+    def records_between(self, start: int, end: int) -> Iterator[FbxRecord]:
+        """The records of a list of children, which a record of zeros may end."""
+        while start < end:
+            record = self._record(start, end)
+            if record is None:
+                return
+            yield record
+            start = record.end
+
+    def _record(self, offset: int, limit: int) -> FbxRecord | None:
+        names_at = offset + self.header.size
+        if names_at > limit:
+            raise unreadable_byte(offset, "expected a record, found the end")
+        end, count, length, name_length = self.header.unpack_from(self.content, offset)
+        if end == 0:
+            return None
+        properties_at = names_at + name_length
+        children_at = properties_at + length
+        if not offset < children_at <= end <= limit:
+            raise unreadable_byte(offset, f"expected a record within {limit} bytes, found {end}")
+        name = self.content[names_at:properties_at].decode("ascii", errors="replace")
+        return FbxRecord(self, name, offset, properties_at, count, children_at, end)
+
+    def array(self, place: ArrayProperty) -> FloatArray | IntArray:
+        """The numbers (count,) of an array. Raises Unreadable, TooLarge."""
+        size = place.count * np.dtype(place.dtype).itemsize
+        stored = self.content[place.offset : place.offset + place.length]
+        if not place.deflated:
+            if size != len(stored):
+                raise unreadable_byte(place.offset, f"expected {size} bytes, found {len(stored)}")
+            return np.frombuffer(stored, dtype=place.dtype)
+        return np.frombuffer(self._inflated(place, stored, size), dtype=place.dtype)
+
+    def _inflated(self, place: ArrayProperty, stored: bytes, size: int) -> bytes:
+        if size > MAX_DEFLATE_RATIO * (len(stored) + 1):
+            raise unreadable_byte(place.offset, f"expected {size} bytes in {len(stored)}")
+        self._inflatable -= size
+        if size > MAX_ARRAY_BYTES or self._inflatable < 0:
+            raise too_large(f"byte {place.offset}", "expected smaller arrays")
+        try:
+            data = zlib.decompressobj().decompress(stored, size + 1)
+        except zlib.error as error:
+            raise unreadable_byte(place.offset, f"expected deflated numbers ({error})") from None
+        if len(data) != size:
+            raise unreadable_byte(place.offset, f"expected {size} inflated bytes")
+        return data
+
+
+@dataclass(frozen=True, slots=True)
+class FbxRecord:
+    """A record: its name, where it stands, and where its parts begin."""
+
+    file: FbxFile
+    name: str
+    offset: int
+    properties_at: int
+    property_count: int
+    children_at: int
+    end: int
+
+    def children(self, name: str | None = None) -> Iterator[FbxRecord]:
+        """Its children, or those of one name."""
+        found = self.file.records_between(self.children_at, self.end)
+        return (child for child in found if name is None or child.name == name)
+
+    def child(self, name: str) -> FbxRecord | None:
+        """The first child of this name."""
+        return next(self.children(name), None)
+
+    def properties(self, limit: int = 16) -> list[Property]:
+        """Its first properties; text as bytes, arrays as the place where they stand."""
+        found: list[Property] = []
+        offset = self.properties_at
+        for _ in range(min(self.property_count, limit)):
+            value, offset = self._property(offset)
+            found.append(value)
+        return found
+
+    def array(self) -> FloatArray | IntArray:
+        """The array (n,) that is its first property; none makes it empty."""
+        first = self.properties(1)
+        if not first:
+            return np.zeros(0)
+        if not isinstance(first[0], ArrayProperty):
+            raise unreadable_byte(self.offset, f"expected an array in {self.name}")
+        return self.file.array(first[0])
+
+    def _property(self, offset: int) -> tuple[Property, int]:
+        code = chr(self._bytes(offset, 1)[0])
+        if code in _SCALARS:
+            scalar = _SCALARS[code]
+            (value,) = scalar.unpack(self._bytes(offset + 1, scalar.size))
+            return value, offset + 1 + scalar.size
+        if code in "SR":
+            length = int.from_bytes(self._bytes(offset + 1, 4), "little")
+            return self._bytes(offset + 5, length), offset + 5 + length
+        if code in _ARRAYS:
+            return self._array_property(code, offset)
+        raise unreadable_byte(
+            offset, f"expected a type of property, found {excerpt(code.encode())}"
+        )
+
+    def _array_property(self, code: str, offset: int) -> tuple[Property, int]:
+        count, encoding, length = struct.unpack("<III", self._bytes(offset + 1, 12))
+        if encoding not in (0, 1):
+            raise unreadable_byte(offset, f"expected encoding 0 or 1, found {encoding}")
+        self._bytes(offset + 13, length)
+        place = ArrayProperty(_ARRAYS[code], count, encoding == 1, offset + 13, length)
+        return place, offset + 13 + length
+
+    def _bytes(self, offset: int, length: int) -> bytes:
+        if offset + length > self.children_at:
+            raise unreadable_byte(offset, f"expected {length} bytes in {self.name}")
+        return self.file.content[offset : offset + length]
+
+
+def unreadable_byte(offset: int, message: str) -> Unreadable:
+    """An Unreadable that names the byte, counted from 0."""
+    location = f"byte {offset}"
+    return Unreadable(f"{location}: {message}", places=[Place(location, message)])

@@ -1,0 +1,230 @@
+"""Binary FBX 7 files: skeletons of limb nodes and their animation.
+
+Bytes in, Recording out. Joints are given frames that are the world's at rest, as in BVH:
+rest is the pose that pre-rotations alone make, or, where there are none, the pose that the
+nodes were saved in. The result has Y up and is right-handed whatever the file's axes.
+
+Source: Autodesk FBX SDK 2020 reference; formulas stand in `fbx_transforms`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from app.formats.common.failures import too_large
+from app.formats.common.numbers import MAX_MAGNITUDE
+from app.formats.common.world_positions import MAX_JOINT_FRAMES, Solved, solve
+from app.formats.fbx.animation import Stack, choose_stack, find_stacks, listed
+from app.formats.fbx.nodes import FbxFile
+from app.formats.fbx.scene import FbxScene, Numbers, unreadable_at
+from app.formats.fbx.skeleton import Body, find_body
+from app.formats.fbx.timing import Timing, find_timing, key_span
+from app.formats.fbx.transforms import ANIMATED, FbxNode, Local, World, read_node, world_transforms
+from app.motion.skeleton.recording import Caution, Recording
+from app.motion.skeleton.rotations import matrices_to_quaternions, multiply, rotate
+from app.motion.skeleton.skeleton import Skeleton
+from app.numerics.arrays import FloatArray, IntArray
+
+METRES_PER_CENTIMETRE = 0.01
+"""UnitScaleFactor counts centimetres."""
+SCALES = (1e-6, 1e3)
+"""Metres per unit that can be meant."""
+STILL = 1e-5
+"""Translations that change by less, in parts of the skeleton's size, are still."""
+
+_CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
+
+
+def read_fbx(content: bytes, stack: str | None = None) -> Recording:
+    """Read a binary FBX file; `stack` names the animation stack, by default the longest.
+
+    Raises FormatNotSupported for text, encryption, other versions and what we cannot
+    evaluate, Unreadable naming the node or byte, BadField for a stack that is not there,
+    TooLarge.
+    """
+    scene = FbxScene(FbxFile(content))
+    stacks = find_stacks(scene)
+    if not stacks:
+        raise unreadable_at("node Objects/AnimationStack", "expected an animation, found none")
+    body = find_body(scene, set().union(*(one.moving() for one in stacks)))
+    times = [one.key_times(body.nodes) for one in stacks]
+    spans = [_span(scene, one, found) for one, found in zip(stacks, times, strict=True)]
+    lengths = [span[1] - span[0] if span else -1.0 for span in spans]
+    chosen = choose_stack(stacks, lengths, stack)
+    span = spans[chosen]
+    if span is None:
+        raise stacks[chosen].stack.unreadable("expected keys that move joints, found none")
+    timing = find_timing(times[chosen], span, scene.settings)
+    cautions = body.cautions + timing.cautions + _stack_caution(stacks, lengths, chosen)
+    return _recording(scene, body, stacks[chosen], timing, cautions)
+
+
+def _span(scene: FbxScene, stack: Stack, times: list[IntArray]) -> tuple[float, float] | None:
+    start, stop = (scene.ticks(stack.stack, name) for name in ("LocalStart", "LocalStop"))
+    return key_span(times, start, stop)
+
+
+def _stack_caution(stacks: list[Stack], lengths: list[float], chosen: int) -> tuple[Caution, ...]:
+    names = [one.stack.name for one, length in zip(stacks, lengths, strict=True) if length >= 0]
+    if len(names) < 2:
+        return ()
+    read = stacks[chosen].stack.name
+    detail = (
+        f"the file holds {len(names)} animations ({listed(names)}); {read} was read,"
+        " send `stack` for another"
+    )
+    return (Caution("stack_chosen", detail),)
+
+
+@dataclass(frozen=True, slots=True)
+class _Motion:
+    """The chains of a body's nodes; channels: of each node translation, rotation in degrees
+    and scale, each (frames, 3) or (1, 3)."""
+
+    nodes: list[FbxNode]
+    parents: IntArray
+    channels: list[tuple[FloatArray, ...]]
+    frames: int
+
+    def local(self, block: slice) -> Local:
+        """Of the frames in `block`."""
+        count = len(range(self.frames)[block])
+        values = [[c if len(c) == 1 else c[block] for c in one] for one in self.channels]
+        return self._assembled(values, count)
+
+    def rest(self) -> Local:
+        """One frame: translations and scales of the first one, rotations at rest."""
+        turned = any(np.any(node.before) for node in self.nodes)
+        values = [
+            [moved[:1], (np.zeros((1, 3)) if turned else node.still[1][None]), scaled[:1]]
+            for node, (moved, _, scaled) in zip(self.nodes, self.channels, strict=True)
+        ]
+        return self._assembled(values, 1)
+
+    def _assembled(self, values: list[list[FloatArray]], count: int) -> Local:
+        shape = (count, len(self.nodes))
+        local = Local(np.empty((*shape, 3)), np.empty((*shape, 4)), np.empty((*shape, 3)))
+        for index, (node, (moved, degrees, scale)) in enumerate(
+            zip(self.nodes, values, strict=True)
+        ):
+            local.rotations[:, index] = node.turned(degrees.astype(np.float64))
+            local.scales[:, index] = scale
+            turned, scales = local.rotations[:, index], local.scales[:, index]
+            local.translations[:, index] = node.moved(moved.astype(np.float64), turned, scales)
+        return local
+
+    def world(self, local: Local) -> World:
+        """Of some frames' local transforms."""
+        return world_transforms(self.nodes, self.parents, local)
+
+
+def _recording(
+    scene: FbxScene, body: Body, stack: Stack, timing: Timing, cautions: tuple[Caution, ...]
+) -> Recording:
+    frames = len(timing.ticks)
+    if frames * len(body.nodes) > MAX_JOINT_FRAMES:
+        raise too_large("frames", f"expected at most {MAX_JOINT_FRAMES} joints times frames")
+    # Numbers of a broken file overflow on their way; the result is looked at.
+    with np.errstate(all="ignore"):
+        motion = _read_motion(scene, body, stack, timing)
+        rest = _Rest(motion, body, axes(scene.settings))
+        solved = solve(rest.skeleton, frames, rest.local_pose, moving=rest.moving())
+    _check(solved)
+    factor = scene.settings.get("UnitScaleFactor", (np.nan,))[0] * METRES_PER_CENTIMETRE
+    return Recording(
+        format="fbx",
+        skeleton=rest.skeleton,
+        positions=solved.positions,
+        rotations=solved.rotations,
+        translations=solved.translations,
+        frame_rate=timing.frame_rate,
+        up_axis="y",
+        metres_per_unit=factor if SCALES[0] <= factor <= SCALES[1] else None,
+        cautions=cautions,
+    )
+
+
+def _read_motion(scene: FbxScene, body: Body, stack: Stack, timing: Timing) -> _Motion:
+    stack.refuse_unknown(body.nodes)
+    nodes = [read_node(scene, node) for node in body.nodes]
+    read = partial(stack.channel, scene)
+    channels = [
+        tuple(
+            read(node.node, name, still, timing.ticks)
+            for name, still in zip(ANIMATED, node.still, strict=True)
+        )
+        for node in nodes
+    ]
+    return _Motion(nodes, body.parents, channels, len(timing.ticks))
+
+
+class _Rest:
+    """A motion seen from its rest: joints' frames are the world's there, and Y is up."""
+
+    def __init__(self, motion: _Motion, body: Body, turn: FloatArray) -> None:
+        self.motion = motion
+        self.kept = np.flatnonzero(body.is_joint)
+        self.parents = _parents_among(self.kept, body.parents)
+        self.turn = turn
+        self.turn_quaternion = matrices_to_quaternions(turn * np.sign(np.linalg.det(turn)))
+        world = motion.world(motion.rest())
+        self.unturned = world.rotations[:, self.kept] * _CONJUGATE
+        positions = world.positions[0, self.kept] @ turn.T
+        below = self.parents >= 0
+        positions[below] -= positions[self.parents[below]]
+        names = tuple(body.nodes[index].name or f"joint {index}" for index in self.kept)
+        self.skeleton = Skeleton(names, self.parents, positions)
+
+    def local_pose(self, block: slice) -> tuple[FloatArray, FloatArray]:
+        """Rotations (n, joints, 4) and translations (n, joints, 3) in the joints' new frames."""
+        world = self.motion.world(self.motion.local(block))
+        turned = multiply(world.rotations[:, self.kept], self.unturned)
+        turned = multiply(multiply(self.turn_quaternion, turned), self.turn_quaternion * _CONJUGATE)
+        moved = world.positions[:, self.kept] @ self.turn.T
+        below = np.flatnonzero(self.parents >= 0)
+        above = turned[:, self.parents[below]] * _CONJUGATE
+        rotations, translations = turned.copy(), moved.copy()
+        rotations[:, below] = multiply(above, turned[:, below])
+        translations[:, below] = rotate(above, moved[:, below] - moved[:, self.parents[below]])
+        return rotations, translations
+
+    def moving(self) -> bool:
+        """Whether joints below the roots change their place in their parents' frames."""
+        motion, root = self.motion, int(self.kept[0])
+        limit = STILL * max(float(np.abs(self.skeleton.offsets).max()), 1e-12)
+        scaled = any(not np.allclose(scale, scale[0, 0]) for _, _, scale in motion.channels)
+        return scaled or any(
+            motion.nodes[index].has_pivots
+            or np.ptp(motion.channels[index][0], axis=0).max() > limit
+            for index in range(root + 1, len(motion.nodes))
+        )
+
+
+def _parents_among(kept: IntArray, parents: IntArray) -> IntArray:
+    """The parents of kept nodes as indices among the kept, -1 for the one at the top; what
+    lies between joints is a joint too."""
+    new = {int(old): index for index, old in enumerate(kept)}
+    return np.array([new.get(int(parents[index]), -1) for index in kept], dtype=np.int64)
+
+
+def axes(settings: dict[str, Numbers]) -> FloatArray:
+    """(3, 3) from the file's axes to X right, Y up, Z to the viewer; a left-handed file's
+    has determinant -1, which leaves the body as it was. Raises Unreadable."""
+    turn = np.zeros((3, 3))
+    for row, (name, usual) in enumerate((("CoordAxis", 0), ("UpAxis", 1), ("FrontAxis", 2))):
+        axis = settings.get(name, (float(usual),))[0]
+        sign = settings.get(f"{name}Sign", (1.0,))[0]
+        if axis in (0, 1, 2) and sign in (-1, 1):
+            turn[row, int(axis)] = sign
+    if abs(np.linalg.det(turn)) != 1:
+        raise unreadable_at("node GlobalSettings", "expected three different axes")
+    return turn
+
+
+def _check(solved: Solved) -> None:
+    for numbers in (solved.positions, solved.rotations):
+        if not np.all(np.abs(numbers) <= MAX_MAGNITUDE):
+            raise unreadable_at("node Objects/Model", f"expected places within ±{MAX_MAGNITUDE:g}")

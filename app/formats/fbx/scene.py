@@ -1,0 +1,230 @@
+"""What an FBX file holds: objects with their properties, and how they are connected.
+
+Source: the objects, connections and property templates as Autodesk's FBX SDK documents
+them ("FBX object model"); a property that an object lacks has its template's value, and
+one that the template lacks has ours.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from app.errors import FormatNotSupported, Place, Unreadable
+from app.formats.common.failures import too_large
+from app.formats.common.names import MAX_NAME_LENGTH
+from app.formats.common.numbers import MAX_MAGNITUDE
+from app.formats.fbx.nodes import FbxFile, FbxRecord, unreadable_byte
+from app.numerics.arrays import FloatArray
+
+MAX_OBJECTS = 500_000
+MAX_CONNECTIONS = 1_000_000
+
+_KINDS = frozenset(
+    ("Model", "NodeAttribute", "AnimationStack", "AnimationLayer", "AnimationCurveNode",
+     "AnimationCurve")
+)  # fmt: skip
+_TIME_DEFINITION = 127
+"""TCDefinition of files whose second has KTIME ticks."""
+
+Numbers = tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FbxObject:
+    """An object: `kind` is its record's name, `subtype` its own word (LimbNode, Null)."""
+
+    id: int
+    kind: str
+    name: str
+    subtype: str
+    record: FbxRecord
+
+    @property
+    def place(self) -> str:
+        """Where it stands, for messages."""
+        return f"node Objects/{self.kind} {self.id}"
+
+    def unreadable(self, message: str) -> Unreadable:
+        """An Unreadable that names this object."""
+        return unreadable_at(self.place, message)
+
+
+def unreadable_at(place: str, message: str) -> Unreadable:
+    """An Unreadable that names a node."""
+    return Unreadable(f"{place}: {message}", places=[Place(place, message)])
+
+
+def refused_at(place: str, message: str) -> FormatNotSupported:
+    """A FormatNotSupported that names a node."""
+    return FormatNotSupported(f"{place}: {message}", places=[Place(place, message)])
+
+
+@dataclass(frozen=True, slots=True)
+class Connection:
+    """`source` belongs to `target`, or to its property of this name ("" for none)."""
+
+    source: int
+    target: int
+    to_property: str = ""
+
+
+@dataclass(slots=True)
+class _Ends:
+    incoming: list[Connection] = field(default_factory=list)
+    outgoing: list[Connection] = field(default_factory=list)
+
+
+class FbxScene:
+    """Objects by id, their properties and their connections."""
+
+    def __init__(self, file: FbxFile) -> None:
+        """Raises Unreadable, FormatNotSupported for encrypted files, TooLarge."""
+        _refuse_foreign_headers(file)
+        self._file = file
+        self.objects = {one.id: one for one in _objects(file)}
+        self._ends: dict[int, _Ends] = {}
+        for connection in _connections(file):
+            self._at(connection.source).outgoing.append(connection)
+            self._at(connection.target).incoming.append(connection)
+        self._known: dict[int, dict[str, Numbers]] = {}
+
+    def _at(self, object_id: int) -> _Ends:
+        return self._ends.setdefault(object_id, _Ends())
+
+    def of_kind(self, kind: str) -> list[FbxObject]:
+        """Objects of a kind, in file order."""
+        return [one for one in self.objects.values() if one.kind == kind]
+
+    def sources(self, target: FbxObject, kind: str) -> Iterator[tuple[FbxObject, str]]:
+        """Objects of a kind that belong to `target`, each with the property it drives."""
+        for connection in self._at(target.id).incoming:
+            source = self.objects.get(connection.source)
+            if source is not None and source.kind == kind:
+                yield source, connection.to_property
+
+    def targets(self, source: FbxObject, kind: str) -> Iterator[FbxObject]:
+        """Objects of a kind that `source` belongs to as a whole."""
+        for connection in self._at(source.id).outgoing:
+            target = self.objects.get(connection.target)
+            if target is not None and target.kind == kind and not connection.to_property:
+                yield target
+
+    def driven(self, source: FbxObject) -> Iterator[tuple[FbxObject, str]]:
+        """Nodes of which `source` drives a property, and its name."""
+        for connection in self._at(source.id).outgoing:
+            target = self.objects.get(connection.target)
+            if target is not None and target.kind == "Model" and connection.to_property:
+                yield target, connection.to_property
+
+    def vector(self, owner: FbxObject, name: str, default: Numbers) -> FloatArray:
+        """A property's numbers, as many as the default has, float64. Raises Unreadable."""
+        found = self._numbers(owner).get(name) or self._templates.get(owner.kind, {}).get(name)
+        found = (found or default)[: len(default)]
+        if len(found) != len(default) or not np.all(np.abs(found) <= MAX_MAGNITUDE):
+            raise owner.unreadable(f"expected {len(default)} numbers as {name}, found {found}")
+        return np.array(found, dtype=np.float64)
+
+    def number(self, owner: FbxObject, name: str, default: float) -> float:
+        """A property of one number. Raises Unreadable."""
+        return float(self.vector(owner, name, (default,))[0])
+
+    def ticks(self, owner: FbxObject, name: str) -> float | None:
+        """A property that is a time, in ticks, or None."""
+        found = self._numbers(owner).get(name)
+        return found[0] if found and np.isfinite(found[0]) else None
+
+    def _numbers(self, owner: FbxObject) -> dict[str, Numbers]:
+        if owner.id not in self._known:
+            self._known[owner.id] = read_properties(owner.record)
+        return self._known[owner.id]
+
+    @cached_property
+    def settings(self) -> dict[str, Numbers]:
+        """The numbers of GlobalSettings."""
+        found = self._file.top("GlobalSettings")
+        return read_properties(found) if found is not None else {}
+
+    @cached_property
+    def _templates(self) -> dict[str, dict[str, Numbers]]:
+        """By kind: the numbers that its objects have unless they say otherwise."""
+        found: dict[str, dict[str, Numbers]] = {}
+        definitions = self._file.top("Definitions")
+        for record in definitions.children("ObjectType") if definitions else ():
+            kind = _text(next(iter(record.properties(1)), b""))
+            template = record.child("PropertyTemplate")
+            if kind in _KINDS and template is not None:
+                found.setdefault(kind, read_properties(template))
+        return found
+
+
+def read_properties(record: FbxRecord) -> dict[str, Numbers]:
+    """The properties of a record's Properties70 that are numbers, by name."""
+    found: dict[str, Numbers] = {}
+    block = record.child("Properties70")
+    for line in block.children("P") if block is not None else ():
+        name, *rest = line.properties() or [b""]
+        numbers = tuple(float(n) for n in rest[3:] if isinstance(n, bool | int | float))
+        if numbers:
+            found[_text(name)] = numbers
+    return found
+
+
+def _objects(file: FbxFile) -> Iterator[FbxObject]:
+    block = file.top("Objects")
+    if block is None:
+        raise unreadable_at("node Objects", "expected objects, found none")
+    count = 0
+    for record in block.children():
+        if record.name in _KINDS:
+            count += 1
+            if count > MAX_OBJECTS:
+                raise too_large("node Objects", f"expected at most {MAX_OBJECTS}")
+            yield _object(record)
+
+
+def _object(record: FbxRecord) -> FbxObject:
+    number, name, subtype, *_ = [*record.properties(3), 0, b"", b""]
+    if not isinstance(number, int) or isinstance(number, bool) or record.property_count < 3:
+        raise unreadable_byte(record.offset, f"expected id, name and type of a {record.name}")
+    return FbxObject(number, record.name, object_name(name), _text(subtype), record)
+
+
+def object_name(name: object) -> str:
+    """The name before its class, which two bytes part from it; always printable."""
+    text = name.split(b"\x00\x01")[0] if isinstance(name, bytes) else b""
+    shown = text[: 4 * MAX_NAME_LENGTH].decode("utf-8", errors="replace")[:MAX_NAME_LENGTH]
+    return "".join(char if char.isprintable() else "�" for char in shown)
+
+
+def _connections(file: FbxFile) -> Iterator[Connection]:
+    block = file.top("Connections")
+    for count, record in enumerate(block.children("C") if block else ()):
+        if count >= MAX_CONNECTIONS:
+            raise too_large("node Connections", f"expected at most {MAX_CONNECTIONS}")
+        found = record.properties(4)
+        if len(found) >= 3 and found[0] in (b"OO", b"OP"):
+            _, source, target, to_property, *_ = [*found, b""]
+            if not isinstance(source, int) or not isinstance(target, int):
+                raise unreadable_byte(record.offset, "expected the ids of two objects")
+            yield Connection(source, target, _text(to_property))
+
+
+def _refuse_foreign_headers(file: FbxFile) -> None:
+    header = file.top("FBXHeaderExtension")
+    encryption = header.child("EncryptionType") if header else None
+    if encryption is not None and encryption.properties(1) not in ([], [0]):
+        raise FormatNotSupported("This FBX file is encrypted")
+    flags = header.child("OtherFlags") if header else None
+    definition = flags.child("TCDefinition") if flags else None
+    if definition is not None and definition.properties(1) != [_TIME_DEFINITION]:
+        raise refused_at(
+            "node FBXHeaderExtension/OtherFlags", "expected times as FBX 7 counts them"
+        )
+
+
+def _text(value: object) -> str:
+    return value.decode("utf-8", errors="replace") if isinstance(value, bytes) else ""

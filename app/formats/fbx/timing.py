@@ -1,0 +1,127 @@
+"""When an FBX clip is sampled: from where, to where, at what rate.
+
+The scene's frame rate (TimeMode), unless its keys lie closer: dense keys are samples of
+something faster, and a scene's rate is often the program's default.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.formats.bvh.frames import FASTEST_RATE, MAX_FRAMES, NEAR_WHOLE, SLOWEST_RATE
+from app.formats.common.failures import too_large
+from app.formats.fbx.curves import KTIME
+from app.formats.fbx.scene import Numbers
+from app.motion.skeleton.recording import Caution
+from app.numerics.arrays import FloatArray, IntArray
+
+NTSC = 1000 / 1001
+TIME_MODES: dict[int, float] = {
+    1: 120.0, 2: 100.0, 3: 60.0, 4: 50.0, 5: 48.0, 6: 30.0, 7: 30.0, 8: 30 * NTSC, 9: 30 * NTSC,
+    10: 25.0, 11: 24.0, 12: 1000.0, 13: 24 * NTSC, 15: 96.0, 16: 72.0, 17: 60 * NTSC,
+    18: 120 * NTSC,
+}  # fmt: skip
+"""Hz by number; 14 is CustomFrameRate, 0 says nothing."""
+CUSTOM_MODE = 14
+UNSAID_RATE = 30.0
+"""Hz, of sparse keys in a scene that does not say its rate."""
+NEEDLESS_RATE = 250.0
+"""Hz; a scene's rate beyond is one of its clock rather than of motion."""
+DENSE = 0.5
+"""So many of all gaps have to be equal for keys to be samples."""
+GAP_TOLERANCE = 0.01
+"""Gaps that differ by less (relative) are equal; times are rounded by some writers."""
+FREE_FRAMES, FRAMES_PER_KEY = 10_000, 1_000
+"""A clip has no more frames than these and so many for each key of its richest curve; a
+stray key far away makes no hours of standing still."""
+ON_GRID = 0.02
+"""Of a period: a key that near to a frame lies on it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """ticks: (frames,) float64 where to sample; frame_rate: Hz."""
+
+    ticks: FloatArray
+    frame_rate: float
+    cautions: tuple[Caution, ...] = ()
+
+
+def key_span(
+    times: list[IntArray], start: float | None, stop: float | None
+) -> tuple[float, float] | None:
+    """First and last tick with keys, within the stack's own span where that has some.
+
+    times: of each curve (keys,). None where there are no keys.
+    """
+    # A lone key only says where a still property stands.
+    moving = [one for one in times if len(one) > 1] or times
+    if not moving:
+        return None
+    first = float(min(int(one[0]) for one in moving))
+    last = float(max(int(one[-1]) for one in moving))
+    if start is not None and stop is not None and first < stop and start < last and start < stop:
+        return max(first, start), min(last, stop)
+    return first, last
+
+
+def find_timing(
+    times: list[IntArray], span: tuple[float, float], settings: dict[str, Numbers]
+) -> Timing:
+    """Raises TooLarge."""
+    scene, keys = scene_rate(settings), key_rate(times)
+    rate = scene or keys or UNSAID_RATE
+    cautions: tuple[Caution, ...] = ()
+    if keys and (rate > NEEDLESS_RATE or keys > rate * (1 + GAP_TOLERANCE)):
+        rate = keys
+        detail = f"the scene says {scene or 0:g} Hz; its keys lie {keys:g} a second"
+        cautions = (Caution("frame_rate_from_keys", detail),)
+    period = KTIME / rate
+    first = span[0]
+    if _on_grid(times, period):
+        first = np.ceil(first / period - ON_GRID) * period
+    count = int((span[1] - first) / period + ON_GRID) + 1
+    most = FREE_FRAMES + FRAMES_PER_KEY * max((len(one) for one in times), default=0)
+    if count > min(MAX_FRAMES, most):
+        raise too_large("frames", f"expected at most {min(MAX_FRAMES, most)}, found {count}")
+    ticks = np.clip(first + period * np.arange(max(count, 1)), *span)
+    return Timing(ticks, rate, cautions)
+
+
+def scene_rate(settings: dict[str, Numbers]) -> float | None:
+    """Hz of GlobalSettings, None where it says none that can be."""
+    mode = int(settings.get("TimeMode", (0.0,))[0]) if _finite(settings, "TimeMode") else 0
+    if mode == CUSTOM_MODE and _finite(settings, "CustomFrameRate"):
+        rate = settings["CustomFrameRate"][0]
+        return rate if SLOWEST_RATE <= rate <= FASTEST_RATE else None
+    return TIME_MODES.get(mode)
+
+
+def _finite(settings: dict[str, Numbers], name: str) -> bool:
+    return name in settings and bool(np.isfinite(settings[name][0]))
+
+
+def key_rate(times: list[IntArray]) -> float | None:
+    """Hz of keys that lie evenly, None where they do not."""
+    if not times:
+        return None
+    gaps = np.concatenate([np.diff(one) for one in times]).astype(np.float64)
+    gaps = gaps[gaps > 0]
+    if not len(gaps):
+        return None
+    usual = float(np.median(gaps))
+    if np.mean(np.abs(gaps - usual) <= GAP_TOLERANCE * usual) < DENSE:
+        return None
+    rate = KTIME / usual
+    if not SLOWEST_RATE <= rate <= FASTEST_RATE:
+        return None
+    known = (float(round(rate)), *TIME_MODES.values())
+    return next((one for one in known if abs(one - rate) <= NEAR_WHOLE * rate), rate)
+
+
+def _on_grid(times: list[IntArray], period: float) -> bool:
+    """Whether most keys lie on whole frames counted from time 0."""
+    phase = np.concatenate([one / period for one in times])
+    return bool(np.mean(np.abs(phase - np.round(phase)) <= ON_GRID) > DENSE)

@@ -1,0 +1,1 @@
+"""NumPy arrays of positions, and SMPL parameters."""

@@ -1,0 +1,79 @@
+"""What the arrays of NPZ files of motion are called, and reading them by our names."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from numpy.typing import NDArray
+
+from app.formats.npz.arrays import Archive, numbers
+
+KEYS: dict[str, tuple[str, ...]] = {
+    "positions": (
+        "positions", "jointpositions", "globalpositions", "joints3d", "keypoints3d", "keypoints",
+        "joints", "markers", "xyz", "pos",
+    ),
+    "joint_names": (
+        "jointnames", "names", "joints", "markers", "bonenames", "markernames", "labels",
+        "keypointnames",
+    ),
+    "parents": ("parents", "jointparents", "parent", "kintreetable", "bonesparents"),
+    "frame_rate": (
+        "framerate", "fps", "mocapframerate", "mocapfps", "rate", "samplingrate", "frequency",
+    ),
+    "unit": ("unit", "units", "metresperunit", "metersperunit"),
+    "up_axis": ("upaxis", "up"),
+    "poses": ("poses", "smplposes", "fullpose"),
+    "root_orient": ("rootorient", "globalorient"),
+    "pose_body": ("posebody", "bodypose"),
+    "trans": ("trans", "transl", "smpltrans", "translation"),
+}  # fmt: skip
+"""Our name of each array, and the names that files give it, lower case and without separators."""
+_KNOWN = frozenset(name for names in KEYS.values() for name in names)
+AMBIGUOUS = ("joints", "markers")
+"""May be what the joints are called or where they are."""
+
+
+class NamedArrays:
+    """The arrays of an archive by our names."""
+
+    def __init__(self, archive: Archive) -> None:
+        """Look at the keys only; raises Unreadable."""
+        self.keys = archive.keys()
+        self._archive = archive
+        plain = {_plain(key): key for key in self.keys}
+        self._found = {
+            name: [plain[key] for key in known if key in plain] for name, known in KEYS.items()
+        }
+        for name, kinds in (("joint_names", "US"), ("positions", "fiu")):
+            self._found[name] = [key for key in self._found[name] if self._is(key, kinds)]
+
+    def _is(self, key: str, kinds: str) -> bool:
+        return _plain(key) not in AMBIGUOUS or self._archive.kind(key) in kinds
+
+    def __contains__(self, name: str) -> bool:
+        """Whether the file has an array of this name of ours."""
+        return bool(self._found[name])
+
+    def key(self, name: str) -> str:
+        """What the file calls it."""
+        return self._found[name][0] if name in self else name
+
+    def read(self, name: str) -> NDArray[Any] | None:
+        """The array, or None where the file has none. Raises Unreadable, TooLarge."""
+        return self._archive.read(self.key(name)) if name in self else None
+
+    def numbers(self, name: str) -> NDArray[Any] | None:
+        """As `read`; refuses what is not numbers."""
+        array = self.read(name)
+        return None if array is None else numbers(array, self.key(name))
+
+
+def is_known(key: str) -> bool:
+    """Whether an array of this name means something to us."""
+    return _plain(key) in _KNOWN
+
+
+def _plain(key: str) -> str:
+    return re.sub(r"[^a-z0-9]", "", key.lower())

@@ -1,0 +1,269 @@
+"""NPZ and NPY files: joint positions with names, or SMPL parameters (AMASS).
+
+The layout, which `/export?format=npz` writes too:
+
+| key | content |
+|---|---|
+| `positions` | numbers (frames, joints, 3), world |
+| `joint_names` | text (joints,) |
+| `parents` | integers (joints,), -1 for a root; may be left out |
+| `frame_rate` | Hz |
+| `unit` | "m", "cm", "mm", "in", ... or metres per unit; judged from stature where left out |
+| `up_axis` | "x", "y" or "z"; "y" where left out |
+
+Keys are matched without regard to case and separators, and usual other names are taken
+(`names`, `fps`, `mocap_framerate`, `kintree_table`, ...; see `npz_keys`). Positions without
+names are taken in a known order of joints where just one fits the body
+(`joint_layouts`), else joints are called `joint_0`, `joint_1`, ... so that roles can be
+sent. Angles of a body model are read by `smpl`. Bytes in, Recording out.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.errors import Place, Unreadable
+from app.formats.common.failures import too_large
+from app.formats.common.joint_trees import in_tree_order, parents_of
+from app.formats.common.limits import MAX_JOINTS
+from app.formats.common.names import MAX_NAME_LENGTH
+from app.formats.common.numbers import MAX_MAGNITUDE
+from app.formats.common.world_positions import MAX_JOINT_FRAMES
+from app.formats.npz.arrays import Archive, numbers, read_npy, texts
+from app.formats.npz.joint_layouts import layout_of
+from app.formats.npz.keys import NamedArrays
+from app.formats.npz.smpl import read_smpl
+from app.motion.canonical.units import METRES_PER_UNIT
+from app.motion.skeleton.recording import Caution, Recording
+from app.motion.skeleton.skeleton import Skeleton
+from app.numerics.arrays import FloatArray, IntArray
+
+FRAME_RATES = (0.1, 10_000.0)
+"""Hz; anything else is no frame rate."""
+
+
+def read_npz(content: bytes) -> Recording:
+    """Read an NPZ file of positions, or of SMPL parameters.
+
+    Raises Unreadable naming the key, frame or joint, and TooLarge.
+    """
+    arrays = NamedArrays(Archive(content))
+    if "positions" in arrays:
+        return _read_positions(arrays)
+    if "poses" in arrays or "pose_body" in arrays:
+        return _read_parameters(arrays)
+    found = ", ".join(arrays.keys[:10])
+    raise refused("positions", f"expected an array of positions, or of SMPL poses; found {found}")
+
+
+def read_npy_positions(content: bytes) -> Recording:
+    """Read a bare array (frames, joints, 3); its frame rate has to be sent.
+
+    Raises Unreadable naming the frame and joint, and TooLarge.
+    """
+    positions = _checked_positions(read_npy(content), "array")
+    skeleton, cautions = _skeleton_of_order(positions)
+    return _recording("npy", skeleton, positions, None, cautions=cautions)
+
+
+def _read_positions(arrays: NamedArrays) -> Recording:
+    positions = _checked_positions(arrays.read("positions"), arrays.key("positions"))
+    names = _names(arrays, positions.shape[1])
+    cautions: tuple[Caution, ...] = ()
+    if names is None:
+        skeleton, cautions = _skeleton_of_order(positions)
+    else:
+        parents = arrays.numbers("parents")
+        key = arrays.key("parents")
+        above = parents_of(parents, key, names) if parents is not None else None
+        skeleton = _skeleton(names, above, positions)
+        cautions = _duplicates(names)
+    return _recording(
+        "npz",
+        skeleton,
+        positions,
+        _frame_rate(arrays),
+        unit=_unit(arrays),
+        up_axis=_up_axis(arrays) or "y",
+        cautions=cautions,
+    )
+
+
+def _read_parameters(arrays: NamedArrays) -> Recording:
+    poses = arrays.numbers("poses")
+    if poses is None:
+        parts = [arrays.numbers(name) for name in ("root_orient", "pose_body")]
+        there = [part.reshape(len(part), -1) for part in parts if part is not None and part.ndim]
+        if len(there) < 2 or len(there[0]) != len(there[1]):
+            raise refused("root_orient", "expected as many frames as pose_body has")
+        poses = np.concatenate(there, axis=1)
+    if poses.ndim == 3 and poses.shape[2] == 3:
+        poses = poses.reshape(len(poses), -1)
+    if poses.ndim == 2 and len(poses) * 24 > MAX_JOINT_FRAMES:
+        raise too_large("poses", f"expected at most {MAX_JOINT_FRAMES} joints times frames")
+    trans = arrays.numbers("trans")
+    return read_smpl(
+        _checked_numbers(poses, arrays.key("poses")),
+        None if trans is None else _checked_numbers(trans, arrays.key("trans")),
+        _frame_rate(arrays),
+        _up_axis(arrays) or "z",
+    )
+
+
+def _checked_positions(array: NDArray[Any] | None, key: str) -> FloatArray:
+    """(frames, joints, 3) float32, finite. Raises Unreadable, TooLarge."""
+    if array is None or array.ndim != 3 or array.shape[2] != 3:
+        shape = "nothing" if array is None else "x".join(map(str, array.shape)) or "one number"
+        raise refused(key, f"expected frames x joints x 3 numbers, found {shape}")
+    frames, joints, _ = array.shape
+    if joints > MAX_JOINTS or frames * joints > MAX_JOINT_FRAMES:
+        limits = f"{MAX_JOINTS} joints and {MAX_JOINT_FRAMES} joints times frames"
+        raise too_large(key, f"expected at most {limits}, found {frames} frames x {joints} joints")
+    return np.ascontiguousarray(_checked_numbers(numbers(array, key), key), dtype=np.float32)
+
+
+def _checked_numbers(array: NDArray[Any], key: str) -> FloatArray:
+    """Raises Unreadable naming the first number that is none, or beyond all reason."""
+    if max(float(array.max()), -float(array.min())) <= MAX_MAGNITUDE and _is_finite(array):
+        return array
+    with np.errstate(invalid="ignore"):  # signalling NaN
+        place = np.argwhere(~(np.abs(array.astype(np.float64)) <= MAX_MAGNITUDE))[0]
+    where = ", ".join(str(index) for index in place)
+    nouns = zip(("frame", "joint"), place[: array.ndim - 1], strict=False)
+    location = ", ".join(f"{noun} {index}" for noun, index in nouns)
+    limit = f"±{MAX_MAGNITUDE:g}"
+    found = array[tuple(place)]
+    message = f"expected numbers within {limit}, found {found} at {key}[{where}], counted from 0"
+    raise Unreadable(f"{location}: {message}", places=[Place(location or key, message)])
+
+
+def _is_finite(array: NDArray[Any]) -> bool:
+    return array.dtype.kind != "f" or bool(np.isfinite(array).all())
+
+
+def _names(arrays: NamedArrays, joints: int) -> list[str] | None:
+    array = arrays.read("joint_names")
+    if array is None:
+        return None
+    key = arrays.key("joint_names")
+    if array.nbytes > 4 * MAX_JOINTS * MAX_NAME_LENGTH:
+        raise refused(key, f"expected names of at most {MAX_NAME_LENGTH} characters")
+    names = [name.strip("\0 ") for name in texts(array, key)]
+    if len(names) != joints:
+        raise refused(key, f"expected {joints} names as positions has joints, found {len(names)}")
+    for joint, name in enumerate(names):
+        if not name or len(name) > MAX_NAME_LENGTH or not name.isprintable():
+            raise refused(f"joint {joint}", f"expected a name, found {name[:40]!a} in {key}")
+    return names
+
+
+def _duplicates(names: list[str]) -> tuple[Caution, ...]:
+    twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+    if not twice:
+        return ()
+    shown = ", ".join(twice[:5])
+    return (Caution("duplicate_names", f"several joints have the same name: {shown}"),)
+
+
+def _frame_rate(arrays: NamedArrays) -> float | None:
+    array = arrays.numbers("frame_rate")
+    if array is None:
+        return None
+    rate = float(array.reshape(-1)[0]) if array.size == 1 else float("nan")
+    if not FRAME_RATES[0] <= rate <= FRAME_RATES[1]:
+        raise refused(arrays.key("frame_rate"), f"expected one number of Hz, found {array!s:.40}")
+    return rate
+
+
+def _unit(arrays: NamedArrays) -> float | None:
+    array = arrays.read("unit")
+    if array is None:
+        return None
+    key = arrays.key("unit")
+    if array.dtype.kind in "US":
+        (name, *_) = texts(array, key)
+        scale = METRES_PER_UNIT.get(name.strip().lower())
+    else:
+        scale = float(numbers(array, key).reshape(-1)[0]) if array.size == 1 else None
+    if scale is None or not 1e-6 <= scale <= 1e3:
+        known = ", ".join(METRES_PER_UNIT)
+        raise refused(key, f"expected one of {known}, or metres per unit; found {array!s:.40}")
+    return scale
+
+
+def _up_axis(arrays: NamedArrays) -> str | None:
+    array = arrays.read("up_axis")
+    if array is None:
+        return None
+    (name, *_) = texts(array, arrays.key("up_axis"))
+    axis = name.strip().lower().removeprefix("+")
+    if axis not in ("x", "y", "z"):
+        raise refused(arrays.key("up_axis"), f"expected x, y or z, found {name[:20]!a}")
+    return axis
+
+
+def _skeleton_of_order(positions: FloatArray) -> tuple[Skeleton, tuple[Caution, ...]]:
+    layout = layout_of(positions)
+    if layout is None:
+        names = [f"joint_{joint}" for joint in range(positions.shape[1])]
+        detail = (
+            "the file names no joints and their order is not known: send roles, by joint_0, ..."
+        )
+        return _skeleton(names, None, positions), (Caution("joint_names_missing", detail),)
+    detail = f"the file names no joints; the body is that of the {layout.title} order"
+    parents = np.array(layout.parents)
+    return _skeleton(list(layout.names), parents, positions), (
+        Caution("joint_names_guessed", detail),
+    )
+
+
+def _skeleton(names: list[str], parents: IntArray | None, positions: FloatArray) -> Skeleton:
+    """Joints in the file's order (see `_recording`); at rest as in the first frame."""
+    above = np.full(len(names), -1) if parents is None else parents
+    first = positions[0].astype(np.float64)
+    offsets = first - np.where(above[:, None] >= 0, first[above], 0.0)
+    return Skeleton(tuple(names), above, offsets)
+
+
+def _recording(
+    format_name: str,
+    skeleton: Skeleton,
+    positions: FloatArray,
+    frame_rate: float | None,
+    *,
+    unit: float | None = None,
+    up_axis: str = "y",
+    cautions: tuple[Caution, ...] = (),
+) -> Recording:
+    """A recording whose joints stand after their parents."""
+    order = in_tree_order(skeleton.parents)
+    return Recording(
+        format=format_name,
+        skeleton=Skeleton(
+            names=tuple(skeleton.names[joint] for joint in order),
+            parents=_renumbered(skeleton.parents, order),
+            offsets=skeleton.offsets[order],
+        ),
+        positions=np.ascontiguousarray(positions[:, order]),
+        rotations=None,
+        translations=None,
+        frame_rate=frame_rate,
+        up_axis=up_axis,
+        metres_per_unit=unit,
+        cautions=cautions,
+    )
+
+
+def _renumbered(parents: IntArray, order: IntArray) -> IntArray:
+    new_index = np.empty(len(order) + 1, dtype=np.int64)
+    new_index[order] = np.arange(len(order))
+    new_index[-1] = -1
+    return np.asarray(new_index[parents[order]])
+
+
+def refused(location: str, message: str) -> Unreadable:
+    """An Unreadable that names the key, frame or joint."""
+    return Unreadable(f"{location}: {message}", places=[Place(location, message)])

@@ -1,0 +1,159 @@
+"""SMPL, SMPL-H and SMPL-X parameters (AMASS and its like) as a recording.
+
+A parameter file holds the angles of a body model, not its joints: those need the model,
+which is licensed and not here. The angles are read exactly; they turn a generic body of
+our own, with segments by Drillis and Contini's proportions of stature (1966; Winter,
+"Biomechanics and motor control of human movement", fig. 4.1). So directions of limbs are
+as recorded, lengths of limbs are generic, and the ground under the feet is a few
+centimetres off. Fingers and face are left out.
+
+Sources: Loper et al., "SMPL" (2015), for the order of joints and the axis-angle
+parameters; Mahmood et al., "AMASS" (2019), for the file's keys.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.errors import Place, Unreadable
+from app.formats.npz.joint_layouts import SMPL_BODY
+from app.motion.skeleton.kinematics import forward_kinematics, local_translations
+from app.motion.skeleton.recording import Caution, Recording
+from app.motion.skeleton.rotations import identity_quaternions, multiply, rotate
+from app.motion.skeleton.skeleton import Skeleton
+from app.numerics.arrays import FloatArray
+
+STATURE = 1.7
+"""Metres, of the generic body."""
+BODY_JOINTS = 22
+"""The first joints of every SMPL model are the same."""
+PARAMETERS = (66, 72, 156, 165)
+"""Numbers a frame: body alone, SMPL, SMPL-H, SMPL-X."""
+
+_CAUTION = Caution(
+    "body_model_missing",
+    "the file holds angles of the SMPL body model, which Kinedex does not have: angles are exact,"
+    f" limb lengths are those of a generic body {STATURE} m tall (betas and gender are not used),"
+    " fingers and face are left out",
+)
+
+# Shares of stature in the rest pose: left is +X, up +Y, forward +Z, arms out to the sides.
+_LEG = {
+    "Hip": (0.055, -0.045, 0),
+    "Knee": (0, -0.245, 0),
+    "Ankle": (0, -0.246, -0.01),
+    "Foot": (0.01, -0.03, 0.075),
+}
+_ARM = {
+    "Collar": (0.035, 0.075, 0),
+    "Shoulder": (0.075, 0.02, -0.005),
+    "Elbow": (0.186, 0, 0),
+    "Wrist": (0.146, 0, 0),
+    "Hand": (0.05, 0, 0),
+}
+_TRUNK = {
+    "Pelvis": (0, -0.13, 0.01),
+    "Spine1": (0, 0.065, -0.015),
+    "Spine2": (0, 0.075, 0.01),
+    "Spine3": (0, 0.035, 0.005),
+    "Neck": (0, 0.13, -0.015),
+    "Head": (0, 0.05, 0.02),
+}
+
+_Y_TO_Z_UP = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0])
+"""The turn by 90 degrees about X that stands a Y-up rest pose upright in a Z-up world."""
+
+
+def read_smpl(
+    poses: FloatArray,
+    translation: FloatArray | None,
+    frame_rate: float | None,
+    up_axis: str = "z",
+) -> Recording:
+    """A recording of 24 joints in metres from axis-angle parameters.
+
+    poses: (frames, n) radians, n one of PARAMETERS, the root's first; translation:
+    (frames, 3) metres, None for a body that stays; both finite. up_axis: "z" as in AMASS,
+    or "y". Raises Unreadable.
+    """
+    frames = len(poses)
+    if poses.ndim != 2 or poses.shape[1] not in PARAMETERS:
+        counts = ", ".join(map(str, PARAMETERS))
+        shape = "x".join(map(str, poses.shape))
+        raise _refused("poses", f"expected frames x ({counts}) axis-angle numbers, found {shape}")
+    if translation is not None and translation.shape != (frames, 3):
+        shape = "x".join(map(str, translation.shape))
+        raise _refused("trans", f"expected {frames}x3 numbers as poses has frames, found {shape}")
+    skeleton = generic_body()
+    rotations = _rotations(poses, len(skeleton))
+    roots = np.broadcast_to(skeleton.offsets[0], (frames, 3))
+    if translation is not None:
+        roots = roots + translation
+    if up_axis == "z":
+        skeleton, rotations = _stood_up(skeleton, rotations)
+    positions = forward_kinematics(skeleton, rotations, local_translations(skeleton, roots))
+    return Recording(
+        format="npz",
+        skeleton=skeleton,
+        positions=positions.astype(np.float32),
+        rotations=rotations.astype(np.float32),
+        translations=None,
+        frame_rate=frame_rate,
+        up_axis=up_axis,
+        metres_per_unit=1.0,
+        cautions=(_CAUTION,),
+    )
+
+
+def generic_body() -> Skeleton:
+    """SMPL's 24 joints with our own rough offsets in metres, Y up.
+
+    The root's offset is where the model's pelvis is from its origin, about.
+    """
+    names = (*SMPL_BODY[0], "L_Hand", "R_Hand")
+    wrists = tuple(names.index(wrist) for wrist in ("L_Wrist", "R_Wrist"))
+    return Skeleton(
+        names=names,
+        parents=np.array(SMPL_BODY[1] + wrists),
+        offsets=STATURE * np.array([_share(name) for name in names], dtype=np.float64),
+    )
+
+
+def _share(name: str) -> tuple[float, float, float]:
+    if name in _TRUNK:
+        return _TRUNK[name]
+    x, y, z = (_LEG | _ARM)[name[2:]]
+    return (x if name.startswith("L_") else -x, y, z)
+
+
+def _rotations(poses: FloatArray, joints: int) -> FloatArray:
+    """(frames, joints, 4) local quaternions; SMPL's own two hand joints are not fingers."""
+    result = identity_quaternions((len(poses), joints))
+    count = joints if poses.shape[1] == 3 * joints else BODY_JOINTS
+    vectors = poses[:, : 3 * count].reshape(len(poses), count, 3)
+    result[:, :count] = rotation_vectors_to_quaternions(vectors)
+    return result
+
+
+def rotation_vectors_to_quaternions(vectors: FloatArray) -> FloatArray:
+    """Unit quaternions (..., 4) of rotation vectors (..., 3): axis times angle in radians."""
+    angle = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    # sin(a/2) / a, which numpy's sinc knows without dividing by 0
+    share = 0.5 * np.sinc(angle / (2 * np.pi))
+    return np.concatenate([np.cos(angle / 2), share * vectors], axis=-1)
+
+
+def _stood_up(skeleton: Skeleton, rotations: FloatArray) -> tuple[Skeleton, FloatArray]:
+    """The same movement with a rest pose that stands along Z, as the world does.
+
+    Locals are conjugated, R' = C R C*; the root's world turn stays R, so R' = R C*.
+    """
+    turn, back = _Y_TO_Z_UP, _Y_TO_Z_UP * [1, -1, -1, -1]
+    turned = multiply(multiply(turn, rotations), back)
+    turned[:, 0] = multiply(rotations[:, 0], back)
+    offsets = rotate(turn, skeleton.offsets)
+    return Skeleton(skeleton.names, skeleton.parents, offsets), turned
+
+
+def _refused(key: str, message: str) -> Unreadable:
+    return Unreadable(f"{key}: {message}", places=[Place(key, message)])

@@ -1,0 +1,112 @@
+"""The points of C3D files: as ezc3d has them, whole or refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import ezc3d
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.errors import Unreadable
+from app.formats.c3d.points import read_points
+from tests.formats.c3d.files import PROCESSORS, c3d, marker_person, stacked
+
+MARKERS, LABELS = stacked(marker_person()[0])
+PLAIN = c3d(MARKERS, LABELS)
+
+
+def test_ezc3d_writes_what_we_read_and_reads_what_the_tests_write(tmp_path: Path) -> None:
+    theirs = ezc3d.c3d()
+    point, analog = (theirs["parameters"][group] for group in ("POINT", "ANALOG"))
+    point["RATE"]["value"], point["UNITS"]["value"] = [100], ["mm"]
+    point["LABELS"]["value"] = LABELS
+    analog["RATE"]["value"], analog["LABELS"]["value"] = [1000], ["force", "muscle"]
+    hidden = MARKERS.copy()
+    hidden[3:9, LABELS.index("LKNE")] = np.nan
+    theirs["data"]["points"] = np.concatenate([hidden, np.ones_like(hidden[..., :1])], axis=2).T
+    theirs["data"]["analogs"] = np.random.default_rng(0).normal(size=(1, 2, 10 * len(MARKERS)))
+    theirs.write(str(tmp_path / "theirs.c3d"))
+    ours = read_points((tmp_path / "theirs.c3d").read_bytes())
+    assert list(ours.labels) == LABELS
+    assert ours.frame_rate == 100
+    assert np.allclose(ours.positions, hidden, atol=1e-3, equal_nan=True)
+    for processor in ("intel", "dec"):  # ezc3d knows no MIPS
+        for scale in (-1.0, 0.1):
+            content = c3d(hidden, LABELS, processor=processor, scale=scale)
+            (tmp_path / "ours.c3d").write_bytes(content)
+            read = ezc3d.c3d(str(tmp_path / "ours.c3d"))["data"]["points"][:3].T
+            assert np.allclose(read_points(content).positions, read, atol=1e-3, equal_nan=True)
+
+
+def test_more_points_than_one_parameter_names() -> None:
+    many = np.tile(MARKERS[:3, :1], (1, 300, 1))
+    labels = [f"point{i}" for i in range(300)]
+    points = read_points(c3d(many, labels))
+    assert list(points.labels) == labels
+
+
+@pytest.mark.parametrize("keep", [0.3, 0.6, 0.99])
+@pytest.mark.parametrize("scale", [-1.0, 0.1])
+def test_a_file_that_breaks_off_is_refused(keep: float, scale: float) -> None:
+    content = c3d(MARKERS, LABELS, scale=scale)
+    data = MARKERS.shape[0] * MARKERS.shape[1] * (16 if scale < 0 else 8)
+    with pytest.raises(Unreadable, match="expected 60 frames, found") as caught:
+        read_points(content[: len(content) - round((1 - keep) * data)])
+    assert caught.value.places[0].location.startswith("byte ")
+    with pytest.raises(Unreadable):
+        read_points(content[:600])
+
+
+def test_more_frames_than_sixteen_bits_hold() -> None:
+    track = np.ones((70_000, 1, 3)) * np.arange(1, 70_001)[:, None, None]
+    both = {"TRIAL:ACTUAL_START_FIELD": [1, 0], "TRIAL:ACTUAL_END_FIELD": [4464, 1]}
+    full = {"POINT:FRAMES": -1}
+    for last, parameters in ((None, both | full), (4464, both), (None, {"POINT:FRAMES": 70_000.0})):
+        content = c3d(track, ["A"], parameters=parameters, last=last)
+        assert len(read_points(content).positions) == 70_000
+    telling = read_points(c3d(track[:50], ["A"], parameters={"POINT:FRAMES": 80}))
+    assert len(telling.positions) == 50
+    assert [caution.code for caution in telling.cautions] == ["frames_mismatch"]
+
+
+@pytest.mark.parametrize(
+    ("at", "value", "location"),
+    [
+        (2, b"\x00\x00", "byte 2"),  # no points
+        (12, b"\x00\x00\x00\x00", "byte 12"),  # no scale
+        (515, b"\x63", "byte 515"),  # no processor
+        (16, b"\xff\x7f", "byte 16776192"),  # data beyond the end
+        (0, b"\x63", "byte 50176"),  # parameters beyond the end
+    ],
+)
+def test_headers_that_cannot_be_are_refused(at: int, value: bytes, location: str) -> None:
+    content = PLAIN[:at] + value + PLAIN[at + len(value) :]
+    with pytest.raises(Unreadable) as caught:
+        read_points(content)
+    assert caught.value.places[0].location == location
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    frames=st.integers(1, 6),
+    points=st.integers(1, 5),
+    processor=st.sampled_from(sorted(PROCESSORS)),
+    scale=st.sampled_from([-1.0, -0.01, 0.05]),
+    analogue=st.integers(0, 9),
+    seed=st.integers(0, 1000),
+)
+def test_any_points_read_as_they_were_written(
+    frames: int, points: int, processor: str, scale: float, analogue: int, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    positions = rng.uniform(-1000, 1000, (frames, points, 3)) + 1
+    positions[rng.random((frames, points)) < 0.2] = np.nan
+    labels = [f"P{i}" for i in range(points)]
+    content = c3d(positions, labels, processor=processor, scale=scale, analogue=analogue)
+    read = read_points(content)
+    step = scale if scale > 0 else 1e-3
+    assert np.allclose(read.positions, positions, atol=0.6 * step, equal_nan=True)
+    assert read.cautions == ()

@@ -1,0 +1,49 @@
+"""Plain decimals, read many at once, against Python's own reading of each."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.formats.common.decimals import plain_table
+
+PLAIN = st.from_regex(r"-?([0-9]{1,7}(\.[0-9]{0,6})?|\.[0-9]{1,7})", fullmatch=True)
+WORDS = st.text(alphabet="0123456789.-", min_size=1, max_size=6)
+
+
+@given(st.lists(st.tuples(PLAIN, PLAIN, PLAIN), min_size=1, max_size=6))
+def test_each_number_is_read_as_alone(rows: list[tuple[str, str, str]]) -> None:
+    lines = ["\t ".join(row).encode() for row in rows]
+    table = plain_table(lines, 3)
+    assert table is not None
+    expected = np.array([[float(word) for word in row] for row in rows])
+    np.testing.assert_array_equal(table, expected)
+    np.testing.assert_array_equal(np.signbit(table), np.signbit(expected))
+
+
+@given(st.lists(st.tuples(WORDS, WORDS), min_size=1, max_size=4))
+def test_what_is_no_number_is_never_read_as_one(rows: list[tuple[str, str]]) -> None:
+    table = plain_table([" ".join(row).encode() for row in rows], 2)
+    if table is not None:
+        np.testing.assert_array_equal(table, [[float(word) for word in row] for row in rows])
+
+
+NOT_PLAIN = """
+1 2e3; 1 nan; 1 +2; 1,5 2; 1_0 2; 1 2 3; 1; 1-2 .; .-5 1; 1 -; - 1 -1; 1.2.3 1; 1 --5; 1 -.
+1 1234567890123456; \u0661 1
+"""
+
+
+@pytest.mark.parametrize("line", NOT_PLAIN.strip().replace("\n", "; ").split("; "))
+def test_what_is_not_plain_is_left_alone(line: str) -> None:
+    assert plain_table([line.encode()], 2) is None
+
+
+def test_lines_are_not_joined() -> None:
+    assert plain_table([b"1 2 3", b"4"], 2) is None
+
+
+def test_no_lines_are_left_alone() -> None:
+    assert plain_table([], 3) is None
