@@ -23,21 +23,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.analysis.angle_sample import angle_sample
-from app.analysis.energy import energies
-from app.analysis.frame_features import features_at_10hz, frame_features
-from app.analysis.keypose_arrays import keypose_arrays
-from app.analysis.keyposes import T1, T2, find_keyposes
-from app.analysis.motion_sample import motion_sample
-from app.analysis.motion_shape import motion_shape
-from app.analysis.motion_symbol import describe_symbol
-from app.analysis.motion_vector import describe, narrow, wide
-from app.analysis.motion_volume import decompose
-from app.analysis.onsets import Onsets
-from app.analysis.pose_cover import pose_cover
-from app.analysis.rhythm import NOTHING, Told, find_rhythm, rhythm_arrays
-from app.analysis.symbol_features import symbol_features, symbol_statistics
-from app.analysis.windows import WINDOW_SCALES, window_arrays
+from app.analysis.descriptors.angle_sample import angle_sample
+from app.analysis.descriptors.frame_features import features_at_10hz, frame_features
+from app.analysis.descriptors.motion_sample import motion_sample
+from app.analysis.descriptors.motion_shape import motion_shape
+from app.analysis.descriptors.motion_vector import describe, narrow, wide
+from app.analysis.descriptors.motion_volume import decompose
+from app.analysis.descriptors.pose_cover import pose_cover
+from app.analysis.descriptors.windows import WINDOW_SCALES, window_arrays
+from app.analysis.energy.energy import energies
+from app.analysis.keyposes.keyposes import T1, T2, find_keyposes
+from app.analysis.rhythm.onsets import Onsets
+from app.analysis.rhythm.rhythm import NOTHING, Told, find_rhythm, rhythm_arrays
+from app.analysis.segments.keypose_arrays import keypose_arrays
+from app.analysis.symbols.channels import symbol_features, symbol_statistics
+from app.analysis.symbols.symbol import describe_symbol
 from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import BodyTrack, body_track
 from app.motion.frame.gait import exact_gait_cycles

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from app.analysis.low_dimensional import Basis
+from app.analysis.low_dimensional.eigen_motion import Basis
 from app.cli.drawing import Drawing
 from app.cli.evaluation import judging, wanted_of
 from app.cli.options import FilterJson, PictureFormat

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.analysis.low_dimensional import Basis
+from app.analysis.low_dimensional.eigen_motion import Basis
 from app.cli.files import write_whole
 from app.cli.output import AsJson, print_json
 from app.cli.settings import open_library

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.danced_cycles import DancedCycles
+from app.analysis.segments.danced_cycles import DancedCycles
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from app.analysis.keyposes import T1, T2
+from app.analysis.keyposes.keyposes import T1, T2
 from app.models.keypose_matching import TOLERANCE, Counts, match
 from app.numerics.arrays import FloatArray, IntArray
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from app.analysis.motion_sample import SAMPLE_LENGTH
+from app.analysis.descriptors.motion_sample import SAMPLE_LENGTH
 from app.errors import NotEnoughLabels
 from app.models.calibration import NEW, Calibration, fit_calibration
 from app.models.cells import find_cells

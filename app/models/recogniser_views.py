@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.analysis.motion_sample import SAMPLE_LENGTH
+from app.analysis.descriptors.motion_sample import SAMPLE_LENGTH
 from app.models.calibration import NEW
 from app.models.hypotheses import Hypotheses
 from app.numerics.arrays import BoolArray, FloatArray, IntArray

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.analysis.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_sample import SAMPLES
 from app.errors import NotEnoughLabels
 from app.models.flat_pca import fit_flat_pca, recognise_flat
 from app.models.folds import grouped_folds

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from app.analysis.motion_shape import SHAPE_LENGTH
+from app.analysis.descriptors.motion_shape import SHAPE_LENGTH
 from app.errors import NotEnoughLabels
 from app.models.cells import Cells, find_cells
 from app.models.synthesis_agreement import agree, agreement

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.analysis.motion_sample import SAMPLES
-from app.analysis.motion_shape import CHANNELS
+from app.analysis.descriptors.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_shape import CHANNELS
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray, IntArray
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.motion_sample import SAMPLES
-from app.analysis.motion_shape import CHANNELS, clearance, mirrored
+from app.analysis.descriptors.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_shape import CHANNELS, clearance, mirrored
 from app.errors import NotEnoughLabels
 from app.models.synthesis import Synthesis
 from app.models.synthesis_agreement import agree

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.analysis.motion_shape import mirrored
+from app.analysis.descriptors.motion_shape import mirrored
 from app.models.synthesis_basis import weights
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.signs import fix_signs

@@ -20,8 +20,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.motion_sample import SAMPLES
-from app.analysis.motion_shape import CHANNELS, SHAPE_LENGTH, mirrored
+from app.analysis.descriptors.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_shape import CHANNELS, SHAPE_LENGTH, mirrored
 from app.models.synthesis_basis import parts, weights
 from app.numerics.arrays import FloatArray
 

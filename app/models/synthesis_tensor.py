@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.motion_sample import SAMPLES
-from app.analysis.motion_shape import SHAPE_LENGTH, mirrored
+from app.analysis.descriptors.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_shape import SHAPE_LENGTH, mirrored
 from app.models.cells import Cells, fit_effects
 from app.models.synthesis import Synthesis
 from app.models.synthesis_agreement import agreement

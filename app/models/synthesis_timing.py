@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.motion_sample import SAMPLES
-from app.analysis.motion_shape import CHANNELS
+from app.analysis.descriptors.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_shape import CHANNELS
 from app.models.synthesis_basis import weights
 from app.numerics.alignment.group_warping import (
     ROUNDS,

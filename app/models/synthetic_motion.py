@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from app.analysis.motion_sample import SAMPLES
-from app.analysis.motion_shape import CHANNELS, Shape, clearance, parts_of
+from app.analysis.descriptors.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_shape import CHANNELS, Shape, clearance, parts_of
 from app.models.synthesis_timing import onto
 from app.motion.frame.body_frame import ANALYSIS_RATE, turned
 from app.motion.frame.foot_contact import FEET, carried_by_feet

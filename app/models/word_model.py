@@ -2,7 +2,7 @@
 
 A clip's words are ranked by the model's output. How outputs become probabilities, of one word and
 of several at once, is learned separately (models.word_calibration). Shapes: clips N, words V,
-statistics p (131 of app.analysis.symbol_features).
+statistics p (131 of app.analysis.symbols.channels).
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.pose_cover import POSE_WIDTH, pose_vectors
+from app.analysis.descriptors.pose_cover import POSE_WIDTH, pose_vectors
 from app.deadline import check
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.nearest import squared_distances

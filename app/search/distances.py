@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.motion_volume import (
+from app.analysis.descriptors.motion_volume import (
     LARGEST_CROSS_CORRELATION,
     cross_correlations,
     warping_distances,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.analysis.frame_features import WARPING_RATE
+from app.analysis.descriptors.frame_features import WARPING_RATE
 from app.numerics.arrays import FloatArray
 from app.search.cursor import Anchor
 from app.search.distances import Loader

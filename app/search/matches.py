@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.frame_features import WARPING_RATE
+from app.analysis.descriptors.frame_features import WARPING_RATE
 from app.deadline import check
 from app.numerics.alignment.subsequence_dtw import subsequence_dtw
 from app.numerics.arrays import FloatArray

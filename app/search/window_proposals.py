@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.windows import WINDOW_SCALES, RunningSums, WindowScale
+from app.analysis.descriptors.windows import WINDOW_SCALES, RunningSums, WindowScale
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.euclidean import distances
 from app.search.places import Candidates

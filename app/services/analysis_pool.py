@@ -35,7 +35,7 @@ from app.store.checked import read_whole
 
 if TYPE_CHECKING:
     from app.analysis.analyse import Analysis
-    from app.analysis.onsets import Onsets
+    from app.analysis.rhythm.onsets import Onsets
     from app.motion.skeleton.recording import Caution, Recording
 
 _log = logging.getLogger(__name__)
@@ -179,8 +179,8 @@ def analyse_order(order: Order, limits: Limits) -> Analysis:
     Raises BadContent for what cannot be used, TooLarge beyond the limits.
     """
     from app.analysis import analyse
-    from app.analysis.keyposes import T1, T2
-    from app.analysis.rhythm import Told
+    from app.analysis.keyposes.keyposes import T1, T2
+    from app.analysis.rhythm.rhythm import Told
     from app.motion.canonical.canonical import canonicalise
     from app.motion.roles.joint_roles import JointRole
 
@@ -203,7 +203,7 @@ def analyse_order(order: Order, limits: Limits) -> Analysis:
 
 def _listen(path: Path) -> tuple[Onsets | None, tuple[Caution, ...]]:
     """The onsets of a recording; none and why where it cannot be read, which stops no clip."""
-    from app.analysis.onsets import find_onsets
+    from app.analysis.rhythm.onsets import find_onsets
     from app.formats.audio.reader import read_audio
     from app.motion.skeleton.recording import Caution
 

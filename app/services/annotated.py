@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.beats import Beats
+from app.analysis.rhythm.beats import Beats
 from app.motion.frame.body_frame import BodyTrack, body_track
 from app.numerics.arrays import FloatArray
 from app.services.keypose_frames import read_beats

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.analysis.segments import SEGMENT_SPANS, SEGMENT_VECTORS, segment_vectors
+from app.analysis.segments.segments import SEGMENT_SPANS, SEGMENT_VECTORS, segment_vectors
 from app.numerics.arrays import BoolArray, FloatArray
 from app.numerics.euclidean import distances
 from app.search import cursor as cursors

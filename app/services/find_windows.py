@@ -6,7 +6,7 @@ import hashlib
 from dataclasses import dataclass
 from functools import partial
 
-from app.analysis.windows import WindowScale
+from app.analysis.descriptors.windows import WindowScale
 from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.search import cursor as cursors
 from app.search.cursor import Anchor, Position

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Any
 
-from app.analysis.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_sample import SAMPLES
 from app.errors import NotEnoughLabels
 from app.models.language.wordnet import Meanings
 from app.models.learned_metric import Factor, LearnedMetric, fit_axes

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.analysis.analyse import Analysis
-from app.analysis.beats import Beats
-from app.analysis.keypose_arrays import frames_at, keypose_arrays
-from app.analysis.keyposes import find_keyposes
-from app.analysis.rhythm import BEAT_ARRAYS, beats_of
+from app.analysis.keyposes.keyposes import find_keyposes
+from app.analysis.rhythm.beats import Beats
+from app.analysis.rhythm.rhythm import BEAT_ARRAYS, beats_of
+from app.analysis.segments.keypose_arrays import frames_at, keypose_arrays
 from app.errors import NotFound
 from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray, IntArray

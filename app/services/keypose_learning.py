@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from app.analysis.energy import EnergyMethod
-from app.analysis.keyposes import find_candidates
+from app.analysis.energy.energy import EnergyMethod
+from app.analysis.keyposes.keyposes import find_candidates
 from app.errors import NotEnoughLabels
 from app.models.keypose_matching import TOLERANCE, Counts, match, total
 from app.models.keypose_thresholds import USUAL, Example, KeyposeThresholds, Lesson, lesson

@@ -9,8 +9,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from app.analysis.energy import EnergyMethod, Weights
-from app.analysis.keyposes import Keyposes, find_keyposes
+from app.analysis.energy.energy import EnergyMethod, Weights
+from app.analysis.keyposes.keyposes import Keyposes, find_keyposes
 from app.errors import ModelNotFitted
 from app.models.keypose_thresholds import USUAL, Thresholds
 from app.motion.frame.body_frame import body_track

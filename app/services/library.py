@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Self
 
-from app.analysis.segments import SEGMENT_SPANS, SEGMENT_VECTORS, SEGMENT_WIDTH
-from app.analysis.windows import WIDTH, WINDOW_SCALES
+from app.analysis.descriptors.windows import WIDTH, WINDOW_SCALES
+from app.analysis.segments.segments import SEGMENT_SPANS, SEGMENT_VECTORS, SEGMENT_WIDTH
 from app.config import Settings
 from app.search.array_cache import ArrayCache
 from app.search.beside import RowsBeside

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.low_dimensional import (
+from app.analysis.low_dimensional.eigen_motion import (
     SHOWN,
     Basis,
     EigenModel,
@@ -16,7 +16,7 @@ from app.analysis.low_dimensional import (
     reconstruction_errors,
     uniform_frames,
 )
-from app.analysis.plausibility import Plausibility, judge_poses
+from app.analysis.low_dimensional.plausibility import Plausibility, judge_poses
 from app.deadline import check
 from app.errors import NotEnoughKeyposes, Place
 from app.motion.canonical.motion import Motion

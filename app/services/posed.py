@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from app.analysis.pose_cover import pose_vectors
+from app.analysis.descriptors.pose_cover import pose_vectors
 from app.errors import BadField, Place
 from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.motion.frame.body_pose import SIDES

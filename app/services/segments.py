@@ -8,7 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.analysis.segments import SEGMENT_CYCLES, SEGMENT_SPANS, SEGMENT_VECTORS, describe_segments
+from app.analysis.segments.segments import (
+    SEGMENT_CYCLES,
+    SEGMENT_SPANS,
+    SEGMENT_VECTORS,
+    describe_segments,
+)
 from app.errors import NotFound
 from app.motion.frame.body_frame import ANALYSIS_RATE, body_track
 from app.search.distances import FEATURES

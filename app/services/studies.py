@@ -17,7 +17,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from app.analysis.low_dimensional import SHOWN, Basis
+from app.analysis.low_dimensional.eigen_motion import SHOWN, Basis
 from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.motion.skeleton.resampling import resample
 from app.numerics.binomial import fair_coin_probability, wilson_interval

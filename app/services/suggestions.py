@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.analysis.motion_symbol import SYMBOL_ARRAYS, symbol_from_arrays
+from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.language.inflection import base_forms
 from app.models.library_words import LibraryWords
 from app.models.word_vocabulary import normalise_word

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.analysis.motion_symbol import SYMBOL_ARRAYS, symbol_from_arrays
-from app.analysis.symbol_motion import SymbolMotion
-from app.analysis.symbol_motion import symbol_motion as generate
+from app.analysis.symbols.playback import SymbolMotion
+from app.analysis.symbols.playback import symbol_motion as generate
+from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.motion.frame.body_frame import body_track
 from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.services.library import Library

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.analysis.motion_sample import SAMPLES
-from app.analysis.motion_shape import CHANNELS, moments_of
+from app.analysis.descriptors.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_shape import CHANNELS, moments_of
 from app.errors import ClipNotFound, ClipNotReady, NotEnoughLabels
 from app.models.synthesis import Synthesis
 from app.models.synthetic_body import Donor, same_body

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from app.analysis.motion_shape import SHAPE_LENGTH
+from app.analysis.descriptors.motion_shape import SHAPE_LENGTH
 from app.models.synthesis import Synthesis, fit_synthesis
 from app.models.synthesis_figures import held_out_synthesis
 from app.search import usable_arrays

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.analysis.motion_shape import motion_shape
+from app.analysis.descriptors.motion_shape import motion_shape
 from app.errors import ModelNotFitted
 from app.formats.bvh.export import write_animation_bvh
 from app.models.synthesis import Synthesis

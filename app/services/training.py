@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from app.analysis.motion_symbol import SYMBOL_ARRAYS, symbol_from_arrays
+from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.folds import recording_of
 from app.models.learned_metric import INPUTS, Described
 from app.models.recogniser_views import full_samples

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from app.analysis.motion_symbol import SYMBOL_ARRAYS, symbol_from_arrays
+from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.library_words import LibraryWords
 from app.models.word_query import WordsAsked
 from app.numerics.arrays import BoolArray, FloatArray, IntArray

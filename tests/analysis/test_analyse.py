@@ -7,8 +7,8 @@ import pytest
 
 from app.analysis.analyse import analyse, describe_for_search
 from app.analysis.array_shapes import SHAPES, is_usable
-from app.analysis.rhythm import BEAT_ARRAYS
-from app.analysis.windows import WINDOW_SCALES, window_frames
+from app.analysis.descriptors.windows import WINDOW_SCALES, window_frames
+from app.analysis.rhythm.rhythm import BEAT_ARRAYS
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, standing, walking, waving
 

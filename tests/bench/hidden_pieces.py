@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.frame_features import frame_features
+from app.analysis.descriptors.frame_features import frame_features
 from app.errors import BadContent
 from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray

@@ -17,11 +17,11 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from app.analysis.audio_beats import find_audio_beats
-from app.analysis.audio_offset import estimate_offset
-from app.analysis.beats import find_beats, find_stops
-from app.analysis.energy import energies
-from app.analysis.onsets import find_onsets
+from app.analysis.energy.energy import energies
+from app.analysis.rhythm.audio_beats import find_audio_beats
+from app.analysis.rhythm.audio_offset import estimate_offset
+from app.analysis.rhythm.beats import find_beats, find_stops
+from app.analysis.rhythm.onsets import find_onsets
 from app.formats.audio.reader import read_audio
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from app.analysis.motion_volume import cross_correlations
+from app.analysis.descriptors.motion_volume import cross_correlations
 from app.numerics.arrays import FloatArray
 from tests.bench.page import Section
 

@@ -17,12 +17,12 @@ from typing import Any
 
 import pytest
 
-from app.analysis.frame_features import features_at_10hz, frame_features
-from app.analysis.motion_sample import motion_sample
-from app.analysis.motion_symbol import describe_symbol
-from app.analysis.motion_vector import motion_vector
-from app.analysis.motion_volume import decompose
-from app.analysis.symbol_features import symbol_features, symbol_statistics
+from app.analysis.descriptors.frame_features import features_at_10hz, frame_features
+from app.analysis.descriptors.motion_sample import motion_sample
+from app.analysis.descriptors.motion_vector import motion_vector
+from app.analysis.descriptors.motion_volume import decompose
+from app.analysis.symbols.channels import symbol_features, symbol_statistics
+from app.analysis.symbols.symbol import describe_symbol
 from app.errors import BadContent
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise

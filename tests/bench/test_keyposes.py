@@ -18,10 +18,10 @@ import numpy as np
 import pytest
 
 from app.analysis.analyse import analyse
-from app.analysis.beats import Beats, find_beats, given_beats
-from app.analysis.end_effectors import end_effector_candidates
-from app.analysis.energy import EnergyMethod, Weights, energies
-from app.analysis.keyposes import T1, T2, find_candidates, find_keyposes
+from app.analysis.energy.energy import EnergyMethod, Weights, energies
+from app.analysis.keyposes.end_effectors import end_effector_candidates
+from app.analysis.keyposes.keyposes import T1, T2, find_candidates, find_keyposes
+from app.analysis.rhythm.beats import Beats, find_beats, given_beats
 from app.formats.read import read_recording
 from app.models.keypose_matching import Counts, match, total
 from app.models.keypose_thresholds import Example, Selectable, Thresholds, lesson

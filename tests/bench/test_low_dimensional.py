@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 from sklearn.metrics import silhouette_score
 
-from app.analysis.keyposes import find_keyposes
-from app.analysis.low_dimensional import (
+from app.analysis.keyposes.keyposes import find_keyposes
+from app.analysis.low_dimensional.eigen_motion import (
     Basis,
     EigenModel,
     eigen_model,
@@ -24,7 +24,7 @@ from app.analysis.low_dimensional import (
     reconstruction_errors,
     uniform_frames,
 )
-from app.analysis.plausibility import judge_poses
+from app.analysis.low_dimensional.plausibility import judge_poses
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
 from app.motion.frame.body_frame import BodyTrack, body_track

@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 
 from app.analysis.analyse import describe_for_search
-from app.analysis.danced_cycles import DancedCycles, danced_cycles
-from app.analysis.keypose_arrays import keypose_arrays
-from app.analysis.keyposes import find_keyposes
-from app.analysis.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_sample import SAMPLES
+from app.analysis.keyposes.keyposes import find_keyposes
+from app.analysis.segments.danced_cycles import DancedCycles, danced_cycles
+from app.analysis.segments.keypose_arrays import keypose_arrays
 from app.formats.read import read_recording
 from app.models.danced_tasks import arrange
 from app.models.flat_pca import fit_flat_pca, recognise_flat

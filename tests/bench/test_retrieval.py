@@ -37,8 +37,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.analysis import motion_vector
-from app.analysis.frame_features import features_at_10hz, frame_features
+from app.analysis.descriptors import motion_vector
+from app.analysis.descriptors.frame_features import features_at_10hz, frame_features
 from app.config import Settings
 from app.formats.read import read_recording
 from app.models.ranking_figures import average_precision

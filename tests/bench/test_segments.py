@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import cdist
 
-from app.analysis.frame_features import features_at_10hz, frame_features
-from app.analysis.keyposes import find_keyposes
-from app.analysis.motion_cycles import find_cycles
-from app.analysis.motion_vector import motion_vector
-from app.analysis.segments import describe_segments, segment_spans, segment_vectors
+from app.analysis.descriptors.frame_features import features_at_10hz, frame_features
+from app.analysis.descriptors.motion_vector import motion_vector
+from app.analysis.keyposes.keyposes import find_keyposes
+from app.analysis.segments.cycles import find_cycles
+from app.analysis.segments.segments import describe_segments, segment_spans, segment_vectors
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
 from app.motion.frame.body_frame import BodyTrack, body_track

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from app.analysis.motion_shape import moments_of, motion_shape
+from app.analysis.descriptors.motion_shape import moments_of, motion_shape
 from app.formats.read import read_recording
 from app.models.synthesis import Synthesis, fit_synthesis
 from app.models.synthesis_figures import (

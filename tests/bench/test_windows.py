@@ -23,9 +23,9 @@ import numpy as np
 import pytest
 
 from app.analysis.analyse import analyse
-from app.analysis.frame_features import features_at_10hz, frame_features
-from app.analysis.motion_vector import motion_vector
-from app.analysis.windows import (
+from app.analysis.descriptors.frame_features import features_at_10hz, frame_features
+from app.analysis.descriptors.motion_vector import motion_vector
+from app.analysis.descriptors.windows import (
     WINDOW_SCALES,
     RunningSums,
     WindowScale,

@@ -12,8 +12,8 @@ import time
 import numpy as np
 import pytest
 
-from app.analysis.motion_symbol import describe_symbol, symbol_from_arrays
-from app.analysis.symbol_features import symbol_features, symbol_statistics
+from app.analysis.symbols.channels import symbol_features, symbol_statistics
+from app.analysis.symbols.symbol import describe_symbol, symbol_from_arrays
 from app.errors import BadContent
 from app.formats.read import read_recording
 from app.models.folds import recording_of

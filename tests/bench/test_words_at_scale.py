@@ -21,7 +21,7 @@ import pytest
 from sqlalchemy import delete, insert
 
 from app.analysis.analyse import ANALYSIS_VERSION
-from app.analysis.motion_symbol import SYMBOL_ARRAYS, symbol_from_arrays
+from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.config import Settings
 from app.models.symbol_space import LANDMARKS, symbol_distances
 from app.numerics.arrays import FloatArray

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.motion_shape import SHAPE_LENGTH
+from app.analysis.descriptors.motion_shape import SHAPE_LENGTH
 
 
 @dataclass(frozen=True)

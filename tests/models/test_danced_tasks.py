@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.analysis.danced_cycles import DancedCycles
+from app.analysis.segments.danced_cycles import DancedCycles
 from app.models.danced_tasks import arrange
 
 

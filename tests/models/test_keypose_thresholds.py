@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from app.analysis.keyposes import find_candidates
+from app.analysis.keyposes.keyposes import find_candidates
 from app.models.keypose_matching import total
 from app.models.keypose_thresholds import (
     USUAL,

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.analysis.motion_shape import SHAPE_LENGTH, clearance, mirrored
+from app.analysis.descriptors.motion_shape import SHAPE_LENGTH, clearance, mirrored
 from app.errors import NotEnoughLabels
 from app.models import synthesis_prediction
 from app.models.synthesis import Synthesis, fit_synthesis

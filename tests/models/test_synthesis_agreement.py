@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.analysis.motion_shape import SHAPE_LENGTH
+from app.analysis.descriptors.motion_shape import SHAPE_LENGTH
 from app.models.synthesis_agreement import agreement
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.analysis.motion_sample import SAMPLES
-from app.analysis.motion_shape import CHANNELS, SHAPE_LENGTH, mirrored
+from app.analysis.descriptors.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_shape import CHANNELS, SHAPE_LENGTH, mirrored
 from app.models.synthesis import Synthesis, fit_synthesis, mean_of_takes
 from app.models.synthesis_agreement import AGREED
 from app.models.synthesis_prediction import predict

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.analysis.motion_shape import SHAPE_LENGTH, mirrored
+from app.analysis.descriptors.motion_shape import SHAPE_LENGTH, mirrored
 from app.models.synthesis_sides import likely_side, sides, to_side
 from app.numerics.arrays import FloatArray
 

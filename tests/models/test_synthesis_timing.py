@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.analysis.motion_sample import SAMPLES
-from app.analysis.motion_shape import CHANNELS
+from app.analysis.descriptors.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_shape import CHANNELS
 from app.models.synthesis_timing import in_own_time, medoid, moments_of_shapes, onto, together
 from app.numerics.arrays import FloatArray
 

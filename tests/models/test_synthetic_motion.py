@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.analysis.motion_shape import clearance, moments_of, motion_shape
+from app.analysis.descriptors.motion_shape import clearance, moments_of, motion_shape
 from app.models.synthetic_body import Donor, embody, same_body
 from app.models.synthetic_motion import course_of
 from app.motion.frame.body_frame import BodyTrack, body_track

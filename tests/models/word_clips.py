@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.analysis.symbol_features import symbol_statistics
+from app.analysis.symbols.channels import symbol_statistics
 from app.numerics.hmm.fit import fit_left_to_right
 from app.numerics.hmm.model import GaussianHMM
 from tests.numerics.hmm_reference import wavy

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.analysis.pose_cover import pose_cover, pose_vectors
+from app.analysis.descriptors.pose_cover import pose_cover, pose_vectors
 from app.search import by_pose
 from app.search import rows as rows_module
 from app.search.by_pose import POSES, POSITIONS, PoseHit, PoseRanking, pose_distances

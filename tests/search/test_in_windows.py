@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from app.analysis.windows import WIDTH, RunningSums, WindowScale, window_arrays
+from app.analysis.descriptors.windows import WIDTH, RunningSums, WindowScale, window_arrays
 from app.numerics.arrays import FloatArray
 from app.search import in_windows, matches
 from app.search.in_windows import by_both, by_warping, by_windows

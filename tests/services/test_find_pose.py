@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.analysis.pose_cover import pose_vectors
+from app.analysis.descriptors.pose_cover import pose_vectors
 from app.errors import BadField, ClipNotFound, ClipNotReady
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.search.by_pose import pose_distances

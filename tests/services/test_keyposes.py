@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.analysis.energy import EnergyMethod
+from app.analysis.energy.energy import EnergyMethod
 from app.errors import BadField, ClipNotFound
 from app.models.keypose_thresholds import KeyposeThresholds, Thresholds
 from app.services import clips, keyposes

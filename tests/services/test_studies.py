@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from app.analysis.low_dimensional import Basis
+from app.analysis.low_dimensional.eigen_motion import Basis
 from app.errors import AlreadyVoted, BadField, ClipNotFound, NotEnoughKeyposes, NotFound
 from app.numerics.arrays import FloatArray
 from app.services import low_dimensional, studies

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.analysis.motion_shape import moments_of, motion_shape
+from app.analysis.descriptors.motion_shape import moments_of, motion_shape
 from app.models.synthetic_motion import course_of
 from app.motion.frame.body_frame import body_track
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.analysis.motion_shape import motion_shape
+from app.analysis.descriptors.motion_shape import motion_shape
 from app.errors import BadField, ClipNotFound, ModelNotFitted, NotEnoughLabels, NotFound
 from app.formats.read import read_recording
 from app.models.synthesis_agreement import AGREED

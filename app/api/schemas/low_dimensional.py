@@ -6,8 +6,8 @@ from typing import Any
 
 from pydantic import Field
 
-from app.analysis.low_dimensional import Basis
-from app.analysis.plausibility import Fault, Implausible, Plausibility
+from app.analysis.low_dimensional.eigen_motion import Basis
+from app.analysis.low_dimensional.plausibility import Fault, Implausible, Plausibility
 from app.api.schemas.base import Fps, Incoming, Outgoing, Seconds
 from app.api.schemas.views import Motion, Point, plain
 from app.errors import BadField, Place

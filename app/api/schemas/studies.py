@@ -6,7 +6,7 @@ from datetime import datetime
 
 from pydantic import ConfigDict, Field
 
-from app.analysis.low_dimensional import SHOWN
+from app.analysis.low_dimensional.eigen_motion import SHOWN
 from app.api.schemas.base import Cursor, Fps, Id, Incoming, Limit, Outgoing
 from app.services import studies
 from app.services.low_dimensional import MOST_MODEL_CLIPS

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from pydantic import Field
 
-from app.analysis.symbol_features import CHANNELS
+from app.analysis.symbols.channels import CHANNELS
 from app.api.schemas.base import Outgoing
 from app.api.schemas.views import Motion, plain
 from app.services.symbol_motion import SymbolMotionView

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.analysis.candidates import Scope
+from app.analysis.keyposes.candidates import Scope
 from app.motion.frame.body_frame import turned
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray

@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from app.analysis.end_effectors import end_effector_candidates
-from app.analysis.energy import EnergyMethod
+from app.analysis.energy.energy import EnergyMethod
+from app.analysis.keyposes.end_effectors import end_effector_candidates
 from app.errors import NotEnoughLabels
 from app.models.keypose_matching import TOLERANCE, Counts, match, total
 from app.models.keypose_thresholds import (

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.low_dimensional import (
+from app.analysis.low_dimensional.eigen_motion import (
     SHOWN,
     Basis,
     EigenModel,
@@ -22,7 +22,7 @@ from app.analysis.low_dimensional import (
     reconstruction_errors,
     uniform_frames,
 )
-from app.analysis.plausibility import Fault, Implausible, Plausibility, judge_poses
+from app.analysis.low_dimensional.plausibility import Fault, Implausible, Plausibility, judge_poses
 from app.errors import NotEnoughKeyposes
 from app.motion.frame.body_frame import BodyTrack, body_track
 from app.numerics.arrays import FloatArray, IntArray

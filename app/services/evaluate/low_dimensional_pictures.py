@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.analysis.low_dimensional import SHOWN, Basis, eigen_model, low_dimensional
+from app.analysis.low_dimensional.eigen_motion import SHOWN, Basis, eigen_model, low_dimensional
 from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray
 from app.numerics.clusteredness import best_clusters

@@ -15,7 +15,7 @@ from typing import Protocol
 
 import numpy as np
 
-from app.analysis.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_sample import SAMPLES
 from app.models.flat_pca import fit_flat_pca, recognise_flat
 from app.models.multilinear import fit_multilinear, recognise_multilinear
 from app.models.recogniser import fit_recogniser, recognise_many

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from app.analysis.danced_cycles import danced_cycles
-from app.analysis.segments import SEGMENT_CYCLES, SEGMENT_SPANS
+from app.analysis.segments.danced_cycles import danced_cycles
+from app.analysis.segments.segments import SEGMENT_CYCLES, SEGMENT_SPANS
 from app.errors import NotEnoughLabels
 from app.models.danced_tasks import DancedTasks, arrange
 from app.models.perera_experiment import Row, perera_tables

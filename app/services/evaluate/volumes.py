@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.motion_volume import compression_ratio
+from app.analysis.descriptors.motion_volume import compression_ratio
 from app.numerics.tensors.rank1 import Rank1
 from app.search.distances import EPSILON, RHO
 from app.services.evaluate.labelled import LabelledClips, read_labelled

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from app.analysis.motion_volume import cross_correlations, decompose, warping_distances
+from app.analysis.descriptors.motion_volume import cross_correlations, decompose, warping_distances
 from app.motion.frame.body_frame import body_track
 from app.numerics.tensors.rank1 import Rank1
 from app.search.by_example import rank_by_example

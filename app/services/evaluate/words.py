@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.symbol_features import symbol_features
+from app.analysis.symbols.channels import symbol_features
 from app.models.correlated_space import fit_correlated_space
 from app.models.symbol_space import fit_symbol_space
 from app.models.word_figures import RECALLS, WordEvaluation, WordFigures, held_out_word_figures

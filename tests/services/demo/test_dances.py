@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from app.analysis.energy import energies
+from app.analysis.energy.energy import energies
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
 from app.motion.canonical.motion import Motion

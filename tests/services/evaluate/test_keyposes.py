@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from app.analysis.keyposes import find_keyposes
+from app.analysis.keyposes.keyposes import find_keyposes
 from app.errors import BadField, NotEnoughLabels
 from app.models.keypose_matching import match
 from app.services.annotated import read_annotated

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from app.analysis.low_dimensional import Basis
+from app.analysis.low_dimensional.eigen_motion import Basis
 from app.errors import NotEnoughKeyposes
 from app.services.evaluate import LowDimensionalEvaluation, judge_low_dimensional
 from app.services.evaluate.low_dimensional_pictures import all_figures

@@ -6,7 +6,7 @@ from collections import Counter
 
 import pytest
 
-from app.analysis.motion_volume import compression_ratio
+from app.analysis.descriptors.motion_volume import compression_ratio
 from app.services import evaluate
 from app.services.evaluate import volumes as under_test
 from app.services.library import Library

@@ -1,0 +1,40 @@
+"""The angle sample: a clip's joint angles as one vector, Vasilescu's T time samples.
+
+As the motion sample, of which it is the twin: over the mean gait cycle where there are cycles,
+else over the whole clip; then the net turn and the mean speed, which no joint tells.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.analysis.descriptors.joint_angles import filtered, joint_angles
+from app.analysis.descriptors.motion_sample import SAMPLES, turn_and_speed
+from app.motion.canonical.motion import Motion
+from app.motion.frame.body_frame import BodyTrack
+from app.motion.frame.gait import exact_gait_cycles
+from app.motion.skeleton.resampling import resample_to, sample_at
+from app.numerics.arrays import FloatArray
+
+
+def angle_sample(
+    motion: Motion, track: BodyTrack, cycles: list[tuple[float, float]] | None = None
+) -> FloatArray:
+    """(642,) float32: 32 x 20 angles (radians), net turn, mean speed, as in the motion sample.
+
+    Positions are filtered at the clip's own rate; what is left can be read at the analysis
+    rate, and at 32 phases of a gait cycle, as it is. track: of the same motion;
+    cycles: `exact_gait_cycles(track)`, where the caller has them.
+    """
+    smooth = filtered(motion.role_positions().astype(np.float64), motion.frame_rate)
+    times = np.arange(track.frames) * (motion.frame_rate / track.rate)
+    angles = joint_angles(sample_at(smooth, times), track.rate)
+    cycles = exact_gait_cycles(track) if cycles is None else cycles
+    if cycles:
+        phases = np.arange(SAMPLES) / SAMPLES
+        read = [sample_at(angles, start + (end - start) * phases) for start, end in cycles]
+        sampled = np.mean(read, axis=0)
+    else:
+        sampled = resample_to(angles, SAMPLES)
+    parts = [np.ravel(sampled), turn_and_speed(track)]
+    return np.asarray(np.concatenate(parts), dtype=np.float32)

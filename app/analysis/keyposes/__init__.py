@@ -1,0 +1,1 @@
+"""Keyposes from energy and beats (Perera 2009, section 3)."""

@@ -1,0 +1,1 @@
+"""Motion in few dimensions (Perera 2009, section 4)."""

@@ -1,0 +1,1 @@
+"""Beats: from a recording, from the motion, or given by the client."""

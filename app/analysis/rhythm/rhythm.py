@@ -1,0 +1,155 @@
+"""The beats of a clip from all that is known: what a client says, a recording, the motion.
+
+Beats that are listed go before a tempo that is told, that before what is heard, that before
+what the motion shows. A recording's beats become the clip's by the offset between the two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.analysis.energy.energy import Energies, energies
+from app.analysis.rhythm.audio_beats import find_audio_beats
+from app.analysis.rhythm.audio_offset import Offset, estimate_offset
+from app.analysis.rhythm.beats import (
+    Beats,
+    BeatSource,
+    beats_of_tempo,
+    find_beats,
+    find_stops,
+    given_beats,
+    no_beats,
+    through,
+)
+from app.analysis.rhythm.onsets import Onsets
+from app.motion.frame.body_frame import BodyTrack
+from app.motion.skeleton.recording import Caution
+from app.numerics.arrays import FloatArray
+
+SOURCES = tuple(BeatSource)
+"""Their order is stored (`beat_facts`): append only."""
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What a client says: beats, seconds of the motion; tempo, beats a minute; audio_offset,
+    the time of the motion at which the recording begins."""
+
+    beats: tuple[float, ...] | None = None
+    tempo: float | None = None
+    audio_offset: float | None = None
+
+
+NOTHING = Told()
+
+BEAT_ARRAYS = ("beat_times", "beat_facts")
+
+
+@dataclass(frozen=True, slots=True)
+class Rhythm:
+    """A clip's beats; the offset of its recording, None without one or where it is not known."""
+
+    beats: Beats
+    offset: Offset | None = None
+    cautions: tuple[Caution, ...] = ()
+
+
+def find_rhythm(
+    track: BodyTrack,
+    told: Told = NOTHING,
+    onsets: Onsets | None = None,
+    plain: Energies | None = None,
+) -> Rhythm:
+    """The beats of `track`; onsets: of its recording; plain: `energies(track)`, if at hand."""
+    energy = (plain or energies(track)).global_energy
+    duration = (len(energy) - 1) / track.rate
+    heard, offset = no_beats(), None
+    if onsets is not None:
+        heard = find_audio_beats(onsets, told.tempo)
+        # By the beats that are heard freely: stops are on every beat, a told tempo may be half.
+        free = find_audio_beats(onsets) if told.tempo and told.audio_offset is None else heard
+        offset = _offset(told, energy, track.rate, free, onsets)
+    shifted = None if offset is None else _shifted(heard, offset, duration)
+    cautions = [] if onsets is None else _doubts(told, heard, offset, shifted)
+    if told.beats and not _within(told.beats, duration):
+        detail = f"None of the beats that were given lies within the {duration:.2f} s of motion."
+        cautions.append(Caution("beats_outside_motion", detail))
+        told = replace(told, beats=None)
+    return Rhythm(_first(told, energy, track.rate, shifted), offset, tuple(cautions))
+
+
+def _within(times: Sequence[float] | FloatArray, duration: float) -> bool:
+    """Whether any of `times` (s) lies within a motion."""
+    return any(0.0 <= time <= duration for time in times)
+
+
+def _first(told: Told, energy: FloatArray, rate: float, shifted: Beats | None) -> Beats:
+    if told.beats:
+        return given_beats(np.array(told.beats))
+    if shifted is not None:
+        return shifted
+    if told.tempo:
+        return beats_of_tempo(energy, rate, told.tempo)
+    return find_beats(energy, rate)
+
+
+def _offset(
+    told: Told, energy: FloatArray, rate: float, heard: Beats, onsets: Onsets
+) -> Offset | None:
+    if told.audio_offset is not None:
+        return Offset(told.audio_offset, 1.0, True, 0.0, 1.0)
+    return estimate_offset(find_stops(energy, rate), heard.times, onsets)
+
+
+def _shifted(heard: Beats, offset: Offset, duration: float) -> Beats | None:
+    """What is heard, in the motion's time, gone on with evenly; None where they do not meet."""
+    times = heard.times + offset.seconds
+    if len(times) < 2 or not _within(times, duration):
+        return None
+    told_tempo = heard.source is BeatSource.TEMPO
+    return Beats(
+        through(times, duration),
+        heard.tempo,
+        min(heard.confidence, offset.confidence),
+        BeatSource.TEMPO if told_tempo else BeatSource.AUDIO,
+    )
+
+
+def _doubts(
+    told: Told, heard: Beats, offset: Offset | None, shifted: Beats | None
+) -> list[Caution]:
+    if not len(heard.times):
+        return [Caution("audio_without_beats", "No beat was heard in the recording.")]
+    if offset is None:
+        detail = "The motion does not tell when the recording begins: send audio_offset."
+        return [Caution("audio_offset_unknown", detail)]
+    if shifted is None:
+        detail = "By its audio_offset no beat of the recording falls into the motion."
+        return [Caution("audio_apart", detail)]
+    if not offset.is_told and told.beats is None:
+        detail = (
+            f"The recording's beginning was estimated as {offset.seconds:.2f} s: right but for"
+            f" whole beats of {offset.beat:.2f} s, and right in those too with probability"
+            f" {offset.beat_confidence:.2f}. Its beats do not mind; send audio_offset to be sure."
+        )
+        return [Caution("audio_offset_estimated", detail, offset.seconds)]
+    return []
+
+
+def rhythm_arrays(rhythm: Rhythm) -> dict[str, NDArray[Any]]:
+    """What is stored: beat_times (b,) s; beat_facts (3,): index of the source in SOURCES, tempo
+    (0 for none), confidence."""
+    beats = rhythm.beats
+    facts = [SOURCES.index(beats.source), beats.tempo or 0.0, beats.confidence]
+    return {"beat_times": beats.times, "beat_facts": np.array(facts, dtype=np.float64)}
+
+
+def beats_of(arrays: dict[str, NDArray[Any]]) -> Beats:
+    """The beats that `rhythm_arrays` stored."""
+    source, tempo, confidence = (float(fact) for fact in arrays["beat_facts"])
+    return Beats(arrays["beat_times"], tempo or None, confidence, SOURCES[int(source)])

@@ -1,0 +1,1 @@
+"""Motion symbols (Takano): feature channels, the hidden Markov model, playback."""

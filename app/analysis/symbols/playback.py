@@ -1,0 +1,122 @@
+"""Generation: the motion that a motion symbol stands for (Takano, section 2.1 and fig. 6).
+
+The mean trajectory follows the symbol's expected path: each state lasts as long as it is
+expected to, its mean stands at the middle of that time, and between two middles the channels
+are led by monotone cubics, which never overshoot. The spread is that of the states, led alike.
+
+The 26 channels tell how far a knee is bent but not all of a pose. The states' emissions are
+therefore widened by the 39 coordinates of the 13 joint roles in the body frame: their means
+under the states' occupancy of the clip that the symbol was fitted to, which is the very
+M-step that gave the channels' means; limbs, which a mean of unlike poses shortens, get the
+body's lengths back. Place and heading follow from the speeds, the yaw rate
+and the height that the symbol generates, never from the clip.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from app.analysis.symbols.channels import CHANNEL_SCALES, CHANNELS, symbol_features
+from app.motion.frame.body_frame import BodyTrack, turned
+from app.motion.roles.joint_roles import SUN_PARENTS
+from app.numerics.arrays import FloatArray
+from app.numerics.hmm.model import GaussianHMM
+
+_HEIGHT, _LEFT, _FORWARD, _YAW = (
+    CHANNELS.index(name) for name in ("height", "speed_left", "speed_forward", "yaw_rate")
+)
+
+
+def _steps_to_root(joint: int) -> int:
+    return 0 if SUN_PARENTS[joint] < 0 else 1 + _steps_to_root(SUN_PARENTS[joint])
+
+
+_OUTWARD = sorted(range(len(SUN_PARENTS)), key=_steps_to_root)[1:]
+"""Every joint but the root, each after its parent."""
+
+
+@dataclass(frozen=True, slots=True)
+class SymbolMotion:
+    """What a symbol generates, n frames at `rate` Hz.
+
+    means, spreads: (n, 26) the channels (CHANNELS) in their units (cosines, body lengths,
+    body lengths / s, radians / s) and their standard deviations; positions: (n, 13, 3)
+    metres, world, Y up, floor at 0, starting over the origin and looking along Z.
+    """
+
+    means: FloatArray
+    spreads: FloatArray
+    positions: FloatArray
+    rate: float
+
+
+def symbol_motion(symbol: GaussianHMM, track: BodyTrack) -> SymbolMotion:
+    """The motion that `symbol` generates; `track` is that of the clip that it was fitted to.
+
+    Deterministic. A symbol of one state holds one pose while it travels.
+    """
+    from app.numerics.hmm.fit import occupancy  # hmmlearn is slow to load
+
+    weights = occupancy(symbol, symbol_features(track))
+    poses = _means_by_state(track.local.reshape(track.frames, -1), weights)
+    times, frames = _middles(symbol)
+    scaled = _led(times, symbol.means * CHANNEL_SCALES, frames)
+    spreads = _led(times, np.sqrt(symbol.variances) * CHANNEL_SCALES, frames)
+    local = _with_lengths(_led(times, poses, frames).reshape(frames, -1, 3), track.local)
+    positions = _in_the_world(local, scaled, track.body_length, track.rate)
+    return SymbolMotion(scaled, spreads, positions, track.rate)
+
+
+def _means_by_state(rows: FloatArray, weights: FloatArray) -> FloatArray:
+    """(K, d) means of `rows` (T, d) under `weights` (T, K); an unvisited state has the whole's."""
+    visited = weights.sum(axis=0)
+    share = weights / np.maximum(visited, 1e-9)
+    return np.where(visited[:, None] > 1e-6, share.T @ rows, rows.mean(axis=0))
+
+
+def _middles(symbol: GaussianHMM) -> tuple[FloatArray, int]:
+    """(K,) the middle frame of each state on the expected path, and the path's length."""
+    lasting = np.bincount(symbol.expected_path(), minlength=symbol.states)
+    ends = np.cumsum(lasting)
+    return ends - (lasting + 1) / 2, int(ends[-1])
+
+
+def _led(times: FloatArray, values: FloatArray, frames: int) -> FloatArray:
+    """(frames, d) through `values` (K, d) at `times` (K,), constant outside of them."""
+    if len(times) == 1:
+        return np.repeat(values, frames, axis=0)
+    inside = np.clip(np.arange(frames), times[0], times[-1])
+    return np.asarray(scipy.interpolate.PchipInterpolator(times, values, axis=0)(inside))
+
+
+def _with_lengths(poses: FloatArray, like: FloatArray) -> FloatArray:
+    """`poses` (n, 13, 3) with each limb as long as its median in `like` (m, 13, 3)."""
+    mended = poses.copy()
+    for joint in _OUTWARD:
+        parent = SUN_PARENTS[joint]
+        length = float(np.median(np.linalg.norm(like[:, joint] - like[:, parent], axis=1)))
+        line = poses[:, joint] - poses[:, parent]
+        reach = np.maximum(np.linalg.norm(line, axis=1, keepdims=True), 1e-6)
+        mended[:, joint] = mended[:, parent] + line * (length / reach)
+    return mended
+
+
+def _in_the_world(
+    local: FloatArray, channels: FloatArray, body_length: float, rate: float
+) -> FloatArray:
+    """(n, 13, 3) metres of body-frame poses, carried by the generated speeds and turns."""
+    heading = _summed(channels[:, _YAW]) / rate
+    sideways = np.zeros(len(channels))
+    speeds = np.stack([channels[:, _LEFT], sideways, channels[:, _FORWARD]], axis=1)
+    place = _summed(turned(speeds[:, None], heading)[:, 0]) / rate
+    place[:, 1] = channels[:, _HEIGHT]
+    return (turned(local, heading) + place[:, None]) * body_length
+
+
+def _summed(rates: FloatArray) -> FloatArray:
+    """The running integral by trapezoids, zero at the first frame, in units of a frame."""
+    steps = (rates[1:] + rates[:-1]) / 2
+    return np.concatenate([np.zeros_like(rates[:1]), np.cumsum(steps, axis=0)])

@@ -1,0 +1,67 @@
+"""Marker noise: seen as large as it is, whatever the body does."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.analysis.energy.marker_noise import LEAST_FRAMES, noise_of_speed, noise_power
+from app.motion.frame.body_frame import body_track
+from app.numerics.arrays import FloatArray
+from tests.bodies import motion_of, walking
+from tests.dances import dance
+
+ALIKE = np.full(13, 1 / 13)
+
+
+def noise_of(positions: FloatArray, rate: float) -> float:
+    """Standard deviation on each coordinate, metres, at the analysis rate."""
+    track = body_track(motion_of(positions, rate))
+    return float(np.sqrt(noise_power(track.positions, ALIKE) / 3))
+
+
+@pytest.mark.parametrize("rate", [30.0, 60.0, 120.0])
+@pytest.mark.parametrize("noise", [0.002, 0.005, 0.01, 0.025])
+def test_the_noise_on_a_dance_is_found(noise: float, rate: float) -> None:
+    made = dance(3, 110, beats=30, noise=noise, rate=rate)
+    # The low-pass before the resampling keeps the share of the noise that 30 Hz can carry.
+    assert noise_of(made.positions, rate) == pytest.approx(noise * np.sqrt(30 / rate), rel=0.12)
+
+
+def test_what_moves_without_noise_has_almost_none() -> None:
+    assert noise_of(dance(4, 140, noise=0.0).positions, 60.0) < 2e-4
+    assert noise_of(walking(8.0), 30.0) < 2e-4
+
+
+@given(st.floats(0.01, 100.0), st.integers(0, 1000))
+def test_it_grows_with_the_unit_and_not_with_steady_movement(unit: float, seed: int) -> None:
+    shaking = np.random.default_rng(seed).normal(size=(80, 13, 3))
+    sliding = shaking + np.arange(80)[:, None, None] * 0.3 + 7.0
+    assert noise_power(sliding, ALIKE) == pytest.approx(noise_power(shaking, ALIKE))
+    assert noise_power(unit * shaking, ALIKE) == pytest.approx(
+        unit**2 * noise_power(shaking, ALIKE)
+    )
+
+
+def test_only_joints_that_weigh_are_looked_at() -> None:
+    shaking = np.zeros((200, 13, 3))
+    shaking[:, 4] = np.random.default_rng(0).normal(size=(200, 3))
+    on_it, beside = np.eye(13)[4], np.eye(13)[5]
+    assert noise_power(shaking, on_it) == pytest.approx(3.0, rel=0.35)
+    assert noise_power(shaking, beside) == 0.0
+
+
+def test_a_short_clip_counts_as_clean() -> None:
+    assert noise_power(np.random.default_rng(0).normal(size=(LEAST_FRAMES - 1, 13, 3)), ALIKE) == 0
+
+
+@pytest.mark.parametrize("spread", [1.0, 2.0, 3.0])
+def test_noise_of_speed_is_what_smoothed_noise_has(spread: float) -> None:
+    rng = np.random.default_rng(1)
+    reach = np.arange(-20, 21)
+    kernel = np.exp(-0.5 * (reach / spread) ** 2)
+    smooth = np.convolve(rng.normal(size=200_000), kernel / kernel.sum(), mode="valid")
+    speeds = (smooth[2:] - smooth[:-2]) / 2
+    assert noise_of_speed(spread) == pytest.approx(speeds.var(), rel=0.05)

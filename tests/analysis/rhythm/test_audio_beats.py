@@ -1,0 +1,92 @@
+"""Beats of recordings: clicks and music at tempi that may drift; none in what has none."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.analysis.rhythm.audio_beats import TIGHTNESS, find_audio_beats
+from app.analysis.rhythm.beat_tracking import track
+from app.analysis.rhythm.beats import BeatSource
+from app.analysis.rhythm.onsets import find_onsets
+from app.services.demo.dances.music import STYLES
+from app.services.demo.dances.sounds import SAMPLE_RATE
+from tests.recordings import WITHOUT_BEAT, f_score, piece, without_beat
+
+
+@pytest.mark.parametrize("bpm", [60.0, 97.0, 140.0])
+def test_a_metronome_is_followed_exactly(bpm: float) -> None:
+    samples, beats = piece(11, "clicks", bpm, drift=0.04, seconds=20.0)
+    found = find_audio_beats(find_onsets(samples, SAMPLE_RATE))
+    assert f_score(found.times, beats, within=0.03) > 0.97
+    assert found.tempo == pytest.approx(60 / np.median(np.diff(beats)), rel=0.02)
+    assert found.source is BeatSource.AUDIO
+    assert found.confidence == 1.0
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_music_of_every_style_is_followed_at_its_own_tempo(style: str) -> None:
+    samples, beats = piece(12, style, 100.0, drift=0.03, seconds=24.0)
+    found = find_audio_beats(find_onsets(samples, SAMPLE_RATE))
+    assert f_score(found.times, beats) > 0.9
+
+
+@pytest.mark.parametrize("kind", WITHOUT_BEAT)
+@pytest.mark.parametrize("seed", [0, 1])
+def test_what_has_no_beat_gets_none(kind: str, seed: int) -> None:
+    found = find_audio_beats(find_onsets(without_beat(seed, kind), SAMPLE_RATE))
+    assert len(found.times) == 0
+    assert found.tempo is None
+    assert found.source is BeatSource.NONE
+    assert found.confidence < 0.5
+
+
+def test_a_tempo_that_is_told_is_kept() -> None:
+    samples, beats = piece(13, "disco", 120.0, seconds=12.0)
+    onsets = find_onsets(samples, SAMPLE_RATE)
+    half = find_audio_beats(onsets, tempo=60.0)
+    assert half.tempo == 60.0
+    assert np.median(np.diff(half.times)) == pytest.approx(1.0, abs=0.02)
+    assert np.abs(half.times[:, None] - beats).min(axis=1).max() < 0.07
+
+
+@pytest.mark.parametrize("seconds", [0.0, 0.5, 2.0])
+def test_too_little_to_have_a_beat(seconds: float) -> None:
+    samples = np.random.default_rng(0).normal(size=int(seconds * SAMPLE_RATE))
+    found = find_audio_beats(find_onsets(samples, SAMPLE_RATE))
+    assert len(found.times) == 0
+
+
+def slow_track(strength: np.ndarray, period: float) -> np.ndarray:
+    """The twin of `track`: Ellis's recursion frame by frame."""
+    nearest, furthest = max(1, round(0.5 * period)), round(2.0 * period)
+    total, before = strength.copy(), np.full(len(strength), -1)
+    for t in range(nearest, len(strength)):
+        best = (0.0, -1)
+        for gap in range(nearest, min(furthest, t) + 1):
+            reached = total[t - gap] - TIGHTNESS * np.log(gap / period) ** 2
+            if reached > best[0]:
+                best = (reached, t - gap)
+        total[t] += best[0]
+        before[t] = best[1]
+    last = max(0, len(strength) - round(period))
+    beats = [last + int(total[last:].argmax())]
+    while before[beats[-1]] >= 0:
+        beats.append(int(before[beats[-1]]))
+    return np.array(beats[::-1])
+
+
+@pytest.mark.parametrize("period", [7.3, 25.0])
+def test_tracking_by_blocks_is_tracking_by_frames(period: float) -> None:
+    strength = np.random.default_rng(5).gamma(0.4, 2.0, 400)
+    fast, slow = track(strength, period, TIGHTNESS), slow_track(strength, period)
+    np.testing.assert_array_equal(fast, slow)
+
+
+def test_beats_cover_what_sounds_and_nothing_else() -> None:
+    samples, beats = piece(14, "march", 100.0, seconds=12.0)
+    silence = np.zeros(5 * SAMPLE_RATE)
+    padded = np.concatenate([silence, samples, silence])
+    found = find_audio_beats(find_onsets(padded, SAMPLE_RATE))
+    assert found.times[0] == pytest.approx(beats[0] + 5.0, abs=0.07)
+    assert found.times[-1] < beats[-1] + 5.0 + 0.7
