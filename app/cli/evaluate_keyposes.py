@@ -14,8 +14,8 @@ from app.cli.evaluation import wanted_of
 from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json, print_table, progress_bar
 from app.cli.settings import open_library
-from app.models.keypose_matching import TOLERANCE
-from app.models.keypose_thresholds import USUAL, ThresholdCurve
+from app.models.keyposes.matching import TOLERANCE
+from app.models.keyposes.thresholds import USUAL, ThresholdCurve
 from app.services import evaluate, pictures
 from app.services.evaluate import KeyposeEvaluation, keypose_pictures
 from app.services.keypose_learning import told

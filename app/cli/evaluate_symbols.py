@@ -13,7 +13,7 @@ from app.cli.evaluation import wanted_of
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table, print_text
 from app.cli.settings import open_library
-from app.models.symbol_figures import SymbolFigures
+from app.models.held_out.symbols import SymbolFigures
 from app.services import evaluate
 
 Picture = Annotated[

@@ -14,7 +14,7 @@ from app.cli.evaluation import wanted_of
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table, print_text
 from app.cli.settings import open_library
-from app.models.word_figures import (
+from app.models.held_out.words import (
     LEAST_RECORDINGS,
     RECALLS,
     JudgedWord,

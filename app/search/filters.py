@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from app.errors import BadField, Place
-from app.models.word_vocabulary import normalise_word
+from app.models.words.language.normalise import normalise_word
 from app.store.clip_filter import ClipFilter
 
 LABEL_KEYS = ("person", "task", "word", "license", "source")

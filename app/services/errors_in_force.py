@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from app.errors import ModelNotFitted
-from app.models.calibration import Calibration
-from app.models.recogniser import Recogniser
-from app.models.tensor_recogniser import TensorRecogniser
+from app.models.recognition.calibration import Calibration
+from app.models.recognition.perera import TensorRecogniser
+from app.models.recognition.recogniser import Recogniser
 from app.services.library import Library
 from app.services.model_shelf import TELLING_UNKNOWN, Fitted, ModelKind
 from app.store.models import ModelRecord

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 
 from app.errors import BadField, Place
 from app.formats.common.names import MAX_NAME_LENGTH
-from app.models.word_vocabulary import normalise_word, normalise_words
+from app.models.words.language.normalise import normalise_word, normalise_words
 from app.motion.canonical.units import METRES_PER_UNIT, SCALES
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.recording import FRAME_RATES

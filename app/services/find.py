@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
-from app.models.learned_metric import INPUTS
+from app.models.metric.learned_metric import INPUTS
 from app.search import cursor as cursors
 from app.search.by_example import SCALES, rank_by_example
 from app.search.cursor import Position

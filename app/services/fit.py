@@ -10,19 +10,19 @@ from typing import Any
 
 from app.analysis.descriptors.motion_sample import SAMPLES
 from app.errors import NotEnoughLabels
-from app.models.language.wordnet import Meanings
-from app.models.learned_metric import Factor, LearnedMetric, fit_axes
-from app.models.library_words import fit_library_words
-from app.models.metric_figures import held_out_metric
-from app.models.multilinear import fit_multilinear
-from app.models.recogniser import fit_recogniser
-from app.models.recognition_figures import (
+from app.models.held_out.metric import held_out_metric
+from app.models.held_out.recognition import (
     held_out_recognition_figures,
     signature_figures,
     unknown_figures,
 )
-from app.models.tensor_recogniser import fit_tensor_recogniser
-from app.models.word_figures import held_out_word_figures
+from app.models.held_out.words import held_out_word_figures
+from app.models.metric.learned_metric import Factor, LearnedMetric, fit_axes
+from app.models.recognition.multilinear import fit_multilinear
+from app.models.recognition.perera import fit_tensor_recogniser
+from app.models.recognition.recogniser import fit_recogniser
+from app.models.words.language.wordnet import Meanings
+from app.models.words.library import fit_library_words
 from app.services.annotated import read_annotated
 from app.services.keypose_learning import learn_keyposes
 from app.services.known_clips import known_arrays

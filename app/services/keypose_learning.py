@@ -9,8 +9,8 @@ from typing import Any
 from app.analysis.energy.energy import EnergyMethod
 from app.analysis.keyposes.keyposes import find_candidates
 from app.errors import NotEnoughLabels
-from app.models.keypose_matching import TOLERANCE, Counts, match, total
-from app.models.keypose_thresholds import USUAL, Example, KeyposeThresholds, Lesson, lesson
+from app.models.keyposes.matching import TOLERANCE, Counts, match, total
+from app.models.keyposes.thresholds import USUAL, Example, KeyposeThresholds, Lesson, lesson
 from app.services.annotated import AnnotatedClip
 
 NOBODY = "No ready clip carries keyposes that a person named."

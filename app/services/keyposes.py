@@ -12,7 +12,7 @@ import numpy as np
 from app.analysis.energy.energy import EnergyMethod, Weights
 from app.analysis.keyposes.keyposes import Keyposes, find_keyposes
 from app.errors import ModelNotFitted
-from app.models.keypose_thresholds import USUAL, Thresholds
+from app.models.keyposes.thresholds import USUAL, Thresholds
 from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from app.services import fields

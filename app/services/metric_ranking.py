@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from app.errors import ModelNotFitted
-from app.models.learned_metric import INPUTS, Described, LearnedMetric
+from app.models.metric.learned_metric import INPUTS, Described, LearnedMetric
 from app.numerics.arrays import FloatArray
 from app.search import usable_arrays
 from app.search.methods import Method

@@ -18,13 +18,13 @@ from app.store import models as stored
 from app.store.store import Store
 
 if TYPE_CHECKING:
-    from app.models.keypose_thresholds import KeyposeThresholds
-    from app.models.learned_metric import LearnedMetric
-    from app.models.library_words import LibraryWords
-    from app.models.multilinear import Multilinear
-    from app.models.recogniser import Recogniser
-    from app.models.synthesis import Synthesis
-    from app.models.tensor_recogniser import TensorRecogniser
+    from app.models.keyposes.thresholds import KeyposeThresholds
+    from app.models.metric.learned_metric import LearnedMetric
+    from app.models.recognition.multilinear import Multilinear
+    from app.models.recognition.perera import TensorRecogniser
+    from app.models.recognition.recogniser import Recogniser
+    from app.models.synthesis.model import Synthesis
+    from app.models.words.library import LibraryWords
 
 Model = TypeVar("Model")
 
@@ -96,13 +96,13 @@ class ModelShelf:
 
     def words(self, store: Store) -> Fitted[LibraryWords]:
         """The word models in force; raises ModelNotFitted."""
-        from app.models.library_words import LibraryWords
+        from app.models.words.library import LibraryWords
 
         return self._get(store, ModelKind.WORDS, LibraryWords.from_arrays)
 
     def recogniser(self, store: Store) -> Fitted[Recogniser]:
         """The default recogniser in force; raises ModelNotFitted."""
-        from app.models.recogniser import Recogniser
+        from app.models.recognition.recogniser import Recogniser
 
         fitted = self._get(store, ModelKind.RECOGNISER, Recogniser.from_arrays)
         rate = fitted.settings.get(FALSE_ACCEPT_RATE)
@@ -110,19 +110,19 @@ class ModelShelf:
 
     def multilinear(self, store: Store) -> Fitted[Multilinear]:
         """The multilinear model in force; raises ModelNotFitted."""
-        from app.models.multilinear import Multilinear
+        from app.models.recognition.multilinear import Multilinear
 
         return self._get(store, ModelKind.MULTILINEAR, Multilinear.from_arrays)
 
     def signatures(self, store: Store) -> Fitted[Multilinear]:
         """The multilinear model of joint angles in force; raises ModelNotFitted."""
-        from app.models.multilinear import Multilinear
+        from app.models.recognition.multilinear import Multilinear
 
         return self._get(store, ModelKind.SIGNATURES, Multilinear.from_arrays)
 
     def perera(self, store: Store) -> Fitted[TensorRecogniser]:
         """Perera's recogniser in force; raises ModelNotFitted."""
-        from app.models.tensor_recogniser import TensorRecogniser
+        from app.models.recognition.perera import TensorRecogniser
 
         fitted = self._get(store, ModelKind.PERERA, TensorRecogniser.from_arrays)
         rate = fitted.settings.get(FALSE_ACCEPT_RATE)
@@ -133,7 +133,7 @@ class ModelShelf:
 
         def build(arrays: Mapping[str, FloatArray], meta: Mapping[str, Any]) -> KeyposeThresholds:
             # A worker asks before each clip; most libraries have none to load.
-            from app.models.keypose_thresholds import KeyposeThresholds
+            from app.models.keyposes.thresholds import KeyposeThresholds
 
             return KeyposeThresholds.from_arrays(arrays, meta)
 
@@ -141,13 +141,13 @@ class ModelShelf:
 
     def synthesis(self, store: Store) -> Fitted[Synthesis]:
         """The synthesis in force; raises ModelNotFitted."""
-        from app.models.synthesis import Synthesis
+        from app.models.synthesis.model import Synthesis
 
         return self._get(store, ModelKind.SYNTHESIS, Synthesis.from_arrays)
 
     def metric(self, store: Store, kind: ModelKind) -> Fitted[LearnedMetric]:
         """The learned metric of METRIC_TASK or METRIC_PERSON in force; raises ModelNotFitted."""
-        from app.models.learned_metric import LearnedMetric
+        from app.models.metric.learned_metric import LearnedMetric
 
         return self._get(store, kind, LearnedMetric.from_arrays)
 

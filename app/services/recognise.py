@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from app.errors import ModelNotFitted
-from app.models.multilinear import recognise_multilinear
-from app.models.recogniser import recognise as recognise_by_default
-from app.models.recognition import NO_ANSWER, Answer, Recognition
-from app.models.tensor_recogniser import recognise_by_tensor
+from app.models.recognition.answers import NO_ANSWER, Answer, Recognition
+from app.models.recognition.multilinear import recognise_multilinear
+from app.models.recognition.perera import recognise_by_tensor
+from app.models.recognition.recogniser import recognise as recognise_by_default
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.library import Library

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
-from app.models.language.inflection import base_forms
-from app.models.library_words import LibraryWords
-from app.models.word_vocabulary import normalise_word
+from app.models.words.language.inflection import base_forms
+from app.models.words.language.normalise import normalise_word
+from app.models.words.library import LibraryWords
 from app.numerics.arrays import FloatArray
 from app.services import fields, labels
 from app.services.clips import get_clip, update_clip

@@ -10,8 +10,8 @@ import numpy as np
 from app.analysis.descriptors.motion_sample import SAMPLES
 from app.analysis.descriptors.motion_shape import CHANNELS, moments_of
 from app.errors import ClipNotFound, ClipNotReady, NotEnoughLabels
-from app.models.synthesis import Synthesis
-from app.models.synthetic_body import Donor, same_body
+from app.models.synthesis.body import Donor, same_body
+from app.models.synthesis.model import Synthesis
 from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import ANALYSIS_RATE, body_track
 from app.motion.posing.canonical_body import on_canonical_body

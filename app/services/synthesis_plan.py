@@ -9,9 +9,9 @@ from enum import StrEnum
 import numpy as np
 
 from app.errors import ClipNotReady, NotEnoughLabels, NotFound, Place
-from app.models.synthesis import Synthesis, mean_of_takes
-from app.models.synthesis_agreement import agree
-from app.models.synthesis_prediction import Predicted, predict
+from app.models.synthesis.agreement import agree
+from app.models.synthesis.model import Synthesis, mean_of_takes
+from app.models.synthesis.prediction import Predicted, predict
 from app.numerics.arrays import FloatArray
 from app.search import usable_arrays
 from app.services import fields

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.models.synthesis import Synthesis
+from app.models.synthesis.model import Synthesis
 from app.motion.canonical.motion import Motion
 from app.motion.frame.foot_contact import FEET, skating
 from app.numerics.arrays import FloatArray

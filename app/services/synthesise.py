@@ -11,9 +11,9 @@ import numpy as np
 from app.analysis.descriptors.motion_shape import motion_shape
 from app.errors import ModelNotFitted
 from app.formats.bvh.export import write_animation_bvh
-from app.models.synthesis import Synthesis
-from app.models.synthetic_body import embody
-from app.models.synthetic_motion import course_of
+from app.models.synthesis.body import embody
+from app.models.synthesis.model import Synthesis
+from app.models.synthesis.motion import course_of
 from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import body_track
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole

@@ -9,8 +9,8 @@ import numpy as np
 
 from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.folds import recording_of
-from app.models.learned_metric import INPUTS, Described
-from app.models.recogniser_views import full_samples
+from app.models.metric.learned_metric import INPUTS, Described
+from app.models.recognition.views import full_samples
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
 from app.search import usable_arrays

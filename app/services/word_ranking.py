@@ -10,8 +10,8 @@ from functools import partial
 import numpy as np
 
 from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
-from app.models.library_words import LibraryWords
-from app.models.word_query import WordsAsked
+from app.models.words.library import LibraryWords
+from app.models.words.query import WordsAsked
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.search import usable_arrays
 from app.search.beside import Beside

@@ -10,7 +10,7 @@ import numpy as np
 from app.analysis.analyse import describe_for_search
 from app.formats.read import read_recording
 from app.models.folds import recording_of
-from app.models.learned_metric import INPUTS, Described
+from app.models.metric.learned_metric import INPUTS, Described
 from app.motion.canonical.canonical import canonicalise
 from tests.real_clips import manifest, real_clips
 

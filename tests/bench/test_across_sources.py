@@ -20,8 +20,8 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from app.models.learned_metric import Factor, fit_axes
-from app.models.ranking_figures import average_precision
+from app.models.held_out.ranking import average_precision
+from app.models.metric.learned_metric import Factor, fit_axes
 from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to
 from app.search.methods import Method
 from tests.bench.described_clips import RealClips, described_clips

@@ -23,8 +23,8 @@ from app.analysis.keyposes.end_effectors import end_effector_candidates
 from app.analysis.keyposes.keyposes import T1, T2, find_candidates, find_keyposes
 from app.analysis.rhythm.beats import Beats, find_beats, given_beats
 from app.formats.read import read_recording
-from app.models.keypose_matching import Counts, match, total
-from app.models.keypose_thresholds import Example, Selectable, Thresholds, lesson
+from app.models.keyposes.matching import Counts, match, total
+from app.models.keyposes.thresholds import Example, Selectable, Thresholds, lesson
 from app.motion.canonical.canonical import canonicalise
 from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import BodyTrack, body_track

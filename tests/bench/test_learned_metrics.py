@@ -1,8 +1,8 @@
 """What the library's labels are worth: learned metrics on clips that taught them nothing.
 
 Run: pytest -m bench -s tests/bench/test_learned_metrics.py
-The constants of app.models.learned_metric were chosen on dataset 1, on CMU's clips and on takes 1
-and 2 of dataset 2. Takes 3 to 5 ask here, all of dataset 2 answers; DESIGN 5's floors (.98 with
+The constants of app.models.metric.learned_metric were chosen on dataset 1, on CMU's clips and on
+takes 1 and 2 of dataset 2. Takes 3 to 5 ask here, all of dataset 2 answers; DESIGN 5's floors (.98 with
 all labels, .94 with two a cell, .80 for styles and .81 for tasks never seen) are of 840 clips,
 which are not these.
 """
@@ -16,10 +16,10 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from app.models.learned_metric import Factor, fit_axes
-from app.models.metric_figures import calibration_error, held_out_metric
-from app.models.pair_calibration import calibrate_pairs
-from app.models.ranking_figures import average_precision
+from app.models.held_out.metric import calibration_error, held_out_metric
+from app.models.held_out.ranking import average_precision
+from app.models.metric.learned_metric import Factor, fit_axes
+from app.models.metric.pair_calibration import calibrate_pairs
 from tests.bench.described_clips import RealClips, described_clips
 from tests.bench.page import Section
 

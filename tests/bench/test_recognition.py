@@ -19,17 +19,17 @@ from app.analysis.keyposes.keyposes import find_keyposes
 from app.analysis.segments.danced_cycles import DancedCycles, danced_cycles
 from app.analysis.segments.keypose_arrays import keypose_arrays
 from app.formats.read import read_recording
-from app.models.danced_tasks import arrange
-from app.models.flat_pca import fit_flat_pca, recognise_flat
 from app.models.folds import recording_of
-from app.models.multilinear import fit_multilinear, recognise_multilinear
-from app.models.perera_experiment import perera_tables
-from app.models.recogniser import fit_recogniser, recognise, recognise_many
-from app.models.recogniser_views import full_samples
-from app.models.recognition import Answer, Recognition
-from app.models.recognition_figures import held_out_recognition_figures, unknown_figures
-from app.models.task_model import Reading
-from app.models.tensor_recogniser import fit_tensor_recogniser, recognise_by_tensor
+from app.models.held_out.danced_tasks import arrange
+from app.models.held_out.perera_experiment import perera_tables
+from app.models.held_out.recognition import held_out_recognition_figures, unknown_figures
+from app.models.recognition.answers import Answer, Recognition
+from app.models.recognition.flat_pca import fit_flat_pca, recognise_flat
+from app.models.recognition.multilinear import fit_multilinear, recognise_multilinear
+from app.models.recognition.perera import fit_tensor_recogniser, recognise_by_tensor
+from app.models.recognition.recogniser import fit_recogniser, recognise, recognise_many
+from app.models.recognition.task_model import Reading
+from app.models.recognition.views import full_samples
 from app.motion.canonical.canonical import canonicalise
 from app.motion.frame.body_frame import body_track
 from app.numerics.area_under_curve import area_under_curve

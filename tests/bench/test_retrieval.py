@@ -41,7 +41,7 @@ from app.analysis.descriptors import motion_vector
 from app.analysis.descriptors.frame_features import features_at_10hz, frame_features
 from app.config import Settings
 from app.formats.read import read_recording
-from app.models.ranking_figures import average_precision
+from app.models.held_out.ranking import average_precision
 from app.motion.canonical.canonical import canonicalise
 from app.motion.frame.body_frame import body_track
 from app.numerics import diffusion

@@ -19,8 +19,7 @@ import pytest
 
 from app.analysis.descriptors.motion_shape import moments_of, motion_shape
 from app.formats.read import read_recording
-from app.models.synthesis import Synthesis, fit_synthesis
-from app.models.synthesis_figures import (
+from app.models.held_out.synthesis import (
     NEW_PERSON,
     NEW_TASK,
     Trial,
@@ -29,8 +28,9 @@ from app.models.synthesis_figures import (
     made,
     nearest_labels,
 )
-from app.models.synthetic_body import Donor, embody, same_body
-from app.models.synthetic_motion import course_of
+from app.models.synthesis.body import Donor, embody, same_body
+from app.models.synthesis.model import Synthesis, fit_synthesis
+from app.models.synthesis.motion import course_of
 from app.motion.canonical.canonical import canonicalise
 from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import ANALYSIS_RATE, BodyTrack, body_track

@@ -17,8 +17,8 @@ from app.analysis.symbols.symbol import describe_symbol, symbol_from_arrays
 from app.errors import BadContent
 from app.formats.read import read_recording
 from app.models.folds import recording_of
-from app.models.symbol_space import symbol_distances
-from app.models.word_figures import WordFigures, held_out_word_figures
+from app.models.held_out.words import WordFigures, held_out_word_figures
+from app.models.words.symbol_space import symbol_distances
 from app.motion.canonical.canonical import canonicalise
 from app.motion.frame.body_frame import BodyTrack, body_track
 from app.numerics.arrays import FloatArray

@@ -23,7 +23,7 @@ from sqlalchemy import delete, insert
 from app.analysis.analyse import ANALYSIS_VERSION
 from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.config import Settings
-from app.models.symbol_space import LANDMARKS, symbol_distances
+from app.models.words.symbol_space import LANDMARKS, symbol_distances
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
 from app.services.training import NAMES

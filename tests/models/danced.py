@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.models.danced_tasks import DancedTasks
+from app.models.held_out.danced_tasks import DancedTasks
 
 
 def danced_by(

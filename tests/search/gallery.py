@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.analyse import describe_for_search
-from app.models.learned_metric import INPUTS, Described, Factor, MetricAxes, fit_axes
+from app.models.metric.learned_metric import INPUTS, Described, Factor, MetricAxes, fit_axes
 from app.motion.canonical.motion import Motion
 from app.numerics.arrays import FloatArray
 from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to

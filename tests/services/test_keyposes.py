@@ -11,7 +11,7 @@ import pytest
 
 from app.analysis.energy.energy import EnergyMethod
 from app.errors import BadField, ClipNotFound
-from app.models.keypose_thresholds import KeyposeThresholds, Thresholds
+from app.models.keyposes.thresholds import KeyposeThresholds, Thresholds
 from app.services import clips, keyposes
 from app.services.annotated import read_annotated
 from app.services.clips import NewClip

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.errors import ModelBeingFitted, ModelNotFitted
-from app.models.library_words import fit_library_words
+from app.models.words.library import fit_library_words
 from app.services import models, reanalysis
 from app.services.demo import DemoClip
 from app.services.library import Library

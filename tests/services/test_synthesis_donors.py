@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.analysis.descriptors.motion_shape import moments_of, motion_shape
-from app.models.synthetic_motion import course_of
+from app.models.synthesis.motion import course_of
 from app.motion.frame.body_frame import body_track
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray

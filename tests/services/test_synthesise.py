@@ -13,9 +13,9 @@ import pytest
 from app.analysis.descriptors.motion_shape import motion_shape
 from app.errors import BadField, ClipNotFound, ModelNotFitted, NotEnoughLabels, NotFound
 from app.formats.read import read_recording
-from app.models.synthesis_agreement import AGREED
-from app.models.synthetic_body import embody
-from app.models.synthetic_motion import course_of
+from app.models.synthesis.agreement import AGREED
+from app.models.synthesis.body import embody
+from app.models.synthesis.motion import course_of
 from app.motion.canonical.canonical import canonicalise
 from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import ANALYSIS_RATE, body_track

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from app.analysis.energy.energy import EnergyMethod
 from app.analysis.keyposes.end_effectors import end_effector_candidates
 from app.errors import NotEnoughLabels
-from app.models.keypose_matching import TOLERANCE, Counts, match, total
-from app.models.keypose_thresholds import (
+from app.models.keyposes.matching import TOLERANCE, Counts, match, total
+from app.models.keyposes.thresholds import (
     USUAL,
     Example,
     ThresholdCurve,

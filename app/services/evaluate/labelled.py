@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.errors import NotEnoughLabels
-from app.models.class_rankings import JudgedRanking, judge_ranking
+from app.models.held_out.class_rankings import JudgedRanking, judge_ranking
 from app.services import fields
 from app.services.library import Library
 from app.services.training import ready_only, recording_of_clip

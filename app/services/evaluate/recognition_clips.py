@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.errors import NotEnoughLabels
-from app.models.recogniser_views import full_samples
-from app.models.recognition_figures import Clips
+from app.models.held_out.recognition import Clips
+from app.models.recognition.views import full_samples
 from app.numerics.arrays import FloatArray, IntArray
 from app.services.library import Library
 from app.services.training import TrainingSet, read_training_set, ready_only

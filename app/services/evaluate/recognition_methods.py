@@ -16,17 +16,17 @@ from typing import Protocol
 import numpy as np
 
 from app.analysis.descriptors.motion_sample import SAMPLES
-from app.models.flat_pca import fit_flat_pca, recognise_flat
-from app.models.multilinear import fit_multilinear, recognise_multilinear
-from app.models.recogniser import fit_recogniser, recognise_many
-from app.models.recognition import Answer, Recognition
-from app.models.recognition_figures import Clips
-from app.models.tensor_recogniser import (
+from app.models.held_out.recognition import Clips
+from app.models.recognition.answers import Answer, Recognition
+from app.models.recognition.flat_pca import fit_flat_pca, recognise_flat
+from app.models.recognition.multilinear import fit_multilinear, recognise_multilinear
+from app.models.recognition.perera import (
     TensorRecogniser,
     fit_tensor_recogniser,
     recognise_by_tensor,
     uncalibrated,
 )
+from app.models.recognition.recogniser import fit_recogniser, recognise_many
 from app.numerics.arrays import FloatArray
 
 Labels = Sequence[str | None]

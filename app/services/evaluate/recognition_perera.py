@@ -11,9 +11,9 @@ import numpy as np
 from app.analysis.segments.danced_cycles import danced_cycles
 from app.analysis.segments.segments import SEGMENT_CYCLES, SEGMENT_SPANS
 from app.errors import NotEnoughLabels
-from app.models.danced_tasks import DancedTasks, arrange
-from app.models.perera_experiment import Row, perera_tables
-from app.models.task_model import Reading
+from app.models.held_out.danced_tasks import DancedTasks, arrange
+from app.models.held_out.perera_experiment import Row, perera_tables
+from app.models.recognition.task_model import Reading
 from app.search.distances import FEATURES
 from app.services.library import Library
 from app.services.training import ready_only

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.errors import NotEnoughLabels
-from app.models.recognition_figures import Clips
+from app.models.held_out.recognition import Clips
 from app.numerics.arrays import FloatArray, IntArray
 from app.services.evaluate.recognition_clips import JudgedClips
 from app.services.evaluate.recognition_methods import Guess, Judge, Method

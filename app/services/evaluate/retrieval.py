@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.models.class_rankings import JudgedRanking, confusion_matrix, true_positive_rates
+from app.models.held_out.class_rankings import JudgedRanking, confusion_matrix, true_positive_rates
 from app.numerics.arrays import FloatArray
 from app.search.methods import Method
 from app.services import fields

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.models.symbol_figures import SymbolFigures, symbol_figures
+from app.models.held_out.symbols import SymbolFigures, symbol_figures
 from app.services.library import Library
 from app.services.pictures import Curve, Format, Panel, curves_picture
 from app.services.training import read_training_set, ready_only

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.symbols.channels import symbol_features
-from app.models.correlated_space import fit_correlated_space
-from app.models.symbol_space import fit_symbol_space
-from app.models.word_figures import RECALLS, WordEvaluation, WordFigures, held_out_word_figures
-from app.models.word_query import understand
-from app.models.word_vocabulary import WordVocabulary
+from app.models.held_out.words import RECALLS, WordEvaluation, WordFigures, held_out_word_figures
+from app.models.words.correlated_space import fit_correlated_space
+from app.models.words.query import understand
+from app.models.words.symbol_space import fit_symbol_space
+from app.models.words.vocabulary import WordVocabulary
 from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from app.services import fields

@@ -5,7 +5,7 @@ import pytest
 
 from app.analysis.symbols.channels import symbol_features
 from app.analysis.symbols.symbol import describe_symbol, symbol_from_arrays
-from app.models.symbol_space import symbol_distances
+from app.models.words.symbol_space import symbol_distances
 from app.motion.frame.body_frame import body_track
 from app.numerics.hmm.model import GaussianHMM
 from tests.bodies import motion_of, standing, turned_about_y, walking, waving

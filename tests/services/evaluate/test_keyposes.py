@@ -9,7 +9,7 @@ import pytest
 
 from app.analysis.keyposes.keyposes import find_keyposes
 from app.errors import BadField, NotEnoughLabels
-from app.models.keypose_matching import match
+from app.models.keyposes.matching import match
 from app.services.annotated import read_annotated
 from app.services.demo import DemoClip
 from app.services.evaluate import JUDGED_KEYPOSES, judge_keyposes

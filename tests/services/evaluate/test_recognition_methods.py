@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.models.recognition_figures import Clips
+from app.models.held_out.recognition import Clips
 from app.services.evaluate.recognition_methods import METHODS, NO_GUESS, RANKING, methods_at
 from tests.services.evaluate.recognition_library import LENGTH, invented
 

@@ -1,0 +1,1 @@
+"""Held-out figures of every model; fits and evaluations use them."""

@@ -1,0 +1,190 @@
+"""How good a learned metric is on clips, tasks and persons that it has not seen.
+
+In turn clips (all files of a recording together), whole tasks and whole persons are held out
+(app.models.holding_out). Each held-out clip with a label asks for the clips that carry the same
+one, among all that have a label, those that were learned from too: this is what a new clip
+finds. Other files of its own recording are neither right nor wrong. The motion vector is asked
+the same, so that one sees what the labels are worth.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from app.errors import NotEnoughLabels
+from app.models.held_out.ranking import average_precision
+from app.models.holding_out import Held, rounds
+from app.models.metric.learned_metric import Described, Factor, check_labels, fit_axes
+from app.models.metric.pair_calibration import PairCalibration, calibrate_pairs
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+
+MOST_CLIPS = 2000
+"""Larger libraries are judged on a random part of so many labelled clips."""
+
+NEAREST = 20
+"""Precision is told among so many of the nearest, fewer where fewer are relevant."""
+
+MOST_PAIRS = 200_000
+"""Pairs that a calibration sees."""
+
+TOLD_LABELS = 200
+"""Labels whose clips are counted one by one, those with the fewest first."""
+
+BINS = 10
+"""Of the calibration error."""
+
+Labels = Sequence[str | None]
+
+
+@dataclass(frozen=True, slots=True)
+class MetricEvaluation:
+    """figures: JSON-able, by what was held out; calibration: from the clips held out."""
+
+    figures: dict[str, Any]
+    calibration: PairCalibration
+
+
+@dataclass(frozen=True, slots=True)
+class _Judged:
+    """What the queries of some rounds found; relevance rows, and pairs, one array a query."""
+
+    learned: list[BoolArray] = field(default_factory=list)
+    plain: list[BoolArray] = field(default_factory=list)
+    distances: list[FloatArray] = field(default_factory=list)
+    same: list[BoolArray] = field(default_factory=list)
+
+
+def held_out_metric(
+    described: Described, persons: Labels, tasks: Labels, groups: Sequence[str], factor: Factor
+) -> MetricEvaluation:
+    """Judge a metric of `factor` on n clips; groups: (n,) the same for files of a recording.
+
+    Raises NotEnoughLabels where none can be learned.
+    """
+    labels = tasks if factor is Factor.TASK else persons
+    check_labels(labels, factor)
+    counts = Counter(label for label in labels if label)
+    index = _judged_clips(labels)
+    part = _Part(
+        described.part(index),
+        *([names[i] for i in index] for names in (persons, tasks, groups, labels)),
+    )
+    found = {held: _Judged() for held in Held}
+    for held, training, probes in rounds(part.persons, part.tasks, part.groups):
+        _judge_round(part, factor, training, probes, found[held])
+    clips = found[Held.CLIPS]
+    distances, same = _pairs(clips)
+    calibration = calibrate_pairs(distances, same)
+    figures = {f"{held}_held_out": _figures(judged) for held, judged in found.items()}
+    told = {name: shares for name, shares in figures.items() if shares}
+    error = {"calibration_error": calibration_error(calibration, distances, same)}
+    counted = {"labels": _label_counts(counts, by_name=factor is Factor.TASK)}
+    return MetricEvaluation(told | error | counted, calibration)
+
+
+def calibration_error(
+    calibration: PairCalibration, distances: FloatArray, same: BoolArray
+) -> float:
+    """Mean difference, over pairs (n,), between the score told and the share that is the same.
+
+    Pairs are put in BINS by their score.
+    """
+    if not len(distances):
+        return 0.0
+    scores = calibration.probabilities(distances)
+    bins = np.minimum((scores * BINS).astype(np.int64), BINS - 1)
+    sizes = np.bincount(bins, minlength=BINS)
+    apart = np.bincount(bins, scores, BINS) - np.bincount(bins, same.astype(np.float64), BINS)
+    return float(np.abs(apart).sum() / sizes.sum())
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """The labelled clips that are judged."""
+
+    described: Described
+    persons: list[str | None]
+    tasks: list[str | None]
+    groups: list[str]
+    labels: list[str]
+
+
+def _judged_clips(labels: Labels) -> IntArray:
+    known = np.array([i for i, label in enumerate(labels) if label])
+    return np.sort(np.random.RandomState(0).permutation(known)[:MOST_CLIPS])
+
+
+def _judge_round(
+    part: _Part, factor: Factor, training: IntArray, probes: IntArray, judged: _Judged
+) -> None:
+    """Fit without the probes, let each of them ask, and add what they found to `judged`."""
+    try:
+        known = [part.labels[i] for i in training]
+        axes = fit_axes(part.described.part(training), known, factor)
+    except NotEnoughLabels:
+        return
+    points = axes.project(part.described)
+    names, group = np.array(part.labels), np.array(part.groups)
+    for probe in probes.tolist():
+        others = np.flatnonzero(group != group[probe])
+        same = names[others] == names[probe]
+        if not same.any():
+            continue
+        distances = np.linalg.norm(points[others] - points[probe], axis=1)
+        vectors = part.described.vectors
+        plain = np.linalg.norm(vectors[others] - vectors[probe], axis=1)
+        judged.learned.append(same[np.argsort(distances, kind="stable")])
+        judged.plain.append(same[np.argsort(plain, kind="stable")])
+        judged.distances.append(distances)
+        judged.same.append(same)
+
+
+def _pairs(judged: _Judged) -> tuple[FloatArray, BoolArray]:
+    """Distances (m,) and whether the labels are the same (m,), at most MOST_PAIRS, spread."""
+    distances = np.concatenate([np.zeros(0), *judged.distances])
+    same = np.concatenate([np.zeros(0, dtype=bool), *judged.same])
+    step = max(1, -(-len(distances) // MOST_PAIRS))
+    return distances[::step], same[::step]
+
+
+def _figures(judged: _Judged) -> dict[str, float | int]:
+    """Means over the queries; empty where there was none."""
+    if not judged.learned:
+        return {}
+    nearest, precision, average = _means(judged.learned)
+    return {
+        "nearest": nearest,
+        "precision_at_20": precision,
+        "mean_average_precision": average,
+        "motion_vector_map": _means(judged.plain)[2],
+        "queries": len(judged.learned),
+    }
+
+
+def _means(rankings: list[BoolArray]) -> list[float]:
+    rows = [
+        (
+            found[0],
+            found[: min(NEAREST, np.count_nonzero(found))].mean(),
+            average_precision(-np.arange(float(len(found))), found),
+        )
+        for found in rankings
+    ]
+    return [float(value) for value in np.mean(rows, axis=0)]
+
+
+def _label_counts(counts: Counter[str], *, by_name: bool) -> dict[str, Any]:
+    """How many clips carry a label; persons are not named: figures outlive who is forgotten."""
+    fewest = sorted(counts.items(), key=lambda item: (item[1], item[0]))
+    told = {
+        "count": len(counts),
+        "clips": counts.total(),
+        "fewest_clips": fewest[0][1],
+        "most_clips": fewest[-1][1],
+    }
+    return told | ({"clips_of": dict(fewest[:TOLD_LABELS])} if by_name else {})

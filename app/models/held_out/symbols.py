@@ -1,0 +1,133 @@
+"""How well the motion symbol space keeps the divergences of symbols (Takano, section 3, fig. 3).
+
+The error T of eq. 3 against the number of dimensions, for classical scaling, for SMACOF and
+for the paper's own error minimised (s-stress); what is lost where a symbol is placed against
+landmarks only; and how the fast divergence ranks pairs beside the Monte Carlo one of eqs 1-2.
+Symbols N, dimensions d.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from app.errors import NotEnoughLabels
+from app.models.words.symbol_space import DIMENSIONS, landmark_rows, symbol_distances
+from app.numerics.arrays import FloatArray
+from app.numerics.hmm.divergence import expected_path_divergences, monte_carlo_divergence
+from app.numerics.hmm.model import GaussianHMM
+from app.numerics.mds import classical_mds, metric_mds, place, stress
+from app.numerics.smacof import smacof
+
+MOST_SYMBOLS = 200
+"""Scaled at once; of more, randomly picked ones."""
+MOST_DIMENSIONS = 15
+COMPARED = 12
+DRAWS = 10
+LEAST_SYMBOLS = 5
+
+
+@dataclass(frozen=True, slots=True)
+class SpaceErrors:
+    """T of eq. 3 in so many dimensions, per pair, by how the points were found; gamma: the
+    share by which one more dimension lowers that of s_stress, nan at the last."""
+
+    dimensions: int
+    classical: float
+    smacof: float
+    s_stress: float
+    gamma: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class SymbolFigures:
+    """symbols: how many were scaled; errors: by dimensions; placing_error: mean absolute
+    difference of distance and wanted distance of symbols placed against landmarks, over the
+    mean distance, and the same of the landmarks themselves; agreement: Spearman's rank
+    correlation of the fast divergences with the Monte Carlo ones, over `pairs`."""
+
+    symbols: int
+    errors: tuple[SpaceErrors, ...]
+    placing_error: float
+    fitting_error: float
+    agreement: float
+    pairs: int
+
+
+def symbol_figures(
+    symbols: Sequence[GaussianHMM], *, compared: int = COMPARED, seed: int = 0
+) -> SymbolFigures:
+    """The figures of a library's symbols; deterministic for a seed.
+
+    compared: symbols of which every pair is drawn by Monte Carlo, which is slow.
+
+    Raises NotEnoughLabels below LEAST_SYMBOLS symbols.
+    """
+    if len(symbols) < LEAST_SYMBOLS:
+        raise NotEnoughLabels(
+            f"A symbol space needs {LEAST_SYMBOLS} clips, there are {len(symbols)}."
+        )
+    rng = np.random.RandomState(seed)
+    rows = np.sort(rng.permutation(len(symbols))[:MOST_SYMBOLS])
+    chosen = [symbols[int(row)] for row in rows]
+    distances = symbol_distances(chosen, chosen)
+    fitting, placing = _placing_errors(distances, rng)
+    some = chosen[:: max(len(chosen) // compared, 1)][:compared]
+    return SymbolFigures(
+        symbols=len(chosen),
+        errors=_errors(distances),
+        placing_error=placing,
+        fitting_error=fitting,
+        agreement=_agreement(some, seed),
+        pairs=len(some) * (len(some) - 1),
+    )
+
+
+_Scaling = Callable[[FloatArray, int], FloatArray]
+
+
+def _errors(distances: FloatArray) -> tuple[SpaceErrors, ...]:
+    most = min(MOST_DIMENSIONS, len(distances) - 1)
+    pairs = len(distances) * (len(distances) - 1) / 2
+    ways: tuple[_Scaling, ...] = (classical_mds, smacof, metric_mds)
+    found = [
+        [stress(way(distances, count), distances) / pairs for way in ways]
+        for count in range(1, most + 1)
+    ]
+    return tuple(
+        SpaceErrors(count, by_classical, by_smacof, s_stress, _gamma(s_stress, found[count:]))
+        for count, (by_classical, by_smacof, s_stress) in enumerate(found, 1)
+    )
+
+
+def _gamma(error: float, following: list[list[float]]) -> float | None:
+    return (error - following[0][-1]) / error if following and error > 0 else None
+
+
+def _placing_errors(distances: FloatArray, rng: np.random.RandomState) -> tuple[float, float]:
+    """Relative errors of distances among landmarks, and from other symbols to landmarks."""
+    order = rng.permutation(len(distances))
+    landmarks = order[: max(len(landmark_rows(len(order))) // 2, LEAST_SYMBOLS - 1)]
+    others = np.setdiff1d(order, landmarks)
+    among, across = distances[np.ix_(landmarks, landmarks)], distances[np.ix_(others, landmarks)]
+    points = metric_mds(among, min(DIMENSIONS, len(landmarks) - 1))
+    placed = place(across, points)
+    return _relative(points, points, among), _relative(placed, points, across)
+
+
+def _relative(left: FloatArray, right: FloatArray, wanted: FloatArray) -> float:
+    reached = scipy.spatial.distance.cdist(left, right)
+    return float(np.abs(reached - wanted).mean() / max(float(wanted.mean()), 1e-12))
+
+
+def _agreement(symbols: Sequence[GaussianHMM], seed: int) -> float:
+    fast = expected_path_divergences(symbols, symbols)
+    slow = [
+        [monte_carlo_divergence(one, other, draws=DRAWS, seed=seed) for other in symbols]
+        for one in symbols
+    ]
+    apart = ~np.eye(len(symbols), dtype=bool)
+    return float(scipy.stats.spearmanr(fast[apart], np.array(slow)[apart]).statistic)

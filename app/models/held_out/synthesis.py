@@ -1,0 +1,165 @@
+"""How often a motion that was made is taken for the person's own, on cells left out.
+
+Vasilescu's check (section 7): among all real clips, is the one nearest to the made motion by
+that person, and of that task? The made one has seen none of that cell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.models.synthesis.model import Synthesis
+from app.models.synthesis.prediction import Predicted, predict
+from app.models.synthesis.solving import effects_only
+from app.numerics.arrays import FloatArray
+
+GIVEN = (1, 2, 3, 5, 8)
+"""Other persons (tasks) of which takes are given."""
+
+TRIALS = 32
+"""Cells left out for each row, drawn at random where there are more."""
+
+NEW_TASK, NEW_PERSON = "new_task", "new_person"
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A cell left out: person and task; given: the other persons, or the other tasks."""
+
+    person: str
+    task: str
+    given: tuple[str, ...]
+
+
+def held_out_synthesis(record: Synthesis, trials: int = TRIALS) -> dict[str, list[dict[str, Any]]]:
+    """Rows by number given, for "new_task" (a known person's, from so many others' takes) and
+    "new_person" (from takes of so many of their tasks, all others known).
+
+    Each row: given, trials, and shares of
+    trials whose nearest real clip is right in person, in task and in both ("hit"); and the hit
+    of the baselines "effects" (person and task effects added) and "task_mean". "followed",
+    "averaged": trials and hit of those in which one person's take was followed, and of the
+    others; hit is None of none. "real": the
+    same share of the cells' real takes, each among all other real clips, None where no cell
+    has two: no made motion can be expected to do better.
+    """
+    return {
+        kind: [row for given in GIVEN if (row := _row(record, kind, given, trials))]
+        for kind in (NEW_TASK, NEW_PERSON)
+    }
+
+
+def nearest_labels(record: Synthesis, shape: FloatArray) -> tuple[str, str]:
+    """Person and task of the real clip nearest to a motion shape (1378,)."""
+    return record.labels_of(int(np.argmin(record.distances(shape))))
+
+
+def made(record: Synthesis, kind: str, trial: Trial) -> Predicted:
+    """The cell of a trial, made of what it gives."""
+    own = record.tasks_of(trial.person)
+    if kind == NEW_PERSON:
+        own = {task: own[task] for task in trial.given}
+        return predict(record, own, trial.task, but=(trial.person,))
+    strangers = set(record.persons) - set(trial.given)
+    return predict(record, own, trial.task, but=tuple(strangers))
+
+
+def draw_trials(record: Synthesis, kind: str, given: int, trials: int) -> list[Trial]:
+    """At most `trials` cells with `given` others to make them of; the same each time."""
+    rng = np.random.default_rng(given)
+    found = []
+    for person, task in zip(record.person, record.task, strict=True):
+        who, what = record.persons[person], record.tasks[task]
+        pool = _others(record, who, what, kind)
+        if len(pool) >= given:
+            chosen = rng.choice(len(pool), given, replace=False)
+            found.append(Trial(who, what, tuple(pool[i] for i in sorted(chosen))))
+    if len(found) <= trials:
+        return found
+    return [found[i] for i in np.sort(rng.choice(len(found), trials, replace=False))]
+
+
+def _others(record: Synthesis, person: str, task: str, kind: str) -> list[str]:
+    if kind == NEW_TASK:
+        own = set(record.tasks_of(person)) - {task}
+        return [name for name in record.who_did(task) if name != person] if own else []
+    if record.who_did(task) == (person,):
+        return []
+    return [name for name in record.tasks_of(person) if name != task]
+
+
+def _row(record: Synthesis, kind: str, given: int, trials: int) -> dict[str, Any] | None:
+    drawn = draw_trials(record, kind, given, trials)
+    if not drawn:
+        return None
+    judged = list(_judged(record, kind, drawn))
+    hits = np.array([marks for marks, _ in judged], dtype=np.float64)
+    names = ("person", "task", "hit", "effects", "task_mean")
+    shares = {
+        name: round(float(hit), 4) for name, hit in zip(names, hits.mean(axis=0), strict=True)
+    }
+    followed = np.array([follows for _, follows in judged])
+    parted = {"followed": _hit(hits[followed, 2]), "averaged": _hit(hits[~followed, 2])}
+    real = real_hit(record, drawn)
+    return {"given": given, "trials": len(drawn), **shares, **parted, "real": real}
+
+
+def _hit(hits: FloatArray) -> dict[str, Any]:
+    share = round(float(hits.mean()), 4) if len(hits) else None
+    return {"trials": len(hits), "hit": share}
+
+
+def real_hit(record: Synthesis, drawn: list[Trial]) -> float | None:
+    """Share of the real takes of the trials' cells whose nearest other clip is of their cell."""
+    hits = []
+    for trial in drawn:
+        takes = record.clips_of(trial.person, trial.task)
+        for take in takes if len(takes) > 1 else []:
+            away = np.linalg.norm(record.points - record.points[take], axis=1)
+            away[take] = np.inf
+            hits.append(record.labels_of(int(np.argmin(away))) == (trial.person, trial.task))
+    return round(float(np.mean(hits)), 4) if hits else None
+
+
+def _judged(
+    record: Synthesis, kind: str, drawn: list[Trial]
+) -> Iterator[tuple[tuple[bool, ...], bool]]:
+    """What is right of each, and whether it followed one take."""
+    for trial in drawn:
+        label = (trial.person, trial.task)
+        predicted = made(record, kind, trial)
+        who, what = nearest_labels(record, predicted.shape)
+        baselines = (
+            nearest_labels(record, baseline(record, kind, trial, by)) == label
+            for by in (effects_only, task_mean)
+        )
+        marks = (who == trial.person, what == trial.task, (who, what) == label, *baselines)
+        yield marks, predicted.follows is not None
+
+
+Way = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+
+
+def baseline(record: Synthesis, kind: str, trial: Trial, by: Way) -> FloatArray:
+    """(1378,) the cell of a trial made in another way; only cells that are there are used."""
+    own = record.tasks_of(trial.person)
+    own.pop(trial.task)
+    if kind == NEW_PERSON:
+        own = {task: own[task] for task in trial.given}
+    others = trial.given if kind == NEW_TASK else record.who_did(trial.task)
+    cells = {name: record.tasks_of(name) for name in others if name != trial.person}
+    shared = [task for task in own if all(task in did for did in cells.values())]
+    wanted = np.stack([did[trial.task] for did in cells.values()])
+    if not shared:
+        return task_mean(wanted, wanted, wanted)
+    basis = np.stack([[did[task] for task in shared] for did in cells.values()])
+    return by(basis, wanted, np.stack([own[task] for task in shared]))
+
+
+def task_mean(_: FloatArray, wanted: FloatArray, __: FloatArray) -> FloatArray:
+    """The mean of what the others did (K, 1378), whoever is asked for: a baseline."""
+    return np.asarray(wanted.mean(axis=0))

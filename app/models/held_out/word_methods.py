@@ -1,0 +1,129 @@
+"""The methods that words are judged by, each fitted on some labelled clips, scoring others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.models.words.calibration import WordCalibration, calibrate
+from app.models.words.correlated_space import CorrelatedSpace, fit_correlated_space
+from app.models.words.cosine_calibration import CosineCalibration, calibrate_cosines
+from app.models.words.model import clip_cosines, fit_word_model
+from app.models.words.symbol_space import DIMENSIONS, landmark_rows
+from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.mds import metric_mds, place
+
+PRIOR, DEFAULT, CCA_SCORE = "prior", "default", "cca-score"
+
+
+@dataclass(frozen=True, slots=True)
+class LabelledClips:
+    """Labelled clips: distances (N, N) of their symbols, statistics (N, p), labels (N, V),
+    groups (N), fold (N,); likelihoods (N, N) of each motion under each symbol, where known.
+    """
+
+    distances: FloatArray
+    statistics: FloatArray
+    labels: FloatArray
+    groups: tuple[str, ...]
+    fold: IntArray
+    likelihoods: FloatArray | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Scores:
+    """words: (n, V) of each held-out clip; clips: label vectors (queries, V) -> (queries, n)."""
+
+    words: FloatArray
+    clips: Callable[[FloatArray], FloatArray]
+
+
+def score(clips: LabelledClips, training: IntArray, held: IntArray) -> dict[str, Scores]:
+    """Scores of the held-out rows by each method, fitted on the training rows.
+
+    "cca" is the mode as it ranks, by angle, "cca-score" by the probabilities that it tells
+    (which puts clips of one fold behind those of another where fewer of its training clips
+    carry the word). "cca-distance" is Takano's retrieval as printed: nearest by Euclidean
+    distance; "cca-pinv" has the pseudo-inverse for the ridge besides. "cca-symbol" is his
+    recognition: an observed motion counts as the training symbol that it is likeliest of; the
+    others place its own symbol directly. It needs likelihoods.
+    """
+    labels = clips.labels[training]
+    own_groups = [clips.groups[row] for row in training]
+    frequency = np.tile(labels.mean(axis=0), (len(held), 1))
+    model = fit_word_model(clips.statistics[training], labels)
+    curve = calibrate(model, clips.statistics[training], labels, own_groups)
+    every = symbol_points(clips, training)
+    space = fit_correlated_space(every[training], labels)
+    printed = fit_correlated_space(every[training], labels, ridge=0.0)
+    calibrations = tuple(
+        calibrate_cosines(every[training], labels, own_groups, cosines_of)
+        for cosines_of in (CorrelatedSpace.single_word_cosines, CorrelatedSpace.word_cosines)
+    )
+    found = {
+        PRIOR: _by_cosine(frequency),
+        DEFAULT: _by_surprise(curve, model.outputs(clips.statistics[held])),
+        "cca": _by_angle(space, every[held]),
+        CCA_SCORE: _by_chance(space, every[held], calibrations, curve),
+        "cca-distance": _by_distance(space, every[held]),
+        "cca-pinv": _by_distance(printed, every[held]),
+    }
+    if clips.likelihoods is not None:
+        likeliest = training[np.argmax(clips.likelihoods[np.ix_(held, training)], axis=1)]
+        found["cca-symbol"] = _by_angle(space, every[likeliest])
+    return found
+
+
+def symbol_points(clips: LabelledClips, training: IntArray) -> FloatArray:
+    """(N, d) where all clips lie in the symbol space of the training rows.
+
+    As fit_symbol_space does, but from distances that are computed once for all folds.
+    """
+    rows = training[landmark_rows(len(training))]
+    landmarks = metric_mds(clips.distances[np.ix_(rows, rows)], DIMENSIONS)
+    return place(clips.distances[:, rows], landmarks)
+
+
+def _by_surprise(curve: WordCalibration, outputs: FloatArray) -> Scores:
+    words = curve.probabilities(outputs)
+    return Scores(words, _each(lambda query: -curve.joint_surprise(words[:, query > 0.0])))
+
+
+def _by_chance(
+    space: CorrelatedSpace,
+    points: FloatArray,
+    calibrations: tuple[CosineCalibration, ...],
+    curve: WordCalibration,
+) -> Scores:
+    """As mode "cca" scores; of clips the logarithm, as of the default. calibrations: of clips
+    for words, and of words for clips."""
+    cosines, back = calibrations
+
+    def for_query(query: FloatArray) -> FloatArray:
+        common = np.exp(-curve.joint_surprise(cosines.shares[None, query > 0.0]))
+        return np.asarray(np.log(cosines.probabilities(space.clip_cosines(points, query), common)))
+
+    return Scores(back.of_words(space.word_cosines(points)), _each(for_query))
+
+
+def _by_angle(space: CorrelatedSpace, points: FloatArray) -> Scores:
+    return Scores(
+        space.word_cosines(points), _each(lambda query: space.clip_cosines(points, query))
+    )
+
+
+def _by_distance(space: CorrelatedSpace, points: FloatArray) -> Scores:
+    return Scores(
+        -space.word_distances(points), _each(lambda query: -space.clip_distances(points, query))
+    )
+
+
+def _by_cosine(words: FloatArray) -> Scores:
+    return Scores(words, _each(lambda query: clip_cosines(words, query)))
+
+
+def _each(score_one: Callable[[FloatArray], FloatArray]) -> Callable[[FloatArray], FloatArray]:
+    """(queries, V) -> (queries, n) by a score for one query."""
+    return lambda queries: np.array([score_one(query) for query in queries])

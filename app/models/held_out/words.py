@@ -1,0 +1,276 @@
+"""How well words are predicted (Takano, section 3), held out and in-sample.
+
+Held out, every method is fitted on all folds but one and scored on that one; in-sample, as
+the paper did for retrieval, it is scored on the very clips that it was fitted on. Judged are
+the words of a clip (top-3 recognition), clips for a single word (F where recall = precision
+over all words at once, fig. 7) and clips for the label set of each clip (MAP, eq. 20).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.errors import NotEnoughLabels
+from app.models.folds import grouped_folds
+from app.models.held_out.ranking import (
+    average_precision,
+    brier_score,
+    calibration_error,
+    f_where_recall_is_precision,
+    mean_average_precision,
+    precision_at_recalls,
+    top_k_rate,
+)
+from app.models.held_out.word_methods import (
+    CCA_SCORE,
+    DEFAULT,
+    PRIOR,
+    LabelledClips,
+    score,
+    symbol_points,
+)
+from app.models.words.correlated_space import LEAST_CLIPS, RIDGE, fit_correlated_space
+from app.models.words.likeliest_symbols import likelihoods_of_symbols
+from app.models.words.symbol_space import symbol_distances
+from app.models.words.vocabulary import WordVocabulary
+from app.numerics.area_under_curve import area_under_curve
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.numerics.hmm.model import GaussianHMM
+
+FOLDS = 5
+MOST_CLIPS = 1000
+"""Larger libraries are judged on a random part of so many clips."""
+
+RECALLS = np.linspace(0.0, 1.0, 21)
+
+LEAST_RECORDINGS = 5
+"""That carry a word, for it to be judged by itself: about one a fold."""
+
+TOP_WORDS = 3
+"""Takano counts a clip as recognised when one of its words is among so many."""
+
+
+@dataclass(frozen=True, slots=True)
+class WordFigures:
+    """Figures of one method, each 0..1; precision: of single words at the recalls RECALLS."""
+
+    method: str
+    top_3_recognition: float
+    word_f: float
+    set_map: float
+    word_map: float
+    set_f: float
+    precision: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Reliability:
+    """Expected calibration error and Brier score of scores for single words, and for whole
+    label sets; 0 is perfect. prior_brier: of the words' frequency.
+    """
+
+    word_error: float
+    word_brier: float
+    prior_brier: float
+    set_error: float
+    set_brier: float
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedWord:
+    """Held-out figures of clips for one word; clips, recordings: that carry it.
+
+    too_rare: fewer recordings than LEAST_RECORDINGS, so that its figures are mostly chance;
+    they count in the figures over all words.
+    """
+
+    word: str
+    clips: int
+    recordings: int
+    average_precision: float
+    f: float
+    area_under_curve: float
+    too_rare: bool
+
+
+@dataclass(frozen=True, slots=True)
+class WordEvaluation:
+    """figures: held out, one a method; on so many clips, words and folds; in_sample: as the
+    paper's; reliability: of the held-out scores of DEFAULT and CCA_SCORE as probabilities;
+    correlations: canonical ones of all clips by kind of inverse, falling; by_word: the default,
+    held out.
+    """
+
+    figures: tuple[WordFigures, ...]
+    clips: int
+    words: int
+    folds: int
+    in_sample: tuple[WordFigures, ...]
+    reliability: dict[str, Reliability]
+    correlations: dict[str, tuple[float, ...]]
+    by_word: tuple[JudgedWord, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Tables:
+    """Scores of all clips: words (N, V), singles (V, N), sets (N, N)."""
+
+    words: FloatArray
+    singles: FloatArray
+    sets: FloatArray
+
+
+def held_out_word_figures(
+    symbols: Sequence[GaussianHMM],
+    statistics: FloatArray,
+    label_sets: Sequence[Sequence[str]],
+    groups: Sequence[str],
+    *,
+    sequence: Callable[[int], FloatArray] | None = None,
+    seed: int = 0,
+) -> WordEvaluation:
+    """Figures of the prior (word frequency), the default word model and the cca mode, which
+    stands in several forms (see word_methods).
+
+    symbols: N; statistics: (N, p); label_sets: N; groups: N, equal for files of one
+    recording (see folds.recording_of); sequence: the channels (T, D) of the motion at a row, of
+    which its symbol was made; without it, recognition through the most likely symbol is left
+    out. Clips without words are left out.
+    Raises NotEnoughLabels where there are too few clips to hold some out.
+    """
+    chosen = _chosen(label_sets, seed)
+    labels = [label_sets[row] for row in chosen]
+    vocabulary = WordVocabulary.of(labels)
+    own_groups = [groups[row] for row in chosen]
+    folds = min(FOLDS, len(set(own_groups)))
+    own_symbols = [symbols[row] for row in chosen]
+    distances = symbol_distances(own_symbols, own_symbols)
+    likelihoods = None
+    if sequence is not None:
+        channels = sequence  # of the rows that were chosen
+        likelihoods = likelihoods_of_symbols(
+            own_symbols, distances, lambda row: channels(int(chosen[row]))
+        )
+    clips = LabelledClips(
+        distances,
+        np.asarray(statistics)[chosen],
+        vocabulary.label_matrix(labels),
+        tuple(own_groups),
+        grouped_folds(own_groups, folds, seed=seed),
+        likelihoods,
+    )
+    _check_size(clips, folds)
+    parts = [
+        (np.flatnonzero(clips.fold != fold), np.flatnonzero(clips.fold == fold))
+        for fold in np.unique(clips.fold)
+    ]
+    everything = np.arange(len(chosen))
+    held_out, in_sample = _tables(clips, parts), _tables(clips, [(everything, everything)])
+    return WordEvaluation(
+        figures=_all_figures(held_out, clips.labels),
+        clips=len(chosen),
+        words=len(vocabulary),
+        folds=folds,
+        in_sample=_all_figures(in_sample, clips.labels),
+        reliability={
+            name: _reliability(held_out, name, clips.labels) for name in (DEFAULT, CCA_SCORE)
+        },
+        correlations=_correlations(clips),
+        by_word=_by_word(held_out[DEFAULT].singles, clips, vocabulary.words),
+    )
+
+
+def _chosen(label_sets: Sequence[Sequence[str]], seed: int) -> IntArray:
+    """Rows of labelled clips, sorted; at most MOST_CLIPS."""
+    labelled = np.array([row for row, labels in enumerate(label_sets) if labels], dtype=np.int64)
+    return np.sort(np.random.RandomState(seed).permutation(labelled)[:MOST_CLIPS])
+
+
+def _check_size(clips: LabelledClips, folds: int) -> None:
+    training = len(clips.fold) - int(np.bincount(clips.fold, minlength=1).max(initial=0))
+    if folds < 2 or training < LEAST_CLIPS:
+        raise NotEnoughLabels(f"{len(clips.fold)} labelled clips are too few to hold some out.")
+
+
+def _tables(clips: LabelledClips, parts: Sequence[tuple[IntArray, IntArray]]) -> dict[str, _Tables]:
+    """By method; parts: rows to fit on and rows to score, which together are all."""
+    count, vocabulary = clips.labels.shape
+    tables: dict[str, _Tables] = {}
+    for training, held in parts:
+        for name, scores in score(clips, training, held).items():
+            if name not in tables:
+                shapes = (count, vocabulary), (vocabulary, count), (count, count)
+                tables[name] = _Tables(*(np.zeros(shape) for shape in shapes))
+            tables[name].words[held] = scores.words
+            tables[name].singles[:, held] = scores.clips(np.eye(vocabulary))
+            tables[name].sets[:, held] = scores.clips(clips.labels)
+    return tables
+
+
+def _all_figures(tables: dict[str, _Tables], labels: FloatArray) -> tuple[WordFigures, ...]:
+    return tuple(_figures(name, table, labels) for name, table in tables.items())
+
+
+def _figures(name: str, tables: _Tables, labels: FloatArray) -> WordFigures:
+    carries = labels > 0.0
+    carries_all = _carries_all(labels)
+    precision = precision_at_recalls(tables.singles, carries.T, RECALLS)
+    return WordFigures(
+        method=name,
+        top_3_recognition=top_k_rate(tables.words, carries, TOP_WORDS),
+        word_f=f_where_recall_is_precision(tables.singles, carries.T),
+        set_map=mean_average_precision(tables.sets, carries_all),
+        word_map=mean_average_precision(tables.singles, carries.T),
+        set_f=f_where_recall_is_precision(tables.sets, carries_all),
+        precision=tuple(precision.tolist()),
+    )
+
+
+def _carries_all(labels: FloatArray) -> BoolArray:
+    """(queries, N) whether each clip carries all words of the label set of another."""
+    return np.asarray(labels @ labels.T >= labels.sum(axis=1)[:, None])
+
+
+def _reliability(tables: dict[str, _Tables], method: str, labels: FloatArray) -> Reliability:
+    own, carries, carries_all = tables[method], labels > 0.0, _carries_all(labels)
+    together = np.exp(own.sets)
+    return Reliability(
+        word_error=calibration_error(own.words, carries),
+        word_brier=brier_score(own.words, carries),
+        prior_brier=brier_score(tables[PRIOR].words, carries),
+        set_error=calibration_error(together, carries_all),
+        set_brier=brier_score(together, carries_all),
+    )
+
+
+def _by_word(
+    singles: FloatArray, clips: LabelledClips, words: Sequence[str]
+) -> tuple[JudgedWord, ...]:
+    """The most carried first; singles: (V, N)."""
+    found = []
+    for word, scores, carries in zip(words, singles, clips.labels.T > 0.0, strict=True):
+        recordings = len({clips.groups[row] for row in np.flatnonzero(carries)})
+        judged = JudgedWord(
+            word=word,
+            clips=int(carries.sum()),
+            recordings=recordings,
+            average_precision=average_precision(scores, carries),
+            f=f_where_recall_is_precision(scores, carries),
+            area_under_curve=area_under_curve(scores[carries], scores[~carries]),
+            too_rare=recordings < LEAST_RECORDINGS,
+        )
+        found.append(judged)
+    return tuple(sorted(found, key=lambda one: (-one.clips, one.word)))
+
+
+def _correlations(clips: LabelledClips) -> dict[str, tuple[float, ...]]:
+    points = symbol_points(clips, np.arange(len(clips.labels)))
+    return {
+        name: tuple(
+            fit_correlated_space(points, clips.labels, ridge=ridge).pair.correlations.tolist()
+        )
+        for name, ridge in (("ridge", RIDGE), ("pseudo_inverse", 0.0))
+    }

@@ -1,0 +1,1 @@
+"""Keypose thresholds that are learned from annotations."""

@@ -1,0 +1,167 @@
+"""T1 and T2 from examples (Perera 2009, sections 3.1 and 3.3): annotated clips in, values out.
+
+All pairs on a grid are tried. Keyposes are hardly sensitive to them (figs 4 and 5), so of
+those pairs that do about as well the one nearest to the usual thresholds is taken: a few
+annotated clips must not pull them to an extreme.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from itertools import product
+from typing import Any, Protocol
+
+import numpy as np
+
+from app.analysis.keyposes.keyposes import T1, T2
+from app.models.keyposes.matching import TOLERANCE, Counts, match
+from app.numerics.arrays import FloatArray, IntArray
+
+TRIED_T1 = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.8, 1.0)
+TRIED_T2 = (0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0, 1.25, 1.5, 2.0)
+"""In units of the median local maximum of an energy."""
+
+ABOUT_AS_WELL = 0.005
+"""Of F."""
+
+CURVE_T1 = tuple(np.round(np.arange(0.0, 2.01, 0.1), 2).tolist())
+CURVE_T2 = tuple(np.round(np.arange(0.0, 3.01, 0.15), 2).tolist())
+"""Where precision and recall are told (figs 4 and 5)."""
+
+
+class Selectable(Protocol):
+    """A motion whose keyposes depend on thresholds, as `keyposes.Candidates`."""
+
+    def times(self, t1: float, t2: float) -> FloatArray:
+        """(k,) seconds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """An annotated motion; true: (k,) seconds."""
+
+    candidates: Selectable
+    true: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Thresholds:
+    """Below t1 a minimum is small, beyond t2 a drop is deep."""
+
+    t1: float
+    t2: float
+
+
+USUAL = Thresholds(T1, T2)
+
+
+@dataclass(frozen=True, slots=True)
+class ThresholdCurve:
+    """Precision and recall over one threshold, (v,) each, the other one held."""
+
+    values: FloatArray
+    precision: FloatArray
+    recall: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class KeyposeThresholds:
+    """The model that is kept: thresholds by method of the energy ("rms", "printed")."""
+
+    by_method: dict[str, Thresholds]
+
+    def to_arrays(self) -> tuple[dict[str, FloatArray], dict[str, Any]]:
+        """Arrays (none) and JSON, for `from_arrays`."""
+        return {}, {name: asdict(pair) for name, pair in self.by_method.items()}
+
+    @classmethod
+    def from_arrays(
+        cls,
+        arrays: Mapping[str, FloatArray],  # noqa: ARG003 - as all models are built
+        meta: Mapping[str, Any],
+    ) -> KeyposeThresholds:
+        """The model that `to_arrays` told. Raises KeyError, ValueError."""
+        return cls(
+            {name: Thresholds(float(pair["t1"]), float(pair["t2"])) for name, pair in meta.items()}
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Lesson:
+    """What every pair of thresholds makes of each example.
+
+    counts: (examples, T1, T2, 3) true, found and correct.
+    """
+
+    counts: IntArray
+
+    def learned(self) -> Thresholds:
+        """The thresholds under which the most is right, all keyposes counting alike.
+
+        The usual ones without an example.
+        """
+        return _best(self.counts.sum(axis=0))
+
+    def held_out(self, groups: Sequence[str]) -> tuple[tuple[Thresholds, Counts], ...]:
+        """For each example what the other groups teach, and how it fares with that."""
+        names = np.array(groups)
+        found = []
+        for name, own in zip(groups, self.counts, strict=True):
+            pair = _best(self.counts[names != name].sum(axis=0))
+            at = (TRIED_T1.index(pair.t1), TRIED_T2.index(pair.t2))
+            found.append((pair, Counts(*(int(count) for count in own[at]))))
+        return tuple(found)
+
+
+def lesson(examples: Sequence[Example], within: float = TOLERANCE) -> Lesson:
+    """Try every pair on the grid; some 50 ms for half a minute of dance."""
+    pairs = list(product(TRIED_T1, TRIED_T2))
+    counts = np.array([_counts(example, pairs, within) for example in examples], dtype=np.int64)
+    return Lesson(counts.reshape(len(examples), len(TRIED_T1), len(TRIED_T2), 3))
+
+
+def curve_of_t1(
+    examples: Sequence[Example], t2: float, within: float = TOLERANCE
+) -> ThresholdCurve:
+    """Fig. 4: T1 varies, T2 is held."""
+    return _curve([(t1, t2) for t1 in CURVE_T1], CURVE_T1, examples, within)
+
+
+def curve_of_t2(
+    examples: Sequence[Example], t1: float, within: float = TOLERANCE
+) -> ThresholdCurve:
+    """Fig. 5: T2 varies, T1 is held."""
+    return _curve([(t1, t2) for t2 in CURVE_T2], CURVE_T2, examples, within)
+
+
+def _counts(
+    example: Example, pairs: Sequence[tuple[float, float]], within: float
+) -> list[tuple[int, int, int]]:
+    matched = (match(example.candidates.times(*pair), example.true, within) for pair in pairs)
+    return [(counts.true, counts.found, counts.correct) for counts in matched]
+
+
+def _best(counts: IntArray) -> Thresholds:
+    """Of counts (T1, T2, 3) over the grid."""
+    true, found, correct = np.moveaxis(counts, -1, 0)
+    f = 2 * correct / np.maximum(true + found, 1)
+    t1, t2 = np.meshgrid(TRIED_T1, TRIED_T2, indexing="ij")
+    away = np.abs(np.log(t1 / USUAL.t1)) + np.abs(np.log(t2 / USUAL.t2))
+    at = int(np.argmin(np.where(f >= f.max() - ABOUT_AS_WELL, away, np.inf)))
+    return Thresholds(float(t1.flat[at]), float(t2.flat[at]))
+
+
+def _curve(
+    pairs: Sequence[tuple[float, float]],
+    values: Sequence[float],
+    examples: Sequence[Example],
+    within: float,
+) -> ThresholdCurve:
+    sums = np.sum([_counts(example, pairs, within) for example in examples], axis=0)
+    told = [Counts(*(int(count) for count in row)) for row in sums]
+    return ThresholdCurve(
+        values=np.array(values),
+        precision=np.array([counts.precision for counts in told]),
+        recall=np.array([counts.recall for counts in told]),
+    )

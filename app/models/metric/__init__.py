@@ -1,0 +1,1 @@
+"""Learned metrics for tasks and persons."""

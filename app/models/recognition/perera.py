@@ -1,0 +1,251 @@
+"""Perera's recognition on a library (2009, section 5.3): method "perera".
+
+A clip's motion sample is probed against the task model of all labelled clips; the category with
+the least objective (eq. 14) is the best. Whether a category holds it is told by eqs 15-16: its
+objective beside F*_k, what clips of that category from another recording have. Where the paper
+sets thresholds by hand, the largest ratio that passes is chosen on clips, tasks and persons that
+are held out, and can be set by a rate of false acceptance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from app.models.holding_out import Held, rounds
+from app.models.recognition.answers import Answer, Recognition, answer, given
+from app.models.recognition.calibration import NEW, Calibration, fit_calibration
+from app.models.recognition.task_model import JOINTS, Reading, TaskModel, fit_task_model, objective
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+
+TENSOR_RECOGNISER_VERSION = 1
+
+SHARPNESS = 20.0
+"""Of evidence and novelty, in logarithms of the objective: of what calibration divides."""
+
+_SMALLEST = 1e-12
+"""Square body lengths; what is in the library itself is at no distance."""
+
+Labels = Sequence[str | None]
+
+
+@dataclass(frozen=True, slots=True)
+class TensorRecogniser:
+    """reach_of_persons (P,), reach_of_tasks (T,): F*_k of the model's categories."""
+
+    model: TaskModel
+    reach_of_persons: FloatArray
+    reach_of_tasks: FloatArray
+    person_calibration: Calibration
+    task_calibration: Calibration
+
+    def accepting(self, false_accept_rate: float) -> TensorRecogniser:
+        """The same, calling something new known at this rate at most (of held-out clips)."""
+        return replace(
+            self,
+            person_calibration=self.person_calibration.at_false_acceptance(false_accept_rate),
+            task_calibration=self.task_calibration.at_false_acceptance(false_accept_rate),
+        )
+
+    def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
+        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        arrays, meta = self.model.to_arrays()
+        person, meta["person_calibration"] = self.person_calibration.to_arrays("person")
+        task, meta["task_calibration"] = self.task_calibration.to_arrays("task")
+        reach = {"persons_reach": self.reach_of_persons, "tasks_reach": self.reach_of_tasks}
+        return arrays | person | task | reach, meta | {"version": TENSOR_RECOGNISER_VERSION}
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> TensorRecogniser:
+        """The record that to_arrays took apart. Raises ValueError on another version."""
+        if meta["version"] != TENSOR_RECOGNISER_VERSION:
+            raise ValueError(f"tensor recogniser of version {meta['version']}")
+        return cls(
+            TaskModel.from_arrays(arrays, meta),
+            arrays["persons_reach"],
+            arrays["tasks_reach"],
+            Calibration.from_arrays("person", arrays, meta["person_calibration"]),
+            Calibration.from_arrays("task", arrays, meta["task_calibration"]),
+        )
+
+
+def fit_tensor_recogniser(
+    samples: FloatArray, persons: Labels, tasks: Labels, groups: Sequence[str] | None = None
+) -> TensorRecogniser:
+    """Fit on motion samples (clips, 1250); those without both labels are left out.
+
+    groups: (clips,) clips of one recording share a value and are held out together.
+    Raises NotEnoughLabels without a cell, or with too many.
+    """
+    use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
+    poses = poses_of(np.asarray(samples)[use])
+    who, what = [persons[i] for i in use], [tasks[i] for i in use]
+    together = [groups[i] if groups is not None else str(i) for i in use]
+    model = fit_task_model(poses, who, what)
+    held = [
+        _Round.of(poses, who, what, kind, train, probe, model)
+        for kind, train, probe in rounds(who, what, together)
+    ]
+    people = [(one.of_persons, one.person, one.seen) for one in held if one.kind is not Held.TASKS]
+    doings = [(one.of_tasks, one.task, one.seen) for one in held]
+    reaches = _reach(people, len(model.persons)), _reach(doings, len(model.tasks))
+    calibrations = [
+        _calibrated(each, reach) for each, reach in zip((people, doings), reaches, strict=True)
+    ]
+    return TensorRecogniser(model, *reaches, *calibrations)
+
+
+def uncalibrated(samples: FloatArray, persons: Labels, tasks: Labels) -> TensorRecogniser:
+    """The same without holding anything out: its candidates are in the right order, what it calls
+    unknown and its scores tell nothing. Raises NotEnoughLabels."""
+    model = fit_task_model(poses_of(samples), persons, tasks)
+    people, doings = np.ones(len(model.persons)), np.ones(len(model.tasks))
+    return TensorRecogniser(model, people, doings, _calibrated([], people), _calibrated([], doings))
+
+
+def recognise_by_tensor(
+    record: TensorRecogniser,
+    samples: FloatArray,
+    known_person: str | None = None,
+    known_task: str | None = None,
+) -> list[Recognition]:
+    """Who does what in motion samples (n, 1250), given what the asker knows.
+
+    Where the other factor is known, only its cells are held against a probe; a label that the
+    library lacks tells nothing.
+    """
+    model = record.model
+    distances = model.joint_distances(poses_of(samples))
+    people = _objectives(model, distances, "person", _only(model.tasks, model.task, known_task))
+    tasks = _objectives(model, distances, "task", _only(model.persons, model.person, known_person))
+    who = _answers(people, model.persons, record.reach_of_persons, record.person_calibration)
+    what = _answers(tasks, model.tasks, record.reach_of_tasks, record.task_calibration)
+    if known_person is not None:
+        who = [given(known_person, model.persons)] * len(who)
+    if known_task is not None:
+        what = [given(known_task, model.tasks)] * len(what)
+    return [Recognition(one, other) for one, other in zip(who, what, strict=True)]
+
+
+def poses_of(samples: FloatArray) -> FloatArray:
+    """(n, 32, 13, 3) of motion samples (n, 1250): without turn and speed, which are no joint's."""
+    places = np.asarray(samples, dtype=np.float64)[:, :-2]
+    moments = places.shape[1] // (3 * JOINTS)
+    return places.reshape(len(places), moments, JOINTS, 3)
+
+
+@dataclass(frozen=True, slots=True)
+class _Round:
+    """What a model of the training clips says of n probes. of_persons (n, P), of_tasks (n, T):
+    objectives, inf of labels not trained on; person, task: (n,) the truth, NEW where it was not
+    trained on; seen: (n,) whether both together were."""
+
+    kind: Held
+    of_persons: FloatArray
+    of_tasks: FloatArray
+    person: IntArray
+    task: IntArray
+    seen: BoolArray
+
+    @classmethod
+    def of(
+        cls,
+        poses: FloatArray,
+        persons: Labels,
+        tasks: Labels,
+        kind: Held,
+        train: IntArray,
+        probe: IntArray,
+        whole: TaskModel,
+    ) -> _Round:
+        model = fit_task_model(poses[train], [persons[i] for i in train], [tasks[i] for i in train])
+        distances = model.joint_distances(poses[probe])
+        pairs = {(persons[i], tasks[i]) for i in train}
+        return cls(
+            kind,
+            _spread(_objectives(model, distances, "person", None), model.persons, whole.persons),
+            _spread(_objectives(model, distances, "task", None), model.tasks, whole.tasks),
+            _index([persons[i] for i in probe], model.persons, whole.persons),
+            _index([tasks[i] for i in probe], model.tasks, whole.tasks),
+            np.array([(persons[i], tasks[i]) in pairs for i in probe], dtype=bool),
+        )
+
+
+def _objectives(
+    model: TaskModel, distances: FloatArray, factor: str, cells: BoolArray | None
+) -> FloatArray:
+    """(n, labels) eq. 14, minimised, over the chosen cells (c,); inf for labels without one."""
+    label, names = (
+        (model.person, model.persons) if factor == "person" else (model.task, model.tasks)
+    )
+    if cells is not None:
+        distances = np.where(cells[:, None], distances, np.inf)
+    return objective(distances, label, len(names), model.weights, Reading.LEAST)
+
+
+def _only(names: tuple[str, ...], label: IntArray, known: str | None) -> BoolArray | None:
+    return np.asarray(label == names.index(known)) if known in names else None
+
+
+def _spread(objectives: FloatArray, names: tuple[str, ...], whole: tuple[str, ...]) -> FloatArray:
+    out = np.full((len(objectives), len(whole)), np.inf)
+    out[:, [whole.index(name) for name in names]] = objectives
+    return out
+
+
+def _index(labels: Labels, seen: tuple[str, ...], whole: tuple[str, ...]) -> IntArray:
+    places = [whole.index(str(label)) if label in seen else NEW for label in labels]
+    return np.array(places, dtype=np.int64)
+
+
+_HeldOut = tuple[FloatArray, IntArray, BoolArray]
+"""objectives (n, labels), truth (n,) and seen (n,), as `_Round` has them."""
+
+
+def _together(held: list[_HeldOut], labels: int) -> _HeldOut:
+    empty = (np.zeros((0, labels)), np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool))
+    objectives, truth, seen = (np.concatenate(part) for part in zip(empty, *held, strict=True))
+    return objectives, truth, seen
+
+
+def _reach(held: list[_HeldOut], labels: int) -> FloatArray:
+    """(labels,) F*_k: the mean objective of each label's held-out clips of which there was the
+    like in training, of others those of all held out; for labels without any the mean of all."""
+    objectives, truth, seen = _together(held, labels)
+    usual = (truth != NEW) & seen
+    chosen = usual if usual.any() else truth != NEW
+    values, own = objectives[chosen, truth[chosen]], truth[chosen]
+    counts = np.bincount(own, minlength=labels)
+    otherwise = float(values.mean()) if len(values) else 1.0
+    sums = np.bincount(own, values, minlength=labels)
+    means = np.where(counts > 0, sums / np.maximum(counts, 1), otherwise)
+    return np.asarray(np.maximum(means, _SMALLEST))
+
+
+def _calibrated(held: list[_HeldOut], reach: FloatArray) -> Calibration:
+    objectives, truth, seen = _together(held, len(reach))
+    return fit_calibration(_evidence(objectives), _novelty(objectives, reach), truth, seen)
+
+
+def _evidence(objectives: FloatArray) -> FloatArray:
+    return np.asarray(-SHARPNESS * np.log(np.maximum(objectives, _SMALLEST)))
+
+
+def _novelty(objectives: FloatArray, reach: FloatArray) -> FloatArray:
+    """(n,) logarithm of the least share of F*_k (eqs 15-16)."""
+    shares = np.maximum(objectives / reach, _SMALLEST)
+    return np.asarray(SHARPNESS * np.log(shares.min(axis=1, initial=np.inf)))
+
+
+def _answers(
+    objectives: FloatArray, names: tuple[str, ...], reach: FloatArray, calibration: Calibration
+) -> list[Answer]:
+    new = _novelty(objectives, reach)
+    beliefs = calibration.beliefs(_evidence(objectives), new)
+    beyond = (new - calibration.threshold) / calibration.scale
+    return [
+        answer(names, row, bool(n <= 0), float(n)) for row, n in zip(beliefs, beyond, strict=True)
+    ]

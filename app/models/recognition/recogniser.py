@@ -1,0 +1,258 @@
+"""The default recogniser: which person does which task, or that it is someone or something new.
+
+Clips are looked at in two ways (app.models.recognition.views), each brought to PCA coordinates
+and held against all hypotheses (app.models.recognition.hypotheses). Evidence of a label is the sum
+over the hypotheses that name it; novelty weighs those that say "new" against those that do not (DESIGN 6,
+Unknown; it parted new from known better than the distance to the nearest cell over that cell's
+radius). Both are calibrated on clips, persons and tasks held out at fit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from app.analysis.descriptors.motion_sample import SAMPLE_LENGTH
+from app.errors import NotEnoughLabels
+from app.models.cells import find_cells
+from app.models.holding_out import MOST_PROBES, Held, rounds
+from app.models.recognition.answers import Answer, Recognition, answer, given
+from app.models.recognition.calibration import NEW, Calibration, fit_calibration
+from app.models.recognition.hypotheses import fit_hypotheses
+from app.models.recognition.views import (
+    SAMPLE_DIMENSIONS,
+    Logs,
+    Seen,
+    View,
+    both_views,
+    evidence,
+    newness,
+    wide_dimensions,
+)
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.numerics.principal_axes import principal_axes
+
+RECOGNISER_VERSION = 3
+
+MOSTLY_REPEATED = 0.5
+"""Share of clips beside which there must be another of the same person at the same task for takes
+to count as repeated."""
+
+IMAGINED = 3
+"""Takes of each cell that are imagined, by which novelty is judged where takes are not repeated."""
+
+_Arrays = dict[str, np.ndarray[Any, Any]]
+
+
+@dataclass(frozen=True, slots=True)
+class Recogniser:
+    """persons, tasks: sorted labels, to which indices elsewhere refer; sample, wide: the two
+    ways of looking, whose hypotheses are of the same kinds and labels in the same order;
+    persons_by_both: whether new persons are told by both (see Logs)."""
+
+    persons: tuple[str, ...]
+    tasks: tuple[str, ...]
+    sample: View
+    wide: View
+    persons_by_both: bool
+    person_calibration: Calibration
+    task_calibration: Calibration
+
+    def accepting(self, false_accept_rate: float) -> Recogniser:
+        """The same, calling something new known at this rate at most (of held-out clips)."""
+        return replace(
+            self,
+            person_calibration=self.person_calibration.at_false_acceptance(false_accept_rate),
+            task_calibration=self.task_calibration.at_false_acceptance(false_accept_rate),
+        )
+
+    def to_arrays(self) -> tuple[_Arrays, dict[str, Any]]:
+        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        arrays = self.sample.to_arrays("sample") | self.wide.to_arrays("wide")
+        meta: dict[str, Any] = {"version": RECOGNISER_VERSION}
+        meta |= {"persons": list(self.persons), "tasks": list(self.tasks)}
+        meta["persons_by_both"] = self.persons_by_both
+        for name in ("person", "task"):
+            calibration: Calibration = getattr(self, f"{name}_calibration")
+            found, meta[f"{name}_calibration"] = calibration.to_arrays(name)
+            arrays |= found
+        return arrays, meta
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> Recogniser:
+        """The record that to_arrays took apart. Raises ValueError on another version."""
+        if meta["version"] != RECOGNISER_VERSION:
+            raise ValueError(f"recogniser of version {meta['version']}")
+        return cls(
+            tuple(meta["persons"]),
+            tuple(meta["tasks"]),
+            View.from_arrays("sample", arrays),
+            View.from_arrays("wide", arrays),
+            bool(meta["persons_by_both"]),
+            Calibration.from_arrays("person", arrays, meta["person_calibration"]),
+            Calibration.from_arrays("task", arrays, meta["task_calibration"]),
+        )
+
+
+def fit_recogniser(
+    samples: FloatArray,
+    persons: Sequence[str | None],
+    tasks: Sequence[str | None],
+    groups: Sequence[str] | None = None,
+    sample_length: int = SAMPLE_LENGTH,
+) -> Recogniser:
+    """Fit on full samples with their labels, None where there is none.
+
+    samples: (clips, 1762), motion samples of `sample_length` (1250) each followed by the clip's
+    wide motion vector; groups: (clips,) clips of one recording share a value and are held out
+    together. Raises NotEnoughLabels below two labelled clips.
+    """
+    use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if any(labels)]
+    if len(use) < 2:
+        raise NotEnoughLabels("Recognition needs at least two clips with a person or a task.")
+    persons, tasks = [persons[i] for i in use], [tasks[i] for i in use]
+    together = [groups[i] if groups is not None else str(i) for i in use]
+    rows = both_views(np.asarray(samples)[use], sample_length)
+    cells = find_cells(persons, tasks)
+    sample = principal_axes(rows.sample, SAMPLE_DIMENSIONS)
+    wide = principal_axes(rows.wide, wide_dimensions(len(cells)))
+    points = Seen(sample.project(rows.sample), wide.project(rows.wide))
+    views = (
+        View(sample, fit_hypotheses(points.sample, cells)),
+        View(wide, fit_hypotheses(points.wide, cells)),
+    )
+    repeated = int(cells.takes[cells.takes > 1].sum())
+    by_both = repeated < MOSTLY_REPEATED * len(use)
+    person, task = _calibrations(points, persons, tasks, together, views, by_both)
+    return Recogniser(cells.persons, cells.tasks, *views, by_both, person, task)
+
+
+def recognise(
+    record: Recogniser,
+    sample: FloatArray,
+    known_person: str | None = None,
+    known_task: str | None = None,
+) -> Recognition:
+    """Who does what in one full sample (1762,), given what the asker knows.
+
+    A known label that the library lacks is taken at its word: someone, or something, new.
+    """
+    return recognise_many(record, np.asarray(sample)[None], known_person, known_task)[0]
+
+
+def recognise_many(
+    record: Recogniser,
+    samples: FloatArray,
+    known_person: str | None = None,
+    known_task: str | None = None,
+) -> list[Recognition]:
+    """`recognise` for each of `samples` (n, 1762)."""
+    rows = both_views(samples, len(record.sample.axes.centre))
+    sample, wide = record.sample, record.wide
+    points = Seen(sample.axes.project(rows.sample), wide.axes.project(rows.wide))
+    h = wide.hypotheses
+    logs = Logs.under(sample.hypotheses, h, points, persons_by_both=record.persons_by_both)
+    logs = logs.without_others(h.person, record.persons, known_person)
+    logs = logs.without_others(h.task, record.tasks, known_task)
+    told = record.persons, record.person_calibration, known_person
+    who = _answers(logs.ranking, logs.new_person, h.person, *told)
+    told = record.tasks, record.task_calibration, known_task
+    what = _answers(logs.ranking, logs.new_task, h.task, *told)
+    return [Recognition(person, task) for person, task in zip(who, what, strict=True)]
+
+
+def _answers(
+    ranking: FloatArray,
+    novelty: FloatArray,
+    label: IntArray,
+    names: tuple[str, ...],
+    calibration: Calibration,
+    known: str | None,
+) -> list[Answer]:
+    """From log densities (n, h) by which labels are ranked and by which is told what is new."""
+    if known is not None or not names:
+        return [given(known or "", names)] * len(ranking)
+    new = newness(novelty, label)
+    beliefs = calibration.beliefs(evidence(ranking, label, len(names)), new)
+    beyond = (new - calibration.threshold) / calibration.scale
+    return [
+        answer(names, row, bool(n <= 0), float(n)) for row, n in zip(beliefs, beyond, strict=True)
+    ]
+
+
+_HeldOut = tuple[FloatArray, FloatArray, IntArray, BoolArray]
+"""evidence (n, labels), novelty (n,), truth (n,), seen (n,); see app.models.recognition.calibration."""
+
+
+def _calibrations(
+    points: Seen,
+    persons: Sequence[str | None],
+    tasks: Sequence[str | None],
+    groups: Sequence[str],
+    views: tuple[View, View],
+    persons_by_both: bool,
+) -> tuple[Calibration, Calibration]:
+    """For persons and for tasks, from rounds that hold out clips, persons and tasks, and from
+    further takes as the `views` on all clips imagine them."""
+    of_persons, of_tasks = [], []
+    names = [tuple(sorted({label for label in labels if label})) for labels in (persons, tasks)]
+    for held, train, probe in rounds(persons, tasks, groups):
+        seen = find_cells([persons[i] for i in train], [tasks[i] for i in train])
+        sample, h = (fit_hypotheses(part, seen) for part in points.of(train))
+        logs = Logs.under(sample, h, points.of(probe), persons_by_both=persons_by_both)
+        who, what = [persons[i] for i in probe], [tasks[i] for i in probe]
+        pairs = {(persons[i], tasks[i]) for i in train}
+        again = np.array([pair in pairs for pair in zip(who, what, strict=True)], dtype=bool)
+        if held is not Held.TASKS:
+            new = newness(logs.new_person, h.person)
+            ranked = logs.ranking, h.person, seen.persons
+            of_persons.append(_held_out(*ranked, new, who, names[0], again))
+        # A stranger's walk is a walk: persons held out count as known tasks.
+        new = newness(logs.new_task, h.task)
+        of_tasks.append(_held_out(logs.ranking, h.task, seen.tasks, new, what, names[1], again))
+    # Judged by clips of whom and what were recorded together, at the cost of strangers: unless a
+    # gap parts new tasks from known ones, their walk is called unknown, with `walk` the best.
+    sample, h = (view.hypotheses for view in views)
+    further = Seen(*(each.further_takes(IMAGINED, MOST_PROBES) for each in (sample, h)))
+    imagined = Logs.under(sample, h, further, persons_by_both=persons_by_both)
+    return (
+        _calibrated(of_persons, len(names[0]), newness(imagined.new_person, h.person)),
+        _calibrated(of_tasks, len(names[1]), newness(imagined.new_task, h.task)),
+    )
+
+
+def _held_out(
+    ranking: FloatArray,
+    label: IntArray,
+    seen: tuple[str, ...],
+    new: FloatArray,
+    truth: Sequence[str | None],
+    names: tuple[str, ...],
+    again: BoolArray,
+) -> _HeldOut:
+    """What a round said of its labelled probes; labels not `seen` have no evidence."""
+    has = np.array([bool(name) for name in truth], dtype=bool)
+    if not seen or not has.any():
+        return _nothing(len(names))
+    found = np.full((int(has.sum()), len(names)), -np.inf)
+    found[:, [names.index(name) for name in seen]] = evidence(ranking[has], label, len(seen))
+    index = [names.index(name) if name in seen else NEW for name in truth if name]
+    return found, new[has], np.array(index, dtype=np.int64), again[has]
+
+
+def _calibrated(held: list[_HeldOut], labels: int, imagined: FloatArray) -> Calibration:
+    parts = zip(_nothing(labels), *held, strict=True)
+    found, new, truth, again = (np.concatenate(part) for part in parts)
+    return fit_calibration(found, new, truth, again, imagined)
+
+
+def _nothing(labels: int) -> _HeldOut:
+    return (
+        np.zeros((0, labels)),
+        np.zeros(0),
+        np.zeros(0, dtype=np.int64),
+        np.zeros(0, dtype=bool),
+    )

@@ -1,0 +1,150 @@
+"""A course of 13 joint roles, put on a person's own skeleton.
+
+The rotations of the joints start as a kernel mean of those moments of the person in which the pose
+was most alike. So twists, toes and fingers, which 13 roles do not show, are as the person does
+them. Then the joints are rotated until the roles are where they should be (`motion.posing`), and
+once more with the feet fixed where they stand (`foot_contact`). At last the feet are laid on the
+floor (`synthetic_feet`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from app.models.synthesis.feet import LOWEST_QUANTILE, feet_of, floor_of, on_the_floor, sole_depths
+from app.models.synthesis.motion import Course
+from app.motion.frame.body_frame import ANALYSIS_RATE, BodyTrack, turned
+from app.motion.frame.foot_contact import FEET, planted
+from app.motion.posing.posing import ancestors, pose_to
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.skeleton.animation import Animation, continuous
+from app.motion.skeleton.rotations import conjugate, identity_quaternions, multiply
+from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.euclidean import squared_distances
+
+NEIGHBOURS = 12
+"""Moments of the person's that a pose starts from."""
+
+SMOOTHING = 1.5
+"""Frames (standard deviation): neighbours change from one frame to the next."""
+
+_HIPS = SUN_ROLES.index(JointRole.HIPS)
+
+
+@dataclass(frozen=True, slots=True)
+class Donor:
+    """A real clip of the person at ANALYSIS_RATE: turns and places of the joints, the body's
+    track over as many frames, and the joint of each role."""
+
+    animation: Animation
+    track: BodyTrack
+    joints: dict[JointRole, int]
+
+
+def same_body(donors: Sequence[Donor]) -> list[Donor]:
+    """The donors whose skeleton at rest is that of the first, which comes first."""
+    first = donors[0].animation.skeleton
+    return [
+        donor
+        for donor in donors
+        if donor.animation.skeleton.names == first.names
+        and np.allclose(donor.animation.skeleton.offsets, first.offsets, atol=0.02)
+    ]
+
+
+def embody(course: Course, donors: Sequence[Donor]) -> Animation:
+    """The course on the skeleton of the donors, which they share; the floor is at Y = 0."""
+    joints = donors[0].joints
+    posed = pose_to(_start(course, donors), joints, course.positions)
+    wanted = np.array(course.positions)
+    reached = posed.positions()
+    feet = [SUN_ROLES[foot] for foot in FEET]
+    if all(role in joints for role in feet):
+        there = reached[:, [joints[role] for role in feet]]
+        wanted[:, FEET] = planted(there, ANALYSIS_RATE)
+        posed = pose_to(posed, joints, wanted)
+        reached = posed.positions()
+        soles = feet_of(posed.skeleton, [joints[role] for role in feet])
+        if soles:
+            deep = sole_depths(soles, [donor.animation.positions() for donor in donors])
+            return on_the_floor(_lowered(posed, floor_of(reached, soles, deep)), soles)
+    return _lowered(posed, float(np.quantile(reached[:, :, 1].min(axis=1), LOWEST_QUANTILE)))
+
+
+def _lowered(posed: Animation, floor: float) -> Animation:
+    translations = np.array(posed.translations)
+    translations[:, 0, 1] -= floor
+    return Animation(posed.skeleton, posed.rotations, translations, ANALYSIS_RATE)
+
+
+def _start(course: Course, donors: Sequence[Donor]) -> Animation:
+    """Kernel means of the donors' turns at the moments most like those of the course."""
+    local = np.concatenate([donor.track.local for donor in donors])
+    turns = np.concatenate([_towards_heading(donor) for donor in donors])
+    places = np.concatenate([donor.animation.translations for donor in donors])
+    near, weights = _alike(_poses(course), local)
+    rotations = _mean_turns(turns[near], weights)
+    translations = np.einsum("nk,nkjc->njc", weights, places[near])
+    skeleton, hips = donors[0].animation.skeleton, donors[0].joints[JointRole.HIPS]
+    rotations[:, hips] = multiply(_about_y(course.heading), rotations[:, hips])
+    translations[:, hips] = course.positions[:, _HIPS]
+    above = ancestors(skeleton, hips)
+    if above:  # a root on the floor goes along under the hips
+        rotations[:, above] = identity_quaternions((1, 1))
+        translations[:, above] = 0.0
+        translations[:, 0] = course.positions[:, _HIPS] * [1.0, 0.0, 1.0]
+        translations[:, hips] *= [0.0, 1.0, 0.0]
+    return Animation(skeleton, rotations, translations, ANALYSIS_RATE)
+
+
+def _poses(course: Course) -> FloatArray:
+    """(n, 13, 3) about the hips, in the body's heading, any size."""
+    return turned(course.positions - course.positions[:, [_HIPS]], -course.heading)
+
+
+def _alike(poses: FloatArray, others: FloatArray) -> tuple[IntArray, FloatArray]:
+    """The k of `others` (m, 13, 3) that are most like each of `poses` (n, 13, 3).
+
+    Returns their rows (n, k) and their weights (n, k), which sum to 1 for each pose.
+    """
+    rows, table = (values.reshape(len(values), -1) for values in (poses, others))
+    rows = rows * (np.linalg.norm(table) / len(table) ** 0.5)
+    rows /= max(np.linalg.norm(poses) / len(poses) ** 0.5, 1e-9)
+    squares = squared_distances(rows, table)
+    count = min(NEIGHBOURS, len(table))
+    near = np.argsort(squares, axis=1, kind="stable")[:, :count]
+    away = np.take_along_axis(squares, near, axis=1)
+    weights = np.exp(-0.5 * away / np.maximum(away.mean(axis=1, keepdims=True), 1e-9))
+    return near, weights / weights.sum(axis=1, keepdims=True)
+
+
+def _mean_turns(turns: FloatArray, weights: FloatArray) -> FloatArray:
+    """(n, joints, 4) weighted means of turns (n, k, joints, 4), smooth over time."""
+    side = np.sign(np.einsum("nkjc,njc->nkj", turns, turns[:, 0]))
+    mean = np.einsum("nk,nkj,nkjc->njc", weights, np.where(side == 0, 1.0, side), turns)
+    lengths = np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), 1e-9)
+    smooth = scipy.ndimage.gaussian_filter1d(
+        continuous(mean / lengths), SMOOTHING, axis=0, mode="nearest"
+    )
+    return np.asarray(smooth / np.maximum(np.linalg.norm(smooth, axis=-1, keepdims=True), 1e-9))
+
+
+def _towards_heading(donor: Donor) -> FloatArray:
+    """(n, joints, 4) the donor's turns, those of the hips seen from the body's heading."""
+    rotations = np.array(donor.animation.rotations, dtype=np.float64)
+    hips = donor.joints[JointRole.HIPS]
+    turn: FloatArray = rotations[:, hips]
+    for joint in ancestors(donor.animation.skeleton, hips):
+        turn = multiply(rotations[:, joint], turn)
+    rotations[:, hips] = multiply(conjugate(_about_y(donor.track.heading)), turn)
+    return rotations
+
+
+def _about_y(angles: FloatArray) -> FloatArray:
+    """(n, 4) turns about Y by angles (n,), radians."""
+    nothing = np.zeros_like(angles)
+    return np.stack([np.cos(angles / 2), nothing, np.sin(angles / 2), nothing], axis=-1)

@@ -1,0 +1,139 @@
+"""What someone is expected to do who did something else: from the cells of a library to the
+solver's tensors (`synthesis_tensor`) and back to a motion in its own time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.analysis.descriptors.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_shape import CHANNELS, clearance, mirrored
+from app.errors import NotEnoughLabels
+from app.models.synthesis.agreement import agree
+from app.models.synthesis.basis import weights
+from app.models.synthesis.model import Synthesis
+from app.models.synthesis.solving import follow, solve
+from app.models.synthesis.tensor import (
+    KnownTensor,
+    WantedMotions,
+    known_tensor,
+    own_motions,
+    wanted_motions,
+)
+from app.models.synthesis.timing import Timed, in_own_time
+from app.numerics.arrays import FloatArray
+
+MOST_TASKS = 24
+"""Tasks of which one is made: the most alike; more only cost time."""
+
+MOST_PERSONS = 64
+"""Persons of whose motions one is made: those who did most of the same tasks."""
+
+TEMPO_SLACK = 0.15
+"""Of log seconds: nobody is made to be much quicker or slower at a task than all who did it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Predicted:
+    """shape: (1378,) the motion shape; follows: the person whose motion it follows where those
+    who did the task do not agree; agreement: how far they do, of a single person how far their
+    takes do, None of a single take."""
+
+    shape: FloatArray
+    follows: str | None
+    agreement: float | None
+
+
+def predict(
+    record: Synthesis, given: Mapping[str, FloatArray], task: str, but: Sequence[str] = ()
+) -> Predicted:
+    """`task` by someone whose motion shapes (1378,) of other tasks are `given`.
+
+    but: persons who are not to be learned from, as the asked one. Raises NotEnoughLabels where
+    nobody else did the task, or nothing that the asked person did.
+    """
+    told = {name: shape for name, shape in given.items() if name in record.tasks and name != task}
+    others = [name for name in record.who_did(task) if name not in but]
+    if not told:
+        raise NotEnoughLabels(
+            "A clip of another task of the library is needed of the person asked for."
+        )
+    if not others:
+        raise NotEnoughLabels(f"Nobody else did the task {task}: a clip of another person's.")
+    chosen = _most_alike(record, told, task)
+    others = _who_shares_most(record, others, chosen)
+    own = own_motions(record, {name: told[name] for name in chosen})
+    aim = wanted_motions(record, task, others, own)
+    known = known_tensor(record, others, own, aim.timed)
+    follows = None
+    if agree(aim.agreement):
+        shape, timing = _made_of_all(known, aim.timed, own.timed)
+    else:
+        shape, timing = _following(known, aim, own.timed)
+        follows = others[aim.most_like_all]
+    if shape[-1] < 0.5:
+        shape = in_own_time(shape, timing)
+    return Predicted(shape, follows, aim.agreement)
+
+
+def _made_of_all(known: KnownTensor, wanted: Timed, own: Timed) -> tuple[FloatArray, FloatArray]:
+    """(1378,) and its timing (32,), which is made of the tasks as the motion is."""
+    solution = solve(known.basis, wanted.shapes, own.shapes)
+    beside = solution.weights @ (own.timing - known.timing.mean(axis=0))
+    timing = wanted.timing.mean(axis=0) + solution.carried * beside
+    return _as_one_does_it(solution.shape, wanted.shapes), timing
+
+
+def _following(
+    known: KnownTensor, wanted: WantedMotions, own: Timed
+) -> tuple[FloatArray, FloatArray]:
+    """(1378,) and timing (32,) of the one most like all."""
+    one = wanted.most_like_all
+    theirs = wanted.timed.shapes[one]
+    shape = follow(known.basis[one], theirs, own.shapes)
+    return _as_one_does_it(shape, theirs[None]), wanted.timed.timing[one]
+
+
+def _as_one_does_it(shape: FloatArray, wanted: FloatArray) -> FloatArray:
+    """The shape (1378,) of the kind, about as quick and as high as those who do it (K, 1378)."""
+    shape = np.array(shape)
+    shape[-1] = float(np.mean(wanted[:, -1]) >= 0.5)
+    shortest, longest = wanted[:, -2].min(), wanted[:, -2].max()
+    shape[-2] = np.clip(shape[-2], shortest - TEMPO_SLACK, longest + TEMPO_SLACK)
+    return _off_the_floor(shape, wanted)
+
+
+def _off_the_floor(shape: FloatArray, wanted: FloatArray) -> FloatArray:
+    """The shape (1378,) as high over the floor as somebody is who does the task (K, 1378).
+
+    Legs and hips have weights of their own: bent knees would leave the feet in the air.
+    """
+    moments = shape[:-2].reshape(SAMPLES, CHANNELS)
+    there = clearance(wanted[:, :-2].reshape(-1, SAMPLES, CHANNELS))
+    now = clearance(moments)
+    moments[:, 39] += np.clip(now, there.min(axis=0), there.max(axis=0)) - now
+    return np.concatenate([moments.ravel(), shape[-2:]])
+
+
+def _most_alike(record: Synthesis, told: Mapping[str, FloatArray], task: str) -> list[str]:
+    """The told tasks that are most like the wanted one, themselves or mirrored."""
+    if len(told) <= MOST_TASKS:
+        return list(told)
+    scale, aim = weights(), record.reference(task)
+    means = np.stack([record.reference(name) for name in told])
+    away = [np.linalg.norm((rows - aim) * scale, axis=1) for rows in (means, mirrored(means))]
+    near = np.argsort(np.min(away, axis=0), kind="stable")[:MOST_TASKS]
+    names = list(told)
+    return [names[i] for i in np.sort(near)]
+
+
+def _who_shares_most(record: Synthesis, persons: list[str], tasks: list[str]) -> list[str]:
+    """The persons who did most of these tasks: of them there is least to be completed."""
+    if len(persons) <= MOST_PERSONS:
+        return persons
+    wanted = np.isin(record.task, [record.tasks.index(name) for name in tasks])
+    shared = np.bincount(record.person[wanted], minlength=len(record.persons))
+    count = [shared[record.persons.index(name)] for name in persons]
+    return [persons[i] for i in np.sort(np.argsort(-np.array(count), kind="stable")[:MOST_PERSONS])]

@@ -1,0 +1,136 @@
+"""Motion shapes warped to the time of their group, and back to a time of their own.
+
+Of takes that are not cycles, one begins late and another is slow; the mean of the takes as they
+are would show half a gesture twice. Each is warped onto the mean of its group
+(app.numerics.alignment.group_warping). The difference between its time and that of the group is its
+*timing*, which is learned and carried over like the rest of a motion. Cycles are aligned where
+they are cut, so they are not warped.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.analysis.descriptors.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_shape import CHANNELS
+from app.models.synthesis.basis import weights
+from app.numerics.alignment.group_warping import (
+    ROUNDS,
+    group_means,
+    group_members,
+    inverse,
+    means_of_warped,
+    read_at,
+    rising,
+    smooth_times,
+    warping_times,
+)
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.numerics.euclidean import distances
+
+_TIE = 1e-6
+"""Relative: distances that are this close count as equal, so that rounding does not decide."""
+
+_STEADY: FloatArray = np.arange(SAMPLES, dtype=np.float64)
+
+
+@dataclass(frozen=True, slots=True)
+class Timed:
+    """shapes: (n, 1378) motion shapes in the time of their group; timing: (n, 32) moments by
+    which each is late in its own time, zeros for cycles and for a take that is alone."""
+
+    shapes: FloatArray
+    timing: FloatArray
+
+
+def together(shapes: FloatArray, group: IntArray) -> Timed:
+    """Warp motion shapes (n, 1378) to the mean time of their group; group: (n,) its number.
+
+    Groups with a cycle among them stay as they are.
+    """
+    shapes = np.array(shapes, dtype=np.float64)
+    timing = np.zeros((len(shapes), SAMPLES))
+    chosen = np.flatnonzero(_can_be_warped(shapes, group))
+    if not len(chosen):
+        return Timed(shapes, timing)
+    moments = moments_of_shapes(shapes[chosen])
+    group = np.unique(group[chosen], return_inverse=True)[1]
+    medoids = moments[_medoids(moments, group)]
+    # the last round gives the times, not another mean
+    means = means_of_warped(moments, group, medoids, _by_movement, ROUNDS - 1)
+    times = _times(moments, means[group])
+    # the time of the group is the mean of its members'
+    usual = inverse(rising(group_means(times, group)))[group]
+    times = rising(read_at(times[:, :, None], usual)[:, :, 0])
+    shapes[chosen, :-2] = read_at(moments, times).reshape(len(chosen), -1)
+    timing[chosen] = times - _STEADY
+    return Timed(shapes, timing)
+
+
+def onto(shapes: FloatArray, references: FloatArray, smoothing: float = 0.0) -> Timed:
+    """Warp each of `shapes` (n, 1378) to the time of the same row of `references` (n, 1378).
+
+    A cycle stays as it is, and so does a shape whose reference is a cycle. smoothing: standard
+    deviation, in moments, by which times are smoothed beyond what `warping_times` smooths.
+    """
+    shapes = np.array(shapes, dtype=np.float64)
+    timing = np.zeros((len(shapes), SAMPLES))
+    chosen = np.flatnonzero((shapes[:, -1] < 0.5) & (references[:, -1] == 0.0))
+    if len(chosen):
+        moments = moments_of_shapes(shapes[chosen])
+        aims = moments_of_shapes(references[chosen])
+        times = _times(moments, aims)
+        if smoothing > 0:
+            times = smooth_times(times, smoothing)
+        shapes[chosen, :-2] = read_at(moments, times).reshape(len(chosen), -1)
+        timing[chosen] = times - _STEADY
+    return Timed(shapes, timing)
+
+
+def in_own_time(shape: FloatArray, timing: FloatArray) -> FloatArray:
+    """(1378,) a `shape` (1378,) in the time of its group, brought to its own `timing` (32,)."""
+    times = inverse(rising(_STEADY + timing)[None])
+    moments = read_at(moments_of_shapes(shape[None]), times)
+    return np.concatenate([moments.ravel(), shape[-2:]])
+
+
+def moments_of_shapes(shapes: FloatArray) -> FloatArray:
+    """(n, 32, 43) of motion shapes (n, 1378)."""
+    return np.asarray(shapes[:, :-2]).reshape(len(shapes), SAMPLES, CHANNELS)
+
+
+def _can_be_warped(shapes: FloatArray, group: IntArray) -> BoolArray:
+    """(n,) which are in a group of several takes, none of them a cycle."""
+    count = np.bincount(group)
+    cyclic = np.bincount(group, weights=shapes[:, -1] >= 0.5)
+    return np.asarray(((count > 1) & (cyclic == 0))[group])
+
+
+def _times(moments: FloatArray, references: FloatArray) -> FloatArray:
+    """(n, 32) the time in `moments` of each moment of the `references`, both (n, 32, 43)."""
+    return warping_times(_compared(moments), _compared(references))
+
+
+def _by_movement(moments: FloatArray, references: FloatArray) -> FloatArray:
+    """(n, 32, 43) `moments` read at the times that go with the `references`."""
+    return read_at(moments, _times(moments, references))
+
+
+def _compared(moments: FloatArray) -> FloatArray:
+    """(n, 32, 43) what moments are compared by: the movement without the mean posture."""
+    weighed = moments * weights()[:CHANNELS]
+    return np.asarray(weighed - weighed.mean(axis=1, keepdims=True))
+
+
+def _medoids(moments: FloatArray, group: IntArray) -> IntArray:
+    """(groups,) the row nearest to all others of its group."""
+    rows = _compared(moments).reshape(len(moments), -1)
+    return np.array([members[medoid(rows[members])] for members in group_members(group)])
+
+
+def medoid(rows: FloatArray) -> int:
+    """Which of `rows` (n, d) is nearest to all the others, the first where several are."""
+    away = distances(rows, rows).sum(axis=1)
+    return int(np.argmax(away <= (1 + _TIE) * away.min()))  # of two rows, both are the medoid

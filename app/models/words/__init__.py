@@ -1,0 +1,1 @@
+"""Words and motions: Takano, and the default word model."""

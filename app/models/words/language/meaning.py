@@ -1,0 +1,42 @@
+"""A word that no clip carries finds its neighbours in meaning (DESIGN 6, Words)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from app.models.words.language.inflection import base_forms
+from app.models.words.language.lexicon import is_known, likeness
+
+LEAST_LIKENESS = 0.5
+WITHIN = 0.05
+"""Of the best: words of the library that are hardly less alike are used too."""
+MOST_WORDS = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Neighbour:
+    """A word of the library and how near it is in meaning, 0..1."""
+
+    word: str
+    likeness: float
+
+
+def neighbours(
+    word: str, library: Iterable[str], related: Mapping[str, Mapping[str, float]]
+) -> tuple[Neighbour, ...]:
+    """The words of the library nearest to a normalised `word` that it lacks, best first.
+
+    library: its words; related: those that WordNet knows, by foreign word (wordnet). Our
+    lexicon comes first where it says anything. Empty where nothing is near.
+    """
+    ours = tuple(library)
+    for form in (word, *base_forms(word)):
+        found = {one: likeness(form, one) for one in ours} if is_known(form) else {}
+        if max(found.values(), default=0.0) < LEAST_LIKENESS:
+            found = {one: near for one, near in related.get(form, {}).items() if one in ours}
+        best = max(found.values(), default=0.0)
+        if best >= LEAST_LIKENESS:
+            near = [Neighbour(one, near) for one, near in found.items() if near >= best - WITHIN]
+            return tuple(sorted(near, key=lambda n: (-n.likeness, n.word))[:MOST_WORDS])
+    return ()

@@ -1,0 +1,21 @@
+"""Words in one form: lower case, phrases joined by underscores."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+_JOINERS = re.compile(r"[\s\-_]+")
+
+
+def normalise_word(word: str) -> str:
+    """`word` in lower case, hyphens and blanks as single underscores: "High-Kick" -> "high_kick".
+
+    Empty where nothing is left.
+    """
+    return _JOINERS.sub("_", word.strip().casefold()).strip("_")
+
+
+def normalise_words(words: Iterable[str]) -> tuple[str, ...]:
+    """Normalised words in their order, each once, empty ones left out."""
+    return tuple(dict.fromkeys(filter(None, map(normalise_word, words))))

@@ -1,0 +1,98 @@
+"""What a query asks for: words, phrases and whole sentences, and words to leave out.
+
+*an old man waves with his left hand* is read as old, wave, left, hand: words that the library
+knows are kept, the longest phrases first (left_hand where that is a label), then what is no
+mere function word. A word with a minus before it (-left), or after a *without* in a sentence,
+is to be left out.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+from app.models.words.language.normalise import normalise_word
+
+LONGEST_PHRASE = 4
+"""Words of a phrase that is looked for in a sentence."""
+
+_TOKEN = re.compile(r"(?<![\w-])-?[\w'’]+(?:-[\w'’]+)*")
+
+_FUNCTION_WORDS = """
+a an the this that these those some any each every all no one another other
+i you he she it we they me him her us them his hers its our your their my mine theirs
+himself herself itself themselves who whom whose which what where when how why
+is are was were be been being am do does did doing done has have had having
+will would can could shall should may might must
+and or but nor so yet if then than as while whilst because until though
+of in on at to from by with without within into onto off out over under about against
+between through during before after above below around across along toward towards near
+for like via per up down
+not very too quite rather just only also again still there here now once
+man men woman women person persons people human guy guys lady ladies gentleman boy boys
+girl girls child children kid kids somebody someone anybody anyone everybody everyone
+actor actors actress performer performers dancer player figure character body subject
+motion motions movement movements clip clips animation animations video action actions
+find show search me please
+"""
+FUNCTION_WORDS = frozenset(_FUNCTION_WORDS.split())
+"""Left out of a sentence unless a clip of the library carries them."""
+
+NEGATIONS = frozenset({"no", "not", "never", "without"})
+"""The next word of the sentence is to be left out."""
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """Normalised words that are wanted, and those to be left out, each once, in order."""
+
+    wanted: tuple[str, ...]
+    excluded: tuple[str, ...]
+
+
+def read_query(texts: Iterable[str], is_word: Callable[[str], bool]) -> Asked:
+    """What `texts` ask for; each is a word, a phrase or a sentence.
+
+    is_word: whether the library has a normalised word, inflected or not.
+    """
+    wanted: list[str] = []
+    excluded: list[str] = []
+    for text in texts:
+        for word, is_excluded in _words_of(text.strip(), is_word):
+            (excluded if is_excluded else wanted).append(word)
+    return Asked(tuple(dict.fromkeys(wanted)), tuple(dict.fromkeys(excluded)))
+
+
+def _words_of(text: str, is_word: Callable[[str], bool]) -> Iterator[tuple[str, bool]]:
+    """(normalised word, whether it is to be left out) of each word of `text`."""
+    whole = normalise_word(text)
+    if whole and not text.startswith("-") and is_word(whole):
+        yield whole, False
+        return
+    tokens = [token.replace("’", "'") for token in _TOKEN.findall(text)]
+    if len(tokens) == 1:  # asked for by itself: no word is too small
+        word = normalise_word(tokens[0])
+        if word:
+            yield word, tokens[0].startswith("-")
+        return
+    place, is_negated = 0, False
+    while place < len(tokens):
+        word, length = _longest(tokens[place:], is_word)
+        is_minus = tokens[place].startswith("-")
+        if word and (is_minus or is_word(word) or word not in FUNCTION_WORDS):
+            yield word, is_minus or is_negated
+            is_negated = False
+        is_negated |= word in NEGATIONS
+        place += length
+
+
+def _longest(tokens: list[str], is_word: Callable[[str], bool]) -> tuple[str, int]:
+    """The longest known phrase at the beginning of `tokens`, else the first word; its length."""
+    for length in range(min(LONGEST_PHRASE, len(tokens)), 1, -1):
+        if any(token.startswith("-") for token in tokens[1:length]):
+            continue
+        phrase = normalise_word(" ".join(tokens[:length]))
+        if is_word(phrase):
+            return phrase, length
+    return normalise_word(tokens[0]).removesuffix("'s"), 1

@@ -1,0 +1,192 @@
+"""All that a library has learned about words, as one record that is fitted and swapped whole.
+
+Holds the vocabulary, the default word model, and for the mode `cca` the symbol space and
+the correlated space, which need LEAST_CLIPS labelled clips. Shapes: clips N, words V.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from app.errors import NotEnoughLabels
+from app.models.words.calibration import WordCalibration, calibrate
+from app.models.words.correlated_space import LEAST_CLIPS, CorrelatedSpace, fit_correlated_space
+from app.models.words.cosine_calibration import CosineCalibration, calibrate_cosines
+from app.models.words.language.wordnet import Meanings
+from app.models.words.model import WordModel, fit_word_model
+from app.models.words.query import WordsAsked, understand
+from app.models.words.symbol_space import SymbolSpace, fit_symbol_space
+from app.models.words.vocabulary import WordVocabulary
+from app.numerics.arrays import FloatArray
+from app.numerics.hmm.model import GaussianHMM
+
+Arrays = dict[str, np.ndarray[Any, Any]]
+_Part = WordModel | WordCalibration | SymbolSpace | CorrelatedSpace | CosineCalibration
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryWords:
+    """vocabulary: V words; model: the default; calibration: of its outputs; space: of all
+    symbols; correlated: None where too few clips have words, and so are cosines and
+    back_cosines, the calibrations of its angles from words to clips and from clips to words;
+    meanings: what WordNet knows of its words (models.language.wordnet), put in by whoever fits.
+    """
+
+    vocabulary: WordVocabulary
+    model: WordModel
+    calibration: WordCalibration
+    space: SymbolSpace
+    correlated: CorrelatedSpace | None
+    cosines: CosineCalibration | None
+    back_cosines: CosineCalibration | None
+    meanings: Meanings = field(default_factory=Meanings)
+
+    def ask(self, texts: Iterable[str]) -> WordsAsked:
+        """What a query of words, phrases or sentences asks of this library."""
+        return understand(texts, self.vocabulary, self.meanings.related)
+
+    def word_scores(self, statistics: FloatArray) -> FloatArray:
+        """(N, V) probability that each word is said of each clip, by its statistics (N, p)."""
+        return self.calibration.probabilities(self.model.outputs(statistics))
+
+    def clip_surprises(
+        self, scores: FloatArray, columns: Sequence[str], meant: Sequence[Mapping[str, float]]
+    ) -> FloatArray:
+        """(N,) -ln of the probability that clips carry all that was asked for.
+
+        scores: (N, c) word_scores of the words `columns`; meant: at least one, see WordsAsked.
+        Of the words that may stand for one the likeliest counts, as far as it may.
+        """
+        place = {word: column for column, word in enumerate(columns)}
+        asked = [
+            np.max([weight * scores[:, place[word]] for word, weight in words.items()], axis=0)
+            for words in meant
+        ]
+        return self.calibration.joint_surprise(np.stack(asked, axis=1))
+
+    def word_scores_cca(self, points: FloatArray) -> FloatArray:
+        """(N, V) probability that each word is said of each clip, by where its symbol (N, d)
+        lies in the correlated space (section 2.4).
+
+        Raises NotEnoughLabels where there is no correlated space.
+        """
+        space, _, calibration = self._correlated()
+        return calibration.of_words(space.word_cosines(points))
+
+    def clip_angles(self, points: FloatArray, asked: WordsAsked) -> FloatArray:
+        """(N,) 1 - cosine, 0..2, between clips at symbol coordinates (N, d) and a query.
+
+        Raises NotEnoughLabels where there is no correlated space.
+        """
+        space, *_ = self._correlated()
+        return 1.0 - space.clip_cosines(points, self.vocabulary.vector(asked.weights))
+
+    def angle_scores(self, angles: FloatArray, asked: WordsAsked) -> FloatArray:
+        """(N,) probability that clips at `clip_angles` (N,) carry all that was asked for.
+
+        Raises NotEnoughLabels where there is no correlated space.
+        """
+        _, calibration, _ = self._correlated()
+        words = self.vocabulary.words
+        common = self.clip_surprises(calibration.shares[None], words, asked.meant)
+        return calibration.probabilities(1.0 - angles, np.exp(-common))
+
+    def _correlated(self) -> tuple[CorrelatedSpace, CosineCalibration, CosineCalibration]:
+        if self.correlated is None or self.cosines is None or self.back_cosines is None:
+            raise NotEnoughLabels(f"The mode cca needs {LEAST_CLIPS} clips that have words.")
+        return self.correlated, self.cosines, self.back_cosines
+
+    def to_arrays(self) -> tuple[Arrays, dict[str, Any]]:
+        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        parts: dict[str, _Part | None] = {
+            "model": self.model,
+            "calibration": self.calibration,
+            "space": self.space,
+            "correlated": self.correlated,
+            "cosines": self.cosines,
+            "back_cosines": self.back_cosines,
+        }
+        arrays: Arrays = {}
+        meta: dict[str, Any] = {
+            "words": list(self.vocabulary.words),
+            "meanings": self.meanings.to_meta(),
+        }
+        for part, record in parts.items():
+            if record is not None:
+                own, meta[part] = record.to_arrays()
+                arrays |= {f"{part}.{name}": array for name, array in own.items()}
+        return arrays, meta
+
+    @classmethod
+    def from_arrays(
+        cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
+    ) -> LibraryWords:
+        """The record that to_arrays took apart. Raises ValueError on another version."""
+        correlated, cosines, back = None, None, None
+        if "correlated" in meta:
+            own = _part(arrays, "correlated")
+            correlated = CorrelatedSpace.from_arrays(own, meta["correlated"])
+            cosines, back = (
+                CosineCalibration.from_arrays(_part(arrays, part), meta[part])
+                for part in ("cosines", "back_cosines")
+            )
+        return cls(
+            WordVocabulary(tuple(meta["words"])),
+            WordModel.from_arrays(_part(arrays, "model"), meta["model"]),
+            WordCalibration.from_arrays(_part(arrays, "calibration"), meta["calibration"]),
+            SymbolSpace.from_arrays(_part(arrays, "space"), meta["space"]),
+            correlated,
+            cosines,
+            back,
+            Meanings.from_meta(meta["meanings"]),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class FittedWords:
+    """words: what was learned; points: (N, d) where the clips' symbols lie in its space."""
+
+    words: LibraryWords
+    points: FloatArray
+
+
+def fit_library_words(
+    symbols: Sequence[GaussianHMM],
+    statistics: FloatArray,
+    label_sets: Sequence[Sequence[str]],
+    groups: Sequence[str] | None = None,
+    *,
+    seed: int = 0,
+) -> FittedWords:
+    """Fit on all clips: symbols N, statistics (N, p), label sets N (empty: not labelled).
+
+    groups: N, equal for files of one recording, that scores are not calibrated on copies.
+
+    Deterministic for a seed. Raises NotEnoughLabels where no clip has words.
+    """
+    vocabulary = WordVocabulary.of(label_sets)
+    labels = vocabulary.label_matrix(label_sets)
+    labelled = np.flatnonzero(labels.any(axis=1))
+    rows, truth = np.asarray(statistics)[labelled], labels[labelled]
+    model = fit_word_model(rows, truth, seed=seed)
+    own = [str(row) if groups is None else groups[row] for row in labelled]
+    calibration = calibrate(model, rows, truth, own, seed=seed)
+    space = fit_symbol_space(symbols, seed=seed)
+    points = space.place(symbols)
+    correlated, cosines, back = None, None, None
+    if len(labelled) >= LEAST_CLIPS:
+        there = points[labelled]
+        correlated = fit_correlated_space(there, truth)
+        cosines = calibrate_cosines(there, truth, own, seed=seed)
+        back = calibrate_cosines(there, truth, own, CorrelatedSpace.word_cosines, seed=seed)
+    words = LibraryWords(vocabulary, model, calibration, space, correlated, cosines, back)
+    return FittedWords(words, points)
+
+
+def _part(arrays: Mapping[str, np.ndarray[Any, Any]], part: str) -> Arrays:
+    prefix = f"{part}."
+    return {k.removeprefix(prefix): v for k, v in arrays.items() if k.startswith(prefix)}

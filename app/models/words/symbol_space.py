@@ -1,0 +1,83 @@
+"""The motion symbol space: symbols as points whose distances are their divergences
+(Takano, section 2.1, eqs 2-4; DESIGN 6).
+
+The distance of two symbols is log1p of their symmetric Kullback-Leibler divergence per
+frame. Small libraries are scaled in whole; larger ones by random landmarks, against
+which all others are placed, so that cost grows with N, not N squared. A symbol that
+comes later is placed the same way. Shapes: symbols N, landmarks L, dimensions d.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.models.words.symbol_arrays import pack_symbols, unpack_symbols
+from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.hmm.divergence import symmetric_divergences
+from app.numerics.hmm.model import GaussianHMM
+from app.numerics.mds import metric_mds, place
+
+SYMBOL_SPACE_VERSION = 1
+
+DIMENSIONS = 10
+"""Of the space (Takano, fig. 3)."""
+
+WHOLE_LIBRARY = 200
+"""Up to so many symbols all are landmarks."""
+
+LANDMARKS = 100
+"""Above that, so many: at least 2.5 x dimensions; word recognition keeps (DESIGN 6)."""
+
+
+@dataclass(frozen=True, slots=True)
+class SymbolSpace:
+    """landmarks: L symbols; points: (L, d) their coordinates, log1p nats per frame."""
+
+    landmarks: tuple[GaussianHMM, ...]
+    points: FloatArray
+
+    def place(self, symbols: Sequence[GaussianHMM]) -> FloatArray:
+        """(N, d) coordinates of `symbols`, in the library or not."""
+        if not symbols:
+            return np.zeros((0, self.points.shape[1]))
+        return place(symbol_distances(symbols, self.landmarks), self.points)
+
+    def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
+        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        arrays = {f"landmark_{name}": a for name, a in pack_symbols(self.landmarks).items()}
+        return {**arrays, "points": self.points}, {"version": SYMBOL_SPACE_VERSION}
+
+    @classmethod
+    def from_arrays(
+        cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
+    ) -> SymbolSpace:
+        """The record that to_arrays took apart. Raises ValueError on another version."""
+        if meta["version"] != SYMBOL_SPACE_VERSION:
+            raise ValueError(f"symbol space of version {meta['version']}")
+        prefix = "landmark_"
+        packed = {k.removeprefix(prefix): v for k, v in arrays.items() if k.startswith(prefix)}
+        return cls(unpack_symbols(packed), arrays["points"])
+
+
+def fit_symbol_space(symbols: Sequence[GaussianHMM], *, seed: int = 0) -> SymbolSpace:
+    """Fit on `symbols` (N >= 1); deterministic for a seed."""
+    landmarks = tuple(symbols[int(row)] for row in landmark_rows(len(symbols), seed=seed))
+    points = metric_mds(symbol_distances(landmarks, landmarks), DIMENSIONS)
+    return SymbolSpace(landmarks, points)
+
+
+def landmark_rows(count: int, *, seed: int = 0) -> IntArray:
+    """(L,) which of `count` symbols are landmarks, sorted; all of a small library."""
+    rows = np.arange(count)
+    if count > WHOLE_LIBRARY:
+        rows = np.sort(np.random.RandomState(seed).permutation(count)[:LANDMARKS])
+    return rows
+
+
+def symbol_distances(left: Sequence[GaussianHMM], right: Sequence[GaussianHMM]) -> FloatArray:
+    """(left, right) log1p of the symmetric divergence per frame."""
+    return np.asarray(np.log1p(symmetric_divergences(left, right)))

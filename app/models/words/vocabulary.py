@@ -1,0 +1,83 @@
+"""Words as label vectors (Takano, section 2.2).
+
+A word is normalised (lower case, phrases joined by underscores) and brought to its base form
+(jumping, jumps: jump); a vocabulary is the sorted list of those that a library carries; a
+clip's label set is a binary vector over it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.models.words.language.inflection import base_form, base_forms
+from app.models.words.language.lexicon import is_known
+from app.models.words.language.normalise import normalise_words
+from app.numerics.arrays import FloatArray, IntArray
+
+
+@dataclass(frozen=True, slots=True)
+class WordVocabulary:
+    """The words of a library, sorted, normalised base forms; V of them."""
+
+    words: tuple[str, ...]
+
+    def __len__(self) -> int:
+        return len(self.words)
+
+    @classmethod
+    def of(cls, label_sets: Iterable[Iterable[str]]) -> WordVocabulary:
+        """All words of the label sets, each in its base form where that is a word too."""
+        carried = {word for labels in label_sets for word in normalise_words(labels)}
+
+        def is_word(word: str) -> bool:
+            return word in carried or is_known(word)
+
+        return cls(tuple(sorted({_label(word, is_word) for word in carried})))
+
+    def find(self, word: str) -> str | None:
+        """The vocabulary's word for a normalised one, inflected or not; None where it has none.
+
+        Both ways: *jumps* finds *jump*, and *jump* finds *jumping* where only that is carried.
+        """
+        found = base_form(word, self._column_of().__contains__)
+        if found is not None:
+            return found
+        return next((ours for ours in self.words if word in base_forms(ours)), None)
+
+    def label_matrix(self, label_sets: Sequence[Iterable[str]]) -> FloatArray:
+        """(N, V) float64 of ones and zeros; words outside the vocabulary are ignored."""
+        columns = self._column_of()
+        matrix = np.zeros((len(label_sets), len(self.words)))
+        found: dict[str, str | None] = {}
+        for row, labels in enumerate(label_sets):
+            for word in normalise_words(labels):
+                if word not in found:
+                    found[word] = self.find(word)
+                if (ours := found[word]) is not None:
+                    matrix[row, columns[ours]] = 1.0
+        return matrix
+
+    def vector(self, weights: Mapping[str, float]) -> FloatArray:
+        """(V,) `weights` by word of the vocabulary, 0 elsewhere."""
+        columns = self._column_of()
+        made = np.zeros(len(self.words))
+        for word, weight in weights.items():
+            made[columns[word]] = weight
+        return made
+
+    def columns(self, words: Iterable[str]) -> IntArray:
+        """(c,) where these words of the vocabulary stand in it."""
+        return np.array([self.words.index(word) for word in words], dtype=np.int64)
+
+    def _column_of(self) -> dict[str, int]:
+        return {word: column for column, word in enumerate(self.words)}
+
+
+def _label(word: str, is_word: Callable[[str], bool]) -> str:
+    """The base form under which a carried word is counted; itself where there is no other."""
+    if is_known(word):
+        return word
+    return next(filter(is_word, base_forms(word)), word)

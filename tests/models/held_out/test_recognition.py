@@ -1,0 +1,60 @@
+from __future__ import annotations
+
+import pytest
+
+from app.models.held_out.recognition import (
+    held_out_recognition_figures,
+    signature_figures,
+    unknown_figures,
+)
+from app.models.recognition.recogniser import fit_recogniser
+from tests.models.factor_clips import POSES, factor_clips
+
+
+def test_models_stand_beside_the_prior() -> None:
+    clips = factor_clips(persons=4, tasks=5, takes=3, width=POSES)
+    groups = [str(i) for i in range(len(clips.persons))]
+    figures = held_out_recognition_figures(clips.samples, clips.persons, clips.tasks, groups)
+    assert set(figures) == {"default", "multilinear", "perera", "pca", "prior"}
+    for method in ("default", "multilinear", "perera", "pca"):
+        assert figures[method]["both"] > 0.9
+        assert figures[method]["clips"] == 60
+    assert figures["prior"]["person"] <= 0.25
+    assert figures["prior"]["task"] <= 0.2
+
+
+def test_signatures_are_judged_on_joint_angles() -> None:
+    clips = factor_clips(persons=4, tasks=5, takes=3, width=POSES)
+    groups = [str(i) for i in range(len(clips.persons))]
+    figures = signature_figures(clips.samples, clips.persons, clips.tasks, groups)
+    assert set(figures) == {"signatures", "pca", "prior"}
+    assert figures["signatures"]["both"] > 0.9
+
+
+def test_a_recording_is_never_on_both_sides() -> None:
+    clips = factor_clips(persons=4, tasks=5, takes=3, width=POSES)
+    cells = [f"{p} {t}" for p, t in zip(clips.persons, clips.tasks, strict=True)]
+    apart = held_out_recognition_figures(
+        clips.samples, clips.tasks, cells, cells
+    )  # the cell's own name can never be guessed when all its takes are held out
+    assert apart["default"]["task"] == 0.0
+
+
+def test_a_library_without_persons_has_task_figures_only() -> None:
+    clips = factor_clips(persons=3, tasks=4, takes=3, width=POSES)
+    none: list[str | None] = [None] * len(clips.tasks)
+    groups = [str(i) for i in range(len(clips.tasks))]
+    figures = held_out_recognition_figures(clips.samples, none, clips.tasks, groups)
+    assert "multilinear" not in figures
+    assert figures["default"]["task"] > 0.9
+    assert "person" not in figures["default"]
+
+
+def test_errors_on_the_unknown_are_told() -> None:
+    clips = factor_clips()
+    figures = unknown_figures(fit_recogniser(clips.samples, clips.persons, clips.tasks))
+    assert set(figures) == {"person", "task"}
+    for shares in figures.values():
+        errors = shares["false_acceptance"] + shares["false_rejection"]
+        assert shares["balanced_accuracy"] == pytest.approx(1 - errors / 2)
+        assert shares["balanced_accuracy"] > 0.75

@@ -1,0 +1,112 @@
+from __future__ import annotations
+
+from itertools import permutations
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal, multivariate_t
+
+from app.models.cells import cell_means, find_cells
+from app.models.recognition.hypotheses import Hypotheses, Kind, fit_hypotheses, shrunk
+
+
+def of_kind(record: Hypotheses, kind: Kind) -> tuple[np.ndarray, np.ndarray]:
+    """Means of the hypotheses of a kind, unwhitened, and the covariance of the last of them."""
+    chosen = np.flatnonzero(record.kind == kind)
+    backs = np.linalg.inv(record.whiteners)[record.form[chosen]]
+    means = np.einsum("hd,hde->he", record.means[chosen], backs)
+    return means, backs[-1].T @ backs[-1]
+
+
+def test_strangers_differ_from_each_person_as_pairs_of_persons_do() -> None:
+    rng = np.random.default_rng(0)
+    who, what = zip(
+        *[(p, t) for p in "abcd" for t in "xyz" if (p, t) != ("d", "z")] * 2, strict=True
+    )
+    points = rng.standard_normal((len(who), 4))
+    cells = find_cells(who, what)
+    means = cell_means(points, cells)
+    apart = [
+        means[i] - means[j]
+        for i, j in permutations(range(len(means)), 2)
+        if cells.task[i] == cells.task[j]
+    ]
+    centres, covariance = of_kind(fit_hypotheses(points, cells), Kind.NEW_PERSON)
+    np.testing.assert_allclose(centres, means, atol=1e-12)
+    np.testing.assert_allclose(covariance, shrunk(np.mean([np.outer(d, d) for d in apart], axis=0)))
+
+
+def test_a_strangers_task_is_found_where_persons_do_it_in_different_ways() -> None:
+    """Half do `x` at -4 and `y` at 2, half do them at 4 and 10: the means say 0 and 6."""
+    rng = np.random.default_rng(1)
+    persons = [f"p{i}" for i in range(6) for _ in "xy"]
+    tasks = ["x", "y"] * 6
+    ways = np.repeat([-4.0, 4.0], 6)
+    places = ways + np.tile([0.0, 6.0], 6)
+    points = np.column_stack([places, np.zeros(12)]) + rng.normal(scale=0.3, size=(12, 2))
+    record = fit_hypotheses(points, find_cells(persons, tasks))
+    stranger = record.log_likelihoods(np.array([[4.0, 0.0]]))[0]
+    of_x, of_y = (
+        stranger[(record.kind == Kind.NEW_PERSON) & (record.task == task)].max() for task in (0, 1)
+    )
+    assert of_x > of_y
+
+
+def test_densities_are_scipys() -> None:
+    rng = np.random.default_rng(2)
+    who, what = ["a", "a", "b", "b"] * 4, ["x", "y"] * 8
+    points = rng.standard_normal((16, 3)) + np.array([[what[i] == "y"] * 3 for i in range(16)])
+    record = fit_hypotheses(points, find_cells(who, what))
+    probes = 2 * rng.standard_normal((5, 3))
+    gaussian, students = record.log_likelihoods(probes), record.log_likelihoods(probes, 7.0)
+    for h, form in enumerate(record.form):
+        back = np.linalg.inv(record.whiteners[form])
+        mean, shape = record.means[h] @ back, record.spread[h] * back.T @ back
+        exact = multivariate_normal(mean, shape).logpdf(probes)
+        np.testing.assert_allclose(np.diff(gaussian[:, h]), np.diff(exact), atol=1e-9)
+        exact = multivariate_t(mean, shape, df=7.0).logpdf(probes)
+        np.testing.assert_allclose(np.diff(students[:, h]), np.diff(exact), atol=1e-9)
+        both = [multivariate_normal(mean, shape).logpdf(mean) - gaussian_at(record, h, mean)]
+        assert both[0] == pytest.approx(multivariate_normal(np.zeros(3)).logpdf(np.zeros(3)))
+
+
+def gaussian_at(record: Hypotheses, hypothesis: int, point: np.ndarray) -> float:
+    return float(record.log_likelihoods(point[None])[0, hypothesis])
+
+
+def test_a_wave_that_is_uneven_is_not_strange_where_a_walk_would_be() -> None:
+    rng = np.random.default_rng(3)
+    persons, tasks, points = [], [], []
+    for person in "abcd":
+        for task, size in (("walk", 0.1), ("wave", 1.0)):
+            place = rng.normal(scale=5, size=6)
+            persons += [person] * 4
+            tasks += [task] * 4
+            points += list(place + rng.normal(scale=size, size=(4, 6)))
+    record = fit_hypotheses(np.array(points), find_cells(persons, tasks))
+    own = record.kind == Kind.SEEN
+    walk, wave = (np.flatnonzero(own & (record.task == task))[0] for task in (0, 1))
+    back = np.linalg.inv(record.whiteners)
+    off = {
+        name: gaussian_at(record, h, record.means[h] @ back[record.form[h]] + 0.8)
+        - gaussian_at(record, h, record.means[h] @ back[record.form[h]])
+        for name, h in (("walk", walk), ("wave", wave))
+    }
+    assert off["walk"] < 5 * off["wave"] < 0
+
+
+def test_further_takes_are_as_their_cells_scatter() -> None:
+    rng = np.random.default_rng(4)
+    persons, tasks = [p for p in "abc" for _ in range(40)], ["x", "y"] * 60
+    points = rng.normal(size=(120, 3)) * [0.1, 1.0, 0.5] + np.arange(120)[:, None] // 40
+    record = fit_hypotheses(points, find_cells(persons, tasks))
+    takes = record.further_takes(3000, most_cells=100).reshape(6, 3000, 3)
+    seen = np.flatnonzero(record.kind == Kind.SEEN)
+    for h, drawn in zip(seen, takes, strict=True):
+        back = np.linalg.inv(record.whiteners[record.form[h]])
+        truth = record.spread[h] * back.T @ back
+        np.testing.assert_allclose(drawn.mean(axis=0), record.means[h] @ back, atol=0.1)
+        assert np.linalg.norm(np.cov(drawn.T) - truth) < 0.1 * np.linalg.norm(truth)
+    np.testing.assert_array_equal(takes[:1], record.further_takes(3000, 1).reshape(1, 3000, 3))
+    nothing = fit_hypotheses(points, find_cells(persons, [None] * 120))
+    assert nothing.further_takes(3, 100).shape == (0, 3)

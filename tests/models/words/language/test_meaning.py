@@ -1,0 +1,75 @@
+"""Words that no clip carries find what the library calls the same."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.models.words.language.lexicon import likeness
+from app.models.words.language.meaning import neighbours
+from app.models.words.language.wordnet import Meanings, is_installed
+
+LIBRARY = ("bow", "elderly", "jump", "kick", "punch", "run", "sit", "tired", "walk", "wave")
+
+
+@pytest.mark.parametrize(
+    ("word", "ours"),
+    [
+        ("sprint", "run"),
+        ("sprinting", "run"),
+        ("leap", "jump"),
+        ("stroll", "walk"),
+        ("aged", "elderly"),
+        ("exhausted", "tired"),
+        ("curtsy", "bow"),
+        ("boots", "kick"),
+    ],
+)
+def test_the_lexicon_knows_what_movers_say(word: str, ours: str) -> None:
+    assert neighbours(word, LIBRARY, {})[0].word == ours
+
+
+def test_a_stranger_has_no_neighbours() -> None:
+    assert neighbours("zebra", LIBRARY, {}) == ()
+    assert neighbours("sprint", (), {}) == ()
+
+
+def test_likeness_is_symmetric_and_the_same_word_is_the_nearest() -> None:
+    words = ("sprint", "run", "jog", "bye", "wave", "zebra", "punch", "kick")
+    for one in words:
+        assert likeness(one, one) == 1.0
+        for other in words:
+            assert likeness(one, other) == likeness(other, one)
+            assert one == other or likeness(one, other) < 1.0
+
+
+def test_what_wordnet_found_serves_where_the_lexicon_is_silent() -> None:
+    related = {"canter": {"run": 0.65, "walk": 0.5}, "sprint": {"walk": 0.9}}
+    assert [near.word for near in neighbours("canter", LIBRARY, related)] == ["run"]
+    assert neighbours("cantering", LIBRARY, related)[0].word == "run"
+    assert neighbours("sprint", LIBRARY, related)[0].word == "run"
+
+
+def test_words_that_a_library_no_longer_carries_are_forgotten() -> None:
+    before = Meanings(
+        ("run", "walk"), {"canter": {"run": 0.6, "walk": 0.5}, "amble": {"walk": 0.8}}
+    )
+    after = before.of(("run", "jump"), look_up=False)
+    assert after == Meanings(("run",), {"canter": {"run": 0.6}})
+    assert Meanings.from_meta(after.to_meta()) == after
+    assert Meanings.from_meta({}) == Meanings()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not is_installed(), reason="the extra `words` is not installed")
+def test_wordnet_knows_more() -> None:
+    """WordNet takes seconds to load."""
+    related = Meanings().of(LIBRARY, look_up=True).related
+    for word, ours in {
+        "plod": "walk",
+        "lope": "run",
+        "hurdle": "jump",
+        "perambulate": "walk",
+        "flap": "wave",
+    }.items():
+        found = [near.word for near in neighbours(word, LIBRARY, related)]
+        assert ours in found, (word, found)

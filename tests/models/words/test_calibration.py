@@ -1,0 +1,87 @@
+"""Scores are probabilities: of held-out clips with score p, the part p carries the word."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.models.words.calibration import AS_THEY_ARE, WordCalibration, calibrate
+from app.models.words.model import fit_word_model
+from app.numerics.arrays import FloatArray
+
+WORDS = 8
+
+
+def clips(count: int, seed: int) -> tuple[FloatArray, FloatArray]:
+    """Statistics and labels that follow from them only by chance; words 0 and 1 go together."""
+    rng = np.random.default_rng(seed)
+    statistics = rng.normal(size=(count, 4))
+    chances = 1.0 / (1.0 + np.exp(-3.0 * statistics @ rng.normal(size=(4, WORDS)) / 2.0))
+    labels = (rng.random(size=chances.shape) < chances).astype(np.float64)
+    labels[:, 1] = labels[:, 0]
+    return statistics, labels
+
+
+@pytest.fixture(scope="module")
+def both() -> tuple[FloatArray, FloatArray]:
+    return clips(900, 1)
+
+
+def test_scores_of_new_clips_are_the_shares_that_carry_a_word(
+    both: tuple[FloatArray, FloatArray],
+) -> None:
+    statistics, labels = both
+    taught = statistics[:500], labels[:500]
+    model = fit_word_model(*taught)
+    made = calibrate(model, *taught, [str(row) for row in range(500)])
+    found = made.probabilities(model.outputs(statistics[500:])).ravel()
+    truth = labels[500:].ravel()
+    for low in np.arange(0.0, 1.0, 0.25):
+        within = (found >= low) & (found < low + 0.25)
+        assert truth[within].mean() == pytest.approx(found[within].mean(), abs=0.06)
+
+
+def test_words_that_go_together_are_likelier_together_than_by_chance() -> None:
+    rng = np.random.default_rng(0)
+    statistics = rng.normal(size=(300, 3))
+    one = (rng.random(300) < 0.5).astype(np.float64)
+    names = [str(row) for row in range(300)]
+
+    def dependence(labels: FloatArray) -> float:
+        model = fit_word_model(statistics, labels)
+        return calibrate(model, statistics, labels, names).dependence
+
+    same, apart = np.stack([one, one], axis=1), (rng.random((300, 2)) < 0.5).astype(np.float64)
+    assert dependence(same) < 0.2
+    assert dependence(apart) > 0.8
+
+
+def test_more_is_always_likelier_and_never_certain() -> None:
+    made = WordCalibration(np.array([0.1, 0.4]), np.array([0.0, 1.0]), 0.5)
+    found = made.probabilities(np.linspace(-1.0, 2.0, 301))
+    assert (np.diff(found) > 0).all()
+    assert 0 < found[0] < found[-1] < 1
+
+
+def test_copies_of_a_recording_are_not_judged_by_one_another() -> None:
+    rng = np.random.default_rng(3)
+    statistics, labels = rng.normal(size=(60, 3)), np.eye(6)[rng.integers(6, size=60)]
+    twice, labels_twice = np.tile(statistics, (2, 1)), np.tile(labels, (2, 1))
+    model = fit_word_model(twice, labels_twice)
+    recordings = [str(row) for row in range(60)]
+    honest = calibrate(model, twice, labels_twice, recordings * 2)
+    fooled = calibrate(model, twice, labels_twice, [str(row) for row in range(120)])
+    assert honest.probabilities(np.array([0.9]))[0] < fooled.probabilities(np.array([0.9]))[0]
+
+
+def test_one_recording_leaves_outputs_as_they_are() -> None:
+    statistics, labels = clips(6, 0)
+    model = fit_word_model(statistics, labels)
+    assert calibrate(model, statistics, labels, ["one"] * 6) is AS_THEY_ARE
+
+
+def test_a_query_of_one_word_has_that_words_probability() -> None:
+    chances = np.array([[0.2], [0.7]])
+    np.testing.assert_allclose(np.exp(-AS_THEY_ARE.joint_surprise(chances)), chances[:, 0])
+    independent = AS_THEY_ARE.joint_surprise(np.array([[0.5, 0.4]]))
+    np.testing.assert_allclose(np.exp(-independent), 0.2)
