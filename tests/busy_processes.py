@@ -6,7 +6,7 @@ from contextlib import suppress
 
 import psutil
 
-from app.services.demo import DemoClip
+from app.demo import DemoClip
 
 BUSY_S = 0.3
 """CPU time after which a child is in the middle of its analysis."""

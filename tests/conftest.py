@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.services.demo import demo_clips
+from app.demo import demo_clips
 from tests.live import Live, serve
 
 ACTORS = ("ada", "bruno")

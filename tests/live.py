@@ -16,7 +16,7 @@ from typing import Any
 
 import httpx2
 
-from app.services.demo import DemoClip
+from app.demo import DemoClip
 
 START_SECONDS = 60.0
 NO_TLS = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)

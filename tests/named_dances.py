@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.services.demo import DemoClip
-from app.services.demo.dances import dance
+from app.demo import DemoClip
+from app.demo.dances import dance
 
 TEMPI = (80.0, 110.0, 95.0)
 

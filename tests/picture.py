@@ -14,7 +14,7 @@ from pathlib import Path
 
 from app.cli.library import follow, register, working
 from app.config import load_settings
-from app.services.demo.library import write_demo
+from app.demo.library import write_demo
 from app.services.find import MotionQuery, find_motion
 from app.services.hits import Hits
 from app.services.library import Library

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from app.demo.dances import sounds
+from app.demo.dances.music import STYLES, clicks, music
+from app.demo.dances.sounds import SAMPLE_RATE
 from app.numerics.arrays import FloatArray
-from app.services.demo.dances import sounds
-from app.services.demo.dances.music import STYLES, clicks, music
-from app.services.demo.dances.sounds import SAMPLE_RATE
 from tests.unheard_music import UNHEARD
 
 CLICKS = "clicks"

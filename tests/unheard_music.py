@@ -6,7 +6,7 @@ that swell instead of being struck.
 
 from __future__ import annotations
 
-from app.services.demo.dances.music import Style, every
+from app.demo.dances.music import Style, every
 
 _BACKBEAT = ((1, 1.0), (3, 1.0))
 _TRIPLETS = tuple((third / 3, 0.9 if third % 3 == 0 else 0.5) for third in range(6))

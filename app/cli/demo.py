@@ -44,7 +44,7 @@ def demo(context: typer.Context, host: Host = None, port: Port = None) -> None:
 
 def _fill(context: typer.Context) -> None:
     from app.cli.library import fit_if_due, follow, register, working
-    from app.services.demo.library import write_demo
+    from app.demo.library import write_demo
 
     with open_library(context) as lib, tempfile.TemporaryDirectory() as folder:
         count = write_demo(Path(folder))

@@ -8,7 +8,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.services.demo import DemoClip, demo_clips
+from app.demo import DemoClip, demo_clips
 from tests.live import Live
 
 

@@ -10,7 +10,7 @@ import httpx2
 import numpy as np
 import pytest
 
-from app.services.demo import DemoClip, demo_clips
+from app.demo import DemoClip, demo_clips
 from tests.api.conftest import assert_problem
 from tests.live import Live
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import httpx2
 import pytest
 
-from app.services.demo import DemoClip
+from app.demo import DemoClip
 from app.store.id_file import NAME, write_id
 from tests.api.conftest import assert_problem
 from tests.full_disk import fill, small_disk

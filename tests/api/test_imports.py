@@ -7,7 +7,7 @@ import zipfile
 
 import httpx2
 
-from app.services.demo import demo_clips
+from app.demo import demo_clips
 from tests.api.conftest import assert_problem
 from tests.formats.npz.files import npy
 from tests.live import Live

@@ -10,7 +10,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.services.demo import demo_clips
+from app.demo import demo_clips
 from tests.api.conftest import assert_problem
 from tests.live import Live, serve
 

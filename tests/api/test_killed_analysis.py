@@ -10,7 +10,7 @@ import httpx2
 import psutil
 import pytest
 
-from app.services.demo import DemoClip
+from app.demo import DemoClip
 from tests.api.conftest import assert_problem
 from tests.busy_processes import busy_children, children_of, repeated, server_of
 from tests.live import Live, serve

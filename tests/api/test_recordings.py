@@ -8,8 +8,8 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.services.demo import DemoClip
-from app.services.demo.dances import Sound, dance
+from app.demo import DemoClip
+from app.demo.dances import Sound, dance
 from tests.api.conftest import assert_problem
 from tests.live import Live
 

@@ -8,7 +8,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.services.demo import DemoClip
+from app.demo import DemoClip
 from tests.api.conftest import assert_problem
 from tests.api.test_clips import CLIP_FIELDS
 

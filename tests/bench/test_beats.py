@@ -2,7 +2,7 @@
 
 Run: pytest -m bench -s tests/bench/test_beats.py
 
-Pieces and dances of `app.services.demo.dances`, of seeds that chose nothing: weights and
+Pieces and dances of `app.demo.dances`, of seeds that chose nothing: weights and
 thresholds were fitted on seeds below 10,000 (pieces below 40,000). Half of all drift. The
 weights for recordings were fitted on other pieces of the same styles; those of
 `tests.unheard_music` chose nothing at all and are told apart.
@@ -22,14 +22,14 @@ from app.analysis.rhythm.audio_beats import find_audio_beats
 from app.analysis.rhythm.audio_offset import estimate_offset
 from app.analysis.rhythm.beats import find_beats, find_stops
 from app.analysis.rhythm.onsets import find_onsets
+from app.demo import DemoClip
+from app.demo.dances import Sound, dance
+from app.demo.dances.music import STYLES
+from app.demo.dances.sounds import SAMPLE_RATE
 from app.formats.audio.reader import read_audio
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
 from app.motion.frame.body_frame import body_track
-from app.services.demo import DemoClip
-from app.services.demo.dances import Sound, dance
-from app.services.demo.dances.music import STYLES
-from app.services.demo.dances.sounds import SAMPLE_RATE
 from tests.bench.page import Section
 from tests.recordings import CLICKS, WITHOUT_BEAT, f_score, piece, without_beat
 from tests.unheard_music import UNHEARD

@@ -2,7 +2,7 @@
 
 Run: pytest -m bench -s tests/bench/test_keyposes.py
 
-Dances of `app.services.demo.dances`: nine tempi, three drifts, holds, freezes, passed beats,
+Dances of `app.demo.dances`: nine tempi, three drifts, holds, freezes, passed beats,
 ornaments, and white noise on every coordinate of every joint. What was chosen by looking
 (constants of the detector) was chosen on seeds 1000 to 1026; figures are of seeds from 9000.
 """
@@ -22,13 +22,13 @@ from app.analysis.energy.energy import EnergyMethod, Weights, energies
 from app.analysis.keyposes.end_effectors import end_effector_candidates
 from app.analysis.keyposes.keyposes import T1, T2, find_candidates, find_keyposes
 from app.analysis.rhythm.beats import Beats, find_beats, given_beats
+from app.demo.dances import dance
 from app.formats.read import read_recording
 from app.models.keyposes.matching import Counts, match, total
 from app.models.keyposes.thresholds import Example, Selectable, Thresholds, lesson
 from app.motion.canonical.canonical import canonicalise
 from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import BodyTrack, body_track
-from app.services.demo.dances import dance
 from tests.bench.page import Section
 from tests.bodies import motion_of
 from tests.dances import dance as simple_dance

@@ -24,7 +24,7 @@ import httpx2
 import psutil
 import pytest
 
-from app.services.demo import DemoClip, demo_clips
+from app.demo import DemoClip, demo_clips
 from tests.bench.processes import child_running
 from tests.bench.product import API, WORKER, Product, serving
 from tests.busy_processes import busy_children, repeated, server_of

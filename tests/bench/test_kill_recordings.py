@@ -20,8 +20,8 @@ import httpx2
 import psutil
 import pytest
 
-from app.services.demo import DemoClip
-from app.services.demo.dances import Sound, dance
+from app.demo import DemoClip
+from app.demo.dances import Sound, dance
 from tests.bench.page import Section
 from tests.bench.processes import child_running, kill, tree_of
 from tests.bench.product import API, WORKER, Product, serving

@@ -40,6 +40,7 @@ import pytest
 from app.analysis.descriptors import motion_vector
 from app.analysis.descriptors.frame_features import features_at_10hz, frame_features
 from app.config import Settings
+from app.demo import demo_clips
 from app.formats.read import read_recording
 from app.models.held_out.ranking import average_precision
 from app.motion.canonical.canonical import canonicalise
@@ -49,7 +50,6 @@ from app.numerics.alignment.dtw import dtw_distances
 from app.search import fusion
 from app.search.methods import LEARNED, Method
 from app.services import clips, find, imports, jobs
-from app.services.demo import demo_clips
 from app.services.fields import MAX_LIMIT
 from app.services.find import MotionQuery
 from app.services.library import Library

@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 from app.analysis.descriptors.motion_shape import moments_of, motion_shape
+from app.demo import demo_clips
 from app.formats.read import read_recording
 from app.models.held_out.synthesis import (
     NEW_PERSON,
@@ -39,7 +40,6 @@ from app.motion.posing.file_rotations import animation_of_recording
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.motion.skeleton.animation import Animation
 from app.motion.skeleton.recording import Recording
-from app.services.demo import demo_clips
 from tests.bench.page import Section
 from tests.real_clips import manifest, real_clips
 

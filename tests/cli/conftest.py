@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from app.cli.main import main
-from app.services.demo import DemoClip, demo_clips
+from app.demo import DemoClip, demo_clips
 
 ACTORS, TASKS = ("ada", "bruno"), ("walk", "kick", "wave")
 COLUMNS = ("path", "person", "task", "words")

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from app.cli.backup import _ended_by_sigterm
-from app.services.demo import DemoClip
+from app.demo import DemoClip
 from app.store.backup import DATABASE, FILES
 from tests.cli.conftest import Kinedex
 from tests.live import serve, wait_until

@@ -6,7 +6,7 @@ import zipfile
 from pathlib import Path
 
 from app.api.schemas.jobs import Job
-from app.services.demo import DemoClip, demo_clips
+from app.demo import DemoClip, demo_clips
 from tests.cli.conftest import ABSENT, BAD, Ended, Kinedex
 
 

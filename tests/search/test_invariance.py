@@ -13,13 +13,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.analysis.analyse import describe_for_search
+from app.demo import demo_clips
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
 from app.motion.canonical.motion import Motion
 from app.motion.skeleton.recording import Recording
 from app.motion.skeleton.resampling import resample
 from app.search.methods import Method
-from app.services.demo import demo_clips
 from tests.bodies import motion_of, turned_about_y, walking, waving
 from tests.real_clips import manifest, real_clips
 from tests.search.gallery import Arrays, Gallery, gallery

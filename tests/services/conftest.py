@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 
 from app.config import Settings
+from app.demo import DemoClip, demo_clips
 from app.services import clips, models
 from app.services.clips import Created, NewClip
-from app.services.demo import DemoClip, demo_clips
 from app.services.library import Library
 from app.store.clip_record import ClipRecord
 from app.worker.loop import run_worker

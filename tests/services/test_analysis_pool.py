@@ -14,6 +14,7 @@ import psutil
 import pytest
 
 from app.deadline import Deadline, within
+from app.demo import DemoClip
 from app.errors import (
     AnalysisCrashed,
     AnalysisInterrupted,
@@ -24,7 +25,6 @@ from app.errors import (
     Unreadable,
 )
 from app.services.analysis_pool import AnalysisPool, Limits, Order
-from app.services.demo import DemoClip
 from tests.busy_processes import busy_children, children_of, repeated
 from tests.live import wait_until
 

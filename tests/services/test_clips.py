@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
+from app.demo import DemoClip
 from app.errors import BadField, ClipNotFound, EmptyFile, NotFound, TooLarge, UnknownFormat
 from app.search.methods import Method
 from app.services import clips, find, jobs
 from app.services.clips import NewClip
-from app.services.demo import DemoClip
 from app.services.find import MotionQuery
 from app.services.library import Library
 from app.store import id_file

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.demo import DemoClip
 from app.errors import BadField, ClipNotFound, ClipNotReady
 from app.formats.bvh.reader import read_bvh
 from app.formats.read import read_recording
@@ -18,7 +19,6 @@ from app.motion.posing.canonical_body import BODY_ROLES
 from app.numerics.arrays import FloatArray
 from app.services import clips, export, views
 from app.services.clips import NewClip
-from app.services.demo import DemoClip
 from app.services.export_format import ExportFormat
 from app.services.library import Library
 from app.services.stored_motion import load_motion

@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
+from app.demo import DemoClip
 from app.errors import BadField, ClipNotFound, ClipNotReady, EmptyFile, ModelNotFitted, Unreadable
 from app.search.methods import Method
 from app.services import clips, find
 from app.services.clips import NewClip
-from app.services.demo import DemoClip
 from app.services.find import MotionQuery, WordQuery
 from app.services.hits import Hits
 from app.services.library import Library

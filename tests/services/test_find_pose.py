@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from app.analysis.descriptors.pose_cover import pose_vectors
+from app.demo import DemoClip
 from app.errors import BadField, ClipNotFound, ClipNotReady
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.search.by_pose import pose_distances
 from app.services import clips
 from app.services.clips import NewClip
-from app.services.demo import DemoClip
 from app.services.find_pose import PoseQuery, find_pose
 from app.services.hits import Hits
 from app.services.library import Library

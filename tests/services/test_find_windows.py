@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.demo import DemoClip
 from app.errors import BadField
 from app.numerics.arrays import FloatArray
 from app.search.places import MERGED
 from app.services import clips, find
 from app.services.clips import NewClip
-from app.services.demo import DemoClip
 from app.services.find import MotionQuery
 from app.services.find_windows import LONGEST_SECONDS
 from app.services.hits import Hit, Hits

@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
+from app.demo import DemoClip
 from app.errors import Canceled, EmptyFile, LeaseLost, NotFound, TooLarge, UnknownFormat, Unreadable
 from app.services import clips, imports, jobs
-from app.services.demo import DemoClip
 from app.services.library import Library
 from app.store import queue
 from app.store.abandoned import Watch

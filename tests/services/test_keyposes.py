@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from app.analysis.energy.energy import EnergyMethod
+from app.demo import DemoClip
+from app.demo.dances import dance
 from app.errors import BadField, ClipNotFound
 from app.models.keyposes.thresholds import KeyposeThresholds, Thresholds
 from app.services import clips, keyposes
 from app.services.annotated import read_annotated
 from app.services.clips import NewClip
-from app.services.demo import DemoClip
-from app.services.demo.dances import dance
 from app.services.imports import import_path
 from app.services.keypose_learning import examples_of, learn_keyposes
 from app.services.keyposes import ThresholdSource, name_keyposes, view

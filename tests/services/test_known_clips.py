@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from app.demo import DemoClip
 from app.services import word_ranking
 from app.services.clips import update_clip
-from app.services.demo import DemoClip
 from app.services.find import WordQuery, find_words
 from app.services.known_clips import OUTPUTS, POINTS, read_known
 from app.services.library import Library

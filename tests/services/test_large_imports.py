@@ -13,9 +13,9 @@ from typing import Any
 
 import pytest
 
+from app.demo import DemoClip
 from app.errors import BadField, Conflict, TooLarge
 from app.services import clips, import_register, imports, jobs
-from app.services.demo import DemoClip
 from app.services.import_plan import MOST_ABSENT
 from app.services.jobs import FIRST_FILES
 from app.services.library import Library

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from app.demo import DemoClip, demo_clips
 from app.errors import BadField, ModelNotFitted
 from app.search.methods import LEARNED, Method
 from app.services import clips, find, models
-from app.services.demo import DemoClip, demo_clips
 from app.services.find import MotionQuery
 from app.services.fit import fit_library
 from app.services.hits import Hits

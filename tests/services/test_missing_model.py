@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.demo import DemoClip
 from app.errors import ModelBeingFitted, ModelNotFitted
 from app.models.words.library import fit_library_words
 from app.services import models, reanalysis
-from app.services.demo import DemoClip
 from app.services.library import Library
 from app.store import models as stored
 from tests.models.word_clips import word_clips

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from app.demo import DemoClip
 from app.errors import ModelBeingFitted, ModelNotFitted, NotFound
 from app.services import clips, jobs, labels, models, persons, recognise
-from app.services.demo import DemoClip
 from app.services.find import MotionQuery, find_motion
 from app.services.fit import fit_library
 from app.services.library import Library

@@ -9,9 +9,9 @@ import pytest
 from sqlalchemy import update
 
 from app.analysis import array_shapes
+from app.demo import DemoClip
 from app.errors import ClipNotReady, ModelNotFitted
 from app.services import clips, models, reanalysis
-from app.services.demo import DemoClip
 from app.services.find import MotionQuery, WordQuery, find_motion, find_words
 from app.services.library import Library
 from app.services.model_shelf import ModelShelf

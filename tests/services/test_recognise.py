@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from app.demo import DemoClip
 from app.errors import BadField, ModelNotFitted
 from app.services import models, recognise
-from app.services.demo import DemoClip
 from app.services.errors_in_force import errors_in_force
 from app.services.library import Library
 from app.services.recognise import METHODS, RecogniseQuery

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 import soundfile
 
+from app.demo import DemoClip
+from app.demo.dances import Sound, dance
 from app.errors import BadField, NotFound
 from app.services import clips, imports, keyposes
 from app.services.analysis_pool import Order, analyse_order
 from app.services.clips import Created, NewClip
-from app.services.demo import DemoClip
-from app.services.demo.dances import Sound, dance
 from app.services.library import Library, ingest_limits
 from app.services.recordings import NewRecording
 from app.store import import_files

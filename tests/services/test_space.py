@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from app.demo import DemoClip
 from app.errors import BadField, ModelNotFitted
 from app.services import space
-from app.services.demo import DemoClip
 from app.services.library import Library
 from app.store.clip_filter import ClipFilter
 from tests.services.conftest import upload, work

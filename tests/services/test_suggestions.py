@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from app.demo import DemoClip
 from app.errors import BadField, ModelNotFitted
 from app.services import clips, models, suggestions
-from app.services.demo import DemoClip
 from app.services.library import Library
 from tests.services.conftest import FindClip, upload, work
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from app.analysis.descriptors.motion_shape import motion_shape
+from app.demo import demo_clips
 from app.errors import BadField, ClipNotFound, ModelNotFitted, NotEnoughLabels, NotFound
 from app.formats.read import read_recording
 from app.models.synthesis.agreement import AGREED
@@ -24,7 +25,6 @@ from app.motion.posing.canonical_body import canonical_body
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.animation import animation_of_positions
 from app.services import clips, models, persons
-from app.services.demo import demo_clips
 from app.services.fit import fit_library
 from app.services.library import Library
 from app.services.model_shelf import ModelKind

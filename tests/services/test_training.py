@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.services.demo import DemoClip
+from app.demo import DemoClip
 from app.services.library import Library
 from app.services.synthesized import SYNTHESIZED
 from app.services.training import read_training_set, ready_only

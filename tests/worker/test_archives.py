@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from app.demo import DemoClip, demo_clips
 from app.errors import FileDamaged
 from app.services import clips, imports, jobs
-from app.services.demo import DemoClip, demo_clips
 from app.services.library import Library
 from app.store.clip_record import ClipState
 from app.store.job_record import JobState

@@ -17,8 +17,8 @@ import psutil
 import pytest
 
 from app.config import Settings
+from app.demo import DemoClip, demo_clips
 from app.services import analysis_pool, clips, jobs, models
-from app.services.demo import DemoClip, demo_clips
 from app.services.library import Library
 from app.store import ids, leases, outcomes
 from app.store.clip_record import ClipRecord, ClipState

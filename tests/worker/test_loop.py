@@ -19,9 +19,9 @@ import psutil
 import pytest
 
 from app.config import Settings
+from app.demo import DemoClip, demo_clips
 from app.errors import LeaseLost
 from app.services import clips, imports, jobs, models
-from app.services.demo import DemoClip, demo_clips
 from app.services.library import Library
 from app.store.clip_record import ClipRecord, ClipState
 from app.store.job_record import JobKind, JobRecord, JobState

@@ -9,8 +9,8 @@ from app.analysis.rhythm.audio_beats import TIGHTNESS, find_audio_beats
 from app.analysis.rhythm.beat_tracking import track
 from app.analysis.rhythm.beats import BeatSource
 from app.analysis.rhythm.onsets import find_onsets
-from app.services.demo.dances.music import STYLES
-from app.services.demo.dances.sounds import SAMPLE_RATE
+from app.demo.dances.music import STYLES
+from app.demo.dances.sounds import SAMPLE_RATE
 from tests.recordings import WITHOUT_BEAT, f_score, piece, without_beat
 
 

@@ -8,11 +8,11 @@ from scipy.ndimage import gaussian_filter1d
 
 from app.analysis.energy.energy import energies
 from app.analysis.rhythm.beats import BeatSource, beats_of_tempo, find_beats, given_beats
+from app.demo import DemoClip
+from app.demo.dances import dance as drifting_dance
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
 from app.motion.frame.body_frame import body_track
-from app.services.demo import DemoClip
-from app.services.demo.dances import dance as drifting_dance
 from tests.bodies import motion_of, standing
 from tests.dances import dance, irregular
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.analysis.rhythm.onsets import RATE, find_onsets
-from app.services.demo.dances.sounds import SAMPLE_RATE
+from app.demo.dances.sounds import SAMPLE_RATE
 from tests.recordings import piece, without_beat
 
 

@@ -12,12 +12,12 @@ from app.analysis.energy.energy import energies
 from app.analysis.rhythm.beats import BeatSource
 from app.analysis.rhythm.onsets import Onsets, find_onsets
 from app.analysis.rhythm.rhythm import SOURCES, Told, beats_of, find_rhythm, rhythm_arrays
+from app.demo import DemoClip
+from app.demo.dances import Sound, dance
 from app.formats.audio.reader import read_audio
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
 from app.motion.frame.body_frame import BodyTrack, body_track
-from app.services.demo import DemoClip
-from app.services.demo.dances import Sound, dance
 from tests.bodies import motion_of, standing
 from tests.recordings import without_beat
 

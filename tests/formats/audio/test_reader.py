@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import soundfile
 
+from app.demo.dances.wav import write_wav
 from app.errors import BadContent, EmptyFile, ExtraNeeded, TooLarge, UnknownFormat, Unreadable
 from app.formats.audio import reader as audio
 from app.formats.audio.reader import read_audio, sniff_audio
-from app.services.demo.dances.wav import write_wav
 from tests.formats.mutations import mutated
 
 RATE = 22050

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from app.demo import demo_clips
 from app.formats.bvh.reader import read_bvh
 from app.motion.skeleton.recording import Recording
-from app.services.demo import demo_clips
 from tests.formats import mutations
 from tests.formats.samples import bvh
 from tests.real_clips import real_clips

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.demo import demo_clips
 from app.formats.bvh.reader import read_bvh
 from app.motion.canonical.canonical import canonicalise
 from app.motion.canonical.motion import Motion
@@ -19,7 +20,6 @@ from app.motion.posing.canonical_body import (
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
 from app.motion.skeleton.kinematics import rest_positions
 from app.numerics.arrays import FloatArray
-from app.services.demo import demo_clips
 from tests.people import CONVENTIONS, person
 from tests.real_clips import manifest, real_clips
 

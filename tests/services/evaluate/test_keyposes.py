@@ -8,10 +8,10 @@ from xml.etree import ElementTree
 import pytest
 
 from app.analysis.keyposes.keyposes import find_keyposes
+from app.demo import DemoClip
 from app.errors import BadField, NotEnoughLabels
 from app.models.keyposes.matching import match
 from app.services.annotated import read_annotated
-from app.services.demo import DemoClip
 from app.services.evaluate import JUDGED_KEYPOSES, judge_keyposes
 from app.services.evaluate.keypose_pictures import clip_figure, clips_to_draw, threshold_figure
 from app.services.imports import import_path

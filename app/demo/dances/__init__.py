@@ -1,0 +1,6 @@
+"""Dances with known beats, keyposes and music: the ground truth for what analysis finds."""
+
+from app.demo.dances.dance import dance
+from app.demo.dances.sound import Sound
+
+__all__ = ["Sound", "dance"]

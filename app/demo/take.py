@@ -1,0 +1,96 @@
+"""A take: one actor once more, a little different each time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import radians
+from zlib import crc32
+
+import numpy as np
+
+from app.demo.actors import Actor
+from app.demo.controls import Controls, Turn
+from app.demo.curves import wobble
+from app.demo.rig import Rig, build_rig
+from app.numerics.arrays import FloatArray
+
+GRAVITY = 9.81
+"""m/s^2."""
+
+
+@dataclass(frozen=True, slots=True)
+class Take:
+    """What a task needs to be performed once.
+
+    pace: factor on speed; size: factor on amplitude; phase: in [0, 1), where a cycle starts;
+    heading: rad; draw: the take's own random numbers, the same at every run.
+    """
+
+    actor: Actor
+    rig: Rig
+    draw: np.random.RandomState
+    pace: float
+    size: float
+    phase: float
+    heading: float
+
+    def clock(self, seconds: float) -> FloatArray:
+        """(frames,) times of the frames of `seconds`, s."""
+        return np.arange(max(2, round(seconds * self.actor.frame_rate))) / self.actor.frame_rate
+
+    def vary(self, spread: float) -> float:
+        """A factor around 1, never further away than `spread`."""
+        return float(self.draw.uniform(1.0 - spread, 1.0 + spread))
+
+
+def prepare(actor: Actor, task: str, number: int) -> Take:
+    """Take `number` (from 1) of a task by an actor."""
+    # crc32 and RandomState's stream are both frozen for good: the same draws everywhere.
+    draw = np.random.RandomState(crc32(f"{actor.name}/{task}/{number}".encode()))
+    return Take(
+        actor=actor,
+        rig=build_rig(actor),
+        draw=draw,
+        pace=actor.style.tempo * float(draw.uniform(0.95, 1.05)),
+        size=actor.style.energy * float(draw.uniform(0.93, 1.07)),
+        phase=float(draw.uniform(0.0, 1.0)),
+        heading=float(draw.uniform(radians(-25), radians(25))),
+    )
+
+
+def enlivened(controls: Controls, take: Take, times: FloatArray) -> Controls:
+    """The same with breathing and the small sway that no living body is without."""
+    draw, style = take.draw, take.actor.style
+    sway = 0.006 * style.sway
+    drift = np.stack(
+        [wobble(times, draw, sway), np.zeros_like(times), wobble(times, draw, 0.005)], axis=-1
+    )
+    breath = 0.012 * np.sin(2.0 * np.pi * (0.27 * take.pace * times + take.phase))
+    arms = [
+        replace(
+            arm,
+            flex=arm.flex + wobble(times, draw, 0.025),
+            abduct=arm.abduct + wobble(times, draw, 0.015),
+            # A straight elbow may bend a little more, never the wrong way.
+            elbow=np.maximum(arm.elbow + wobble(times, draw, 0.03), 0.03),
+        )
+        for arm in controls.arms
+    ]
+    return replace(
+        controls,
+        root=controls.root + drift,
+        spine=_swayed(controls.spine, times, draw, 0.012, breath),
+        head=_swayed(controls.head, times, draw, 0.03, -breath),
+        arms=(arms[0], arms[1]),
+        shrug=controls.shrug - breath,
+    )
+
+
+def _swayed(
+    turn: Turn, times: FloatArray, draw: np.random.RandomState, size: float, pitch: FloatArray
+) -> Turn:
+    return Turn(
+        yaw=turn.yaw + wobble(times, draw, size),
+        pitch=turn.pitch + pitch + wobble(times, draw, 0.7 * size),
+        roll=turn.roll + wobble(times, draw, 0.5 * size),
+    )

@@ -1,6 +1,0 @@
-"""The demo library: motions of our own making that look like people."""
-
-from app.services.demo.clip import DemoClip
-from app.services.demo.library import demo_clips, write_demo
-
-__all__ = ["DemoClip", "demo_clips", "write_demo"]

@@ -1,0 +1,22 @@
+"""One take of everything in the demo library, made and read once for all its tests."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.demo import DemoClip, demo_clips
+from app.formats.read import read_recording
+from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.motion import Motion
+
+
+@pytest.fixture(scope="session")
+def clips() -> dict[tuple[str, str], DemoClip]:
+    """The first take by (person, task)."""
+    return {(clip.person, clip.task): clip for clip in demo_clips(takes=1)}
+
+
+@pytest.fixture(scope="session")
+def motions(clips: dict[tuple[str, str], DemoClip]) -> dict[tuple[str, str], Motion]:
+    """The same clips as canonical motion."""
+    return {key: canonicalise(read_recording(clip.content)) for key, clip in clips.items()}

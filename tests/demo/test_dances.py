@@ -1,0 +1,105 @@
+"""Dances by seed: deterministic, human, and at rest at the keyposes that they tell."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+from app.analysis.energy.energy import energies
+from app.demo import DemoClip
+from app.demo.dances import dance
+from app.formats.read import read_recording
+from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.motion import Motion
+from app.motion.frame.body_frame import body_track
+
+SEEDS = {0: 60.0, 1: 85.0, 2: 110.0, 3: 140.0}
+"""Tempo by seed."""
+
+
+@lru_cache
+def made(seed: int) -> tuple[DemoClip, Motion]:
+    clip = dance(seed, bpm=SEEDS[seed], seconds=16.0, drift=0.03)
+    return clip, canonicalise(read_recording(clip.content))
+
+
+def test_the_same_bytes_for_the_same_seed_and_others_for_another() -> None:
+    once, again, other = (dance(seed, seconds=6.0) for seed in (3, 3, 4))
+    assert once == again
+    assert other.content != once.content
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_dance_is_read_without_doubt(seed: int) -> None:
+    clip, motion = made(seed)
+    assert motion.cautions == ()
+    assert motion.missing_roles == ()
+    assert motion.duration == pytest.approx(16.0, abs=2.5)
+    assert len(clip.keyposes) == len(clip.holds) >= 8
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_beats_keep_their_tempo(seed: int) -> None:
+    clip, motion = made(seed)
+    intervals = np.diff(clip.beats)
+    nominal = 60.0 / SEEDS[seed]
+    assert np.all(np.abs(intervals / nominal - 1) < 0.032)
+    assert np.ptp(intervals) / nominal > 0.01  # it drifts
+    assert clip.beats[0] > 0.0
+    assert clip.beats[-1] < motion.duration
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_body_rests_at_keyposes_and_moves_between(seed: int) -> None:
+    clip, motion = made(seed)
+    energy = energies(body_track(motion)).global_energy
+    times = np.arange(len(energy)) / 30.0
+    at_keyposes = np.interp(clip.keyposes, times, energy)
+    between = [
+        energy[(times > leave) & (times < arrive)].max()
+        for (_, leave), (arrive, _) in zip(clip.holds, clip.holds[1:], strict=False)
+    ]
+    assert np.median(at_keyposes) < 0.25 * np.median(between)
+    assert np.median(between) > 0.4  # body lengths a second: more than swaying
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_keyposes_lie_on_beats_as_well_as_dancers_keep_them(seed: int) -> None:
+    clip, _ = made(seed)
+    beats = np.array(clip.beats)
+    off = [np.abs(beats - keypose).min() for keypose in clip.keyposes]
+    assert max(off) <= 0.04 + 1e-9
+    assert all(a <= k <= b for k, (a, b) in zip(clip.keyposes, clip.holds, strict=True))
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_nobody_sinks_into_the_ground_or_leaves_the_stage(seed: int) -> None:
+    _, motion = made(seed)
+    assert motion.positions[..., 1].min() > -0.02
+    places = motion.positions[..., [0, 2]]
+    assert np.abs(places - places[:1].mean(axis=1, keepdims=True)).max() < 2.5
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_nothing_moves_faster_than_people_can(seed: int) -> None:
+    _, motion = made(seed)
+    speeds = np.linalg.norm(np.diff(motion.positions, axis=0), axis=-1) * motion.frame_rate
+    assert speeds.max() < 9.0
+
+
+def test_passes_leave_beats_without_keyposes_and_freezes_hold_longer() -> None:
+    every = dance(5, bpm=100, passes=0.0, freezes=0.0)
+    passing = dance(5, bpm=100, passes=0.8, freezes=0.0)
+    frozen = dance(5, bpm=100, passes=0.0, freezes=0.9)
+    assert len(passing.keyposes) < len(every.keyposes)
+    assert max(b - a for a, b in every.holds) < 0.4
+    assert np.median([b - a for a, b in frozen.holds]) > 0.55
+
+
+def test_noise_is_as_large_as_told() -> None:
+    clip, same = (dance(6, seconds=6.0, noise_mm=mm) for mm in (10.0, 1e-6))
+    noisy, clean = (read_recording(c.content).positions for c in (clip, same))
+    assert np.std(noisy - clean) == pytest.approx(0.01, rel=0.02)
+    assert clip.keyposes == same.keyposes
