@@ -1,4 +1,4 @@
-"""Alembic's entry: runs on the connection that `app.store.schema` hands over."""
+"""Alembic's entry: runs on the connection that `app.store.database.schema` hands over."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from alembic import context
 
-from app.store.tables import UtcDateTime, metadata
+from app.store.database.tables import UtcDateTime, metadata
 
 
 def render_item(kind: str, item: Any, _context: Any) -> str | Literal[False]:

@@ -12,9 +12,10 @@ from sqlalchemy import insert, update
 from app.analysis.analyse import ANALYSIS_VERSION
 from app.config import Settings
 from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
-from app.store import arrays, identity
-from app.store import tables as t
-from app.store.index_feed import IndexedClip
+from app.store import identity
+from app.store.clips import arrays
+from app.store.clips.index_feed import IndexedClip
+from app.store.database import tables as t
 from app.store.store import Store
 from tests.bench.large_library import clip_row
 from tests.bodies import walking

@@ -21,9 +21,9 @@ from app.services.library import Library
 from app.services.stick_figure import TRUNK, text
 from app.services.thumbnail import HEIGHT, WIDTH
 from app.services.views import thumbnail_svg
-from app.store import clip_listing
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipRecord
+from app.store.clips import listing as clip_listing
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord
 
 PICTURE = Path(__file__).resolve().parents[1] / ".github" / "search.svg"
 PERSON, NAME = "chika", "kick_01"

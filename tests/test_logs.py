@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 from app.api.access_log import identity_of
 from app.logs import without_keys
 from app.store import keys
-from app.store.engine import Database
+from app.store.database.engine import Database
+from app.store.database.schema import prepare
 from app.store.keys import KeyRole
-from app.store.schema import prepare
 from tests.live import serve
 
 SECRET = "Ab_-" + "x9Z" * 13

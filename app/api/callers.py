@@ -10,7 +10,7 @@ from starlette.datastructures import Headers
 from app.errors import Forbidden, Unauthorized
 from app.services.library import Library
 from app.store import keys
-from app.store.engine import Tx
+from app.store.database.engine import Tx
 from app.store.key_role import KeyRole
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from app.api.callers import is_open
 from app.services.library import Library
-from app.store import clip_listing, jobs
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipState
+from app.store.clips import listing as clip_listing
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipState
+from app.store.jobs import repository as jobs
 
 _READY = ClipFilter(state=(ClipState.READY,))
 

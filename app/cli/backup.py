@@ -27,7 +27,7 @@ def backup(
     The copy is a data directory: to restore it, start Kinedex with KINEDEX_DATA_DIR set to it, or
     to a copy of it. It holds everything, also keys (hashed) and what is deleted later.
     """
-    from app.store.backup import back_up
+    from app.store.upkeep.backup import back_up
 
     _refuse_inside(settings_of(context).data_dir, path)
     with open_store(context) as store, _ended_by_sigterm(), progress_bar() as bar:

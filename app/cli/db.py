@@ -12,8 +12,9 @@ program = typer.Typer(help="The database.", no_args_is_help=True)
 @program.command("upgrade")
 def upgrade(context: typer.Context) -> None:
     """Bring the database to this version's schema, making it where there is none."""
-    from app.store import identity, schema
-    from app.store.folders import make_private
+    from app.store import identity
+    from app.store.database import schema
+    from app.store.files.folders import make_private
 
     settings = settings_of(context)
     make_private(settings.data_dir)

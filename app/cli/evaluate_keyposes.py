@@ -20,7 +20,7 @@ from app.services import evaluate, pictures
 from app.services.evaluate import KeyposeEvaluation, keypose_pictures
 from app.services.keypose_learning import told
 from app.services.library import Library
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 
 Tolerance = Annotated[
     float, typer.Option(help="Seconds by which a keypose may be missed and is still the same.")

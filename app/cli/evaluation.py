@@ -12,7 +12,7 @@ from app.cli.output import progress_bar
 from app.cli.settings import open_library
 from app.search.filters import parse_filter
 from app.services.library import Library
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 Progress = Callable[[int, int], None]
 """Is told how many steps are done, of how many."""

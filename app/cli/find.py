@@ -20,7 +20,7 @@ from app.search.methods import Method
 if TYPE_CHECKING:
     from app.api.schemas.recognition import Answer
     from app.services.hits import Hits
-    from app.store.files import Readable
+    from app.store.files.files import Readable
 
 Query = Annotated[str, typer.Argument(help="A motion file, or the id of a stored clip.")]
 FrameRate = Annotated[float | None, typer.Option(help="Of a file: overrides what it declares.")]

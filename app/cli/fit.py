@@ -10,7 +10,7 @@ from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 
 if TYPE_CHECKING:
-    from app.store.job_record import JobRecord
+    from app.store.jobs.record import JobRecord
 
 COUNTED = "clips"
 """The name of what is no share."""
@@ -21,7 +21,7 @@ def fit(context: typer.Context, as_json: AsJson = False) -> None:
     from app.api.schemas.jobs import Job
     from app.cli.library import FAILURE, follow, working
     from app.services import models
-    from app.store.job_record import JobState
+    from app.store.jobs.record import JobState
 
     with open_library(context) as lib:
         asked = models.request_fit(lib)

@@ -16,7 +16,7 @@ from app.cli.settings import open_library
 
 if TYPE_CHECKING:
     from app.services.library import Library
-    from app.store.job_record import JobRecord
+    from app.store.jobs.record import JobRecord
 
 POLL_S = 0.2
 PROGRESS_STEPS = 1000
@@ -37,7 +37,7 @@ def import_clips(
 
     What is there already is passed over, so an import that was cut off can be run again.
     """
-    from app.store.job_record import JobState
+    from app.store.jobs.record import JobState
 
     with open_library(context) as lib:
         job = register(lib, path)
@@ -113,7 +113,7 @@ def fit_if_due(lib: Library) -> None:
 def _open_fit(lib: Library) -> JobRecord | None:
     """A fit that is queued or being done, by this worker or another."""
     from app.services import jobs
-    from app.store.job_record import JobKind
+    from app.store.jobs.record import JobKind
 
     recent = jobs.list_jobs(lib, kind=JobKind.FIT, limit=RECENT).items
     return next((job for job in recent if job.is_open), None)
@@ -148,7 +148,7 @@ def show_import(lib: Library, job: JobRecord) -> None:
 def _show_failures(lib: Library, job_id: str, absent: int) -> None:
     from app.services import jobs
     from app.services.import_plan import MOST_ABSENT
-    from app.store.import_files import FileOutcome
+    from app.store.jobs.import_files import FileOutcome
 
     failures = [
         (file.path, _reason(file.error))

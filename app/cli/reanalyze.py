@@ -62,7 +62,7 @@ def _follow(lib: Library) -> None:
 
 
 def _waiting(lib: Library) -> int:
-    from app.store import clip_listing
+    from app.store.clips import listing as clip_listing
 
     with lib.store.read() as tx:
         return clip_listing.count_waiting(tx)

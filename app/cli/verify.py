@@ -12,7 +12,7 @@ from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.settings import open_store
 
 if TYPE_CHECKING:
-    from app.store.verify import Verified
+    from app.store.upkeep.verify import Verified
 
 FAILURE = 1
 
@@ -23,7 +23,7 @@ def verify(context: typer.Context, as_json: AsJson = False) -> None:
     The database's pages and references, every stored file against its SHA-256, every array. It may
     run while the library is in use.
     """
-    from app.store.verify import verify as look
+    from app.store.upkeep.verify import verify as look
 
     with open_store(context) as store, progress_bar() as bar:
         task = bar.add_task("reading", total=None)

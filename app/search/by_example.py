@@ -16,7 +16,7 @@ from app.search.methods import Method
 from app.search.near import Near
 from app.search.rank import IdArray, Page, Ranked, Ranking
 from app.search.reranked import ReRanked
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 SCALES = {
     Method.FUSED: 5.0,

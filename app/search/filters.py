@@ -14,7 +14,7 @@ from typing import Any
 
 from app.errors import BadField, Place
 from app.models.words.language.normalise import normalise_word
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 LABEL_KEYS = ("person", "task", "word", "license", "source")
 NOT = "not_"

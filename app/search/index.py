@@ -15,9 +15,10 @@ from app.numerics.arrays import FloatArray
 from app.search.near import Near
 from app.search.rank import IdArray
 from app.search.rows import Layout, Rows, RowsView
-from app.store import index_feed, library
-from app.store.clip_filter import ClipFilter
-from app.store.engine import Tx
+from app.store.clips import index_feed
+from app.store.clips import versions as library
+from app.store.clips.filter import ClipFilter
+from app.store.database.engine import Tx
 from app.store.store import Store
 
 VECTOR = "motion_vector"

@@ -15,8 +15,8 @@ from numpy.typing import DTypeLike, NDArray
 
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.search.rank import IdArray
-from app.store.clip_filter import ClipFilter
-from app.store.index_feed import IndexedClip
+from app.store.clips.filter import ClipFilter
+from app.store.clips.index_feed import IndexedClip
 
 NAMED = ("person", "task", "license", "source")
 _FIRST_CAPACITY = 1024

@@ -13,7 +13,7 @@ from app.search.beside import Beside, Compute, Known, RowsBeside, nothing_known
 from app.search.index import VectorIndex
 from app.search.labels import Column
 from app.search.near import Near
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 
 class ProjectedIndex:

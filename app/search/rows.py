@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.nearest import Block, squared_lengths
 from app.search.labels import Column, Labels, LabelView
-from app.store.index_feed import IndexedClip
+from app.store.clips.index_feed import IndexedClip
 
 BLOCK = 32_768
 """Rows of one block."""

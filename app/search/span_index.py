@@ -18,10 +18,11 @@ from app.numerics.euclidean import squared_lengths
 from app.search import usable_arrays
 from app.search.labels import Column, Labels, LabelView
 from app.search.rank import IdArray
-from app.store import index_feed, library
-from app.store.clip_filter import ClipFilter
-from app.store.engine import Tx
-from app.store.index_feed import IndexedClip
+from app.store.clips import index_feed
+from app.store.clips import versions as library
+from app.store.clips.filter import ClipFilter
+from app.store.clips.index_feed import IndexedClip
+from app.store.database.engine import Tx
 from app.store.store import Store
 
 NO_FILTER = ClipFilter()

@@ -12,8 +12,8 @@ from typing import Any
 from numpy.typing import NDArray
 
 from app.analysis.array_shapes import is_usable
-from app.store import arrays
-from app.store.engine import Tx
+from app.store.clips import arrays
+from app.store.database.engine import Tx
 
 
 def get_some(tx: Tx, clip_id: str, names: Collection[str]) -> dict[str, NDArray[Any]]:

@@ -15,7 +15,7 @@ from app.services.figure_camera import Figure
 from app.services.library import Library
 from app.services.low_dimensional import Reduction, reduce
 from app.services.query import ready_clip
-from app.store import arrays
+from app.store.clips import arrays
 
 ROLE_NAMES = tuple(role.value for role in SUN_ROLES)
 

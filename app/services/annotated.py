@@ -12,10 +12,12 @@ from app.numerics.arrays import FloatArray
 from app.services.keypose_frames import read_beats
 from app.services.stored_motion import read_motion
 from app.services.training import ready_only, recording_of_clip
-from app.store import clip_listing, clips, keypose_annotations
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipRecord
-from app.store.engine import Tx
+from app.store.clips import keypose_annotations
+from app.store.clips import listing as clip_listing
+from app.store.clips import repository as clips
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord
+from app.store.database.engine import Tx
 from app.store.store import Store
 
 

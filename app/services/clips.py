@@ -15,15 +15,18 @@ from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
 from app.services import fields
 from app.services.library import Library
 from app.services.recordings import NewRecording, described, stage
-from app.store import clip_listing, jobs, outcomes, removals
-from app.store import clips as stored
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import Added, ClipChanges, ClipRecord
-from app.store.clip_record import NewClip as NewRow
-from app.store.engine import Tx
-from app.store.files import Readable, StagedFile
-from app.store.job_record import JobKind, JobRecord, NewJob
-from app.store.paging import Page
+from app.store.clips import listing as clip_listing
+from app.store.clips import repository as stored
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import Added, ClipChanges, ClipRecord
+from app.store.clips.record import NewClip as NewRow
+from app.store.database.engine import Tx
+from app.store.database.paging import Page
+from app.store.files import removals
+from app.store.files.files import Readable, StagedFile
+from app.store.jobs import outcomes
+from app.store.jobs import repository as jobs
+from app.store.jobs.record import JobKind, JobRecord, NewJob
 
 UPLOAD_PRIORITY = 10
 BULK_PRIORITY = 20

@@ -39,7 +39,7 @@ from app.services.library import Library
 from app.services.low_dimensional import Reduction, as_motion, reduce
 from app.services.query import ready_clip
 from app.services.stored_motion import load_motion
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 
 _Kind = TypeVar("_Kind", bound=StrEnum)
 

@@ -26,9 +26,9 @@ from app.services.library import Library
 from app.services.metric_ranking import rank_by_metric
 from app.services.query import Answered, Question, describe
 from app.services.word_ranking import WORD_MODES, rank_by_words
-from app.store import clips as stored
-from app.store.clip_filter import ClipFilter
-from app.store.files import Readable
+from app.store.clips import repository as stored
+from app.store.clips.filter import ClipFilter
+from app.store.files.files import Readable
 
 DEFAULT_LIMIT = 10
 SCOPES = ("clips", "windows", "segments")

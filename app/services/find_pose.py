@@ -22,8 +22,8 @@ from app.services.hits import Hit, Hits
 from app.services.library import Library
 from app.services.posed import pose_at, pose_of
 from app.services.query import Question, describe
-from app.store import clips as stored
-from app.store.files import Readable
+from app.store.clips import repository as stored
+from app.store.files.files import Readable
 
 METHOD = "pose"
 SCALE = 0.25

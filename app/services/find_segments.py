@@ -20,7 +20,7 @@ from app.services.hits import Hits
 from app.services.library import Library
 from app.services.query import Question, describe, ready_clip
 from app.services.segments import segment_arrays
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 METHODS = (Method.FUSED, Method.VECTOR)
 """Both compare the segments' vectors: warping what is cut at its keyposes finds no more."""

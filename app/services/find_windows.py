@@ -21,8 +21,8 @@ from app.services import fields
 from app.services.hits import Hit, Hits
 from app.services.library import Library
 from app.services.query import Answered, Question, describe
-from app.store import clips as stored
-from app.store.clip_filter import ClipFilter
+from app.store.clips import repository as stored
+from app.store.clips.filter import ClipFilter
 
 LONGEST_SECONDS = 120.0
 """Of a query in windows; what is longer is a clip of its own, and found as one."""

@@ -30,8 +30,9 @@ from app.services.model_shelf import SHAPES_FITTED, ModelKind, holds_persons, in
 from app.services.models import enqueue_fit
 from app.services.synthesis_fit import fit_on
 from app.services.training import TrainingSet, read_training_set
-from app.store import labels, models
-from app.store.engine import Tx
+from app.store import models
+from app.store.clips import labels
+from app.store.database.engine import Tx
 from app.store.store import Store
 
 _log = logging.getLogger(__name__)

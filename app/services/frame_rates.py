@@ -6,7 +6,7 @@ import math
 
 from app.services import fields
 from app.services.library import Library
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 
 LEAST_FPS, MOST_FPS = 1.0, 1000.0
 """Frames a second that can be asked for."""

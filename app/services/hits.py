@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 
 
 @dataclass(frozen=True, slots=True)

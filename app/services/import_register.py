@@ -20,15 +20,16 @@ from app.services.import_sources import SourceFile
 from app.services.library import Library
 from app.services.manifest import ManifestRow
 from app.services.recordings import described
-from app.store import imports as stored
-from app.store import keypose_annotations, leases
-from app.store.clip_record import ClipState
-from app.store.clip_record import NewClip as NewRow
-from app.store.engine import Tx
-from app.store.files import Readable, StagedFile
-from app.store.import_files import ImportOutcome
-from app.store.imports import NewEntry
-from app.store.job_record import JobRecord, Lease
+from app.store.clips import keypose_annotations
+from app.store.clips.record import ClipState
+from app.store.clips.record import NewClip as NewRow
+from app.store.database.engine import Tx
+from app.store.files.files import Readable, StagedFile
+from app.store.jobs import imports as stored
+from app.store.jobs import leases
+from app.store.jobs.import_files import ImportOutcome
+from app.store.jobs.imports import NewEntry
+from app.store.jobs.record import JobRecord, Lease
 
 Progress = Callable[[int, int, str], None]
 """Told after each file: files done, files in all, the file's path."""

@@ -30,10 +30,11 @@ from app.services.import_sources import (
 )
 from app.services.library import Library
 from app.services.manifest_table import ManifestLimits
-from app.store import imports as stored
-from app.store import jobs, leases, owners
-from app.store.files import Readable
-from app.store.job_record import ClaimedJob, JobKind, JobRecord, NewJob
+from app.store.files.files import Readable
+from app.store.jobs import imports as stored
+from app.store.jobs import leases, owners
+from app.store.jobs import repository as jobs
+from app.store.jobs.record import ClaimedJob, JobKind, JobRecord, NewJob
 
 IMPORT_PRIORITY = 10
 LOWEST_PRIORITY = 20

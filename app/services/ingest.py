@@ -27,11 +27,11 @@ from app.services.child import ChildDied
 from app.services.keypose_frames import named_keyposes
 from app.services.library import Library
 from app.services.stored_motion import motion_arrays
-from app.store import clips as stored
-from app.store import leases, outcomes
-from app.store.clip_record import ClipFacts, ClipRecord, ClipWarning
-from app.store.engine import Tx
-from app.store.job_record import ClaimedJob
+from app.store.clips import repository as stored
+from app.store.clips.record import ClipFacts, ClipRecord, ClipWarning
+from app.store.database.engine import Tx
+from app.store.jobs import leases, outcomes
+from app.store.jobs.record import ClaimedJob
 
 MOST_WARNINGS = 50
 """Of one clip."""

@@ -8,13 +8,14 @@ from datetime import timedelta
 from typing import Any
 
 from app.services.library import Library
-from app.store import ended_jobs, import_files, outcomes
-from app.store import jobs as stored
-from app.store.engine import Tx
-from app.store.ids import utc_now
-from app.store.import_files import FileOutcome, ImportedFile
-from app.store.job_record import JobKind, JobRecord, JobState
-from app.store.paging import Page
+from app.store.database.engine import Tx
+from app.store.database.ids import utc_now
+from app.store.database.paging import Page
+from app.store.jobs import ended as ended_jobs
+from app.store.jobs import import_files, outcomes
+from app.store.jobs import repository as stored
+from app.store.jobs.import_files import FileOutcome, ImportedFile
+from app.store.jobs.record import JobKind, JobRecord, JobState
 
 FIRST_FILES = 100
 """Files of an import that its job's result tells; `list_files` tells them all."""

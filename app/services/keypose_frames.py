@@ -19,9 +19,9 @@ from app.errors import NotFound
 from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray, IntArray
 from app.services.library import Library
-from app.store import arrays, keypose_annotations
-from app.store.clip_record import ClipRecord
-from app.store.engine import Tx
+from app.store.clips import arrays, keypose_annotations
+from app.store.clips.record import ClipRecord
+from app.store.database.engine import Tx
 
 KEYPOSE_FRAMES = "keypose_frames"
 FEATURES = "features_10hz"

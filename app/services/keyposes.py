@@ -20,8 +20,9 @@ from app.services.keypose_frames import store_keyposes, stored_beats
 from app.services.library import Library
 from app.services.query import ready_clip
 from app.services.stored_motion import load_motion
-from app.store import clips, keypose_annotations
-from app.store.clip_record import ClipRecord, ClipState
+from app.store.clips import keypose_annotations
+from app.store.clips import repository as clips
+from app.store.clips.record import ClipRecord, ClipState
 
 METHODS = tuple(method.value for method in EnergyMethod)
 WEIGHTS = tuple(weights.value for weights in Weights)

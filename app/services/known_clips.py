@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from app.numerics.arrays import FloatArray
 from app.services.library import Library
-from app.store import library, models
+from app.store import models
+from app.store.clips import versions as library
 
 OUTPUTS = f"{models.OF_CLIPS}outputs"
 POINTS = f"{models.OF_CLIPS}points"

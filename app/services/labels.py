@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from app.services.library import Library
 from app.services.synthesized import SYNTHESIZED
-from app.store import labels as stored
-from app.store.engine import Tx
-from app.store.labels import LabelKind
-from app.store.paging import Page
+from app.store.clips import labels as stored
+from app.store.clips.labels import LabelKind
+from app.store.database.engine import Tx
+from app.store.database.paging import Page
 
 
 @dataclass(frozen=True, slots=True)

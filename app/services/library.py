@@ -18,9 +18,9 @@ from app.search.span_index import SpanIndex
 from app.services.analysis_pool import AnalysisPool, Limits
 from app.services.model_shelf import METRICS, ModelKind, ModelShelf
 from app.store import identity
-from app.store.folders import warn_if_open
-from app.store.health import Health
+from app.store.files.folders import warn_if_open
 from app.store.store import Store
+from app.store.upkeep.health import Health
 
 ARRAY_CACHE_BYTES = 128 * 2**20
 """Descriptors kept in memory for re-ranking; the least recently used go first."""

@@ -31,7 +31,7 @@ from app.services.library import Library
 from app.services.query import ready_clip, ready_clips
 from app.services.stored_motion import load_motion
 from app.services.views import MotionView
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 
 FEWEST_POSES = 2
 """Of a model: one pose spans no dimension."""

@@ -19,7 +19,7 @@ from app.services.known_clips import POINTS, read_known
 from app.services.library import Library
 from app.services.model_shelf import ModelKind
 from app.services.query import Arrays
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 KINDS = {
     Method.METRIC_TASK: ModelKind.METRIC_TASK,

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from app.errors import ModelBeingFitted, ModelNotFitted
-from app.store import jobs
-from app.store.clip_listing import is_being_analysed_anew
-from app.store.engine import Tx
-from app.store.job_record import OPEN_STATES, JobKind, JobRecord, JobState
+from app.store.clips.listing import is_being_analysed_anew
+from app.store.database.engine import Tx
+from app.store.jobs import repository as jobs
+from app.store.jobs.record import OPEN_STATES, JobKind, JobRecord, JobState
 
 WHAT_TO_DO = "Fit the models: POST /v1/models/fit, or `kinedex fit`."
 UPGRADING = (

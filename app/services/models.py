@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from app.services import fields
 from app.services.library import Library
 from app.services.model_shelf import FALSE_ACCEPT_RATE, TELLING_UNKNOWN
-from app.store import jobs, library
 from app.store import models as stored
-from app.store.clip_filter import ClipFilter
-from app.store.clip_listing import count_clips
-from app.store.clip_record import ClipState
-from app.store.engine import Tx
-from app.store.job_record import JobKind, JobRecord, JobState, NewJob
+from app.store.clips import versions as library
+from app.store.clips.filter import ClipFilter
+from app.store.clips.listing import count_clips
+from app.store.clips.record import ClipState
+from app.store.database.engine import Tx
+from app.store.jobs import repository as jobs
+from app.store.jobs.record import JobKind, JobRecord, JobState, NewJob
 from app.store.models import ModelRecord
 
 FIT_PRIORITY = 30

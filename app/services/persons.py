@@ -15,9 +15,11 @@ from app.services import fields
 from app.services.library import Library
 from app.services.model_shelf import ModelKind, holds_persons
 from app.services.models import enqueue_fit
-from app.store import clips, labels, models
-from app.store.engine import Tx
-from app.store.job_record import JobRecord
+from app.store import models
+from app.store.clips import labels
+from app.store.clips import repository as clips
+from app.store.database.engine import Tx
+from app.store.jobs.record import JobRecord
 
 _log = logging.getLogger(__name__)
 

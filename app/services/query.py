@@ -16,10 +16,10 @@ from app.services import fields
 from app.services.analysis_pool import Order
 from app.services.library import Library
 from app.services.stored_motion import load_motion
-from app.store import clips as stored
-from app.store.clip_record import ClipRecord, ClipState
-from app.store.engine import Tx
-from app.store.files import Readable
+from app.store.clips import repository as stored
+from app.store.clips.record import ClipRecord, ClipState
+from app.store.database.engine import Tx
+from app.store.files.files import Readable
 
 Arrays = Mapping[str, FloatArray]
 

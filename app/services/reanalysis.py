@@ -14,9 +14,10 @@ from collections.abc import Sequence
 from app.analysis.analyse import ANALYSIS_VERSION
 from app.services.clips import BULK_PRIORITY, enqueue_ingest
 from app.services.library import Library
-from app.store import clip_listing, clips
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipState
+from app.store.clips import listing as clip_listing
+from app.store.clips import repository as clips
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipState
 
 BATCH = 200
 """Clips queued in one transaction, so that others need not wait."""

@@ -17,7 +17,7 @@ from app.services import fields
 from app.services.library import Library
 from app.services.query import Question, describe
 from app.services.word_ranking import STATISTICS
-from app.store.files import Readable
+from app.store.files.files import Readable
 
 SAMPLE = "motion_sample"
 WIDE = "wide_motion_vector"

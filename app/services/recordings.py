@@ -15,7 +15,7 @@ from app.errors import BadContent
 from app.formats.audio.reader import HEAD_BYTES, sniff_audio
 from app.services import fields
 from app.services.library import Library
-from app.store.files import Readable, StagedFile
+from app.store.files.files import Readable, StagedFile
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,8 +21,8 @@ from app.services.keypose_frames import keypose_frames
 from app.services.library import Library
 from app.services.query import ready_clip
 from app.services.stored_motion import load_motion
-from app.store import arrays
-from app.store.clip_record import ClipRecord
+from app.store.clips import arrays
+from app.store.clips.record import ClipRecord
 
 _NAMES = (SEGMENT_SPANS, SEGMENT_VECTORS, SEGMENT_CYCLES)
 

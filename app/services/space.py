@@ -20,9 +20,9 @@ from app.search.labels import LabelView
 from app.services import fields
 from app.services.library import Library
 from app.services.word_ranking import clip_points
-from app.store import clips
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipRecord
+from app.store.clips import repository as clips
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord
 
 SPACES = ("symbols", "vectors")
 DIMENSIONS = (2, 3)

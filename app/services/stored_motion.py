@@ -12,9 +12,9 @@ from app.deadline import check
 from app.motion.canonical.motion import Motion
 from app.motion.roles.joint_roles import JointRole
 from app.services.library import Library
-from app.store import arrays
-from app.store.clip_record import ClipRecord
-from app.store.engine import Tx
+from app.store.clips import arrays
+from app.store.clips.record import ClipRecord
+from app.store.database.engine import Tx
 
 POSITIONS, PARENTS, JOINT_NAMES = "positions", "parents", "joint_names"
 

@@ -28,9 +28,9 @@ from app.services.library import Library
 from app.services.low_dimensional import Reduced, Reduction, frame_rate, keyposes_of, reduce
 from app.services.query import ready_clip
 from app.services.views import MotionView
-from app.store import clips as stored_clips
 from app.store import studies as stored
-from app.store.paging import Page
+from app.store.clips import repository as stored_clips
+from app.store.database.paging import Page
 from app.store.studies import Choice, PairRecord, VoteCount
 
 MOST_SEQUENCES = 1000

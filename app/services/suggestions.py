@@ -17,7 +17,7 @@ from app.services.labels import LabelCount
 from app.services.library import Library
 from app.services.query import described, ready_clip
 from app.services.word_ranking import STATISTICS, WORD_MODES
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 
 LIKELY = 0.5
 """Score from which a suggestion is accepted unasked: likelier than not."""

@@ -13,7 +13,7 @@ from app.services.library import Library
 from app.services.query import ready_clip
 from app.services.stored_motion import load_motion
 from app.services.views import MotionView
-from app.store import arrays
+from app.store.clips import arrays
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,7 @@ from app.services.query import ready_clip
 from app.services.stored_motion import load_motion
 from app.services.synthesis_fit import SHAPE
 from app.services.synthesis_plan import Plan
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 
 MOST_DONORS = 5
 """Clips of the person whose poses are looked at: those most like what is to be made."""

@@ -18,7 +18,7 @@ from app.services import fields
 from app.services.library import Library
 from app.services.query import ready_clips
 from app.services.synthesis_fit import SHAPE
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 
 
 class SynthesisKind(StrEnum):

@@ -15,8 +15,9 @@ from app.services.library import Library
 from app.services.model_shelf import Fitted
 from app.services.stored_motion import load_motion
 from app.services.synthesis_plan import Plan, SynthesisKind
-from app.store import clips, models
-from app.store.clip_record import ClipRecord, ClipState
+from app.store import models
+from app.store.clips import repository as clips
+from app.store.clips.record import ClipRecord, ClipState
 
 MOST_TAKES = 5
 """Real takes whose feet are looked at."""

@@ -26,8 +26,8 @@ from app.services.synthesis_plan import Plan, plan_of
 from app.services.synthesis_quality import Quality, judge
 from app.services.synthesized import SYNTHESIZED
 from app.services.views import MotionView
-from app.store.clip_record import ClipRecord
-from app.store.job_record import JobRecord
+from app.store.clips.record import ClipRecord
+from app.store.jobs.record import JobRecord
 
 SECONDS = (0.5, 60.0)
 """Between which a length may be wished for."""

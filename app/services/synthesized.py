@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 
 SYNTHESIZED = "synthesized"
 """The `source` of such a clip. It is searched like any other, but no model learns from it: a

@@ -15,9 +15,11 @@ from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
 from app.search import usable_arrays
 from app.services.synthesized import SYNTHESIZED, is_synthesized
-from app.store import clip_listing, clips, library
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipRecord, ClipState
+from app.store.clips import listing as clip_listing
+from app.store.clips import repository as clips
+from app.store.clips import versions as library
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord, ClipState
 from app.store.store import Store
 
 WIDE = "wide_motion_vector"

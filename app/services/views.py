@@ -17,7 +17,7 @@ from app.services.library import Library
 from app.services.query import ready_clip
 from app.services.stored_motion import load_motion
 from app.services.thumbnail import thumbnail
-from app.store import arrays
+from app.store.clips import arrays
 
 CONVERGENCE = "msv_convergence"
 

@@ -20,7 +20,7 @@ from app.search.rank import Ranking
 from app.services.known_clips import OUTPUTS, POINTS, read_known
 from app.services.library import Library
 from app.services.model_shelf import Fitted
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 STATISTICS = "symbol_statistics"
 WORD_MODES = ("default", "cca")

@@ -15,10 +15,10 @@ from datetime import datetime
 from sqlalchemy import RowMapping, bindparam, exists, insert, select, update
 
 from app.errors import NotFound
-from app.store.engine import Tx
-from app.store.ids import utc_now
+from app.store.database.engine import Tx
+from app.store.database.ids import utc_now
+from app.store.database.tables import api_keys
 from app.store.key_role import KeyRole
-from app.store.tables import api_keys
 
 PREFIX = "kx"
 PUBLIC_BYTES = 6

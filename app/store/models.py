@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from sqlalchemy import RowMapping, Select, and_, delete, func, insert, select, update
 
 from app.errors import ModelNotFitted, NotFound
-from app.store import library
-from app.store.blobs import from_blob, to_blob
-from app.store.engine import Tx
-from app.store.ids import new_id, utc_now
-from app.store.tables import model_arrays, models
+from app.store.clips import versions as library
+from app.store.database.blobs import from_blob, to_blob
+from app.store.database.engine import Tx
+from app.store.database.ids import new_id, utc_now
+from app.store.database.tables import model_arrays, models
 
 OF_CLIPS = "clips."
 """How the names of those arrays begin that hold what a model made of the clips it was fitted on."""

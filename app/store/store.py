@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Self, TypeVar
 
 from app.errors import DiskFull, StorageError
-from app.store import removals
-from app.store.engine import Database, Tx
-from app.store.files import FileStore
-from app.store.reserve import Reserve
+from app.store.database.engine import Database, Tx
+from app.store.files import removals
+from app.store.files.files import FileStore
+from app.store.files.reserve import Reserve
 
 _log = logging.getLogger(__name__)
 _Result = TypeVar("_Result")

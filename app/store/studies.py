@@ -10,11 +10,11 @@ from enum import StrEnum
 from sqlalchemy import RowMapping, delete, func, insert, select
 
 from app.errors import AlreadyVoted, NotFound
-from app.store import library
-from app.store.engine import Tx
-from app.store.ids import new_id, utc_now
-from app.store.paging import Page, Position, after, read_cursor, write_cursor
-from app.store.tables import study_pairs, study_votes
+from app.store.clips import versions as library
+from app.store.database.engine import Tx
+from app.store.database.ids import new_id, utc_now
+from app.store.database.paging import Page, Position, after, read_cursor, write_cursor
+from app.store.database.tables import study_pairs, study_votes
 
 NEWEST_FIRST = "-created_at"
 

@@ -22,11 +22,12 @@ from app.errors import LeaseLost, NotFound, StorageError
 from app.logs import job_id
 from app.services import models, persons, reanalysis
 from app.services.library import Library
-from app.store import clips, leases, outcomes, owners, queue
-from app.store.abandoned import Watch
-from app.store.clip_record import ClipRecord
-from app.store.engine import Tx
-from app.store.job_record import ClaimedJob, JobKind
+from app.store.clips import repository as clips
+from app.store.clips.record import ClipRecord
+from app.store.database.engine import Tx
+from app.store.jobs import leases, outcomes, owners, queue
+from app.store.jobs.abandoned import Watch
+from app.store.jobs.record import ClaimedJob, JobKind
 from app.worker.expiry import Expiry
 from app.worker.running import Running
 from app.worker.starting import Bench

@@ -18,10 +18,10 @@ from app.services import ingest
 from app.services.analysis_pool import AnalysisPool
 from app.services.child import ChildDied, ChildEnded
 from app.services.library import Library
-from app.store import leases, outcomes
-from app.store.clip_record import ClipRecord
-from app.store.engine import Tx
-from app.store.job_record import ClaimedJob
+from app.store.clips.record import ClipRecord
+from app.store.database.engine import Tx
+from app.store.jobs import leases, outcomes
+from app.store.jobs.record import ClaimedJob
 
 _log = logging.getLogger(__name__)
 

@@ -15,9 +15,9 @@ from app.services.child_pool import ChildPool
 from app.services.child_processes import log_like_parent
 from app.services.fit_process import fit_in_child
 from app.services.library import Library, ingest_limits
-from app.store import outcomes
-from app.store.clip_record import ClipRecord
-from app.store.job_record import ClaimedJob, JobKind
+from app.store.clips.record import ClipRecord
+from app.store.jobs import outcomes
+from app.store.jobs.record import ClaimedJob, JobKind
 from app.worker.running import Running, RunningFit, RunningIngest, RunningThread
 
 

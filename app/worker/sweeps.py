@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 from app.store.store import Store
-from app.store.sweep import Swept, try_to_sweep
+from app.store.upkeep.sweep import Swept, try_to_sweep
 
 EVERY_S = 3600.0
 

@@ -12,7 +12,7 @@ import httpx2
 import pytest
 
 from app.demo import DemoClip
-from app.store.id_file import NAME, write_id
+from app.store.files.id_file import NAME, write_id
 from tests.api.conftest import assert_problem
 from tests.full_disk import fill, small_disk
 from tests.live import Live, serve, wait_until

@@ -19,11 +19,11 @@ from app.analysis.analyse import ANALYSIS_VERSION, analyse
 from app.errors import BadContent
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
-from app.store import tables as t
-from app.store.blobs import to_blob
-from app.store.clip_record import ClipState
-from app.store.ids import utc_now
-from app.store.index_feed import IndexedClip
+from app.store.clips.index_feed import IndexedClip
+from app.store.clips.record import ClipState
+from app.store.database import tables as t
+from app.store.database.blobs import to_blob
+from app.store.database.ids import utc_now
 from app.store.store import Store
 from tests.real_clips import manifest, real_clips
 

@@ -19,7 +19,7 @@ import pytest
 
 from app.config import Settings
 from app.search.distances import EPSILON, FEATURES, RHO
-from app.store import schema
+from app.store.database import schema
 from app.store.store import Store
 from tests.bench.large_library import fill
 from tests.bench.page import Section

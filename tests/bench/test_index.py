@@ -25,8 +25,8 @@ from app.search.cursor import Position
 from app.search.index import MOTION_VECTORS, VectorIndex
 from app.search.near import Near
 from app.search.rows import Rows, RowsView
-from app.store import schema
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
+from app.store.database import schema
 from app.store.store import Store
 from tests.bench.large_library import fill, many_clips
 from tests.bench.page import Section

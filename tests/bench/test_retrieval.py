@@ -53,7 +53,7 @@ from app.services import clips, find, imports, jobs
 from app.services.fields import MAX_LIMIT
 from app.services.find import MotionQuery
 from app.services.library import Library
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 from app.worker.loop import run_worker
 from tests.bench.page import Section
 from tests.real_clips import manifest, real_clips

@@ -28,8 +28,8 @@ from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
 from app.services.training import NAMES
 from app.store import identity
-from app.store import tables as t
-from app.store.blobs import to_blob
+from app.store.database import tables as t
+from app.store.database.blobs import to_blob
 from app.store.store import Store
 from tests.bench.large_library import VECTOR, Sample, fill, many_clips, samples
 from tests.bench.page import Section

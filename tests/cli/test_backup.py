@@ -10,7 +10,7 @@ import pytest
 
 from app.cli.backup import _ended_by_sigterm
 from app.demo import DemoClip
-from app.store.backup import DATABASE, FILES
+from app.store.upkeep.backup import DATABASE, FILES
 from tests.cli.conftest import Kinedex
 from tests.live import serve, wait_until
 

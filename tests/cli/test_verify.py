@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from app.store.backup import DATABASE
+from app.store.upkeep.backup import DATABASE
 from tests.cli.conftest import Kinedex, end, start
 
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from app.store.clip_filter import ClipFilter
-from app.store.index_feed import IndexedClip
+from app.store.clips.filter import ClipFilter
+from app.store.clips.index_feed import IndexedClip
 
 PERSONS = ("ada", "bruno", "chika", None)
 TASKS = ("walk", "run", None)

@@ -17,7 +17,7 @@ from app.search.index import MOTION_VECTORS, VectorIndex
 from app.search.methods import Method
 from app.search.near import Near
 from app.search.rows import Rows
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 from tests.search.fused import fused_distances
 from tests.search.indexed import indexed
 from tests.search.walking import walk

@@ -16,7 +16,7 @@ from app.search.by_pose import POSES, POSITIONS, PoseHit, PoseRanking, pose_dist
 from app.search.cursor import Position, decode, digest, encode
 from app.search.pose_places import Places, pose_places
 from app.search.rows import Rows
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 from tests.bodies import standing, turned_about_y, walking, waving
 from tests.search.indexed import indexed
 

@@ -8,7 +8,7 @@ import pytest
 
 from app.errors import BadField
 from app.search.filters import parse_filter
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 
 def test_nothing_asked_lets_every_clip_pass() -> None:

@@ -17,9 +17,11 @@ from app.errors import StorageError
 from app.search import near
 from app.search.array_cache import ArrayCache
 from app.search.index import VECTOR, WIDTH, VectorIndex
-from app.store import arrays, clips, index_feed, schema
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipFacts, ClipRecord, NewClip
+from app.store.clips import arrays, index_feed
+from app.store.clips import repository as clips
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipFacts, ClipRecord, NewClip
+from app.store.database import schema
 from app.store.store import Store
 
 Add = Callable[..., ClipRecord]
@@ -115,7 +117,7 @@ FILTERS = [
 
 @pytest.mark.parametrize("wanted", FILTERS)
 def test_filters_agree_with_those_of_lists(store: Store, add: Add, wanted: ClipFilter) -> None:
-    from app.store.clip_listing import list_ids
+    from app.store.clips.listing import list_ids
 
     rng = np.random.default_rng(1)
     for i in range(40):

@@ -15,7 +15,7 @@ from app.search.near import Near
 from app.search.rank import Page
 from app.search.reranked import ReRanked
 from app.search.rows import Layout, Rows
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 from tests.search.indexed import indexed
 from tests.search.walking import walk, walked
 

@@ -13,9 +13,11 @@ from app.search import rows
 from app.search.index import VECTOR, WIDTH, VectorIndex
 from app.search.near import Near
 from app.search.projected_index import ProjectedIndex
-from app.store import arrays, clips, schema
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipFacts, NewClip
+from app.store.clips import arrays
+from app.store.clips import repository as clips
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipFacts, NewClip
+from app.store.database import schema
 from app.store.store import Store
 
 K = 5

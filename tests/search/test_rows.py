@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from app.search import rows as module
 from app.search.rows import Layout, Rows, RowsView
-from app.store.clip_filter import ClipFilter
-from app.store.index_feed import IndexedClip
+from app.store.clips.filter import ClipFilter
+from app.store.clips.index_feed import IndexedClip
 from tests.search.indexed import FILTERS, LABELS, indexed, passes
 
 ONE = Layout("vector", width=2)

@@ -11,9 +11,11 @@ import pytest
 from app.numerics.arrays import FloatArray
 from app.search import span_index
 from app.search.span_index import SpanIndex, Spans
-from app.store import arrays, clips, schema
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipFacts, NewClip
+from app.store.clips import arrays
+from app.store.clips import repository as clips
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipFacts, NewClip
+from app.store.database import schema
 from app.store.store import Store
 
 VECTORS, SPANS, WIDTH = "part_vectors", "part_spans", 3

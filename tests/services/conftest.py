@@ -15,7 +15,7 @@ from app.demo import DemoClip, demo_clips
 from app.services import clips, models
 from app.services.clips import Created, NewClip
 from app.services.library import Library
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 from app.worker.loop import run_worker
 
 ACTORS = ("ada", "bruno", "chika")

@@ -11,7 +11,7 @@ from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.services import clips
 from app.services.clips import NewClip
 from app.services.library import Library
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 from tests.cyclic_dances import CyclicDance
 from tests.formats.npz.files import npz
 

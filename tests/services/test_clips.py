@@ -14,9 +14,9 @@ from app.services import clips, find, jobs
 from app.services.clips import NewClip
 from app.services.find import MotionQuery
 from app.services.library import Library
-from app.store import id_file
-from app.store.clip_record import ClipState, Reanalysis
-from app.store.job_record import JobState
+from app.store.clips.record import ClipState, Reanalysis
+from app.store.files import id_file
+from app.store.jobs.record import JobState
 from tests.services.conftest import settings_for, upload, work
 
 NOT_HUMAN = (

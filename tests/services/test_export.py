@@ -22,7 +22,7 @@ from app.services.clips import NewClip
 from app.services.export_format import ExportFormat
 from app.services.library import Library
 from app.services.stored_motion import load_motion
-from app.store.clip_record import ClipRecord, ClipState
+from app.store.clips.record import ClipRecord, ClipState
 from tests.formats.gltf.files import Glb
 from tests.formats.npz.files import npz
 from tests.people import CONVENTIONS, person

@@ -15,7 +15,7 @@ from app.services.clips import NewClip
 from app.services.find import MotionQuery, WordQuery
 from app.services.hits import Hits
 from app.services.library import Library
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 from tests.services.conftest import FindClip
 
 METHODS = list(Method)

@@ -19,8 +19,8 @@ from app.services.clips import NewClip
 from app.services.find_pose import PoseQuery, find_pose
 from app.services.hits import Hits
 from app.services.library import Library
-from app.store import arrays
-from app.store.clip_record import ClipRecord
+from app.store.clips import arrays
+from app.store.clips.record import ClipRecord
 from tests.bodies import turned_about_y
 from tests.services.conftest import FindClip
 

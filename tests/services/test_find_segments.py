@@ -15,7 +15,7 @@ from app.services.find import MotionQuery
 from app.services.hits import Hits
 from app.services.library import Library
 from app.services.segments import list_segments
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 from tests.cyclic_dances import CyclicDance, cyclic_dance
 from tests.services.conftest import settings_for, work
 from tests.services.dances import dance_file, upload_dance

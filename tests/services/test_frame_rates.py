@@ -10,7 +10,7 @@ from app.errors import BadField
 from app.services import frame_rates
 from app.services.frame_rates import wanted_rate
 from app.services.library import Library
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 from tests.services.conftest import FindClip
 
 

@@ -13,9 +13,9 @@ from app.demo import DemoClip
 from app.errors import Canceled, EmptyFile, LeaseLost, NotFound, TooLarge, UnknownFormat, Unreadable
 from app.services import clips, imports, jobs
 from app.services.library import Library
-from app.store import queue
-from app.store.abandoned import Watch
-from app.store.job_record import ClaimedJob, JobKind, JobState
+from app.store.jobs import queue
+from app.store.jobs.abandoned import Watch
+from app.store.jobs.record import ClaimedJob, JobKind, JobState
 from tests.services.conftest import settings_for, work
 
 

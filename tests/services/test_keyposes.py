@@ -21,8 +21,9 @@ from app.services.imports import import_path
 from app.services.keypose_learning import examples_of, learn_keyposes
 from app.services.keyposes import ThresholdSource, name_keyposes, view
 from app.services.library import Library
-from app.store import arrays, keypose_annotations, models
-from app.store.clip_record import ClipState
+from app.store import models
+from app.store.clips import arrays, keypose_annotations
+from app.store.clips.record import ClipState
 from tests.services.conftest import FindClip, settings_for, work
 
 

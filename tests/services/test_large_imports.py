@@ -19,9 +19,9 @@ from app.services import clips, import_register, imports, jobs
 from app.services.import_plan import MOST_ABSENT
 from app.services.jobs import FIRST_FILES
 from app.services.library import Library
-from app.store import queue
-from app.store.import_files import FileOutcome
-from app.store.job_record import ClaimedJob, JobKind, JobRecord, JobState
+from app.store.jobs import queue
+from app.store.jobs.import_files import FileOutcome
+from app.store.jobs.record import ClaimedJob, JobKind, JobRecord, JobState
 from tests.services.conftest import settings_for, work
 
 

@@ -17,7 +17,7 @@ from app.services.find import MotionQuery
 from app.services.fit import fit_library
 from app.services.hits import Hits
 from app.services.library import Library
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 from tests.services.conftest import FindClip, settings_for, upload, work
 
 TASK, PERSON = Method.METRIC_TASK, Method.METRIC_PERSON

@@ -13,8 +13,8 @@ from app.services.find import MotionQuery, find_motion
 from app.services.fit import fit_library
 from app.services.library import Library
 from app.services.recognise import RecogniseQuery
-from app.store.clip_record import ClipState
-from app.store.job_record import JobKind, JobState
+from app.store.clips.record import ClipState
+from app.store.jobs.record import JobKind, JobState
 from tests.services.conftest import settings_for, upload, work
 
 NAME = "Zebulon Quatermain"

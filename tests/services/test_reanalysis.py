@@ -16,9 +16,10 @@ from app.services.find import MotionQuery, WordQuery, find_motion, find_words
 from app.services.library import Library
 from app.services.model_shelf import ModelShelf
 from app.services.recognise import RecogniseQuery, recognise
-from app.store import arrays, tables
-from app.store import clips as stored
-from app.store.clip_record import ClipState, Reanalysis
+from app.store.clips import arrays
+from app.store.clips import repository as stored
+from app.store.clips.record import ClipState, Reanalysis
+from app.store.database import tables
 from tests.services.conftest import upload, work
 from tests.store.stored_arrays import array_versions
 

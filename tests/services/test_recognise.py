@@ -14,8 +14,8 @@ from app.services import models, recognise
 from app.services.errors_in_force import errors_in_force
 from app.services.library import Library
 from app.services.recognise import METHODS, RecogniseQuery
-from app.store.job_record import JobKind, JobState
-from app.store.jobs import list_jobs
+from app.store.jobs.record import JobKind, JobState
+from app.store.jobs.repository import list_jobs
 from tests.services.conftest import FindClip, settings_for, upload, work
 
 

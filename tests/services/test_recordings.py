@@ -19,9 +19,9 @@ from app.services.analysis_pool import Order, analyse_order
 from app.services.clips import Created, NewClip
 from app.services.library import Library, ingest_limits
 from app.services.recordings import NewRecording
-from app.store import import_files
-from app.store.clip_record import ClipRecord, ClipState, Reanalysis
-from app.store.sweep import Swept, sweep
+from app.store.clips.record import ClipRecord, ClipState, Reanalysis
+from app.store.jobs import import_files
+from app.store.upkeep.sweep import Swept, sweep
 from tests.services.conftest import work
 
 

@@ -11,8 +11,8 @@ from app.services.find import MotionQuery, find_motion
 from app.services.keyposes import name_keyposes
 from app.services.library import Library
 from app.services.segments import Segments, list_segments, segment_arrays
-from app.store import arrays
-from app.store.clip_record import ClipRecord
+from app.store.clips import arrays
+from app.store.clips.record import ClipRecord
 from tests.cyclic_dances import CyclicDance, cyclic_dance
 from tests.services.conftest import FindClip, work
 from tests.services.dances import upload_dance

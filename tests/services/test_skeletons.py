@@ -23,7 +23,7 @@ from app.services.clips import Created, NewClip
 from app.services.find import MotionQuery
 from app.services.library import Library
 from app.services.recognise import RecogniseQuery
-from app.store.clip_record import ClipRecord, ClipState
+from app.store.clips.record import ClipRecord, ClipState
 from tests.formats.acclaim.files import acclaim_person
 from tests.formats.c3d.files import c3d, marker_person, stacked
 from tests.formats.samples import bvh

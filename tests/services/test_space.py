@@ -9,7 +9,7 @@ from app.demo import DemoClip
 from app.errors import BadField, ModelNotFitted
 from app.services import space
 from app.services.library import Library
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 from tests.services.conftest import upload, work
 
 

@@ -13,7 +13,7 @@ from app.services.clips import NewClip
 from app.services.find import MotionQuery
 from app.services.library import Library
 from app.services.recognise import RecogniseQuery
-from app.store.clip_record import ClipRecord, ClipState, Reanalysis
+from app.store.clips.record import ClipRecord, ClipState, Reanalysis
 from tests.formats.fbx.takes import person_takes
 from tests.formats.samples import bvh
 from tests.services.conftest import settings_for, work

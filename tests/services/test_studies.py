@@ -14,7 +14,7 @@ from app.services import low_dimensional, studies
 from app.services.library import Library
 from app.services.low_dimensional import Reduction
 from app.services.studies import Side
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 from app.store.studies import PairRecord
 from tests.services.conftest import FindClip
 

@@ -34,7 +34,7 @@ from app.services.synthesis_plan import SynthesisKind
 from app.services.synthesise import SynthesisQuery, synthesise
 from app.services.synthesized import SYNTHESIZED, is_synthesized
 from app.services.training import read_training_set
-from app.store.clip_record import ClipRecord, ClipState
+from app.store.clips.record import ClipRecord, ClipState
 from tests.services.conftest import settings_for, upload, work
 
 ACTORS, TASKS = ("ada", "bruno", "chika"), ("walk", "wave", "bow", "dance")

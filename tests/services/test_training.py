@@ -6,8 +6,8 @@ from app.demo import DemoClip
 from app.services.library import Library
 from app.services.synthesized import SYNTHESIZED
 from app.services.training import read_training_set, ready_only
-from app.store.clip_filter import ClipFilter
-from app.store.clip_listing import list_ids
+from app.store.clips.filter import ClipFilter
+from app.store.clips.listing import list_ids
 from tests.services.conftest import upload, work
 
 

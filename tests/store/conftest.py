@@ -11,9 +11,11 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
-from app.store import clips, jobs, schema
-from app.store.clip_record import ClipFacts, ClipRecord, ClipWarning, NewClip
-from app.store.job_record import JobKind, JobRecord, NewJob
+from app.store.clips import repository as clips
+from app.store.clips.record import ClipFacts, ClipRecord, ClipWarning, NewClip
+from app.store.database import schema
+from app.store.jobs import repository as jobs
+from app.store.jobs.record import JobKind, JobRecord, NewJob
 from app.store.store import Store
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.store import clips, jobs, queue
-from app.store.abandoned import Watch
-from app.store.clip_record import ClipRecord, ClipState
-from app.store.engine import Tx
-from app.store.job_record import ClaimedJob, JobKind, JobState, NewJob
+from app.store.clips import repository as clips
+from app.store.clips.record import ClipRecord, ClipState
+from app.store.database.engine import Tx
+from app.store.jobs import queue
+from app.store.jobs import repository as jobs
+from app.store.jobs.abandoned import Watch
+from app.store.jobs.record import ClaimedJob, JobKind, JobState, NewJob
 from tests.store.conftest import new_clip
 
 ALL = tuple(JobKind)

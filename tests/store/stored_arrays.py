@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from sqlalchemy import select
 
-from app.store.engine import Tx
-from app.store.tables import clip_arrays
+from app.store.database.engine import Tx
+from app.store.database.tables import clip_arrays
 
 
 def array_versions(tx: Tx, clip_id: str) -> dict[str, int]:

@@ -8,10 +8,10 @@ from sqlalchemy import func, select
 
 from app.errors import ModelNotFitted, NotFound
 from app.store import models
-from app.store.engine import Tx
+from app.store.database.engine import Tx
+from app.store.database.tables import model_arrays
 from app.store.models import ModelRecord
 from app.store.store import Store
-from app.store.tables import model_arrays
 
 
 def save(tx: Tx, kind: str, value: float) -> ModelRecord:

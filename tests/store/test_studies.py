@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from app.errors import AlreadyVoted, BadField, NotFound
-from app.store import clips, studies
+from app.store import studies
+from app.store.clips import repository as clips
 from app.store.store import Store
 from app.store.studies import Choice, PairRecord
 from tests.store.conftest import AddClip

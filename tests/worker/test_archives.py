@@ -13,8 +13,8 @@ from app.demo import DemoClip, demo_clips
 from app.errors import FileDamaged
 from app.services import clips, imports, jobs
 from app.services.library import Library
-from app.store.clip_record import ClipState
-from app.store.job_record import JobState
+from app.store.clips.record import ClipState
+from app.store.jobs.record import JobState
 from app.worker.sweeps import Sweeps
 from tests.live import wait_until
 from tests.services.conftest import settings_for, upload, work

@@ -20,9 +20,10 @@ from app.config import Settings
 from app.demo import DemoClip, demo_clips
 from app.services import analysis_pool, clips, jobs, models
 from app.services.library import Library
-from app.store import ids, leases, outcomes
-from app.store.clip_record import ClipRecord, ClipState
-from app.store.job_record import JobState
+from app.store.clips.record import ClipRecord, ClipState
+from app.store.database import ids
+from app.store.jobs import leases, outcomes
+from app.store.jobs.record import JobState
 from app.worker.loop import Worker, run_worker
 from tests.busy_processes import busy_children, children_of, repeated, server_of
 from tests.live import wait_until
@@ -224,7 +225,7 @@ def test_what_a_worker_held_whose_clock_was_ahead_is_free_within_a_lease(
     with monkeypatch.context() as ahead:
         _move_clock(ahead, timedelta(hours=1))
         # Its name tells nothing, as that of a worker on another machine.
-        ahead.setattr("app.store.owners.new_owner", lambda prefix: f"{prefix}@elsewhere")
+        ahead.setattr("app.store.jobs.owners.new_owner", lambda prefix: f"{prefix}@elsewhere")
         held = Worker(lib)
         held._take_a_turn()
         held._bench.close()  # dead, as far as the store knows

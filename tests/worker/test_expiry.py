@@ -11,8 +11,8 @@ from sqlalchemy import update
 
 from app.services import imports, jobs
 from app.services.library import Library
-from app.store.ids import utc_now
-from app.store.tables import jobs as table
+from app.store.database.ids import utc_now
+from app.store.database.tables import jobs as table
 from app.worker.expiry import Expiry
 from tests.services.conftest import settings_for
 from tests.services.test_large_imports import archive_of

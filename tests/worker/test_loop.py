@@ -23,8 +23,8 @@ from app.demo import DemoClip, demo_clips
 from app.errors import LeaseLost
 from app.services import clips, imports, jobs, models
 from app.services.library import Library
-from app.store.clip_record import ClipRecord, ClipState
-from app.store.job_record import JobKind, JobRecord, JobState
+from app.store.clips.record import ClipRecord, ClipState
+from app.store.jobs.record import JobKind, JobRecord, JobState
 from app.worker.loop import Worker, run_worker
 from tests.services.conftest import settings_for, upload, work
 

@@ -17,7 +17,7 @@ from app.api.schemas.jobs import Job, JobFile, JobFileList, JobFileQuery, JobLis
 from app.errors import JobNotFound
 from app.services import jobs
 from app.services.library import Library
-from app.store.job_record import JobRecord
+from app.store.jobs.record import JobRecord
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 

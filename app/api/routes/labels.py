@@ -12,7 +12,7 @@ from app.api.deps import Lib, reads, writes
 from app.api.openapi import refusals
 from app.api.schemas.labels import LabelPage, NamedCounts, WordBeginning
 from app.services import labels, persons, suggestions
-from app.store.labels import LabelKind
+from app.store.clips.labels import LabelKind
 
 MOST_WORDS, MOST_COMPLETIONS = 1000, 10
 """Where a client does not say how many."""

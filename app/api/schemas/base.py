@@ -10,7 +10,7 @@ from app.motion.roles.joint_roles import JointRole
 from app.search.filters import LONGEST_LABEL, MOST_LABELS
 from app.services import fields
 from app.services.frame_rates import LEAST_FPS, MOST_FPS
-from app.store.paging import MAX_CURSOR_LENGTH
+from app.store.database.paging import MAX_CURSOR_LENGTH
 
 Value = TypeVar("Value")
 

@@ -26,8 +26,8 @@ from app.api.schemas.problem import Problem
 from app.motion.skeleton.recording import FRAME_RATES
 from app.search.filters import parse_filter
 from app.services.fields import MAX_KEYPOSES, MAX_OFFSET, TEMPI
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipRecord, ClipState, Reanalysis
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord, ClipState, Reanalysis
 
 Sort = Literal[
     "created_at",

@@ -10,8 +10,8 @@ from pydantic import Field
 from app.api.problems import stored_problem
 from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing
 from app.api.schemas.problem import Problem
-from app.store.import_files import FileOutcome, ImportedFile
-from app.store.job_record import JobKind, JobRecord, JobState
+from app.store.jobs.import_files import FileOutcome, ImportedFile
+from app.store.jobs.record import JobKind, JobRecord, JobState
 
 
 class Job(Outgoing):

@@ -10,7 +10,7 @@ from app.api.schemas.base import Outgoing
 from app.api.schemas.filters import Filter
 from app.search.filters import parse_filter
 from app.services.space import MOST_POINTS, Map, SpaceName
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 
 class SpaceQuery(Filter):

@@ -17,9 +17,10 @@ from app.services.pictures import Curve, Format, Panel, curves_picture, shown
 from app.services.pictures.drawing import drawn
 from app.services.stick_figure import LEFT, RIGHT, TRUNK
 from app.services.training import ready_only
-from app.store import clip_listing, clips
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipRecord
+from app.store.clips import listing as clip_listing
+from app.store.clips import repository as clips
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

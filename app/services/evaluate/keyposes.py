@@ -27,7 +27,7 @@ from app.services import fields
 from app.services.annotated import AnnotatedClip, annotated_ids, read_annotated
 from app.services.keypose_learning import NOBODY, examples_of
 from app.services.library import Library
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 END_EFFECTORS = "end-effectors"
 JUDGED_KEYPOSES = (*(method.value for method in EnergyMethod), END_EFFECTORS)

@@ -13,9 +13,10 @@ from app.models.held_out.class_rankings import JudgedRanking, judge_ranking
 from app.services import fields
 from app.services.library import Library
 from app.services.training import ready_only, recording_of_clip
-from app.store import clip_listing, clips
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipRecord
+from app.store.clips import listing as clip_listing
+from app.store.clips import repository as clips
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord
 
 SHOWN_TASKS = 30
 """Tasks named in a message."""

@@ -31,10 +31,10 @@ from app.services.keypose_frames import keypose_frames
 from app.services.library import Library
 from app.services.stored_motion import load_motion
 from app.services.training import ready_only
-from app.store import clip_listing
-from app.store import clips as stored
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipRecord
+from app.store.clips import listing as clip_listing
+from app.store.clips import repository as stored
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord
 
 MOST_DIMENSIONS = 10
 """Rows of the table."""

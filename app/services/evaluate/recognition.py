@@ -49,7 +49,7 @@ from app.services.evaluate.recognition_shares import (
 from app.services.evaluate.recognition_trials import Stopwatch, Trial, run, run_told
 from app.services.library import Library
 from app.services.synthesis_fit import fit_on
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 FACTORS = ("person", "task")
 TAKES = (3, 1)

@@ -13,7 +13,7 @@ from app.models.recognition.views import full_samples
 from app.numerics.arrays import FloatArray, IntArray
 from app.services.library import Library
 from app.services.training import TrainingSet, read_training_set, ready_only
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 Labels = Sequence[str | None]
 

@@ -17,8 +17,10 @@ from app.models.recognition.task_model import Reading
 from app.search.distances import FEATURES
 from app.services.library import Library
 from app.services.training import ready_only
-from app.store import arrays, clip_listing, clips
-from app.store.clip_filter import ClipFilter
+from app.store.clips import arrays
+from app.store.clips import listing as clip_listing
+from app.store.clips import repository as clips
+from app.store.clips.filter import ClipFilter
 
 _NAMES = (FEATURES, SEGMENT_SPANS, SEGMENT_CYCLES)
 

@@ -16,7 +16,7 @@ from app.services import fields
 from app.services.evaluate.labelled import LabelledClips, read_labelled
 from app.services.evaluate.ways import Volumes, Way, by_method
 from app.services.library import Library
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 K = 20
 """Of the paper: so many of the nearest are looked at."""

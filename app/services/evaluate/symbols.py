@@ -8,7 +8,7 @@ from app.models.held_out.symbols import SymbolFigures, symbol_figures
 from app.services.library import Library
 from app.services.pictures import Curve, Format, Panel, curves_picture
 from app.services.training import read_training_set, ready_only
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 
 def judge_symbols(lib: Library, wanted: ClipFilter | None = None) -> SymbolFigures:

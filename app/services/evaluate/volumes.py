@@ -14,9 +14,9 @@ from app.services.evaluate.labelled import LabelledClips, read_labelled
 from app.services.evaluate.retrieval import HIDDEN_CLASSES
 from app.services.evaluate.ways import Volumes
 from app.services.library import Library
-from app.store import arrays
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipRecord
+from app.store.clips import arrays
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord
 
 MOST_OF_A_CLASS = 40
 """Clips of a class whose vectors are told and drawn; more would only cover one another."""

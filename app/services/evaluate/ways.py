@@ -17,9 +17,9 @@ from app.search.index import VECTOR
 from app.search.methods import Method
 from app.services.library import Library
 from app.services.stored_motion import load_motion
-from app.store import arrays
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipRecord
+from app.store.clips import arrays
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord
 
 Way = Callable[[ClipRecord], Sequence[str]]
 """Ids of all clips that pass the filter, the nearest first; the clip itself may be there."""

@@ -20,7 +20,7 @@ from app.services.library import Library
 from app.services.pictures import Curve, Format, Panel, curves_picture
 from app.services.stored_motion import load_motion
 from app.services.training import TrainingSet, read_training_set, ready_only
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 
 EXAMPLES = 4
 NEAREST = 10

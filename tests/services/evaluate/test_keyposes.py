@@ -16,7 +16,7 @@ from app.services.evaluate import JUDGED_KEYPOSES, judge_keyposes
 from app.services.evaluate.keypose_pictures import clip_figure, clips_to_draw, threshold_figure
 from app.services.imports import import_path
 from app.services.library import Library
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 from tests.named_dances import write_dances
 from tests.services.conftest import settings_for, work
 

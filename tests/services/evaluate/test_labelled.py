@@ -9,7 +9,7 @@ import pytest
 
 from app.errors import BadField, NotEnoughLabels
 from app.services.evaluate.labelled import LabelledClips, labelled_among
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 
 
 def _clips(like: ClipRecord, *told: tuple[str, str, str | None]) -> list[ClipRecord]:

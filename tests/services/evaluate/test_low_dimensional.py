@@ -13,7 +13,7 @@ from app.services.evaluate import LowDimensionalEvaluation, judge_low_dimensiona
 from app.services.evaluate.low_dimensional_pictures import all_figures
 from app.services.library import Library
 from app.services.low_dimensional import Reduction, reduce, view
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 from tests.services.conftest import FindClip
 
 

@@ -14,7 +14,7 @@ from app.services.evaluate.recognition_methods import METHODS
 from app.services.evaluate.recognition_results import RecognitionEvaluation
 from app.services.evaluate.recognition_rounds import LeftOut
 from app.services.library import Library
-from app.store.clip_filter import ClipFilter
+from app.store.clips.filter import ClipFilter
 from tests.services.evaluate.recognition_library import invented, some
 
 QUICK = {name: METHODS[name] for name in ("default", "mean-motion", "prior")}

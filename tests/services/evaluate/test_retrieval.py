@@ -10,8 +10,8 @@ from app.search.methods import Method
 from app.services import evaluate, find
 from app.services.find import MotionQuery
 from app.services.library import Library
-from app.store.clip_filter import ClipFilter
-from app.store.clip_record import ClipRecord
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord
 
 SUNS = (Method.MSV_DTW, Method.MSV_XCORR)
 

@@ -10,7 +10,7 @@ from app.analysis.descriptors.motion_volume import compression_ratio
 from app.services import evaluate
 from app.services.evaluate import volumes as under_test
 from app.services.library import Library
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 
 
 def test_factors_by_class_and_how_they_converged(ready_library: Library) -> None:

@@ -8,7 +8,7 @@ import pytest
 from app.search.methods import Method
 from app.services.evaluate.ways import Volumes, by_method
 from app.services.library import Library
-from app.store.clip_record import ClipRecord
+from app.store.clips.record import ClipRecord
 
 
 @pytest.mark.parametrize("method", [Method.MSV_DTW, Method.MSV_XCORR])

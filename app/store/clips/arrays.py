@@ -1,0 +1,98 @@
+"""Arrays of clips, by name; each with the version of the analysis that made it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from numpy.typing import NDArray
+from sqlalchemy import bindparam, delete, insert, select
+
+from app.errors import NotFound
+from app.store.clips.repository import in_batches
+from app.store.database.blobs import from_blob, to_blob
+from app.store.database.engine import Tx
+from app.store.database.tables import clip_arrays
+
+_CONTENT = (clip_arrays.c.dtype, clip_arrays.c.shape, clip_arrays.c.data)
+
+# Made once: making a statement costs more than running it, and every search asks these.
+_NAMED = select(clip_arrays.c.name, *_CONTENT).where(
+    clip_arrays.c.clip_id == bindparam("the_id"),
+    clip_arrays.c.name.in_(bindparam("names", expanding=True)),
+)
+_OF_MANY = select(clip_arrays.c.clip_id, *_CONTENT).where(
+    clip_arrays.c.clip_id.in_(bindparam("ids", expanding=True)),
+    clip_arrays.c.name == bindparam("the_name"),
+)
+_OF_VERSION = _OF_MANY.where(clip_arrays.c.version == bindparam("the_version"))
+_ADD = insert(clip_arrays)
+_DELETE_ALL = delete(clip_arrays).where(clip_arrays.c.clip_id == bindparam("the_id"))
+
+
+def put_many(tx: Tx, clip_id: str, arrays: Mapping[str, NDArray[Any]], *, version: int) -> None:
+    """Stores a clip's arrays in place of all that it had."""
+    delete_all(tx, clip_id)
+    rows = [
+        {"clip_id": clip_id, "name": name, "version": version, **to_blob(array)}
+        for name, array in arrays.items()
+    ]
+    if rows:
+        tx.execute(_ADD, rows)
+
+
+def put_some(tx: Tx, clip_id: str, arrays: Mapping[str, NDArray[Any]], *, version: int) -> None:
+    """Stores arrays in place of those of the same names."""
+    named = clip_arrays.c.name.in_(list(arrays))
+    tx.execute(delete(clip_arrays).where(clip_arrays.c.clip_id == clip_id, named))
+    tx.execute(
+        _ADD,
+        [
+            {"clip_id": clip_id, "name": name, "version": version, **to_blob(array)}
+            for name, array in arrays.items()
+        ],
+    )
+
+
+def get_one(tx: Tx, clip_id: str, name: str) -> NDArray[Any]:
+    """One array, read-only; raises NotFound."""
+    return get_named(tx, clip_id, (name,))[name]
+
+
+def get_named(tx: Tx, clip_id: str, names: Collection[str]) -> dict[str, NDArray[Any]]:
+    """Some arrays of a clip by name, read-only, in the order asked for; raises NotFound."""
+    found = get_some(tx, clip_id, names)
+    for name in names:
+        if name not in found:
+            raise NotFound(f"The clip {clip_id!r} has no array {name!r}")
+    return {name: found[name] for name in names}
+
+
+def get_some(tx: Tx, clip_id: str, names: Collection[str]) -> dict[str, NDArray[Any]]:
+    """As `get_named`, without those that the clip does not have."""
+    rows = tx.execute(_NAMED, {"the_id": clip_id, "names": list(names)})
+    return {name: from_blob(dtype, shape, data) for name, dtype, shape, data in rows}
+
+
+def get_many(
+    tx: Tx, clip_ids: Collection[str], name: str, *, version: int | None = None
+) -> dict[str, NDArray[Any]]:
+    """One array of many clips by clip id, read-only, in the order asked for.
+
+    Clips without it are left out; with `version`, those of other versions too.
+    """
+    found: dict[str, NDArray[Any]] = {}
+    for batch in in_batches(clip_ids):
+        asked = {"ids": batch, "the_name": name}
+        if version is None:
+            rows = tx.execute(_OF_MANY, asked)
+        else:
+            rows = tx.execute(_OF_VERSION, asked | {"the_version": version})
+        for clip_id, dtype, shape, data in rows.all():
+            found[clip_id] = from_blob(dtype, shape, data)
+    return {clip_id: found[clip_id] for clip_id in clip_ids if clip_id in found}
+
+
+def delete_all(tx: Tx, clip_id: str) -> None:
+    """Removes a clip's arrays."""
+    tx.execute(_DELETE_ALL, {"the_id": clip_id})

@@ -1,0 +1,49 @@
+"""Keyposes that people name: seconds from a clip's beginning, one list a clip."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+from sqlalchemy import delete, insert, select
+
+from app.store.clips import repository as clips
+from app.store.database.engine import Tx
+from app.store.database.ids import utc_now
+from app.store.database.tables import keypose_annotations
+
+Times = tuple[float, ...]
+"""Seconds, rising."""
+
+
+def put(tx: Tx, clip_id: str, times: Sequence[float]) -> None:
+    """Store a clip's annotation in place of the one it had; no times take it away.
+
+    A ready clip counts as changed, so that models are fitted again. Raises ClipNotFound.
+    """
+    clips.patch(tx, clip_id, {})
+    tx.execute(delete(keypose_annotations).where(keypose_annotations.c.clip_id == clip_id))
+    if times:
+        row = {"clip_id": clip_id, "times": list(times), "annotated_at": utc_now()}
+        tx.execute(insert(keypose_annotations), row)
+
+
+def get(tx: Tx, clip_id: str) -> Times | None:
+    """A clip's annotation, None where there is none."""
+    return get_many(tx, [clip_id]).get(clip_id)
+
+
+def get_many(tx: Tx, clip_ids: Collection[str]) -> dict[str, Times]:
+    """The annotations of those of the clips that have one, in the order asked for."""
+    found: dict[str, Times] = {}
+    for batch in clips.in_batches(clip_ids):
+        query = select(keypose_annotations.c.clip_id, keypose_annotations.c.times).where(
+            keypose_annotations.c.clip_id.in_(batch)
+        )
+        found |= {clip_id: tuple(times) for clip_id, times in tx.execute(query)}
+    return {clip_id: found[clip_id] for clip_id in clip_ids if clip_id in found}
+
+
+def annotated(tx: Tx) -> tuple[str, ...]:
+    """Ids of the clips that have an annotation, in order."""
+    query = select(keypose_annotations.c.clip_id).order_by(keypose_annotations.c.clip_id)
+    return tuple(tx.execute(query).scalars())

@@ -1,0 +1,330 @@
+"""Clips: adding, reading, changing, removing. Listing is in `clip_listing`."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from sqlalchemy import RowMapping, bindparam, delete, insert, select, update
+
+from app.errors import ClipNotFound, Place
+from app.store.clips import versions as library
+from app.store.clips.record import (
+    OVERRIDES,
+    Added,
+    AddOutcome,
+    ClipChanges,
+    ClipFacts,
+    ClipRecord,
+    ClipState,
+    ClipWarning,
+    NewClip,
+    Reanalysis,
+)
+from app.store.database.engine import Tx
+from app.store.database.ids import new_id, utc_now
+from app.store.database.tables import clip_words, clips
+
+AUDIO_FIELDS = (
+    "audio_sha256",
+    "audio_name",
+    "audio_size",
+    "audio_offset_override",
+    "tempo_override",
+    "beats_override",
+)
+"""What comes with a recording."""
+
+IDS_PER_QUERY = 500
+"""Databases limit the parameters of one statement."""
+
+# Made once: making a statement costs more than running it.
+_SOME = select(clips).where(clips.c.id.in_(bindparam("ids", expanding=True)))
+_STATE = select(clips.c.state).where(clips.c.id == bindparam("the_id"))
+_WITH_CONTENT = select(clips.c.id).where(clips.c.content_key == bindparam("content"))
+_CHANGE = update(clips).where(clips.c.id == bindparam("the_id"))
+_ADD, _ADD_WORDS = insert(clips), insert(clip_words)
+_WORDS = (
+    select(clip_words.c.clip_id, clip_words.c.word)
+    .where(clip_words.c.clip_id.in_(bindparam("ids", expanding=True)))
+    .order_by(clip_words.c.clip_id, clip_words.c.position)
+)
+
+
+def add_or_get(tx: Tx, new: NewClip) -> Added:
+    """Adds a clip in state queued, or finds the one with the same content.
+
+    A failed one is queued again, with those labels and overrides that are given now; any other
+    with another recording, and what is told of its beats. Safe
+    between processes: writers take turns, so the look-up cannot be overtaken.
+    """
+    library.lock(tx)
+    found = find_by_content(tx, new.content_key)
+    if found is None:
+        return Added(_insert(tx, new), AddOutcome.ADDED)
+    is_failed = found.state is ClipState.FAILED
+    if is_failed or new.audio_sha256 not in (None, found.audio_sha256):
+        again = _requeue_with(tx, found, new, None if is_failed else AUDIO_FIELDS)
+        replaced = found.audio_sha256 if again.audio_sha256 != found.audio_sha256 else None
+        return Added(again, AddOutcome.REQUEUED, replaced)
+    return Added(found, AddOutcome.EXISTS)
+
+
+def get(tx: Tx, clip_id: str) -> ClipRecord:
+    """The clip; raises ClipNotFound."""
+    found = _load(tx, [clip_id])
+    if not found:
+        raise _not_found(clip_id)
+    return found[0]
+
+
+def get_many(tx: Tx, clip_ids: Collection[str]) -> dict[str, ClipRecord]:
+    """The clips that exist among `clip_ids`, by id, in the order asked for."""
+    found = {clip.id: clip for batch in in_batches(clip_ids) for clip in _load(tx, batch)}
+    return {clip_id: found[clip_id] for clip_id in clip_ids if clip_id in found}
+
+
+def find_by_content(tx: Tx, content_key: str) -> ClipRecord | None:
+    """The clip with this content (`NewClip.content_key`), if there is one."""
+    clip_id = tx.execute(_WITH_CONTENT, {"content": content_key}).scalar_one_or_none()
+    return None if clip_id is None else get(tx, clip_id)
+
+
+def patch(tx: Tx, clip_id: str, changes: ClipChanges) -> ClipRecord:
+    """Changes labels and overrides; a ready clip's change is seen by the next search.
+
+    A changed override takes effect with the next analysis: see `requeue`.
+    """
+    before = get(tx, clip_id)
+    values: dict[str, Any] = {key: value for key, value in changes.items() if key != "words"}
+    if any(values[name] != getattr(before, name) for name in OVERRIDES if name in values):
+        values["is_changed"] = True
+    if "name" in changes:
+        values["name_folded"] = changes["name"].casefold()
+    if "words" in changes:
+        _set_words(tx, clip_id, changes["words"])
+    if before.state is ClipState.READY:
+        values["changed_version"] = library.bump(tx)
+    if values:
+        tx.execute(update(clips).where(clips.c.id == clip_id).values(values))
+    return get(tx, clip_id)
+
+
+def forget_person(tx: Tx, person: str) -> tuple[str, ...]:
+    """Takes a person's label from all their clips; their ids."""
+    theirs = clips.c.person == person
+    ids = tuple(tx.execute(select(clips.c.id).where(theirs).order_by(clips.c.id)).scalars())
+    tx.execute(
+        update(clips)
+        .where(theirs, clips.c.state == ClipState.READY.value)
+        .values(changed_version=library.bump(tx))
+    )
+    tx.execute(update(clips).where(theirs).values(person=None))
+    return ids
+
+
+def requeue(tx: Tx, clip_id: str) -> ClipRecord:
+    """To be analysed, again or at last. A ready clip stays ready, with the analysis that it has,
+    until the new one replaces it."""
+    if _state_of(tx, clip_id) is ClipState.READY:
+        _set(tx, clip_id, reanalysis=Reanalysis.QUEUED.value)
+    else:
+        _enter(tx, clip_id, ClipState.QUEUED, error=None)
+    return get(tx, clip_id)
+
+
+def wait_again(tx: Tx, clip_id: str) -> None:
+    """Nobody works on it any more, and its job waits. A clip that is gone needs nothing."""
+    clip = get_many(tx, [clip_id]).get(clip_id)
+    if clip is None:
+        return
+    if ClipState.PROCESSING is clip.state or Reanalysis.PROCESSING is clip.reanalysis:
+        requeue(tx, clip_id)
+
+
+def set_processing(tx: Tx, clip_id: str) -> None:
+    """A worker has begun."""
+    begun = update(clips).where(clips.c.id == clip_id, clips.c.state == ClipState.QUEUED.value)
+    if tx.execute(begun.values(state=ClipState.PROCESSING.value)).rowcount:
+        return
+    if _state_of(tx, clip_id) is ClipState.READY:
+        _set(tx, clip_id, reanalysis=Reanalysis.PROCESSING.value)
+    else:
+        _enter(tx, clip_id, ClipState.PROCESSING)
+
+
+def set_ready(tx: Tx, clip_id: str, facts: ClipFacts) -> None:
+    """Analysed: searchable from this transaction's commit on."""
+    done: dict[str, Any] = {"error": None, "reanalysis": None, "is_changed": False}
+    _enter(tx, clip_id, ClipState.READY, **done, **asdict(facts))
+
+
+def set_failed(tx: Tx, clip_id: str, problem: dict[str, Any]) -> None:
+    """Cannot be analysed, for the reason given as an RFC 9457 problem."""
+    _enter(tx, clip_id, ClipState.FAILED, error=problem, reanalysis=None)
+
+
+def keep_analysis(tx: Tx, clip_id: str, why: ClipWarning) -> None:
+    """A ready clip could not be analysed again: it keeps what it has, and says why."""
+    others = [warning for warning in get(tx, clip_id).warnings if warning.code != why.code]
+    warnings = [asdict(warning) for warning in (*others, why)]
+    _set(tx, clip_id, reanalysis=Reanalysis.FAILED.value, warnings=warnings)
+
+
+def fail_waiting(tx: Tx, clip_ids: Collection[str], problem: dict[str, Any]) -> None:
+    """As `set_failed`, of many clips; those that do not wait for an analysis stay as they are."""
+    waiting = clips.c.state.in_([ClipState.QUEUED.value, ClipState.PROCESSING.value])
+    for batch in in_batches(clip_ids):
+        failed = update(clips).where(clips.c.id.in_(batch), waiting)
+        tx.execute(failed.values(state=ClipState.FAILED.value, error=problem))
+
+
+def delete_clip(tx: Tx, clip_id: str) -> ClipRecord:
+    """Removes the row with its words and arrays; returns what it was. Raises ClipNotFound.
+
+    Jobs and imports that wait for it: use `outcomes.remove_clip`.
+    """
+    gone = get(tx, clip_id)
+    if gone.changed_version:
+        library.bury(tx, clip_id)
+    tx.execute(delete(clips).where(clips.c.id == clip_id))
+    return gone
+
+
+def in_batches(ids: Iterable[str], size: int = IDS_PER_QUERY) -> Iterator[list[str]]:
+    """Slices of `ids` that fit into one statement."""
+    every = list(ids)
+    for start in range(0, len(every), size):
+        yield every[start : start + size]
+
+
+def _insert(tx: Tx, new: NewClip) -> ClipRecord:
+    clip_id = new_id("clip")
+    values = {key: value for key, value in asdict(new).items() if key != "words"}
+    values |= {
+        "id": clip_id,
+        "content_key": new.content_key,
+        "name_folded": new.name.casefold(),
+        "state": ClipState.QUEUED.value,
+        "changed_version": 0,
+        "created_at": utc_now(),
+    }
+    tx.execute(_ADD, values)
+    _add_words(tx, clip_id, new.words)
+    return get(tx, clip_id)
+
+
+def _requeue_with(
+    tx: Tx, found: ClipRecord, new: NewClip, only: Collection[str] | None
+) -> ClipRecord:
+    """Queue again with what is given now, of the fields `only` where they are named."""
+    given = {key: value for key, value in asdict(new).items() if value not in (None, ())}
+    names = ClipChanges.__annotations__.keys() & given.keys() & set(only or given)
+    patch(tx, found.id, ClipChanges(**{name: given[name] for name in names}))  # type: ignore[typeddict-item]
+    return requeue(tx, found.id)
+
+
+def _set_words(tx: Tx, clip_id: str, words: Sequence[str]) -> None:
+    tx.execute(delete(clip_words).where(clip_words.c.clip_id == clip_id))
+    _add_words(tx, clip_id, words)
+
+
+def _add_words(tx: Tx, clip_id: str, words: Sequence[str]) -> None:
+    rows = [
+        {"clip_id": clip_id, "word": word, "position": position}
+        for position, word in enumerate(dict.fromkeys(words))
+    ]
+    if rows:
+        tx.execute(_ADD_WORDS, rows)
+
+
+def overrides(tx: Tx, clip_id: str) -> tuple[Any, ...]:
+    """As `ClipRecord.overrides`, of a clip as it is now. Raises ClipNotFound."""
+    return get(tx, clip_id).overrides
+
+
+def _enter(tx: Tx, clip_id: str, state: ClipState, **values: Any) -> None:
+    before = _state_of(tx, clip_id)
+    if ClipState.READY in (before, state):
+        values["changed_version"] = library.bump(tx)
+    tx.execute(_CHANGE, {"the_id": clip_id, "state": state.value, **values})
+
+
+def _set(tx: Tx, clip_id: str, **values: Any) -> None:
+    """Change what no search looks at."""
+    tx.execute(_CHANGE, {"the_id": clip_id, **values})
+
+
+def _state_of(tx: Tx, clip_id: str) -> ClipState:
+    """The state alone, for every step of every ingest; raises ClipNotFound."""
+    state = tx.execute(_STATE, {"the_id": clip_id}).scalar_one_or_none()
+    if state is None:
+        raise _not_found(clip_id)
+    return ClipState(state)
+
+
+def _not_found(clip_id: str) -> ClipNotFound:
+    detail = f"There is no clip with the id {clip_id!r}"
+    return ClipNotFound(detail, places=[Place("clip_id", "is the id of no clip")])
+
+
+def _load(tx: Tx, clip_ids: Collection[str]) -> list[ClipRecord]:
+    rows = tx.execute(_SOME, {"ids": list(clip_ids)}).mappings().all()
+    words = words_of(tx, clip_ids)
+    return [to_record(row, words.get(row["id"], ())) for row in rows]
+
+
+def words_of(tx: Tx, clip_ids: Collection[str]) -> dict[str, tuple[str, ...]]:
+    """Words by clip id, in the order in which they were given."""
+    found: dict[str, list[str]] = {}
+    for batch in in_batches(clip_ids):
+        for clip_id, word in tx.execute(_WORDS, {"ids": batch}):
+            found.setdefault(clip_id, []).append(word)
+    return {clip_id: tuple(words) for clip_id, words in found.items()}
+
+
+def to_record(row: RowMapping, words: tuple[str, ...]) -> ClipRecord:
+    """A row of `clips` as a record, field by field."""
+    return ClipRecord(
+        id=row["id"],
+        name=row["name"],
+        state=ClipState(row["state"]),
+        format=row["format"],
+        sha256=row["sha256"],
+        person=row["person"],
+        task=row["task"],
+        words=words,
+        license=row["license"],
+        source=row["source"],
+        frames=row["frames"],
+        frame_rate=row["frame_rate"],
+        declared_frame_rate=row["declared_frame_rate"],
+        duration=row["duration"],
+        joints=row["joints"],
+        roles=dict(row["roles"] or {}),
+        missing_roles=tuple(row["missing_roles"] or ()),
+        warnings=tuple(ClipWarning(**warning) for warning in row["warnings"] or ()),
+        created_at=row["created_at"],
+        error=row["error"],
+        metres_per_unit=row["metres_per_unit"],
+        content_key=row["content_key"],
+        file_name=row["file_name"],
+        file_size=row["file_size"],
+        skeleton_sha256=row["skeleton_sha256"],
+        frame_rate_override=row["frame_rate_override"],
+        metres_per_unit_override=row["metres_per_unit_override"],
+        roles_override=row["roles_override"],
+        stack_override=row["stack_override"],
+        audio_sha256=row["audio_sha256"],
+        audio_name=row["audio_name"],
+        audio_size=row["audio_size"],
+        audio_offset_override=row["audio_offset_override"],
+        tempo_override=row["tempo_override"],
+        beats_override=None if row["beats_override"] is None else tuple(row["beats_override"]),
+        audio_offset=row["audio_offset"],
+        analysis_version=row["analysis_version"],
+        reanalysis=None if row["reanalysis"] is None else Reanalysis(row["reanalysis"]),
+        is_changed=row["is_changed"],
+        changed_version=row["changed_version"],
+    )

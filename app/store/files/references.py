@@ -1,0 +1,43 @@
+"""Which stored files are still needed."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any
+
+from sqlalchemy import ColumnElement, select, union
+
+from app.store.clips import versions as library
+from app.store.clips.repository import in_batches
+from app.store.database.engine import Tx
+from app.store.database.tables import clips, jobs
+from app.store.jobs.record import OPEN_STATES
+
+_OF_OPEN_JOBS = jobs.c.state.in_([state.value for state in OPEN_STATES])
+_REFERENCES: tuple[tuple[ColumnElement[Any], tuple[ColumnElement[bool], ...]], ...] = (
+    (clips.c.sha256, ()),
+    (clips.c.skeleton_sha256, ()),
+    (clips.c.audio_sha256, ()),
+    (jobs.c.file_sha256, (_OF_OPEN_JOBS,)),
+)
+"""Columns that name files, and of which rows they count."""
+
+
+def unreferenced(tx: Tx, sha256s: Collection[str]) -> tuple[str, ...]:
+    """Those of the files that no clip and no open job refers to, in the order given."""
+    library.lock(tx)
+    needed: set[str] = set()
+    for batch in in_batches(sha256s):
+        needed.update(_needed(tx, batch))
+    return tuple(sha256 for sha256 in dict.fromkeys(sha256s) if sha256 not in needed)
+
+
+def referenced(tx: Tx) -> frozenset[str]:
+    """Every file that a clip or an open job refers to."""
+    every = union(*(select(c).where(c.is_not(None), *when) for c, when in _REFERENCES))
+    return frozenset(tx.execute(every).scalars())
+
+
+def _needed(tx: Tx, batch: list[str]) -> set[str]:
+    every = union(*(select(c).where(c.in_(batch), *when) for c, when in _REFERENCES))
+    return set(tx.execute(every).scalars())

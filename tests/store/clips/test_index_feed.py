@@ -1,0 +1,73 @@
+"""What an index is fed with: labels and an array of each clip that changed, in batches."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from sqlalchemy import text
+
+from app.store.clips import arrays, index_feed
+from app.store.clips import repository as clips
+from app.store.clips import versions as library
+from app.store.clips.index_feed import IndexedClip, changed_since
+from app.store.store import Store
+from tests.store.conftest import AddClip
+
+
+def _told(store: Store, since: int, array: str = "vector") -> list[IndexedClip]:
+    with store.read() as tx:
+        return [clip for batch in changed_since(tx, since, array) for clip in batch]
+
+
+def test_a_clip_comes_with_its_labels_and_its_array(store: Store, add_clip: AddClip) -> None:
+    labels = {"person": "ada", "task": "walk", "license": "CC0-1.0", "source": "studio"}
+    clip = add_clip("walk", ready=True, words=("slow", "left_leg"), **labels)
+    with store.write() as tx:
+        arrays.put_many(tx, clip.id, {"vector": np.arange(3.0), "other": np.zeros(9)}, version=1)
+    (told,) = _told(store, 0)
+    assert told.array is not None
+    assert told.array.tolist() == [0.0, 1.0, 2.0]
+    assert {name: getattr(told, name) for name in labels} == labels
+    assert (told.id, told.is_ready, told.duration) == (clip.id, True, clip.duration)
+    assert told.words == {"slow", "left_leg"}
+
+
+def test_what_a_clip_lacks(store: Store, add_clip: AddClip) -> None:
+    add_clip("bare", ready=True)
+    (told,) = _told(store, 0)
+    assert (told.person, told.words, told.array) == (None, frozenset(), None)
+
+
+def test_only_what_changed_since_and_in_the_order_of_the_changes(
+    store: Store, add_clip: AddClip, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(index_feed, "BATCH", 2)
+    made = [add_clip(name, ready=True) for name in "abcde"]
+    add_clip("never ready")
+    with store.read() as tx:
+        before = library.version(tx)
+        sizes = [len(batch) for batch in changed_since(tx, 0, "vector")]
+    assert sizes == [2, 2, 1]
+    assert [clip.id for clip in _told(store, 0)] == [clip.id for clip in made]
+    with store.write() as tx:
+        clips.patch(tx, made[3].id, {"task": "run"})
+        clips.set_failed(tx, made[1].id, {"code": "unreadable"})
+        clips.requeue(tx, made[2].id)  # it stays as it is until it is analysed
+        clips.delete_clip(tx, made[0].id)
+    assert [(c.id, c.is_ready) for c in _told(store, before)] == [
+        (made[3].id, True),
+        (made[1].id, False),
+    ]
+    with store.read() as tx:
+        assert library.buried_since(tx, before) == (made[0].id,)
+        assert library.buried_since(tx, library.version(tx)) == ()
+
+
+def test_a_change_is_looked_up_without_reading_all_clips(store: Store) -> None:
+    """SQLite's plan: by the version's index first; by the state's it would go through all."""
+    with store.read() as tx:
+        said = index_feed._CLIPS.params(since=1, array="vector")
+        literal = said.compile(tx.engine, compile_kwargs={"literal_binds": True})
+        steps = [row[3] for row in tx.execute(text(f"EXPLAIN QUERY PLAN {literal}"))]
+    assert "ix_clips_changed_version" in steps[0]
+    assert not any("SCAN" in step or "TEMP B-TREE" in step for step in steps)

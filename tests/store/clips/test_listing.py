@@ -1,0 +1,185 @@
+"""Lists of clips: filters against a plain loop, order and pages against `sorted`."""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import json
+from collections.abc import Callable
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.errors import BadField
+from app.store.clips import listing as clip_listing
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord, ClipState
+from app.store.store import Store
+from tests.store.conftest import ON_ONE_STORE, AddClip
+
+CLIPS: tuple[tuple[str, str | None, str | None, tuple[str, ...], float | None], ...] = (
+    ("Walk 100%", "anna", "walk", ("walk", "slow"), 2.0),
+    ("walk_2", "ben", "walk", ("walk",), 3.5),
+    ("ÄRGER", "anna", "jump", ("jump", "slow"), 1.0),
+    ("run", None, "run", (), 2.0),
+    ("RUN", "ben", None, ("run",), None),
+    ("back\\slash", None, None, (), None),
+)
+
+
+@pytest.fixture
+def library_of_six(add_clip: AddClip) -> list[ClipRecord]:
+    return [
+        add_clip(
+            name,
+            ready=False if duration is None else {"duration": duration},
+            person=person,
+            task=task,
+            words=words,
+            license="CC0-1.0" if person == "anna" else None,
+        )
+        for name, person, task, words, duration in CLIPS
+    ]
+
+
+def names(store: Store, wanted: ClipFilter) -> list[str]:
+    with store.read() as tx:
+        page = clip_listing.list_clips(tx, wanted, sort="created_at")
+        assert clip_listing.count_clips(tx, wanted) == len(page.items)
+        assert set(clip_listing.list_ids(tx, wanted)) == {clip.id for clip in page.items}
+    return [clip.name for clip in page.items]
+
+
+@pytest.mark.parametrize(
+    ("wanted", "passes"),
+    [
+        (ClipFilter(), lambda c: True),
+        (ClipFilter(person=("anna",)), lambda c: c.person == "anna"),
+        (ClipFilter(person=("anna", "ben")), lambda c: c.person is not None),
+        (ClipFilter(person=("nobody",)), lambda c: False),
+        (ClipFilter(task=("walk",), person=("ben",)), lambda c: c.name == "walk_2"),
+        (ClipFilter(word=("slow",)), lambda c: "slow" in c.words),
+        (ClipFilter(word=("slow", "walk")), lambda c: {"slow", "walk"} & set(c.words)),
+        (ClipFilter(license=("CC0-1.0",)), lambda c: c.license == "CC0-1.0"),
+        (ClipFilter(source=("lab",)), lambda c: False),
+        (ClipFilter(state=(ClipState.QUEUED,)), lambda c: c.duration is None),
+        (ClipFilter(min_duration=2.0), lambda c: (c.duration or 0) >= 2),
+        (ClipFilter(max_duration=2.0), lambda c: c.duration is not None and c.duration <= 2),
+        (ClipFilter(q="WALK"), lambda c: "walk" in c.name.lower()),
+        (ClipFilter(q="ärger"), lambda c: c.name == "ÄRGER"),
+        (ClipFilter(q="%"), lambda c: "%" in c.name),
+        (ClipFilter(q="_"), lambda c: "_" in c.name),
+        (ClipFilter(q="\\"), lambda c: "\\" in c.name),
+        (ClipFilter(q="'; DROP TABLE clips; --"), lambda c: False),
+        (ClipFilter(q=""), lambda c: True),
+    ],
+)
+@pytest.mark.usefixtures("library_of_six")
+def test_filters(
+    store: Store,
+    library_of_six: list[ClipRecord],
+    wanted: ClipFilter,
+    passes: Callable[[ClipRecord], object],
+) -> None:
+    assert names(store, wanted) == [clip.name for clip in library_of_six if passes(clip)]
+
+
+KEYS: dict[str, Callable[[ClipRecord], object]] = {
+    "created_at": lambda c: (c.created_at, c.id),
+    "name": lambda c: (c.name.casefold(), c.id),
+    "duration": lambda c: (-1.0 if c.duration is None else c.duration, c.id),
+    "person": lambda c: (c.person or "", c.id),
+    "task": lambda c: (c.task or "", c.id),
+}
+
+
+@pytest.mark.parametrize("limit", [1, 2, 6, 50])
+@pytest.mark.parametrize("descending", [False, True])
+@pytest.mark.parametrize("name", clip_listing.SORT_NAMES)
+def test_pages_put_together_are_the_sorted_list(
+    store: Store, library_of_six: list[ClipRecord], name: str, descending: bool, limit: int
+) -> None:
+    sort = "-" + name if descending else name
+    seen: list[ClipRecord] = []
+    cursor: str | None = None
+    with store.read() as tx:
+        while True:
+            page = clip_listing.list_clips(tx, ClipFilter(), sort=sort, limit=limit, cursor=cursor)
+            assert len(page.items) <= limit
+            seen += page.items
+            if (cursor := page.next) is None:
+                break
+    assert seen == sorted(library_of_six, key=KEYS[name], reverse=descending)
+
+
+def test_a_page_is_stable_while_clips_come_and_go(
+    store: Store, library_of_six: list[ClipRecord], add_clip: AddClip
+) -> None:
+    with store.read() as tx:
+        first = clip_listing.list_clips(tx, ClipFilter(), sort="name", limit=3)
+    add_clip("aaa")
+    add_clip("zzz")
+    with store.read() as tx:
+        rest = clip_listing.list_clips(tx, ClipFilter(), sort="name", cursor=first.next)
+    shown = [clip.name for clip in (*first.items, *rest.items)]
+    assert sorted(shown) == sorted([*(clip.name for clip in library_of_six), "zzz"])
+
+
+def packed(content: object) -> str:
+    return base64.urlsafe_b64encode(json.dumps(content).encode()).decode()
+
+
+@pytest.mark.parametrize(
+    "cursor",
+    [
+        "",
+        "?",
+        "äöü",
+        "bm90IGpzb24",
+        packed(None),
+        packed(["name"]),
+        packed(["-name", "x", "clip"]),
+        packed(["name", 3, "clip"]),
+        packed(["name", "x", None]),
+        "A" * 100_000,
+        packed([[]] * 500),
+    ],
+)
+def test_bad_cursors_name_the_field(store: Store, cursor: str) -> None:
+    with pytest.raises(BadField) as failure, store.read() as tx:
+        clip_listing.list_clips(tx, ClipFilter(), sort="name", cursor=cursor)
+    assert [place.location for place in failure.value.places] == ["cursor"]
+
+
+@ON_ONE_STORE
+@given(
+    cursor=st.one_of(st.text(), st.binary().map(lambda b: base64.urlsafe_b64encode(b).decode())),
+    sort=st.sampled_from(["name", "-duration", "created_at"]),
+)
+def test_any_cursor_is_read_or_refused(store: Store, cursor: str, sort: str) -> None:
+    with store.read() as tx, contextlib.suppress(BadField):
+        clip_listing.list_clips(tx, ClipFilter(), sort=sort, cursor=cursor)
+
+
+@pytest.mark.parametrize(
+    ("sort", "value"),
+    [
+        *(("duration", value) for value in ("1e400", "NaN", "-Infinity", "1" + "0" * 400, "true")),
+        ("created_at", '"0001-01-01T00:00:00+14:00"'),
+        ("created_at", '"2026-01-01T00:00:00"'),
+        ("created_at", '"yesterday"'),
+        ("name", '"\\ud800"'),
+    ],
+)
+def test_values_that_no_row_has_are_no_cursor(store: Store, sort: str, value: str) -> None:
+    cursor = base64.urlsafe_b64encode(f'["{sort}",{value},"clip"]'.encode()).decode()
+    with pytest.raises(BadField), store.read() as tx:
+        clip_listing.list_clips(tx, ClipFilter(), sort=sort, cursor=cursor)
+
+
+@pytest.mark.parametrize("sort", ["", "-", "sha256", "--name", "name "])
+def test_bad_sorts_name_the_field(store: Store, sort: str) -> None:
+    with pytest.raises(BadField) as failure, store.read() as tx:
+        clip_listing.list_clips(tx, ClipFilter(), sort=sort)
+    assert failure.value.places[0].location == "sort"

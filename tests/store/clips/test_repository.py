@@ -1,0 +1,179 @@
+"""Clips: one row for one content, states, labels, removal."""
+
+from __future__ import annotations
+
+import multiprocessing
+from datetime import UTC
+from multiprocessing.synchronize import Barrier
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.errors import ClipNotFound
+from app.store.clips import arrays, labels
+from app.store.clips import repository as clips
+from app.store.clips import versions as library
+from app.store.clips.labels import Count
+from app.store.clips.record import AddOutcome, ClipState
+from app.store.store import Store
+from tests.store.conftest import AddClip, facts, new_clip
+from tests.store.stored_arrays import array_versions
+
+
+def test_a_new_clip_comes_back_as_it_was_given(store: Store) -> None:
+    new = new_clip(
+        "Größe",
+        person="anna",
+        task="walk",
+        words=("walk", "left_leg", "walk"),
+        license="CC0-1.0",
+        source="lab",
+        frame_rate_override=60.0,
+        metres_per_unit_override=0.01,
+        roles_override={"hips": "Root"},
+        stack_override="Take 001",
+        audio_sha256="c" * 64,
+        audio_name="song.mp3",
+        audio_size=7,
+        audio_offset_override=-1.5,
+        tempo_override=98.0,
+        beats_override=(0.5, 1.1),
+    )
+    with store.write() as tx:
+        added = clips.add_or_get(tx, new)
+    with store.read() as tx:
+        clip = clips.get(tx, added.clip.id)
+    assert clip == added.clip
+    assert added.needs_analysis
+    assert (clip.name, clip.person, clip.task, clip.license) == ("Größe", "anna", "walk", "CC0-1.0")
+    assert clip.words == ("walk", "left_leg")
+    assert clip.state is ClipState.QUEUED
+    told = ("c" * 64, -1.5, 98.0, (0.5, 1.1))
+    assert clip.overrides == (60.0, 0.01, {"hips": "Root"}, "Take 001", *told)
+    assert (clip.audio_name, clip.audio_size, clip.audio_offset) == ("song.mp3", 7, None)
+    assert clip.created_at.tzinfo is UTC
+    assert (clip.frames, clip.roles, clip.warnings, clip.error) == (None, {}, (), None)
+
+
+def test_the_same_content_is_one_clip(store: Store, add_clip: AddClip) -> None:
+    first = add_clip("walk", ready=True)
+    with store.write() as tx:
+        again = clips.add_or_get(tx, new_clip("walk", person="someone else"))
+    assert again.outcome is AddOutcome.EXISTS
+    assert not again.needs_analysis
+    assert again.clip == first
+
+
+def test_the_same_file_with_another_skeleton_is_another_clip(store: Store) -> None:
+    with store.write() as tx:
+        added = [
+            clips.add_or_get(tx, new_clip("amc", skeleton_sha256=skeleton)).clip
+            for skeleton in (None, "a" * 64, "b" * 64, "a" * 64)
+        ]
+    assert len({clip.id for clip in added}) == 3
+    assert added[1].id == added[3].id
+    assert len({clip.sha256 for clip in added}) == 1
+
+
+def test_a_failed_clip_is_queued_again_with_what_is_given_now(
+    store: Store, add_clip: AddClip
+) -> None:
+    clip = add_clip("walk", person="anna", words=("walk",))
+    with store.write() as tx:
+        clips.set_failed(tx, clip.id, {"code": "unreadable"})
+        again = clips.add_or_get(tx, new_clip("walk", task="run", metres_per_unit_override=0.01))
+    assert again.outcome is AddOutcome.REQUEUED
+    assert again.clip.id == clip.id
+    assert again.clip.state is ClipState.QUEUED
+    assert again.clip.error is None
+    assert (again.clip.person, again.clip.task, again.clip.words) == ("anna", "run", ("walk",))
+    assert again.clip.metres_per_unit_override == 0.01
+
+
+def test_ready_tells_what_the_analysis_found(add_clip: AddClip) -> None:
+    clip = add_clip("walk", ready=True)
+    found = facts()
+    assert clip.state is ClipState.READY
+    assert clip.warnings == found.warnings
+    assert clip.missing_roles == found.missing_roles
+    assert (clip.frames, clip.duration, clip.joints, clip.format) == (90, 3.0, 22, "bvh")
+
+
+def test_patch_changes_only_what_is_given(store: Store, add_clip: AddClip) -> None:
+    clip = add_clip("walk", person="anna", task="walk", words=("walk", "slow"))
+    with store.write() as tx:
+        changed = clips.patch(tx, clip.id, {"name": "New", "task": None, "words": ["run"]})
+    assert (changed.name, changed.person, changed.task) == ("New", "anna", None)
+    assert changed.words == ("run",)
+    with store.read() as tx:
+        assert labels.words(tx, "us") == (Count("run", 1, 0),)
+
+
+@pytest.mark.parametrize("act", ["get", "patch", "requeue", "delete_clip"])
+def test_unknown_ids(store: Store, act: str) -> None:
+    arguments: tuple[object, ...] = ({},) if act == "patch" else ()
+    with pytest.raises(ClipNotFound, match="nobody"), store.write() as tx:
+        getattr(clips, act)(tx, "nobody", *arguments)
+
+
+def test_deletion_takes_words_and_arrays_along(store: Store, add_clip: AddClip) -> None:
+    clip, other = add_clip("walk", words=("walk",)), add_clip("run", words=("run",))
+    with store.write() as tx:
+        for each in (clip, other):
+            arrays.put_many(tx, each.id, {"v": np.zeros(3)}, version=1)
+        assert clips.delete_clip(tx, clip.id) == clip
+        assert labels.words(tx, "us") == (Count("run", 1, 0),)
+        assert array_versions(tx, clip.id) == {}
+        assert set(arrays.get_many(tx, [clip.id, other.id], "v")) == {other.id}
+
+
+def test_get_many_keeps_the_order_and_leaves_out_what_is_not_there(
+    store: Store, add_clip: AddClip, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(clips, "IDS_PER_QUERY", 2)
+    ids = [add_clip(name, words=(name,)).id for name in "abcde"]
+    asked = [ids[4], "nobody", ids[0], ids[2]]
+    with store.read() as tx:
+        found = clips.get_many(tx, asked)
+    assert list(found) == [ids[4], ids[0], ids[2]]
+    assert [clip.words for clip in found.values()] == [("e",), ("a",), ("c",)]
+
+
+def test_labels_are_counted(store: Store, add_clip: AddClip) -> None:
+    add_clip("1", person="anna", task="walk", words=("walk", "slow"))
+    add_clip("2", person="anna", words=("walk",), source="us")
+    add_clip("3", person="ben", source="them")
+    add_clip("4")
+    with store.read() as tx:
+        assert labels.persons(tx, "us") == (Count("anna", 1, 1), Count("ben", 1, 0))
+        assert labels.tasks(tx, "us") == (Count("walk", 1, 0),)
+        assert labels.words(tx, "us") == (Count("slow", 1, 0), Count("walk", 1, 1))
+        assert labels.person_names(tx) == {"anna", "ben"}
+
+
+def _add_the_same(url: str, directory: Path, barrier: Barrier) -> None:
+    store = Store.open(url, directory)
+    for number in range(10):
+        barrier.wait(30)
+        with store.write() as tx:
+            clips.add_or_get(tx, new_clip(f"clip {number}"))
+    store.close()
+
+
+def test_processes_that_add_the_same_content_make_one_clip(
+    store: Store, database_url: str, tmp_path: Path
+) -> None:
+    spawn = multiprocessing.get_context("spawn")
+    barrier = spawn.Barrier(2)
+    arguments = (database_url, tmp_path, barrier)
+    processes = [spawn.Process(target=_add_the_same, args=arguments) for _ in range(2)]
+    for process in processes:
+        process.start()
+    for process in processes:
+        process.join(60)
+    assert [process.exitcode for process in processes] == [0, 0]
+    with store.read() as tx:
+        for number in range(10):
+            assert clips.find_by_content(tx, new_clip(f"clip {number}").content_key)
+        assert library.version(tx) == 0

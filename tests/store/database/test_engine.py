@@ -1,0 +1,142 @@
+"""Transactions: durable, serialised, whole."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from sqlalchemy import select
+
+from app.config import sqlite_url
+from app.errors import ConfigurationError, DiskFull, StorageError
+from app.store.clips import versions as library
+from app.store.clips.repository import add_or_get
+from app.store.database import engine
+from app.store.database.engine import Database
+from app.store.database.tables import clips
+from app.store.store import Store
+from tests.store.conftest import new_clip
+
+
+def test_sqlite_is_opened_for_durability(store: Store) -> None:
+    with store.read() as tx:
+        settings = {
+            name: tx.exec_driver_sql(f"PRAGMA {name}").scalar_one()
+            for name in ("journal_mode", "synchronous", "foreign_keys", "busy_timeout")
+        }
+    assert settings == {
+        "journal_mode": "wal",
+        "synchronous": 2,
+        "foreign_keys": 1,
+        "busy_timeout": engine.BUSY_TIMEOUT_S * 1000,
+    }
+
+
+def test_a_failed_write_leaves_nothing(store: Store) -> None:
+    with pytest.raises(ZeroDivisionError), store.write() as tx:
+        library.bump(tx) / 0
+    with store.read() as tx:
+        assert library.version(tx) == 0
+
+
+def test_what_is_written_while_reading_is_not_kept(store: Store) -> None:
+    with store.read() as tx:
+        library.bump(tx)
+    with store.read() as tx:
+        assert library.version(tx) == 0
+
+
+def test_a_reader_sees_one_snapshot_and_does_not_stop_writers(store: Store) -> None:
+    with store.read() as reading:
+        before = library.version(reading)
+        with store.write() as writing:
+            library.bump(writing)
+        assert library.version(reading) == before
+    with store.read() as reading:
+        assert library.version(reading) == before + 1
+
+
+def test_threads_lose_no_update(store: Store) -> None:
+    def bump_often() -> None:
+        for _ in range(10):
+            with store.write() as tx:
+                library.bump(tx)
+
+    threads = [threading.Thread(target=bump_often) for _ in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    with store.read() as tx:
+        assert library.version(tx) == 60
+
+
+def test_many_threads_can_read_at_once(store: Store) -> None:
+    barrier = threading.Barrier(40, timeout=20)
+    seen = []
+
+    def read() -> None:
+        with store.read() as tx:
+            barrier.wait()
+            seen.append(library.version(tx))
+
+    threads = [threading.Thread(target=read) for _ in range(40)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert seen == [0] * 40
+
+
+def test_a_lock_that_is_not_had_in_time_is_a_storage_error(
+    store: Store, database_url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(engine, "BUSY_TIMEOUT_S", 0.05)
+    other = Database(database_url)
+    with store.write() as tx:
+        library.bump(tx)
+        with pytest.raises(StorageError, match="locked"), other.write():
+            pass
+        with pytest.raises(StorageError, match="this process"), store.write():
+            pass
+    other.close()
+
+
+def test_a_full_disk_is_told_and_nothing_is_kept(store: Store) -> None:
+    with store.write() as tx:  # the limit belongs to the connection, which the pool gives again
+        tx.exec_driver_sql("PRAGMA max_page_count = 1")
+    with pytest.raises(DiskFull), store.write() as tx:
+        add_or_get(tx, new_clip("a long name " + "x" * 100_000))
+    with store.read() as tx:
+        assert tx.execute(select(clips.c.id)).all() == []
+
+
+@pytest.mark.parametrize("url", ["sqlite://", "sqlite:///:memory:", "not a url"])
+def test_a_database_that_cannot_be_shared_is_refused(url: str) -> None:
+    with pytest.raises(ConfigurationError):
+        Database(url)
+
+
+@pytest.mark.parametrize(
+    "name", ["a?b", "a%20b", "%", "%3F", "a#b@c:d", "k?mode=ro", "é", "d\udcff"]
+)
+@pytest.mark.parametrize("opened", [Database.at, lambda path: Database(sqlite_url(path))])
+def test_a_path_may_hold_anything(
+    tmp_path: Path, name: str, opened: Callable[[Path], Database]
+) -> None:
+    path = tmp_path / name / name
+    database = opened(path)
+    with database.write() as tx:
+        tx.exec_driver_sql("CREATE TABLE t (x)")
+    database.close()
+    assert path.is_file()
+    assert [each.name for each in tmp_path.iterdir()] == [name]
+
+
+def test_the_directory_of_the_database_is_made(tmp_path: Path) -> None:
+    database = Database(f"sqlite:///{tmp_path}/a/b/k.sqlite3")
+    with database.read() as tx:
+        assert tx.exec_driver_sql("SELECT 1").scalar_one() == 1
+    database.close()
