@@ -14,7 +14,7 @@ from app.cli.drawing import Drawing
 from app.cli.evaluation import judging, wanted_of
 from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json, print_table, print_text
-from app.search.methods import Method
+from app.search.example.methods import Method
 from app.services import evaluate, pictures
 from app.services.evaluate import RetrievalEvaluation, VolumeEvaluation, retrieval_pictures
 

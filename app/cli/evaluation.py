@@ -10,7 +10,7 @@ import typer
 from app.cli.find import filter_of
 from app.cli.output import progress_bar
 from app.cli.settings import open_library
-from app.search.filters import parse_filter
+from app.search.index.filters import parse_filter
 from app.services.library import Library
 from app.store.clips.filter import ClipFilter
 

@@ -15,7 +15,7 @@ from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 from app.errors import BadField, ClipNotFound, Place
-from app.search.methods import Method
+from app.search.example.methods import Method
 
 if TYPE_CHECKING:
     from app.api.schemas.recognition import Answer

@@ -13,7 +13,7 @@ from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 from app.errors import BadField, Place
-from app.search.pose_places import Places
+from app.search.pose.pose_places import Places
 
 
 def search_pose(

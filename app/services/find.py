@@ -10,14 +10,14 @@ from functools import partial
 from typing import Any
 
 from app.models.metric.learned_metric import INPUTS
-from app.search import cursor as cursors
-from app.search.by_example import SCALES, rank_by_example
-from app.search.cursor import Position
-from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays
-from app.search.filters import as_filter
-from app.search.index import VECTOR
-from app.search.methods import LEARNED, Method
-from app.search.rank import Ranked, score
+from app.search.example.by_example import SCALES, rank_by_example
+from app.search.example.distances import EPSILON, FEATURES, RHO, QueryArrays
+from app.search.example.methods import LEARNED, Method
+from app.search.index.filters import as_filter
+from app.search.index.vector_index import VECTOR
+from app.search.ranking import cursor as cursors
+from app.search.ranking.cursor import Position
+from app.search.ranking.ranking import Ranked, score
 from app.services import fields
 from app.services.find_segments import find_in_segments
 from app.services.find_windows import Paging, find_in_windows

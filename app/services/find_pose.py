@@ -10,12 +10,12 @@ from typing import Any
 
 from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.numerics.arrays import FloatArray
-from app.search import cursor as cursors
-from app.search.by_pose import POSITIONS, PoseHit, PoseRanking
-from app.search.cursor import Position
-from app.search.filters import as_filter
-from app.search.pose_places import Places
-from app.search.rank import score
+from app.search.index.filters import as_filter
+from app.search.pose.by_pose import POSITIONS, PoseHit, PoseRanking
+from app.search.pose.pose_places import Places
+from app.search.ranking import cursor as cursors
+from app.search.ranking.cursor import Position
+from app.search.ranking.ranking import score
 from app.services import fields
 from app.services.find import DEFAULT_LIMIT, Filter
 from app.services.hits import Hit, Hits

@@ -7,13 +7,13 @@ import numpy as np
 from app.analysis.segments.segments import SEGMENT_SPANS, SEGMENT_VECTORS, segment_vectors
 from app.numerics.arrays import BoolArray, FloatArray
 from app.numerics.euclidean import distances
-from app.search import cursor as cursors
-from app.search.cursor import Position
-from app.search.distances import FEATURES
-from app.search.methods import Method
-from app.search.places import Candidates, places
-from app.search.span_index import Spans
-from app.search.window_proposals import Barred
+from app.search.example.distances import FEATURES
+from app.search.example.methods import Method
+from app.search.index.span_index import Spans
+from app.search.ranking import cursor as cursors
+from app.search.ranking.cursor import Position
+from app.search.windows.overlap_merging import Candidates, places
+from app.search.windows.proposals import Barred
 from app.services import fields
 from app.services.find_windows import Paging, own_place, place_hits, seconds_of
 from app.services.hits import Hits

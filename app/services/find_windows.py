@@ -8,15 +8,15 @@ from functools import partial
 
 from app.analysis.descriptors.windows import WindowScale
 from app.motion.frame.body_frame import ANALYSIS_RATE
-from app.search import cursor as cursors
-from app.search.cursor import Anchor, Position
-from app.search.distances import FEATURES
-from app.search.in_windows import WINDOW_SCORES, by_both, by_warping, by_windows
-from app.search.methods import Method
-from app.search.places import Candidates, Place, places
-from app.search.rank import score
-from app.search.span_index import Spans
-from app.search.window_proposals import Barred, Piece
+from app.search.example.distances import FEATURES
+from app.search.example.methods import Method
+from app.search.index.span_index import Spans
+from app.search.ranking import cursor as cursors
+from app.search.ranking.cursor import Anchor, Position
+from app.search.ranking.ranking import score
+from app.search.windows.in_windows import WINDOW_SCORES, by_both, by_warping, by_windows
+from app.search.windows.overlap_merging import Candidates, Place, places
+from app.search.windows.proposals import Barred, Piece
 from app.services import fields
 from app.services.hits import Hit, Hits
 from app.services.library import Library

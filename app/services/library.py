@@ -9,12 +9,12 @@ from typing import Self
 from app.analysis.descriptors.windows import WIDTH, WINDOW_SCALES
 from app.analysis.segments.segments import SEGMENT_SPANS, SEGMENT_VECTORS, SEGMENT_WIDTH
 from app.config import Settings
-from app.search.array_cache import ArrayCache
-from app.search.beside import RowsBeside
-from app.search.by_pose import POSES
-from app.search.index import VectorIndex
-from app.search.projected_index import ProjectedIndex
-from app.search.span_index import SpanIndex
+from app.search.index.array_cache import ArrayCache
+from app.search.index.model_rows import RowsBeside
+from app.search.index.projected_index import ProjectedIndex
+from app.search.index.span_index import SpanIndex
+from app.search.index.vector_index import VectorIndex
+from app.search.pose.by_pose import POSES
 from app.services.analysis_pool import AnalysisPool, Limits
 from app.services.model_shelf import METRICS, ModelKind, ModelShelf
 from app.store import identity

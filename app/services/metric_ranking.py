@@ -12,9 +12,9 @@ import numpy as np
 from app.errors import ModelNotFitted
 from app.models.metric.learned_metric import INPUTS, Described, LearnedMetric
 from app.numerics.arrays import FloatArray
-from app.search import usable_arrays
-from app.search.methods import Method
-from app.search.near import Near
+from app.search.example.methods import Method
+from app.search.index import usable_arrays
+from app.search.index.nearest_ranking import Near
 from app.services.known_clips import POINTS, read_known
 from app.services.library import Library
 from app.services.model_shelf import ModelKind

@@ -11,7 +11,7 @@ import numpy as np
 from app.errors import BadField, ClipNotFound, ClipNotReady, EmptyFile, Place, TooLarge
 from app.motion.canonical.motion import Motion
 from app.numerics.arrays import FloatArray
-from app.search import usable_arrays
+from app.search.index import usable_arrays
 from app.services import fields
 from app.services.analysis_pool import Order
 from app.services.library import Library

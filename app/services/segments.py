@@ -16,7 +16,7 @@ from app.analysis.segments.segments import (
 )
 from app.errors import NotFound
 from app.motion.frame.body_frame import ANALYSIS_RATE, body_track
-from app.search.distances import FEATURES
+from app.search.example.distances import FEATURES
 from app.services.keypose_frames import keypose_frames
 from app.services.library import Library
 from app.services.query import ready_clip

@@ -14,9 +14,9 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
-from app.search import usable_arrays
-from app.search.index import VECTOR
-from app.search.labels import LabelView
+from app.search.index import usable_arrays
+from app.search.index.labels import LabelView
+from app.search.index.vector_index import VECTOR
 from app.services import fields
 from app.services.library import Library
 from app.services.word_ranking import clip_points

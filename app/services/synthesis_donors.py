@@ -19,7 +19,7 @@ from app.motion.posing.posed_start import without_posed_start
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.animation import Animation
 from app.numerics.arrays import FloatArray
-from app.search import usable_arrays
+from app.search.index import usable_arrays
 from app.services.export import own_animation
 from app.services.library import Library
 from app.services.query import ready_clip

@@ -9,7 +9,7 @@ import numpy as np
 from app.analysis.descriptors.motion_shape import SHAPE_LENGTH
 from app.models.held_out.synthesis import held_out_synthesis
 from app.models.synthesis.model import Synthesis, fit_synthesis
-from app.search import usable_arrays
+from app.search.index import usable_arrays
 from app.services.training import TrainingSet
 from app.store.store import Store
 

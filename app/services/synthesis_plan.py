@@ -13,7 +13,7 @@ from app.models.synthesis.agreement import agree
 from app.models.synthesis.model import Synthesis, mean_of_takes
 from app.models.synthesis.prediction import Predicted, predict
 from app.numerics.arrays import FloatArray
-from app.search import usable_arrays
+from app.search.index import usable_arrays
 from app.services import fields
 from app.services.library import Library
 from app.services.query import ready_clips

@@ -13,7 +13,7 @@ from app.models.metric.learned_metric import INPUTS, Described
 from app.models.recognition.views import full_samples
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
-from app.search import usable_arrays
+from app.search.index import usable_arrays
 from app.services.synthesized import SYNTHESIZED, is_synthesized
 from app.store.clips import listing as clip_listing
 from app.store.clips import repository as clips

@@ -13,10 +13,10 @@ from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.words.library import LibraryWords
 from app.models.words.query import WordsAsked
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
-from app.search import usable_arrays
-from app.search.beside import Beside
-from app.search.labels import LabelView
-from app.search.rank import Ranking
+from app.search.index import usable_arrays
+from app.search.index.labels import LabelView
+from app.search.index.model_rows import Beside
+from app.search.ranking.ranking import Ranking
 from app.services.known_clips import OUTPUTS, POINTS, read_known
 from app.services.library import Library
 from app.services.model_shelf import Fitted

@@ -22,8 +22,8 @@ import pytest
 
 from app.models.held_out.ranking import average_precision
 from app.models.metric.learned_metric import Factor, fit_axes
-from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to
-from app.search.methods import Method
+from app.search.example.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to
+from app.search.example.methods import Method
 from tests.bench.described_clips import RealClips, described_clips
 from tests.bench.page import Section
 from tests.search.fused import fused_distances

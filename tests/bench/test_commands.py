@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from app.config import Settings
-from app.search.distances import EPSILON, FEATURES, RHO
+from app.search.example.distances import EPSILON, FEATURES, RHO
 from app.store.database import schema
 from app.store.store import Store
 from tests.bench.large_library import fill

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from app.numerics.alignment.dtw import dtw_distances
-from app.search.distances import FEATURES
+from app.search.example.distances import FEATURES
 from tests.bench.described_clips import described_clips
 from tests.bench.page import Section
 

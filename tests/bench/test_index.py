@@ -21,10 +21,10 @@ import psutil
 import pytest
 
 from app.numerics.nearest import Block
-from app.search.cursor import Position
-from app.search.index import MOTION_VECTORS, VectorIndex
-from app.search.near import Near
-from app.search.rows import Rows, RowsView
+from app.search.index.nearest_ranking import Near
+from app.search.index.rows import Rows, RowsView
+from app.search.index.vector_index import MOTION_VECTORS, VectorIndex
+from app.search.ranking.cursor import Position
 from app.store.clips.filter import ClipFilter
 from app.store.database import schema
 from app.store.store import Store
@@ -110,7 +110,8 @@ def test_pages_are_those_of_every_distance_sorted(rows: RowsView) -> None:
 def test_eight_searches_at_once(rows: RowsView) -> None:
     """Printed alone: what it gains depends on the machine's cores and on its load.
 
-    That no search waits for another is a test of the quick suite (tests/search/test_index.py).
+    That no search waits for another is a test of the quick suite
+    (tests/search/index/test_vector_index.py).
     """
     count = len(rows.labels.ids)
     query = rows.blocks[0].vectors[5]

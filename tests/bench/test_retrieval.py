@@ -47,8 +47,8 @@ from app.motion.canonical.canonical import canonicalise
 from app.motion.frame.body_frame import body_track
 from app.numerics import diffusion
 from app.numerics.alignment.dtw import dtw_distances
-from app.search import fusion
-from app.search.methods import LEARNED, Method
+from app.search.example import fusion
+from app.search.example.methods import LEARNED, Method
 from app.services import clips, find, imports, jobs
 from app.services.fields import MAX_LIMIT
 from app.services.find import MotionQuery

@@ -35,8 +35,8 @@ from app.analysis.descriptors.windows import (
 from app.config import Settings
 from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray, IntArray
-from app.search import in_windows
-from app.search.places import Candidates, places
+from app.search.windows import in_windows
+from app.search.windows.overlap_merging import Candidates, places
 from app.services import find
 from app.services.find import MotionQuery
 from app.services.hits import Hit

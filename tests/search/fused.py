@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.numerics.arrays import FloatArray
-from app.search.fusion import Surroundings
+from app.search.example.fusion import Surroundings
 
 
 def fused_distances(query: FloatArray, vectors: FloatArray, warped: FloatArray) -> FloatArray:

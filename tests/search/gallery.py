@@ -11,9 +11,9 @@ from app.analysis.analyse import describe_for_search
 from app.models.metric.learned_metric import INPUTS, Described, Factor, MetricAxes, fit_axes
 from app.motion.canonical.motion import Motion
 from app.numerics.arrays import FloatArray
-from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to
-from app.search.index import VECTOR
-from app.search.methods import Method
+from app.search.example.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to
+from app.search.example.methods import Method
+from app.search.index.vector_index import VECTOR
 from tests.search.fused import fused_distances
 
 Arrays = dict[str, FloatArray]

@@ -19,7 +19,7 @@ from app.motion.canonical.canonical import canonicalise
 from app.motion.canonical.motion import Motion
 from app.motion.skeleton.recording import Recording
 from app.motion.skeleton.resampling import resample
-from app.search.methods import Method
+from app.search.example.methods import Method
 from tests.bodies import motion_of, turned_about_y, walking, waving
 from tests.real_clips import manifest, real_clips
 from tests.search.gallery import Arrays, Gallery, gallery

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from app.search.cursor import Position, decode, digest, encode
-from app.search.rank import Page, Ranked
+from app.search.ranking.cursor import Position, decode, digest, encode
+from app.search.ranking.ranking import Page, Ranked
 
 QUESTION = digest("walking")
 

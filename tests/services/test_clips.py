@@ -9,7 +9,7 @@ import pytest
 
 from app.demo import DemoClip
 from app.errors import BadField, ClipNotFound, EmptyFile, NotFound, TooLarge, UnknownFormat
-from app.search.methods import Method
+from app.search.example.methods import Method
 from app.services import clips, find, jobs
 from app.services.clips import NewClip
 from app.services.find import MotionQuery

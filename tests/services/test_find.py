@@ -9,7 +9,7 @@ import pytest
 
 from app.demo import DemoClip
 from app.errors import BadField, ClipNotFound, ClipNotReady, EmptyFile, ModelNotFitted, Unreadable
-from app.search.methods import Method
+from app.search.example.methods import Method
 from app.services import clips, find
 from app.services.clips import NewClip
 from app.services.find import MotionQuery, WordQuery

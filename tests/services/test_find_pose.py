@@ -13,7 +13,7 @@ from app.analysis.descriptors.pose_cover import pose_vectors
 from app.demo import DemoClip
 from app.errors import BadField, ClipNotFound, ClipNotReady
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
-from app.search.by_pose import pose_distances
+from app.search.pose.by_pose import pose_distances
 from app.services import clips
 from app.services.clips import NewClip
 from app.services.find_pose import PoseQuery, find_pose

@@ -14,7 +14,7 @@ import pytest
 from app.demo import DemoClip
 from app.errors import BadField
 from app.numerics.arrays import FloatArray
-from app.search.places import MERGED
+from app.search.windows.overlap_merging import MERGED
 from app.services import clips, find
 from app.services.clips import NewClip
 from app.services.find import MotionQuery

@@ -11,7 +11,7 @@ import pytest
 
 from app.demo import DemoClip, demo_clips
 from app.errors import BadField, ModelNotFitted
-from app.search.methods import LEARNED, Method
+from app.search.example.methods import LEARNED, Method
 from app.services import clips, find, models
 from app.services.find import MotionQuery
 from app.services.fit import fit_library

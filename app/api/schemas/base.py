@@ -7,7 +7,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 from app.motion.roles.joint_roles import JointRole
-from app.search.filters import LONGEST_LABEL, MOST_LABELS
+from app.search.index.filters import LONGEST_LABEL, MOST_LABELS
 from app.services import fields
 from app.services.frame_rates import LEAST_FPS, MOST_FPS
 from app.store.database.paging import MAX_CURSOR_LENGTH

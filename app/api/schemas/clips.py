@@ -24,7 +24,7 @@ from app.api.schemas.filters import Filter
 from app.api.schemas.jobs import Job
 from app.api.schemas.problem import Problem
 from app.motion.skeleton.recording import FRAME_RATES
-from app.search.filters import parse_filter
+from app.search.index.filters import parse_filter
 from app.services.fields import MAX_KEYPOSES, MAX_OFFSET, TEMPI
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord, ClipState, Reanalysis

@@ -10,7 +10,7 @@ from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, Seconds
 from app.api.schemas.filters import Filter
 from app.api.schemas.search import ClipId, Hit, MotionHits
 from app.motion.roles.joint_roles import SUN_ROLES
-from app.search.pose_places import Places
+from app.search.pose.pose_places import Places
 from app.services import hits as services
 
 _POINT = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}

@@ -9,7 +9,7 @@ from pydantic import ConfigDict, Field, Json
 from app.api.schemas.base import Cursor, Id, Incoming, Limit, Outgoing, Roles, Seconds
 from app.api.schemas.clips import Clip, FrameRate, Stack
 from app.api.schemas.filters import Filter
-from app.search.methods import Method
+from app.search.example.methods import Method
 from app.services import hits as services
 
 

@@ -14,7 +14,7 @@ from app.errors import NotEnoughLabels
 from app.models.held_out.danced_tasks import DancedTasks, arrange
 from app.models.held_out.perera_experiment import Row, perera_tables
 from app.models.recognition.task_model import Reading
-from app.search.distances import FEATURES
+from app.search.example.distances import FEATURES
 from app.services.library import Library
 from app.services.training import ready_only
 from app.store.clips import arrays

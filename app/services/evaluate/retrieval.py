@@ -11,7 +11,7 @@ import numpy as np
 
 from app.models.held_out.class_rankings import JudgedRanking, confusion_matrix, true_positive_rates
 from app.numerics.arrays import FloatArray
-from app.search.methods import Method
+from app.search.example.methods import Method
 from app.services import fields
 from app.services.evaluate.labelled import LabelledClips, read_labelled
 from app.services.evaluate.ways import Volumes, Way, by_method

@@ -11,7 +11,7 @@ from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1
-from app.search.methods import Method
+from app.search.example.methods import Method
 from app.services.evaluate.retrieval import RetrievalEvaluation
 from app.services.evaluate.volumes import VolumeEvaluation
 from app.services.pictures import Curve, Format, Panel, confusions_picture, curves_picture

@@ -9,7 +9,7 @@ import numpy as np
 
 from app.analysis.descriptors.motion_volume import compression_ratio
 from app.numerics.tensors.rank1 import Rank1
-from app.search.distances import EPSILON, RHO
+from app.search.example.distances import EPSILON, RHO
 from app.services.evaluate.labelled import LabelledClips, read_labelled
 from app.services.evaluate.retrieval import HIDDEN_CLASSES
 from app.services.evaluate.ways import Volumes

@@ -11,10 +11,10 @@ import numpy as np
 from app.analysis.descriptors.motion_volume import cross_correlations, decompose, warping_distances
 from app.motion.frame.body_frame import body_track
 from app.numerics.tensors.rank1 import Rank1
-from app.search.by_example import rank_by_example
-from app.search.distances import EPSILON, FEATURES, RHO, QueryArrays
-from app.search.index import VECTOR
-from app.search.methods import Method
+from app.search.example.by_example import rank_by_example
+from app.search.example.distances import EPSILON, FEATURES, RHO, QueryArrays
+from app.search.example.methods import Method
+from app.search.index.vector_index import VECTOR
 from app.services.library import Library
 from app.services.stored_motion import load_motion
 from app.store.clips import arrays

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.errors import BadField, NotEnoughLabels
-from app.search.methods import Method
+from app.search.example.methods import Method
 from app.services import evaluate, find
 from app.services.find import MotionQuery
 from app.services.library import Library

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.search.methods import Method
+from app.search.example.methods import Method
 from app.services import evaluate
 from app.services.evaluate import RetrievalEvaluation, VolumeEvaluation, retrieval_pictures
 from app.services.library import Library

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.search.methods import Method
+from app.search.example.methods import Method
 from app.services.evaluate.ways import Volumes, by_method
 from app.services.library import Library
 from app.store.clips.record import ClipRecord

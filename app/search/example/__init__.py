@@ -1,0 +1,1 @@
+"""Search by example: distances, their fusion, re-ranking."""

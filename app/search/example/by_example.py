@@ -1,0 +1,69 @@
+"""Rank the library against a query motion, by any method (DESIGN 7)."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray, IntArray
+from app.search.example.distances import Loader, QueryArrays, distances_to
+from app.search.example.fusion import SHORTLIST, Surroundings
+from app.search.example.methods import Method
+from app.search.example.reranking import ReRanked
+from app.search.index.nearest_ranking import Near
+from app.search.index.vector_index import VectorIndex
+from app.search.ranking.cursor import Anchor
+from app.search.ranking.lower_bounds import Bounds
+from app.search.ranking.ranking import IdArray, Page, Ranked, Ranking
+from app.store.clips.filter import ClipFilter
+
+SCALES = {
+    Method.FUSED: 5.0,
+    Method.VECTOR: 1.5,
+    Method.DTW: 1.0,
+    Method.MSV_DTW: 1.0,
+    Method.MSV_XCORR: 0.1,
+}
+"""Distance at which the score is one half: about that of two clips of unlike tasks."""
+
+
+def rank_by_example(
+    index: VectorIndex,
+    query: QueryArrays,
+    method: Method,
+    wanted: ClipFilter,
+    exclude: frozenset[str],
+    load: Loader,
+    anchor: Anchor | None = None,
+) -> Ranked:
+    """Every clip that passes the filter and is not excluded, from the nearest on.
+
+    anchor: of the cursor that goes on, if one does.
+    """
+    if method in (Method.FUSED, Method.VECTOR):
+        near = index.nearest(query.vector, wanted, exclude)
+        if method is Method.VECTOR:
+            return near
+        return ReRanked(near, partial(_fused, query, near, load), SHORTLIST, anchor)
+    ids = index.candidates(wanted, exclude).ids
+    return _known(ids, distances_to(query, list(ids), method, load))
+
+
+def _fused(query: QueryArrays, near: Near, load: Loader, shortlist: Page) -> Bounds:
+    """The shortlist by vectors, the graph between them, and warping, which is the dearest."""
+    ids = shortlist.ids
+    known = Surroundings.of(query.vector, near.vectors(ids))
+
+    def measure(rows: IntArray) -> FloatArray:
+        warped = distances_to(query, ids[rows].tolist(), Method.DTW, load)
+        return known.distances(rows, warped)
+
+    every = np.arange(len(ids))
+    return Bounds(ids, known.distances(every, np.zeros(len(ids))), measure)
+
+
+def _known(ids: IdArray, distances: FloatArray) -> Ranking:
+    """The ranking without clips that were deleted while they were compared."""
+    there = np.isfinite(distances)
+    return Ranking(ids[there], distances[there])

@@ -1,0 +1,86 @@
+"""How far clips are from a query, by each method that looks at more than the motion vector.
+
+Arrays of clips are loaded and compared a batch at a time, so that memory stays bounded
+however many clips are compared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.analysis.descriptors.motion_volume import (
+    LARGEST_CROSS_CORRELATION,
+    cross_correlations,
+    warping_distances,
+)
+from app.deadline import check
+from app.numerics.alignment.dtw import dtw_distances
+from app.numerics.arrays import FloatArray
+from app.search.example.methods import Method
+
+FEATURES, RHO, EPSILON = "features_10hz", "msv_rho", "msv_epsilon"
+BATCH = 256
+"""Clips compared at a time."""
+
+Loader = Callable[[Sequence[str], str], Mapping[str, FloatArray]]
+"""Loads one array of many clips: (clip ids, array name) -> arrays by clip id."""
+
+
+@dataclass(frozen=True, slots=True)
+class QueryArrays:
+    """What a query is compared by.
+
+    vector: (128,); features: (m, 82) at 10 Hz; rho: (13,) and epsilon: (n,) of its volume.
+    """
+
+    vector: FloatArray
+    features: FloatArray
+    rho: FloatArray
+    epsilon: FloatArray
+
+
+def distances_to(
+    query: QueryArrays, clip_ids: Sequence[str], method: Method, load: Loader
+) -> FloatArray:
+    """(n,) distances of clips to `query` by DTW, MSV_DTW or MSV_XCORR.
+
+    A clip whose arrays are gone (it was deleted meanwhile) is infinitely far.
+    """
+    names, compare = _COMPARISONS[method]
+    found = np.full(len(clip_ids), np.inf)
+    for start in range(0, len(clip_ids), BATCH):
+        check()
+        loaded = [load(clip_ids[start : start + BATCH], name) for name in names]
+        there = [
+            row
+            for row, clip_id in enumerate(clip_ids[start : start + BATCH], start)
+            if all(clip_id in arrays for arrays in loaded)
+        ]
+        columns = [[arrays[clip_ids[row]] for row in there] for arrays in loaded]
+        if there:
+            found[there] = compare(query, columns)
+    return found
+
+
+def _by_features(query: QueryArrays, columns: list[list[FloatArray]]) -> FloatArray:
+    return dtw_distances(query.features, columns[0])
+
+
+def _by_volume_dtw(query: QueryArrays, columns: list[list[FloatArray]]) -> FloatArray:
+    return warping_distances(query.rho, query.epsilon, np.stack(columns[0]), columns[1])
+
+
+def _by_volume_correlation(query: QueryArrays, columns: list[list[FloatArray]]) -> FloatArray:
+    likeness = cross_correlations(query.rho, query.epsilon, np.stack(columns[0]), columns[1])
+    return np.asarray(np.maximum(LARGEST_CROSS_CORRELATION - likeness, 0.0))
+
+
+_Comparison = Callable[[QueryArrays, list[list[FloatArray]]], FloatArray]
+_COMPARISONS: dict[Method, tuple[tuple[str, ...], _Comparison]] = {
+    Method.DTW: ((FEATURES,), _by_features),
+    Method.MSV_DTW: ((RHO, EPSILON), _by_volume_dtw),
+    Method.MSV_XCORR: ((RHO, EPSILON), _by_volume_correlation),
+}

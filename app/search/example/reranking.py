@@ -1,0 +1,129 @@
+"""A ranking whose first clips are ranked again, by what is too dear to compare all with.
+
+The rest follows in the order of the first stage. A cursor remembers where the shortlist
+ended (`Anchor`), so that it is the same on the next page although clips came and went.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray
+from app.numerics.nearest import DECIMALS
+from app.search.index.nearest_ranking import Near
+from app.search.ranking.cursor import Anchor, Position
+from app.search.ranking.lower_bounds import Bounded, Bounds
+from app.search.ranking.ranking import IdArray, Page
+
+STEP = 10.0**-DECIMALS
+"""Between the last of the shortlist and what follows, so that a distance tells them apart."""
+
+Rerank = Callable[[Page], Bounds]
+"""How a shortlist is ranked anew."""
+
+
+class ReRanked:
+    """A ranking (see `rank.Ranked`): a shortlist in its final order, the rest behind it.
+
+    The rest keeps the order and the spacing of the first stage, shifted to begin where the
+    shortlist ends. Where that is, is known once all of the shortlist is measured; no page goes
+    beyond before.
+    """
+
+    def __init__(
+        self, first: Near, rerank: Rerank, size: int, anchor: Anchor | None = None
+    ) -> None:
+        """first: all clips; size: of the shortlist; anchor: of the cursor that goes on."""
+        self._first = first
+        self._rerank = rerank
+        self._size = size
+        self._given = anchor
+        self._seen = 0.0
+
+    def __len__(self) -> int:
+        return len(self._first)
+
+    @property
+    def anchor(self) -> Anchor | None:
+        """Where the shortlist ends, as far as that is known; None where there is no clip."""
+        given, shortlist = self._given, self._shortlist
+        if given is not None and given.end is not None:
+            return given
+        if given is None and not len(shortlist.ids):
+            return None
+        end = self._head.end
+        if end is not None:
+            end = max(end, self._seen)  # what was told must not come after what follows
+        if given is not None:
+            return Anchor(given.distance, given.clip_id, end)
+        return Anchor(float(shortlist.distances[-1]), str(shortlist.ids[-1]), end)
+
+    @property
+    def ids(self) -> IdArray:
+        """(n,) all clip ids in order."""
+        return self._whole.ids
+
+    @property
+    def distances(self) -> FloatArray:
+        """(n,) float64, never falling."""
+        return self._whole.distances
+
+    def page(self, after: Position | None, limit: int) -> Page:
+        """The first `limit` clips behind a position."""
+        given = self._given
+        if given is None and not len(self._shortlist.ids):
+            return self._first.page(None, limit)
+        if after is not None and given is not None and given.end is not None:
+            shift = _shift(given, given.end)
+            if after.distance > given.end:
+                first_stage = np.round(after.distance - shift, DECIMALS)
+                return self._rest(shift, Position(0, float(first_stage), after.clip_id), limit)
+        self._seen = 0.0 if after is None else after.distance
+        page = self._head.page(after, limit)
+        if page.more:
+            return page
+        return self._going_on(page, limit)
+
+    def _going_on(self, page: Page, limit: int) -> Page:
+        """The last of the shortlist, and as many of the rest as there is room for."""
+        anchor = self.anchor
+        if anchor is None or anchor.end is None:  # never: all of the shortlist was measured
+            return page
+        behind = Position(0, anchor.distance, anchor.clip_id)
+        rest = self._rest(_shift(anchor, anchor.end), behind, limit - len(page.ids))
+        return Page(
+            np.concatenate([page.ids, rest.ids]),
+            np.concatenate([page.distances, rest.distances]),
+            rest.more,
+        )
+
+    def _rest(self, shift: float, behind: Position, limit: int) -> Page:
+        """What follows a position of the first stage, with final distances."""
+        page = self._first.page(behind, limit)
+        return Page(page.ids, np.round(page.distances + shift, DECIMALS), page.more)
+
+    @cached_property
+    def _whole(self) -> Page:
+        return self.page(None, len(self))
+
+    @cached_property
+    def _shortlist(self) -> Page:
+        if self._given is None:
+            return self._first.page(None, self._size)
+        return self._first.until(self._given.distance, self._given.clip_id)
+
+    @cached_property
+    def _head(self) -> Bounded:
+        clips, given = self._rerank(self._shortlist), self._given
+        if given is None or given.end is None:
+            return Bounded(clips)
+        # What came since the first page must not overtake what follows the shortlist.
+        return Bounded(clips, most=given.end)
+
+
+def _shift(anchor: Anchor, end: float) -> float:
+    """From a distance of the first stage to the final one, behind a shortlist that ends there."""
+    return end + STEP - anchor.distance

@@ -1,0 +1,257 @@
+"""The labels of the clips in an index, as columns of small integers that filters compare.
+
+Columns only ever grow. What a search reads is a `LabelView`, a length of them that nothing
+that comes later changes; so searches need no lock.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.search.ranking.ranking import IdArray
+from app.store.clips.filter import ClipFilter
+from app.store.clips.index_feed import IndexedClip
+
+NAMED = ("person", "task", "license", "source")
+_FIRST_CAPACITY = 1024
+
+
+class Column:
+    """An array (n, *tail) that grows at its end; what was read of it stays as it is."""
+
+    def __init__(self, dtype: DTypeLike, tail: tuple[int, ...] = ()) -> None:
+        self._data = np.empty((_FIRST_CAPACITY, *tail), dtype=dtype)
+        self._count = 0
+
+    def __len__(self) -> int:
+        return self._count
+
+    def extend(self, values: Sequence[Any] | NDArray[Any]) -> None:
+        """Add entries (m, *tail)."""
+        count = self._count + len(values)
+        if count > len(self._data):
+            capacity = max(count, 2 * len(self._data))
+            grown = np.empty((capacity, *self._data.shape[1:]), self._data.dtype)
+            grown[: self._count] = self.view()
+            self._data = grown
+        self._data[self._count : count] = values
+        self._count = count
+
+    def view(self) -> NDArray[Any]:
+        """All entries so far, (n, *tail)."""
+        return self._data[: self._count]
+
+    def apart(self) -> Column:
+        """A copy, in which entries may be changed under no one's view."""
+        copy = Column(self._data.dtype, self._data.shape[1:])
+        copy.extend(self.view())
+        return copy
+
+
+class Coded:
+    """A column of labels, each a small integer; codes count up as new labels come."""
+
+    def __init__(self) -> None:
+        self.column = Column(np.int32)
+        self._labels: list[str | None] = []
+        self._code_of: dict[str | None, int] = {}
+
+    def extend(self, labels: Iterable[str | None]) -> None:
+        """Add labels."""
+        self.column.extend([self._code(label) for label in labels])
+
+    def at(self, number: int) -> str | None:
+        """The label of an entry."""
+        return self._labels[int(self.column.view()[number])]
+
+    def codes(self, labels: Iterable[str]) -> list[int]:
+        """The codes of those labels that some clip carried."""
+        return [self._code_of[label] for label in labels if label in self._code_of]
+
+    def _code(self, label: str | None) -> int:
+        code = self._code_of.get(label)
+        if code is None:
+            code = len(self._labels)
+            self._labels.append(label)
+            self._code_of[label] = code
+        return code
+
+
+class CodedWords:
+    """A column of sets of words, each a small integer, and the sets that hold each word.
+
+    Clips share few sets, so a filter by words asks each set once and then each clip's code.
+    """
+
+    def __init__(self) -> None:
+        self.column = Column(np.int32)
+        self._sets: list[frozenset[str]] = []
+        self._code_of: dict[frozenset[str], int] = {}
+        self._with_word: dict[str, list[int]] = {}
+
+    def extend(self, sets: Iterable[frozenset[str]]) -> None:
+        """Add sets of words."""
+        self.column.extend([self._code(words) for words in sets])
+
+    def codes(self, words: Iterable[str]) -> list[int]:
+        """The codes of the sets that hold any of `words`."""
+        return [code for word in set(words) for code in tuple(self._with_word.get(word, ()))]
+
+    @property
+    def sets(self) -> tuple[frozenset[str], ...]:
+        """All sets that some clip carried, by code."""
+        return tuple(self._sets)
+
+    def at(self, number: int) -> frozenset[str]:
+        """The set of an entry."""
+        return self._sets[int(self.column.view()[number])]
+
+    def _code(self, words: frozenset[str]) -> int:
+        code = self._code_of.get(words)
+        if code is None:
+            code = len(self._sets)
+            self._sets.append(words)
+            self._code_of[words] = code
+            for word in words:
+                self._with_word.setdefault(word, []).append(code)
+        return code
+
+
+@dataclass(frozen=True, slots=True)
+class LabelView:
+    """The labels of n clips at one moment, by the clips' numbers 0..n-1.
+
+    ids: (n,) objects; alive: (n,) whether it is still there; durations: (n,) seconds;
+    coded: the columns of codes (n,) by label; `labels` knows the codes.
+    """
+
+    ids: IdArray
+    alive: BoolArray
+    durations: FloatArray
+    coded: dict[str, IntArray]
+    labels: Labels
+
+    def passing(self, wanted: ClipFilter, exclude: Iterable[str] = ()) -> BoolArray:
+        """(n,) whether each clip passes a filter and is not excluded.
+
+        The state and the name are not looked at: every clip here is ready.
+        """
+        mask = self.alive.copy()
+        if wanted.min_duration is not None:
+            mask &= self.durations >= wanted.min_duration
+        if wanted.max_duration is not None:
+            mask &= self.durations <= wanted.max_duration
+        for name, codes in self.labels.codes(wanted).items():
+            mask &= _any_of(self.coded[name], codes)
+        for name, codes in self.labels.codes(wanted, refused=True).items():
+            mask &= ~_any_of(self.coded[name], codes)
+        for clip_id in exclude:
+            mask[self._numbers_of(clip_id)] = False
+        return mask
+
+    def word_sets(self) -> tuple[IntArray, tuple[frozenset[str], ...]]:
+        """(n,) which set of words each clip carries, and the sets."""
+        return self.coded["word"], self.labels.words.sets
+
+    def numbers(self, ids: IdArray) -> IntArray:
+        """(m,) numbers of clips (m,) that are there."""
+        return np.array([self._numbers_of(clip_id)[-1] for clip_id in ids], dtype=np.int64)
+
+    def _numbers_of(self, clip_id: str) -> list[int]:
+        number = self.labels.number_of.get(clip_id)
+        if number is not None and number < len(self.ids):
+            return [number]
+        # It changed or went since this view was taken, or was never here.
+        return [int(n) for n in np.flatnonzero(self.ids == clip_id) if self.alive[n]]
+
+
+class Labels:
+    """The labels of clips, to which clips are added and from which they are taken.
+
+    A clip that changes is taken away and added anew: numbers are never used again.
+    """
+
+    def __init__(self) -> None:
+        self.number_of: dict[str, int] = {}
+        self.words = CodedWords()
+        self._named = {name: Coded() for name in NAMED}
+        self._ids = Column(object)
+        self._durations = Column(np.float64)
+        self._alive = Column(np.bool_)
+
+    def __len__(self) -> int:
+        """Clips that are there."""
+        return len(self.number_of)
+
+    @property
+    def used(self) -> int:
+        """Numbers that were given out."""
+        return len(self._ids)
+
+    def add(self, clips: Sequence[IndexedClip]) -> None:
+        """Give the next numbers to clips that are not there."""
+        first = self.used
+        self._ids.extend([clip.id for clip in clips])
+        self._durations.extend([clip.duration for clip in clips])
+        self._alive.extend(np.ones(len(clips), dtype=bool))
+        self.words.extend(clip.words for clip in clips)
+        for name, coded in self._named.items():
+            coded.extend(getattr(clip, name) for clip in clips)
+        self.number_of.update((clip.id, first + i) for i, clip in enumerate(clips))
+
+    def remove(self, clip_ids: Iterable[str]) -> None:
+        """Take away those of the clips that are there."""
+        numbers = [self.number_of.pop(i) for i in clip_ids if i in self.number_of]
+        if numbers:
+            self._alive = self._alive.apart()  # views that were taken keep theirs
+            self._alive.view()[numbers] = False
+
+    def codes(self, wanted: ClipFilter, *, refused: bool = False) -> dict[str, list[int]]:
+        """For each label that a filter names, the codes that pass, or those that are refused."""
+        before = "not_" if refused else ""
+        found = {
+            name: coded.codes(values)
+            for name, coded in self._named.items()
+            if (values := getattr(wanted, before + name))
+        }
+        words = getattr(wanted, before + "word")
+        return found | ({"word": self.words.codes(words)} if words else {})
+
+    def clip_at(self, number: int, array: NDArray[Any] | None) -> IndexedClip:
+        """A clip as it was added, with an array."""
+        named = {name: coded.at(number) for name, coded in self._named.items()}
+        return IndexedClip(
+            id=self._ids.view()[number],
+            is_ready=True,
+            duration=float(self._durations.view()[number]),
+            words=self.words.at(number),
+            array=array,
+            **named,
+        )
+
+    def view(self) -> LabelView:
+        """The labels at this moment."""
+        coded = {name: coded.column.view() for name, coded in self._named.items()}
+        return LabelView(
+            ids=self._ids.view(),
+            alive=self._alive.view(),
+            durations=self._durations.view(),
+            coded=coded | {"word": self.words.column.view()},
+            labels=self,
+        )
+
+
+def _any_of(column: IntArray, codes: Sequence[int]) -> BoolArray:
+    """(n,) whether each code of `column` (n,) is one of `codes`."""
+    if len(codes) < 2:
+        return np.asarray(column == codes[0] if codes else np.zeros(len(column), dtype=bool))
+    table = np.zeros(int(column.max(initial=0)) + 1, dtype=bool)
+    chosen = np.array(codes)
+    table[chosen[chosen < len(table)]] = True
+    return np.asarray(table[column])

@@ -1,0 +1,76 @@
+"""Clips in order of their vectors' distance to a query, measured as far as one looks."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from functools import cached_property
+
+import numpy as np
+
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.numerics.nearest import distances_to, gather, nearest
+from app.search.index.rows import RowsView
+from app.search.ranking.cursor import Position
+from app.search.ranking.ranking import IdArray, Page, Ranking
+
+FIRST_LOOK = 256
+"""Clips taken at first where it is not known how many are meant."""
+
+
+class Near:
+    """A ranking (see `rank.Ranked`) over the rows of an index, one row a clip.
+
+    A page costs one pass over the vectors, however deep it lies.
+    """
+
+    anchor = None
+
+    def __init__(self, version: int, rows: RowsView, passing: BoolArray, query: FloatArray) -> None:
+        """passing: (n,) the clips that are meant; query: (width,); version: the library's."""
+        self.version = version
+        self._rows = rows
+        self._passing = passing
+        self._query = query
+        self._masks = rows.masks(passing)
+
+    def __len__(self) -> int:
+        return int(np.count_nonzero(self._passing))
+
+    @property
+    def ids(self) -> IdArray:
+        """(n,) all clip ids in order."""
+        return self._whole.ids
+
+    @property
+    def distances(self) -> FloatArray:
+        """(n,) float64, never falling."""
+        return self._whole.distances
+
+    def page(self, after: Position | None, limit: int) -> Page:
+        """The first `limit` clips behind a position."""
+        least = None if after is None else after.distance
+        found = nearest(self._rows.blocks, self._masks, self._query, limit + 1, least)
+        return self._ranking(*found).page(after, limit)
+
+    def until(self, distance: float, clip_id: str) -> Page:
+        """All clips that do not stand behind (distance, clip id)."""
+        limit, key = FIRST_LOOK, (distance, clip_id)
+        while True:
+            page = self.page(None, limit)
+            keys = list(zip(page.distances.tolist(), page.ids, strict=True))
+            stop = bisect_right(keys, key)
+            if stop < len(keys) or not page.more:
+                return Page(page.ids[:stop], page.distances[:stop], stop < len(keys))
+            limit *= 4
+
+    def vectors(self, ids: IdArray) -> FloatArray:
+        """(m, width) float32 vectors of clips (m,) that a page named."""
+        return gather(self._rows.blocks, self._rows.labels.numbers(ids))
+
+    @cached_property
+    def _whole(self) -> Ranking:
+        rows = np.flatnonzero(self._passing)
+        return self._ranking(rows, distances_to(self._rows.blocks, rows, self._query))
+
+    def _ranking(self, rows: IntArray, distances: FloatArray) -> Ranking:
+        return Ranking(self._rows.labels.ids[rows], distances)

@@ -1,0 +1,55 @@
+"""Exact search among the coordinates that a fitted model gives to the clips of an index."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import replace
+
+import numpy as np
+
+from app.numerics.arrays import FloatArray
+from app.numerics.nearest import Block, squared_lengths
+from app.search.index.labels import Column
+from app.search.index.model_rows import Beside, Compute, Known, RowsBeside, nothing_known
+from app.search.index.nearest_ranking import Near
+from app.search.index.vector_index import VectorIndex
+from app.store.clips.filter import ClipFilter
+
+
+class ProjectedIndex:
+    """Coordinates of an index's clips, by one version of one model at a time."""
+
+    def __init__(self, index: VectorIndex) -> None:
+        self._index = index
+        self._coordinates = RowsBeside()
+        self._squares = Column(np.float32)
+        self._series: object = None
+        self._lock = threading.Lock()
+
+    def nearest(
+        self,
+        model: str,
+        project: Compute,
+        query: FloatArray,
+        wanted: ClipFilter,
+        exclude: frozenset[str] = frozenset(),
+        known: Known = nothing_known,
+    ) -> Near:
+        """The clips that pass a filter, ranked by how far their coordinates are from `query` (k,).
+
+        model: id of the model that `project`, `query` and what is `known` are of. The index has
+        caught up.
+        """
+        version, rows = self._index.state
+        beside = self._coordinates.of(rows.labels, model, len(query), project, known)
+        rows = replace(rows, blocks=(self._block(beside),))
+        return Near(version, rows, rows.labels.passing(wanted, exclude), query)
+
+    def _block(self, beside: Beside) -> Block:
+        """Coordinates of all rows; 0 for those of clips that are gone."""
+        count = len(beside.values)
+        with self._lock:
+            if self._series is not beside.series:
+                self._series, self._squares = beside.series, Column(np.float32)
+            self._squares.extend(squared_lengths(beside.values[len(self._squares) :]))
+            return Block(beside.values, self._squares.view()[:count])

@@ -1,0 +1,124 @@
+"""The index: every ready clip's vectors in memory, and exact search over them.
+
+It follows the library version: `catch_up` reads one number and loads what changed since.
+Only that takes a lock, and only where something did; searches read a `RowsView` of their
+own, side by side, whatever is loaded meanwhile.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from app.numerics.arrays import FloatArray
+from app.search.index.nearest_ranking import Near
+from app.search.index.rows import Layout, Rows, RowsView
+from app.search.ranking.ranking import IdArray
+from app.store.clips import index_feed
+from app.store.clips import versions as library
+from app.store.clips.filter import ClipFilter
+from app.store.database.engine import Tx
+from app.store.store import Store
+
+VECTOR = "motion_vector"
+WIDTH = 128
+MOTION_VECTORS = Layout(VECTOR, WIDTH)
+
+
+@dataclass(frozen=True, slots=True)
+class Candidates:
+    """Clips that passed a filter, in the index's order: ids (n,), durations (n,) in seconds,
+    of a library version."""
+
+    version: int
+    ids: IdArray
+    seconds: FloatArray
+
+
+class VectorIndex:
+    """Vectors float32 of the ready clips, with the labels that filters need."""
+
+    def __init__(
+        self,
+        on_change: Callable[[tuple[str, ...]], None] | None = None,
+        layout: Layout = MOTION_VECTORS,
+    ) -> None:
+        """`on_change` is told the ids of clips that changed or went; layout: what is kept."""
+        self._on_change = on_change
+        self._layout = layout
+        self._rows = Rows(layout)
+        self._state = 0, self._rows.view()
+        self._loaded = False
+        self._lock = threading.Lock()
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    @property
+    def is_loaded(self) -> bool:
+        """Whether it has caught up with the library once."""
+        return self._loaded
+
+    @property
+    def version(self) -> int:
+        """The library version that it stands at."""
+        return self._state[0]
+
+    @property
+    def state(self) -> tuple[int, RowsView]:
+        """The library version and the rows at that version."""
+        return self._state
+
+    def catch_up(self, store: Store) -> int:
+        """Bring the index to the library's version and return that.
+
+        One cheap query when nothing is new.
+        """
+        with store.read() as tx:
+            if self._loaded and library.version(tx) == self.version:
+                return self.version
+        with self._lock, store.read() as tx:
+            now = library.version(tx)
+            if not self._loaded or now != self.version:
+                self._follow(tx, now)
+            return now
+
+    def candidates(self, wanted: ClipFilter, exclude: frozenset[str] = frozenset()) -> Candidates:
+        """The clips that pass a filter, without distances."""
+        version, rows = self._state
+        labels = rows.labels
+        passing = labels.passing(wanted, exclude)
+        return Candidates(version, labels.ids[passing], labels.durations[passing])
+
+    def nearest(
+        self, query: FloatArray, wanted: ClipFilter, exclude: frozenset[str] = frozenset()
+    ) -> Near:
+        """The clips that pass a filter, ranked by Euclidean distance to `query` (width,)."""
+        version, rows = self._state
+        return Near(version, rows, rows.labels.passing(wanted, exclude), query)
+
+    def _follow(self, tx: Tx, now: int) -> None:
+        """Take what changed up to version `now`; what searches see changes at once, at the end."""
+        since = self.version
+        if self._loaded:
+            self._forget(library.buried_since(tx, since))
+        else:
+            self._rows = Rows(self._layout)  # a load that failed half-way may have left some
+        for batch in index_feed.changed_since(tx, since, self._layout.array):
+            ready = [clip for clip in batch if clip.is_ready]
+            self._forget(tuple(clip.id for clip in batch if not clip.is_ready))
+            self._rows.put(ready)
+            self._tell(tuple(clip.id for clip in ready))
+        if self._rows.is_wasteful:
+            self._rows = self._rows.living()
+        self._state = now, self._rows.view()
+        self._loaded = True
+
+    def _forget(self, clip_ids: tuple[str, ...]) -> None:
+        self._rows.remove(clip_ids)
+        self._tell(clip_ids)
+
+    def _tell(self, clip_ids: tuple[str, ...]) -> None:
+        if clip_ids and self._on_change:
+            self._on_change(clip_ids)

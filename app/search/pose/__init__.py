@@ -1,0 +1,1 @@
+"""Search by one pose."""

@@ -1,0 +1,1 @@
+"""Rankings, their pages and cursors."""

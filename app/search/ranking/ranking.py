@@ -1,0 +1,110 @@
+"""Rankings: clips in order of distance, with scores that fall strictly with it.
+
+Distances are rounded to nine decimals before they are ordered, so that two that differ
+also differ in their score, whatever the rounding of 1 / (1 + d). Clips equally far stand in
+the order of their ids. A ranking is put in order only as far as it is looked at.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.nearest import DECIMALS as DECIMALS
+from app.search.ranking.cursor import Anchor, Position
+
+IdArray = NDArray[np.object_]
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """A stretch of a ranking: ids (n,) and distances (n,) float64; more: whether it goes on."""
+
+    ids: IdArray
+    distances: FloatArray
+    more: bool
+
+
+class Ranked(Protocol):
+    """Clips from the nearest to the farthest, ties by id."""
+
+    @property
+    def anchor(self) -> Anchor | None:
+        """What a cursor has to remember so that the ranking goes on in the same way."""
+
+    @property
+    def ids(self) -> IdArray:
+        """(n,) all clip ids in order."""
+
+    @property
+    def distances(self) -> FloatArray:
+        """(n,) float64, never falling."""
+
+    def __len__(self) -> int: ...
+
+    def page(self, after: Position | None, limit: int) -> Page:
+        """The first `limit` clips behind a position, which need not be there any more."""
+
+
+class Ranking:
+    """Clips whose distances are all known."""
+
+    anchor: Anchor | None = None
+
+    def __init__(self, ids: IdArray, distances: FloatArray) -> None:
+        """ids: (n,) objects; distances: (n,); in any order."""
+        self._ids = ids
+        self._distances = np.round(np.asarray(distances, dtype=np.float64), DECIMALS)
+
+    def __len__(self) -> int:
+        return len(self._ids)
+
+    @property
+    def ids(self) -> IdArray:
+        """(n,) all clip ids in order."""
+        return self._ids[self._order]
+
+    @property
+    def distances(self) -> FloatArray:
+        """(n,) float64, never falling."""
+        return self._distances[self._order]
+
+    def page(self, after: Position | None, limit: int) -> Page:
+        """The first `limit` clips behind a position."""
+        rows = np.arange(len(self)) if after is None else self._behind(after)
+        distances = self._distances[rows]
+        if len(rows) > limit:
+            near = distances <= np.partition(distances, limit)[limit]
+            rows, distances = rows[near], distances[near]
+        more = len(rows) > limit
+        order = in_order(self._ids[rows], distances)[:limit]
+        return Page(self._ids[rows[order]], distances[order], more)
+
+    @cached_property
+    def _order(self) -> IntArray:
+        return in_order(self._ids, self._distances)
+
+    def _behind(self, after: Position) -> IntArray:
+        keep = self._distances > after.distance
+        level = np.flatnonzero(self._distances == after.distance)
+        keep[level] = [clip_id > after.clip_id for clip_id in self._ids[level]]
+        return np.flatnonzero(keep)
+
+
+def in_order(ids: IdArray, distances: FloatArray) -> IntArray:
+    """(n,) indices that sort clips by rounded distances (n,), then by id."""
+    order = np.argsort(distances, kind="stable")
+    if np.any(np.diff(distances[order]) == 0):
+        # Sorting by id as well costs ten times as much; only ties need it.
+        order = np.lexsort((ids.astype(str), distances))
+    return order
+
+
+def score(distance: float, scale: float = 1.0) -> float:
+    """1 at distance 0, one half at distance `scale`, towards 0 beyond; strictly falling."""
+    return scale / (scale + distance)

@@ -1,0 +1,108 @@
+"""Searches by example against every distance computed: what is left unmeasured changes nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from app.numerics.alignment.dtw import dtw_distances
+from app.numerics.arrays import FloatArray
+from app.search.example.by_example import rank_by_example
+from app.search.example.distances import QueryArrays
+from app.search.example.fusion import SHORTLIST
+from app.search.example.methods import Method
+from app.search.index.nearest_ranking import Near
+from app.search.index.rows import Rows
+from app.search.index.vector_index import MOTION_VECTORS, VectorIndex
+from app.store.clips.filter import ClipFilter
+from tests.search.fused import fused_distances
+from tests.search.indexed import indexed
+from tests.search.walking import walk
+
+COUNT = SHORTLIST + 40
+
+
+class Gallery:
+    """Clips of five kinds, as an index and a store have them, and the features that were read."""
+
+    def __init__(self) -> None:
+        rng = np.random.default_rng(5)
+        kinds = rng.normal(size=(5, 128)), rng.normal(size=(5, 82))
+        of = rng.integers(5, size=COUNT)
+        self.vectors = kinds[0][of] + 0.3 * rng.normal(size=(COUNT, 128))
+        self.vectors = self.vectors.astype(np.float32)
+        self.features = {
+            f"c{i:03d}": (kinds[1][of[i]] + rng.normal(size=(rng.integers(3, 20), 82))).astype("f4")
+            for i in range(COUNT)
+        }
+        self.read: list[str] = []
+        rows = Rows(MOTION_VECTORS)
+        rows.put([indexed(i, v) for i, v in zip(self.features, self.vectors, strict=True)])
+        self.rows = rows.view()
+
+    def nearest(self, query: FloatArray, wanted: ClipFilter, exclude: Any) -> Near:
+        return Near(1, self.rows, self.rows.labels.passing(wanted, exclude), query)
+
+    def load(self, clip_ids: Sequence[str], _: str) -> Mapping[str, FloatArray]:
+        self.read.extend(clip_ids)
+        return {clip_id: self.features[clip_id] for clip_id in clip_ids}
+
+    def query(self) -> QueryArrays:
+        rng = np.random.default_rng(9)
+        vector = self.vectors[0] + 0.1 * rng.normal(size=128)
+        return QueryArrays(
+            vector.astype(np.float32), self.features["c000"][:-1], np.zeros(13), np.zeros(2)
+        )
+
+    def expected(self, query: QueryArrays) -> list[tuple[float, str]]:
+        """The shortlist's fused distances, all measured at once, in order."""
+        near = np.linalg.norm(self.vectors.astype(float) - query.vector, axis=1)
+        chosen = np.argsort(near, kind="stable")[:SHORTLIST]
+        ids = [f"c{i:03d}" for i in chosen]
+        warped = dtw_distances(query.features, [self.features[i] for i in ids])
+        fused = fused_distances(query.vector, self.vectors[chosen], warped)
+        return sorted(zip(np.round(fused, 9).tolist(), ids, strict=True))
+
+
+@pytest.mark.parametrize("size", [7, 130, 1000])
+def test_pages_of_fused_are_those_of_all_that_is_measured_at_once(size: int) -> None:
+    gallery = Gallery()
+    query = gallery.query()
+    pages = walk(
+        lambda after: rank_by_example(
+            cast("VectorIndex", gallery),
+            query,
+            Method.FUSED,
+            ClipFilter(),
+            frozenset(),
+            gallery.load,
+            after.anchor if after else None,
+        ),
+        size,
+    )
+    expected = gallery.expected(query)
+    told = [
+        (distance, str(clip_id))
+        for page in pages
+        for distance, clip_id in zip(page.distances.tolist(), page.ids, strict=True)
+    ]
+    assert told[:SHORTLIST] == expected
+    assert len({clip_id for _, clip_id in told}) == len(told) == COUNT
+    assert [distance for distance, _ in told] == sorted(distance for distance, _ in told)
+
+
+def test_a_short_page_of_fused_reads_few_features() -> None:
+    gallery = Gallery()
+    found = rank_by_example(
+        cast("VectorIndex", gallery),
+        gallery.query(),
+        Method.FUSED,
+        ClipFilter(),
+        frozenset(),
+        gallery.load,
+    )
+    found.page(None, 10)
+    assert len(gallery.read) == len(set(gallery.read)) < SHORTLIST / 2

@@ -1,0 +1,77 @@
+"""The fused distance: continuous, nothing to itself, and led by what lies between."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.search.example.fusion import DTW_WEIGHT, MOST_DETOUR, Surroundings
+from tests.search.fused import fused_distances
+
+
+@given(n=st.integers(1, 40), seed=st.integers(0, 10_000))
+@settings(max_examples=40, deadline=None)
+def test_it_is_never_below_both_distances_and_nothing_only_to_itself(n: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    vectors, warped = rng.normal(size=(n, 8)), rng.uniform(0.1, 1.0, size=n)
+    query, warped[0] = vectors[0].copy(), 0.0
+    found = fused_distances(query, vectors, warped)
+    straight = np.linalg.norm(vectors - query, axis=1) + DTW_WEIGHT * warped
+    assert found[0] == 0.0
+    assert (found >= straight - 1e-9).all()
+    assert (found <= (1 + MOST_DETOUR) * straight + 1e-9).all()
+
+
+@given(seed=st.integers(0, 10_000))
+@settings(max_examples=20, deadline=None)
+def test_the_order_in_which_clips_come_does_not_matter(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    vectors, warped = rng.normal(size=(30, 8)), rng.uniform(size=30)
+    order = rng.permutation(30)
+    query = rng.normal(size=8)
+    one = fused_distances(query, vectors, warped)
+    other = fused_distances(query, vectors[order], warped[order])
+    np.testing.assert_allclose(other, one[order], rtol=1e-9)
+
+
+def test_the_same_task_is_found_through_those_who_do_it_half_so() -> None:
+    """Two tasks side by side, manner along both: the own ones come before the other's nearer."""
+    straight, fused = [], []
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        points = 0.3 * rng.normal(size=(80, 8))
+        points[:, 0] = rng.uniform(0, 2, size=80)
+        points[40:, 1] += 1.3
+        others, is_own = points[1:], np.arange(1, 80) < 40
+        distances = np.linalg.norm(others - points[0], axis=1)
+        straight.append(is_own[np.argsort(distances)[:39]].mean())
+        found = fused_distances(points[0], others, np.zeros(79))
+        fused.append(is_own[np.argsort(found)[:39]].mean())
+    assert np.mean(fused) > np.mean(straight) + 0.04
+
+
+def test_a_little_noise_changes_distances_by_less_than_a_hundredth() -> None:
+    rng = np.random.default_rng(7)
+    vectors, query = rng.normal(size=(120, 16)), rng.normal(size=16)
+    before = fused_distances(query, vectors, np.zeros(120))
+    after = fused_distances(query + 1e-4 * rng.normal(size=16), vectors, np.zeros(120))
+    assert np.abs(after / before - 1).max() < 0.01
+
+
+def test_no_clip_has_no_distance_and_one_has_one() -> None:
+    assert fused_distances(np.ones(4), np.zeros((0, 4)), np.zeros(0)).shape == (0,)
+    alone = fused_distances(np.ones(4), np.zeros((1, 4)), np.zeros(1))
+    assert 2.0 <= alone[0] <= 2.0 * (1 + MOST_DETOUR)
+
+
+@given(seed=st.integers(0, 10_000))
+@settings(max_examples=20, deadline=None)
+def test_without_warping_it_is_a_bound_and_rows_are_told_alike_alone(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    query, vectors, warped = rng.normal(size=8), rng.normal(size=(40, 8)), rng.uniform(size=40)
+    known, every = Surroundings.of(query, vectors), np.arange(40)
+    found = known.distances(every, warped)
+    assert (known.distances(every, np.zeros(40)) <= found).all()
+    some = rng.permutation(40)[:7]
+    assert known.distances(some, warped[some]).tolist() == found[some].tolist()

@@ -1,0 +1,60 @@
+"""Filters as clients send them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from app.errors import BadField
+from app.search.index.filters import parse_filter
+from app.store.clips.filter import ClipFilter
+
+
+def test_nothing_asked_lets_every_clip_pass() -> None:
+    assert parse_filter(None) == parse_filter({}) == ClipFilter()
+
+
+def test_a_string_means_that_value_and_an_array_any_of_its_values() -> None:
+    read = parse_filter({"person": "ada", "task": ["walk", "run"], "word": "Walk"})
+    assert (read.person, read.task, read.word) == (("ada",), ("walk", "run"), ("walk",))
+
+
+def test_labels_are_looked_for_as_clips_keep_them() -> None:
+    read = parse_filter({"word": ["left leg", " High-Kick "], "person": " Jose\u0301"})
+    assert (read.word, read.person) == (("left_leg", "high_kick"), ("Jos\u00e9",))
+
+
+def test_what_is_refused_is_read_as_what_is_wanted() -> None:
+    read = parse_filter({"not_task": "walk", "not_word": [" Left Leg "], "not_person": ["a", "b"]})
+    assert read.not_task == ("walk",)
+    assert read.not_word == ("left_leg",)
+    assert read.not_person == ("a", "b")
+
+
+def test_durations_are_numbers_of_seconds() -> None:
+    read = parse_filter({"min_duration": 1, "max_duration": 2.5})
+    assert (read.min_duration, read.max_duration) == (1.0, 2.5)
+
+
+@pytest.mark.parametrize(
+    ("given", "location"),
+    [
+        ({"persons": "ada"}, "filter.persons"),
+        ({"state": "failed"}, "filter.state"),
+        ({"person": 3}, "filter.person"),
+        ({"task": []}, "filter.task"),
+        ({"not_task": []}, "filter.not_task"),
+        ({"not_name": "a"}, "filter.not_name"),
+        ({"not_min_duration": 1}, "filter.not_min_duration"),
+        ({"task": ["walk", None]}, "filter.task"),
+        ({"min_duration": "1"}, "filter.min_duration"),
+        ({"max_duration": True}, "filter.max_duration"),
+        ({"max_duration": float("nan")}, "filter.max_duration"),
+        ({"min_duration": -1}, "filter.min_duration"),
+    ],
+)
+def test_what_cannot_be_read_is_named(given: dict[str, Any], location: str) -> None:
+    with pytest.raises(BadField) as refused:
+        parse_filter(given)
+    assert [place.location for place in refused.value.places] == [location]

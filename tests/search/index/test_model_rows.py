@@ -1,0 +1,138 @@
+"""Rows beside an index are computed once, in its order, and again only for clips that changed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pytest
+
+from app.errors import ClientLeft
+from app.numerics.arrays import FloatArray
+from app.search.index import model_rows as beside_module
+from app.search.index.labels import Labels
+from app.search.index.model_rows import RowsBeside
+from tests.search.indexed import indexed
+
+
+class Model:
+    """Gives each clip its number and a stamp; remembers which it was asked for."""
+
+    def __init__(self, stamp: float = 0.0, gone: Sequence[str] = ()) -> None:
+        self.stamp, self.gone = stamp, gone
+        self.asked: list[list[str]] = []
+
+    def __call__(self, clip_ids: Sequence[str]) -> Mapping[str, FloatArray]:
+        self.asked.append(list(clip_ids))
+        return {i: np.array([float(i), self.stamp]) for i in clip_ids if i not in self.gone}
+
+
+def labels_of(*clip_ids: str) -> Labels:
+    made = Labels()
+    put(made, *clip_ids)
+    return made
+
+
+def put(labels: Labels, *clip_ids: str) -> None:
+    """As an index does with clips that came or changed."""
+    labels.remove(clip_ids)
+    labels.add([indexed(clip_id) for clip_id in clip_ids])
+
+
+def test_rows_stand_in_the_order_of_the_index() -> None:
+    labels, model, rows = labels_of("3", "1"), Model(), RowsBeside()
+    found = rows.of(labels.view(), "m", 2, model)
+    assert found.values.tolist() == [[3, 0], [1, 0]]
+    put(labels, "2")
+    later = rows.of(labels.view(), "m", 2, model)
+    assert later.values.tolist() == [[3, 0], [1, 0], [2, 0]]
+    assert later.series is found.series
+    assert model.asked == [["3", "1"], ["2"]]
+
+
+def test_a_request_that_stops_half_way_leaves_the_rest_to_the_next_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(beside_module, "BATCH", 2)
+    labels, rows, model = labels_of(*"123456"), RowsBeside(), Model(stamp=7.0)
+    told = np.array([[9.0, 9.0], [9.0, 9.0]])
+
+    def stops(clip_ids: Sequence[str]) -> Mapping[str, FloatArray]:
+        if "4" in clip_ids:
+            raise ClientLeft
+        return model(clip_ids)
+
+    with pytest.raises(ClientLeft):
+        rows.of(labels.view(), "m", 2, stops, lambda: (["3", "5"], told))
+    put(labels, "5")  # what was known of it holds no more
+    found = rows.of(labels.view(), "m", 2, model)
+    by_id = dict(zip(labels.view().ids.tolist(), found.values.tolist(), strict=True))
+    assert by_id == {
+        "1": [1, 7], "2": [2, 7], "3": [9, 9], "4": [4, 7], "6": [6, 7], "5": [5, 7]
+    }  # fmt: skip
+    assert model.asked == [["1", "2"], ["4"], ["6"], ["5"]]
+
+
+def test_a_clip_of_which_nothing_can_be_computed_is_not_there() -> None:
+    labels, model, rows = labels_of("3", "9", "1"), Model(gone=["9"]), RowsBeside()
+    for _ in range(2):
+        assert rows.of(labels.view(), "m", 2, model).there.tolist() == [True, False, True]
+    assert len(model.asked) == 1
+
+
+def test_an_empty_index_has_no_rows() -> None:
+    found = RowsBeside().of(Labels().view(), "m", 2, Model())
+    assert found.values.shape == (0, 2)
+    assert found.there.shape == (0,)
+
+
+def test_a_clip_that_changed_is_computed_anew_and_an_older_view_keeps_its_row() -> None:
+    labels, rows = labels_of("1", "2"), RowsBeside()
+    before = labels.view()
+    rows.of(before, "m", 2, Model())
+    put(labels, "1")
+    after = Model(stamp=5.0)
+    found = rows.of(labels.view(), "m", 2, after)
+    assert found.values[found.there].tolist() == [[1, 0], [2, 0], [1, 5]]
+    assert labels.view().alive.tolist() == [False, True, True]
+    assert after.asked == [["1"]]
+    assert rows.of(before, "m", 2, after).values.tolist() == [[1, 0], [2, 0]]
+
+
+def test_what_the_fit_knows_is_not_computed() -> None:
+    labels, model, rows = labels_of("1", "2", "3"), Model(), RowsBeside()
+
+    def known() -> tuple[list[str], FloatArray]:
+        return ["2", "4"], np.array([[2.0, 7.0], [4.0, 7.0]])
+
+    found = rows.of(labels.view(), "m", 2, model, known)
+    assert found.values.tolist() == [[1, 0], [2, 7], [3, 0]]
+    assert model.asked == [["1", "3"]]
+
+
+def test_another_model_has_rows_of_its_own_and_of_its_own_width() -> None:
+    labels, rows = labels_of("1"), RowsBeside()
+    one = rows.of(labels.view(), "m", 2, Model())
+    other = rows.of(labels.view(), "n", 3, lambda ids: {i: np.full(3, 2.0) for i in ids})
+    assert other.values.tolist() == [[2, 2, 2]]
+    assert other.series is not one.series
+    assert one.values.tolist() == [[1, 0]]
+
+
+def test_many_clips_are_computed_in_batches(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(beside_module, "BATCH", 3)
+    labels, model = labels_of(*map(str, range(8))), Model()
+    found = RowsBeside().of(labels.view(), "m", 2, model)
+    assert [len(asked) for asked in model.asked] == [3, 3, 2]
+    assert found.values[:, 0].tolist() == list(range(8))
+
+
+def test_a_computation_that_fails_is_tried_again() -> None:
+    labels, rows = labels_of("1"), RowsBeside()
+
+    def fails(clip_ids: Sequence[str]) -> Mapping[str, FloatArray]:
+        raise OSError
+
+    with pytest.raises(OSError):
+        rows.of(labels.view(), "m", 2, fails)
+    assert rows.of(labels.view(), "m", 2, Model()).values.tolist() == [[1, 0]]

@@ -1,0 +1,172 @@
+"""Rankings that are measured as one looks, against every distance sorted."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.search.example.reranking import ReRanked
+from app.search.index import rows as rows_module
+from app.search.index.nearest_ranking import Near
+from app.search.index.rows import Layout, Rows
+from app.search.ranking.lower_bounds import Bounds
+from app.search.ranking.ranking import Page
+from app.store.clips.filter import ClipFilter
+from tests.search.indexed import indexed
+from tests.search.walking import walk, walked
+
+WIDTH = 3
+LAYOUT = Layout("vector", WIDTH)
+QUERY = np.zeros(WIDTH, dtype=np.float32)
+BRIEF = settings(max_examples=60, deadline=None)
+
+Vectors = dict[str, tuple[float, ...]]
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _small_blocks() -> Any:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(rows_module, "BLOCK", 7)
+        yield
+
+
+NUMBERS = st.sampled_from([0.0, 1.0, 1.0 + 2**-20, 2.0])
+VECTORS = st.dictionaries(
+    st.integers(0, 99).map("c{:02d}".format), st.tuples(*[NUMBERS] * WIDTH), max_size=30
+)
+
+
+def _near(vectors: Vectors, left_out: str = "") -> Near:
+    rows = Rows(LAYOUT)
+    rows.put([indexed(i, np.array(v, dtype=np.float32)) for i, v in vectors.items()])
+    view = rows.view()
+    return Near(1, view, view.labels.passing(ClipFilter(), [left_out]), QUERY)
+
+
+def _keys(vectors: Vectors) -> list[tuple[float, str]]:
+    """The slow twin: (distance, id) in order."""
+    return sorted(
+        (round(float(np.linalg.norm(np.float32(v).astype(float))), 9), i)
+        for i, v in vectors.items()
+    )
+
+
+@BRIEF
+@given(VECTORS, st.integers(1, 9))
+def test_pages_put_together_are_the_ranking(vectors: Vectors, size: int) -> None:
+    near = _near(vectors)
+    keys = _keys(vectors)
+    assert list(near.ids) == walked(near, size) == [clip_id for _, clip_id in keys]
+    assert near.distances.tolist() == pytest.approx([d for d, _ in keys], abs=2e-9)
+    assert len(near) == len(vectors)
+
+
+@BRIEF
+@given(VECTORS, st.sampled_from([0.0, 1.0, 1.5]), st.integers(0, 99).map("c{:02d}".format))
+def test_all_up_to_a_clip(vectors: Vectors, distance: float, clip_id: str) -> None:
+    page = _near(vectors).until(distance, clip_id)
+    expected = [i for d, i in _keys(vectors) if (d, i) <= (distance, clip_id)]
+    assert list(page.ids) == expected
+    assert page.more == (len(expected) < len(vectors))
+
+
+def test_what_is_excluded_is_neither_ranked_nor_counted() -> None:
+    near = _near({"a": (0, 0, 0), "b": (1, 0, 0)}, left_out="a")
+    assert (list(near.ids), len(near)) == (["b"], 1)
+
+
+def _bounds(ids: np.ndarray, distances: np.ndarray) -> Bounds:
+    """Distances that are known, behind bounds that are sometimes far below them."""
+    shares = np.array([int(str(clip_id)[1:]) % 5 / 4 for clip_id in ids])
+    finite = np.where(np.isfinite(distances), distances, 1.0)
+    return Bounds(ids, finite * shares, lambda rows: distances[rows])
+
+
+def _backwards(shortlist: Page) -> Bounds:
+    """Ranks anew by something that has nothing to do with the first stage: the id's digits."""
+    return _bounds(shortlist.ids, np.array([100.0 - int(i[1:]) for i in shortlist.ids]))
+
+
+@BRIEF
+@given(VECTORS, st.integers(1, 9), st.integers(1, 12))
+def test_a_shortlist_comes_first_and_the_rest_in_its_order(
+    vectors: Vectors, size: int, shortlist: int
+) -> None:
+    found = ReRanked(_near(vectors), _backwards, shortlist)
+    order = [clip_id for _, clip_id in _keys(vectors)]
+    expected = sorted(order[:shortlist], reverse=True) + order[shortlist:]
+    assert list(found.ids) == expected
+    assert np.all(np.diff(found.distances) >= 0)
+    pages = walk(
+        lambda after: ReRanked(
+            _near(vectors), _backwards, shortlist, after.anchor if after else None
+        ),
+        size,
+    )
+    assert [str(i) for page in pages for i in page.ids] == expected
+    together = np.concatenate([page.distances for page in pages])
+    assert together.tolist() == found.distances.tolist()
+
+
+CHANGES = st.lists(
+    st.lists(
+        st.tuples(
+            st.integers(0, 99).map("c{:02d}".format), st.none() | st.tuples(*[NUMBERS] * WIDTH)
+        ),
+        max_size=4,
+    ),
+    max_size=12,
+)
+
+
+@BRIEF
+@given(VECTORS, st.integers(1, 9), st.integers(1, 12), CHANGES, st.booleans())
+def test_clips_that_come_and_go_between_pages_make_none_be_missed_or_told_twice(
+    vectors: Vectors, size: int, shortlist: int, changes: list[Any], rerank: bool
+) -> None:
+    """Clips that were there all the while are told once; none is told twice."""
+    now, stayed = dict(vectors), set(vectors)
+    to_come = iter(changes)
+
+    def ranked(after: Any) -> Any:
+        if after is not None:
+            for clip_id, vector in next(to_come, []):
+                if clip_id in stayed and vector is not None:
+                    continue  # a clip that is changed may stand elsewhere, which is no mistake
+                stayed.discard(clip_id)
+                now.pop(clip_id, None)
+                if vector is not None:
+                    now[clip_id] = vector
+        near = _near(now)
+        if not rerank:
+            return near
+        return ReRanked(near, _backwards, shortlist, after.anchor if after else None)
+
+    told = [str(i) for page in walk(ranked, size) for i in page.ids]
+    came_twice = {i for i in told if told.count(i) > 1}
+    assert came_twice & stayed == set()
+    assert stayed <= set(told)
+
+
+def test_a_clip_that_is_gone_from_the_shortlist_is_left_out() -> None:
+    vectors: Vectors = {f"c{n:02d}": (float(n), 0.0, 0.0) for n in range(6)}
+
+    def gone(shortlist: Page) -> Bounds:
+        away = np.where(shortlist.ids == "c00", np.inf, 0.0)
+        return _bounds(shortlist.ids, shortlist.distances + away)
+
+    found = ReRanked(_near(vectors), gone, 3)
+    assert list(found.ids) == ["c01", "c02", "c03", "c04", "c05"]
+    everyone_gone = ReRanked(
+        _near(vectors), lambda s: _bounds(s.ids, np.full(len(s.ids), np.inf)), 3
+    )
+    assert list(everyone_gone.ids) == ["c03", "c04", "c05"]
+
+
+def test_nothing_to_rank() -> None:
+    page = ReRanked(_near({}), _backwards, 5).page(None, 10)
+    assert (len(page.ids), page.more) == (0, False)

@@ -1,0 +1,148 @@
+"""Pose search against every frame of every clip."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.analysis.descriptors.pose_cover import pose_cover, pose_vectors
+from app.search.index import rows as rows_module
+from app.search.index.rows import Rows
+from app.search.pose import by_pose
+from app.search.pose.by_pose import POSES, POSITIONS, PoseHit, PoseRanking, pose_distances
+from app.search.pose.pose_places import Places, pose_places
+from app.search.ranking.cursor import Position, decode, digest, encode
+from app.store.clips.filter import ClipFilter
+from tests.bodies import standing, turned_about_y, walking, waving
+from tests.search.indexed import indexed
+
+QUESTION = digest("pose")
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _small() -> object:
+    """So that clips lie across blocks, and are looked into in several rounds."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(rows_module, "BLOCK", 16)
+        patch.setattr(by_pose, "AT_ONCE", 3)
+        yield
+
+
+def _library(seed: int, count: int) -> dict[str, np.ndarray]:
+    """Walks, waves and stands, disturbed, turned and moved; some clips twice."""
+    rng = np.random.default_rng(seed)
+    made: dict[str, np.ndarray] = {}
+    for number in range(count):
+        kind = rng.integers(4)
+        if kind == 3 and made:
+            body = made[str(rng.choice(sorted(made)))]
+        else:
+            body = (walking, waving, lambda s: standing(int(30 * s)))[kind % 3](
+                rng.uniform(0.2, 1.5)
+            )
+            body = body + 0.02 * rng.normal(size=(1, 13, 3))
+        body = turned_about_y(body, rng.uniform(-3, 3)) * rng.uniform(0.8, 1.2)
+        made[f"c{number:02d}"] = (body + rng.normal(size=3)).astype(np.float32)
+    return made
+
+
+class _Searched:
+    """A ranking over a library, with a count of the clips that it looked into."""
+
+    def __init__(self, clips: Mapping[str, np.ndarray], query: np.ndarray, places: Places) -> None:
+        self.clips = dict(clips)
+        self.query = query
+        self.places = places
+        self.looked_into: list[str] = []
+
+    def load(self, clip_ids: Sequence[str], name: str) -> Mapping[str, np.ndarray]:
+        assert name == POSITIONS
+        self.looked_into += clip_ids
+        return {clip_id: self.clips[clip_id] for clip_id in clip_ids if clip_id in self.clips}
+
+    def ranking(self, exclude: Sequence[str] = ()) -> PoseRanking:
+        rows = Rows(POSES)
+        none = np.zeros(0, dtype=int)
+        rows.put([indexed(i, pose_cover(p, none)) for i, p in self.clips.items()])
+        view = rows.view()
+        passing = view.labels.passing(ClipFilter(), exclude)
+        return PoseRanking(view, passing, self.query, self.load, self.places)
+
+    def naive(self) -> list[tuple[float, str]]:
+        """The slow twin: keys of all places of all clips."""
+        return sorted(
+            PoseHit(clip_id, place).key
+            for clip_id, positions in self.clips.items()
+            for place in pose_places(pose_distances(positions, self.query), self.places)
+        )
+
+
+def _some_pose(clips: Mapping[str, np.ndarray], seed: int) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    body = clips[str(rng.choice(sorted(clips)))]
+    return pose_vectors(
+        body[[rng.integers(len(body))]] + rng.choice([0.0, 0.05]) * rng.normal(size=(13, 3))
+    )[0]
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    seed=st.integers(0, 10_000),
+    count=st.integers(1, 14),
+    limit=st.integers(1, 6),
+    places=st.sampled_from(Places),
+)
+def test_pages_put_together_are_every_frame_searched(
+    seed: int, count: int, limit: int, places: Places
+) -> None:
+    clips = _library(seed, count)
+    searched = _Searched(clips, _some_pose(clips, seed), places)
+    found: list[tuple[float, str]] = []
+    after: Position | None = None
+    while True:
+        page = searched.ranking().page(after, limit)
+        found += [hit.key for hit in page.hits]
+        if not page.more:
+            break
+        distance, key = found[-1]
+        after = decode(encode(Position(len(found), distance, key), QUESTION), QUESTION)
+    assert found == searched.naive()
+
+
+def test_most_clips_are_never_looked_into() -> None:
+    clips = _library(5, 60)
+    searched = _Searched(clips, pose_vectors(waving(1.0)[[12]])[0], Places.BEST)
+    page = searched.ranking().page(None, 3)
+    assert [hit.key for hit in page.hits] == searched.naive()[:3]
+    assert len(set(searched.looked_into)) == len(searched.looked_into) < 30
+
+
+def test_a_pose_finds_itself_at_no_distance_wherever_it_stands() -> None:
+    clips = _library(1, 8) | {"own": walking(2.0).astype(np.float32)}
+    elsewhere = turned_about_y(3.0 * clips["own"][[17]], 2.0) + np.array([4.0, 0.0, -9.0])
+    searched = _Searched(clips, pose_vectors(elsewhere)[0], Places.BEST)
+    (hit,) = searched.ranking().page(None, 1).hits
+    assert (hit.clip_id, hit.place.frame) == ("own", 17)
+    assert hit.place.distance < 1e-6
+    searched.query = pose_vectors(clips["own"][[17]])[0]
+    assert searched.ranking().page(None, 1).hits[0].place.distance == 0.0
+    others = searched.ranking(exclude=["own"]).page(None, 100).hits
+    assert {hit.clip_id for hit in others} == clips.keys() - {"own"}
+
+
+def test_a_clip_that_is_gone_meanwhile_is_left_out() -> None:
+    clips = _library(2, 6)
+    searched = _Searched(clips, _some_pose(clips, 2), Places.BEST)
+    ranking = searched.ranking()
+    searched.clips = {}
+    assert ranking.page(None, 10).hits == ()
+
+
+def test_an_empty_index_has_no_hits() -> None:
+    searched = _Searched({}, np.zeros(36, dtype=np.float32), Places.BEST)
+    page = searched.ranking().page(None, 10)
+    assert (page.hits, page.more) == ((), False)

@@ -1,0 +1,95 @@
+"""Cursors come back as they were given out, and no others are taken."""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.errors import BadField
+from app.search.ranking.cursor import LARGEST_RANK, Position, decode, digest, encode
+
+QUESTION = digest("clip_1", "fused")
+
+
+@given(
+    rank=st.integers(0, 10**9),
+    distance=st.floats(0, 1e9),
+    clip_id=st.text(max_size=40),
+)
+def test_a_cursor_holds_its_position(rank: int, distance: float, clip_id: str) -> None:
+    position = Position(rank, distance, clip_id)
+    assert decode(encode(position, QUESTION), QUESTION) == position
+
+
+def test_a_cursor_of_another_question_is_refused() -> None:
+    cursor = encode(Position(1, 0.5, "clip_1"), QUESTION)
+    with pytest.raises(BadField, match="cursor"):
+        decode(cursor, digest("clip_1", "vector"))
+
+
+@given(st.text(max_size=80))
+def test_no_text_makes_anything_but_a_refusal(text: str) -> None:
+    with pytest.raises(BadField) as refused:
+        decode(text, QUESTION)
+    assert refused.value.places[0].location == "cursor"
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        [QUESTION, "1", 0.5, "a"],
+        [QUESTION, True, 0.5, "a"],
+        [QUESTION, -1, 0.5, "a"],
+        [QUESTION, 1, "x", "a"],
+        [QUESTION, 1, float("nan"), "a"],
+        [QUESTION, 1, 0.5, 7],
+        [QUESTION, 1, 0.5],
+        [QUESTION, 1, 10**400, "a"],
+        [QUESTION, 10**400, 0.5, "a"],
+        [QUESTION, 1, True, "a"],
+        [QUESTION, 1, 0.5, "\ud800"],
+        [QUESTION, 1, 0.5, "a", 10**400, "a", None],
+        [QUESTION, 1, 0.5, "a", 0.5, "a", -(10**400)],
+        {"a": 1},
+        7,
+    ],
+)
+def test_a_forged_cursor_is_refused(body: object) -> None:
+    forged = base64.urlsafe_b64encode(json.dumps(body).encode()).decode().rstrip("=")
+    with pytest.raises(BadField):
+        decode(forged, QUESTION)
+
+
+NUMBERS = st.integers() | st.floats() | st.sampled_from([10**400, -(10**400), 10**4000])
+ANY_JSON = st.recursive(
+    st.none() | st.booleans() | NUMBERS | st.text() | st.just("\ud800") | st.just(QUESTION),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(), inner, max_size=3),
+    max_leaves=10,
+)
+FORGED = st.lists(NUMBERS | st.text() | ANY_JSON, max_size=7).map(lambda rest: [QUESTION, *rest])
+
+
+@settings(max_examples=400, deadline=None, derandomize=True, database=None)
+@given(
+    content=(ANY_JSON | FORGED).map(json.dumps).map(str.encode) | st.binary(), cut=st.integers(0, 3)
+)
+def test_whatever_a_cursor_holds_it_is_a_position_or_refused(content: bytes, cut: int) -> None:
+    cursor = base64.urlsafe_b64encode(content).decode()
+    for text in (cursor, cursor.rstrip("="), cursor[: len(cursor) - cut], "[" * 990):
+        try:
+            position = decode(text, QUESTION)
+        except BadField:
+            continue
+        assert math.isfinite(position.distance)
+        assert 0 <= position.rank <= LARGEST_RANK
+
+
+def test_a_cursor_that_is_nested_too_deeply_is_refused() -> None:
+    for content in (b"[" * 100_000, b'{"a":' * 100_000, b"9" * 10_000):
+        with pytest.raises(BadField):
+            decode(base64.urlsafe_b64encode(content).decode(), QUESTION)

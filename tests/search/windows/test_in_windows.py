@@ -1,0 +1,206 @@
+"""What windows propose and warping decides, against obvious loops; cursors' anchors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from app.analysis.descriptors.windows import WIDTH, RunningSums, WindowScale, window_arrays
+from app.numerics.arrays import FloatArray
+from app.search.index.span_index import SpanRows, Spans
+from app.search.windows import in_windows
+from app.search.windows import warped_matches as matches
+from app.search.windows.in_windows import by_both, by_warping, by_windows
+from app.search.windows.overlap_merging import Candidates, places
+from app.search.windows.proposals import MOST_WINDOWS, Barred, Piece, propose, scale_for
+from app.search.windows.warped_matches import Region, matches_in, merged
+from tests.search.indexed import indexed
+
+SECONDS = (30.0, 1.4, 0.5, 12.0)
+"""Of the clips."""
+
+
+@dataclass(frozen=True)
+class Clips:
+    """Features by clip id, as an index and a store have them."""
+
+    features: Mapping[str, FloatArray]
+
+    @property
+    def ids(self) -> np.ndarray:
+        return np.array(list(self.features), dtype=object)
+
+    @property
+    def seconds(self) -> np.ndarray:
+        return np.array([len(one) / 10 for one in self.features.values()])
+
+    def view(self, scale: WindowScale) -> Spans:
+        rows = SpanRows(WIDTH)
+        arrays = [window_arrays(one) for one in self.features.values()]
+        rows.add(
+            [indexed(clip_id) for clip_id in self.features],
+            [a[scale.vectors] for a in arrays],
+            [a[scale.spans] for a in arrays],
+        )
+        return rows.view().spans
+
+    def load(self, clip_ids: Sequence[str], _: str) -> Mapping[str, FloatArray]:
+        return {clip_id: self.features[clip_id] for clip_id in clip_ids}
+
+
+def smooth(seconds: float, seed: int) -> FloatArray:
+    """(m, 82) features that wander."""
+    rng = np.random.default_rng(seed)
+    steps = rng.normal(scale=0.1, size=(round(seconds * 10), 82))
+    return (rng.normal(size=82) + np.cumsum(steps, axis=0)).astype(np.float32)
+
+
+@pytest.fixture(scope="module")
+def some() -> Clips:
+    return Clips({f"clip_{i}": smooth(seconds, i) for i, seconds in enumerate(SECONDS)})
+
+
+def piece_of(features: FloatArray, start: float, end: float) -> Piece:
+    return Piece(features[round(start * 10) : round(end * 10)], end - start)
+
+
+@pytest.mark.parametrize("frames", [1, 4, 10, 12, 20, 33, 40, 47, 110, 1200])
+def test_proposals_are_those_of_the_obvious_loop(some: Clips, frames: int) -> None:
+    piece = Piece(smooth(frames / 10, 99), frames / 10)
+    scale = scale_for(frames)
+    found = propose(some.view, piece, None)
+    spans = found.spans
+    hops = _hops(frames, scale)
+    assert len(hops) <= MOST_WINDOWS
+    firsts = [min(hop * scale.hop, max(frames - scale.frames, 0)) for hop in hops]
+    length = scale.frames if len(hops) > 1 else frames
+    cuts = np.array([[first, first + length] for first in firsts])
+    queries = RunningSums(piece.features).vectors(cuts).astype(float)
+    for row in range(0, len(spans), 7):
+        clip = np.flatnonzero(spans.owners == spans.owners[row])
+        behind = clip[clip >= row]
+        apart = [
+            np.linalg.norm(spans.vectors[behind[min(hop, len(behind) - 1)]] - query)
+            for hop, query in zip(hops, queries, strict=True)
+        ]
+        assert found.distances[row] == pytest.approx(np.mean(apart), rel=1e-4)
+        assert 0 <= found.starts[row] < found.ends[row] <= spans.ends[clip[-1]] + 1e-6
+
+
+def _hops(frames: int, scale: WindowScale) -> list[int]:
+    """Where a query's windows begin: half a window or more apart, and the last that fits."""
+    last = round((frames - scale.frames) / scale.hop)
+    if last <= 0:
+        return [0]
+    step = max(scale.frames // 2 // scale.hop, int(np.ceil(last / (MOST_WINDOWS - 1))))
+    return sorted({*range(0, last, step), last})
+
+
+@pytest.mark.parametrize("length", [0.7, 2.0, 9.0])
+def test_every_way_finds_a_piece_where_it_was_cut_from(some: Clips, length: float) -> None:
+    piece = piece_of(some.features["clip_0"], 12.0, 12.0 + length)
+    both, anchor = by_both(some.view, piece, None, some.load)
+    assert anchor is not None
+    for found, tolerance in (
+        (both, 0.0), (by_warping(some.ids, some.seconds, piece, None, some.load), 0.0),
+        (by_windows(some.view, piece, None), 0.5),
+    ):  # fmt: skip
+        (best,), _ = places(found, 1)
+        assert best.clip_id == "clip_0"
+        assert (best.start, best.end) == pytest.approx((12.0, 12.0 + length), abs=tolerance + 1e-6)
+
+
+def test_nothing_is_found_in_what_is_barred(some: Clips) -> None:
+    piece, barred = piece_of(some.features["clip_0"], 12, 14), Barred("clip_0", 12.0, 14.0)
+    for found in (
+        by_both(some.view, piece, barred, some.load)[0],
+        by_warping(some.ids, some.seconds, piece, barred, some.load),
+        by_windows(some.view, piece, barred),
+    ):
+        own = found.owners == 0
+        assert own.any()
+        assert not (own & (found.starts < 14.0 - 1e-6) & (found.ends > 12.0 + 1e-6)).any()
+
+
+def test_all_else_follows_behind_what_was_warped(
+    some: Clips, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(in_windows, "_how_many", lambda piece: 2)
+    piece = piece_of(some.features["clip_3"], 3, 5)
+    found, anchor = by_both(some.view, piece, None, some.load)
+    assert anchor is not None
+    windows = len(by_windows(some.view, piece, None))
+    warped = found.distances[:-windows]
+    assert 0 < len(warped) < len(by_warping(some.ids, some.seconds, piece, None, some.load))
+    assert anchor.end == warped.max()
+    assert (found.distances[-windows:] >= anchor.end).all()
+    assert set(found.owners[-windows:]) == {0, 1, 2, 3}
+
+
+def test_an_anchor_keeps_the_same_places_before_the_others(
+    some: Clips, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(in_windows, "_how_many", lambda piece: 4)
+    piece = piece_of(some.features["clip_3"], 3, 5)
+    first, anchor = by_both(some.view, piece, None, some.load)
+    before = [(place.key, place.distance) for place in places(first, 1000)[0]]
+    near = {f"new_{i}": some.features["clip_3"][25:55] + np.float32(0.01 * i) for i in range(1, 6)}
+    grown = Clips({**some.features, **near})
+    for given, is_kept in ((anchor, True), (None, False)):
+        found, _ = by_both(grown.view, piece, None, grown.load, given)
+        after = [
+            (place.key, place.distance)
+            for place in places(found, 1000)[0]
+            if not place.clip_id.startswith("new")
+        ]
+        assert (after == before) == is_kept
+
+
+def test_matches_in_parts_of_clips_are_those_in_all_of_them(some: Clips) -> None:
+    piece = piece_of(some.features["clip_0"], 12, 14)
+    whole = by_warping(some.ids, some.seconds, piece, None, some.load)
+    parts = matches_in(some.ids, some.seconds, [Region(0, 100, 160)], piece, None, some.load)
+    assert set(_rows(parts)) & set(_rows(whole))
+    assert ((parts.starts >= 10.0) & (parts.ends <= 16.0)).all()
+    gone = matches_in(some.ids, some.seconds, [Region(0)], piece, None, lambda ids, name: {})
+    assert len(gone) == 0
+
+
+@pytest.mark.parametrize("frames", [1, 150, 10_000])
+def test_few_frames_are_held_at_a_time_and_nothing_changes(
+    some: Clips, monkeypatch: pytest.MonkeyPatch, frames: int
+) -> None:
+    piece = piece_of(some.features["clip_0"], 12, 14)
+    whole = by_warping(some.ids, some.seconds, piece, None, some.load)
+    held: list[int] = []
+
+    def load(clip_ids: Sequence[str], name: str) -> Mapping[str, FloatArray]:
+        found = some.load(clip_ids, name)
+        held.append(sum(len(one) for one in found.values()) if len(found) > 1 else 0)
+        return found
+
+    monkeypatch.setattr(matches, "FRAMES_AT_ONCE", frames)
+    assert _rows(by_warping(some.ids, some.seconds, piece, None, load)) == _rows(whole)
+    assert max(held) <= frames
+
+
+def _rows(found: Candidates) -> list[tuple[int, float, float]]:
+    columns = found.owners.tolist(), found.starts.tolist(), found.ends.tolist()
+    return list(zip(*columns, strict=True))
+
+
+def test_regions_that_touch_are_one() -> None:
+    regions = [
+        Region(1, 0, 5),
+        Region(0, 7, 9),
+        Region(0, 0, 4),
+        Region(0, 3, 7),
+        Region(0, 12, 13),
+    ]
+    whole = merged(regions)
+    assert whole == [Region(0, 0, 9), Region(0, 12, 13), Region(1, 0, 5)]
+    assert all(one.clip < other.clip or one.stop < other.first for one, other in pairwise(whole))

@@ -1,0 +1,93 @@
+"""Merging and paging places, against the greedy loop over all pairs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.search.ranking.cursor import Position
+from app.search.windows import overlap_merging as module
+from app.search.windows.overlap_merging import MERGED, Candidates, Place, places
+
+Told = tuple[str, float, float, float]
+
+
+def candidates(rows: list[tuple[int, float, float, float]], clips: int = 3) -> Candidates:
+    """From (clip, start, end, distance); ids fall as numbers rise."""
+    owners, starts, ends, distances = np.array(rows, dtype=float).reshape(-1, 4).T
+    ids = np.array([f"clip_{clips - number}" for number in range(clips)], dtype=object)
+    return Candidates(ids, owners.astype(int), starts, ends, distances)
+
+
+def naive_places(found: Candidates) -> list[Told]:
+    rows = sorted(
+        (round(float(d), 9), str(found.ids[o]), float(s), float(e))
+        for o, s, e, d in zip(found.owners, found.starts, found.ends, found.distances, strict=True)
+    )
+    kept: list[Told] = []
+    for distance, clip, start, end in rows:
+        if not any(
+            clip == other and min(end, e) - max(start, s) > MERGED * min(end - start, e - s)
+            for other, s, e, _ in kept
+        ):
+            kept.append((clip, start, end, distance))
+    return kept
+
+
+def told(found: list[Place]) -> list[Told]:
+    return [(place.clip_id, place.start, place.end, place.distance) for place in found]
+
+
+@st.composite
+def _some(draw: st.DrawFn) -> Candidates:
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    count = draw(st.integers(0, 120))
+    starts = np.round(rng.uniform(0, 30, count), draw(st.sampled_from([0, 1])))
+    lengths = rng.choice([0.5, 1.0, 4.0, 9.0], count)
+    # few distances: many ties
+    distances = rng.integers(0, draw(st.sampled_from([3, 1000])), count) / 7
+    owners = rng.integers(0, 3, count)
+    columns = (owners, starts, starts + lengths, distances)
+    return candidates(list(zip(*columns, strict=True)))
+
+
+@given(found=_some(), first_look=st.sampled_from([1, 5, 2048]))
+@settings(max_examples=60, deadline=None)
+def test_they_are_those_of_the_greedy_loop(found: Candidates, first_look: int) -> None:
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(module, "FIRST_LOOK", first_look)
+        everything, more = places(found, 1000)
+    assert told(everything) == naive_places(found)
+    assert not more
+
+
+@given(found=_some(), size=st.integers(1, 7))
+@settings(max_examples=30, deadline=None)
+def test_pages_put_together_are_all_of_them(found: Candidates, size: int) -> None:
+    paged: list[Place] = []
+    after: Position | None = None
+    while True:
+        page, more = places(found, size, after)
+        paged += page
+        if not more:
+            break
+        assert len(page) == size
+        after = Position(len(paged), page[-1].distance, page[-1].key)
+    assert told(paged) == naive_places(found)
+
+
+def test_neighbours_that_hardly_overlap_are_two_places() -> None:
+    found = candidates([(0, 0.0, 2.0, 0.1), (0, 1.7, 3.7, 0.2), (0, 3.0, 5.0, 0.3)])
+    assert [place.start for place in places(found, 9)[0]] == [0.0, 1.7]
+
+
+def test_nothing_farther_than_asked_is_told() -> None:
+    found = candidates([(0, 0.0, 1.0, 0.1), (1, 0.0, 1.0, 0.2), (2, 0.0, 1.0, 0.3)])
+    assert [p.distance for p in places(found, 9, until=0.2)[0]] == [0.1, 0.2]
+
+
+def test_a_place_knows_which_candidate_it_was() -> None:
+    found = candidates([(0, 5.0, 6.0, 0.9), (1, 2.0, 3.0, 0.5)])
+    assert [place.index for place in places(found, 9)[0]] == [1, 0]
