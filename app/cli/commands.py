@@ -62,39 +62,39 @@ COMMANDS = {
         "verify",
         "Read the whole library and say what is damaged or missing; the exit code is then 1.",
     ),
-    "evaluate": CommandPlace("app.cli.evaluate", "program", "Figures on your own library."),
+    "evaluate": CommandPlace("app.cli.evaluate.app", "program", "Figures on your own library."),
     "keys": CommandPlace("app.cli.keys", "program", "API keys."),
     "db": CommandPlace("app.cli.db", "program", "The database."),
 }
 
 EVALUATIONS = {
     "retrieval": CommandPlace(
-        "app.cli.evaluate_retrieval",
+        "app.cli.evaluate.retrieval",
         "retrieval",
         "Each clip asks for the others; relevant is what carries the same task (Sun 2011).",
     ),
     "keyposes": CommandPlace(
-        "app.cli.evaluate_keyposes",
+        "app.cli.evaluate.keyposes",
         "keyposes",
         "Keyposes found against those that people named (Perera 2009, table 1, figs 3 to 6).",
     ),
     "low-dimensional": CommandPlace(
-        "app.cli.evaluate_low_dimensional",
+        "app.cli.evaluate.low_dimensional",
         "low_dimensional",
         "Motions drawn from few dimensions of keyposes, and of uniform poses (Perera 2009).",
     ),
     "symbols": CommandPlace(
-        "app.cli.evaluate_symbols",
+        "app.cli.evaluate.symbols",
         "symbols",
         "How many dimensions motion symbols need, and how well new ones are placed (Takano).",
     ),
     "recognition": CommandPlace(
-        "app.cli.evaluate_recognition",
+        "app.cli.evaluate.recognition",
         "recognition",
         "Person and task, held out by take, person, task and source (Vasilescu; Perera, 5).",
     ),
     "words": CommandPlace(
-        "app.cli.evaluate_words",
+        "app.cli.evaluate.words",
         "words",
         "Words for clips and clips for words, held out and in-sample, beside their frequency.",
     ),

@@ -1,0 +1,63 @@
+"""A confusion matrix as text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import typer
+
+from app.cli.output import WIDEST, print_table
+from app.evaluate import charts as pictures
+from app.numerics.arrays import FloatArray
+
+MOST_PAIRS = 25
+LEAST_SHOWN = 0.005
+"""Share that rounds to one per cent."""
+
+
+def print_confusion(classes: Sequence[str], shares: FloatArray) -> None:
+    """`shares` (C, C), 0..1, as per cent; a row is a true class, columns are their numbers.
+
+    Where that would be wider than WIDEST, the classes that are taken for others most often.
+    """
+    names = [f"{number:>2} {pictures.shown(name)}" for number, name in enumerate(classes, 1)]
+    width = max(map(len, names), default=0)
+    if width + 4 * len(names) > WIDEST:
+        _print_largest(classes, shares)
+        return
+    typer.echo(" " * width + "".join(f"{number:>4}" for number in range(1, len(names) + 1)))
+    for name, row in zip(names, shares, strict=True):
+        cells = [f"{100 * share:>4.0f}" if share >= LEAST_SHOWN else "   ." for share in row]
+        typer.echo(f"{name:<{width}}" + "".join(cells))
+
+
+def _print_largest(classes: Sequence[str], shares: FloatArray) -> None:
+    """The pairs of classes that are confused, the most often first."""
+    confused = shares * ~np.eye(len(classes), dtype=bool)
+    order = np.argsort(-confused, axis=None, kind="stable")
+    pairs = [divmod(int(place), len(classes)) for place in order]
+    told = [pair for pair in pairs if confused[pair] >= LEAST_SHOWN]
+    shown = told[:MOST_PAIRS]
+    if shown:
+        print_table(
+            ["true", "taken for", "%", "right, %"], [_row(classes, shares, *p) for p in shown]
+        )
+        typer.echo("")
+    typer.echo(
+        f"{len(classes)} classes, {_how_many(len(shown), len(told))};"
+        " --json and --pictures have the whole matrix."
+    )
+
+
+def _how_many(shown: int, told: int) -> str:
+    if not told:
+        return "none of which is taken for another"
+    return (
+        f"all {told} confusions" if shown == told else f"the {shown} largest of {told} confusions"
+    )
+
+
+def _row(classes: Sequence[str], shares: FloatArray, true: int, taken: int) -> list[object]:
+    names = [pictures.shown(classes[true]), pictures.shown(classes[taken])]
+    return [*names, *(round(100 * shares[true, one]) for one in (taken, true))]

@@ -1,0 +1,94 @@
+"""Where an evaluation's pictures go: looked at before the work, which may take minutes."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.cli.files import write_whole
+from app.errors import BadField
+from app.evaluate import charts as pictures
+from app.evaluate.charts import Format
+from app.services import fields
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """file: of one picture, whose ending tells its format; folder: of several, in
+    `folder_format`. None where none is wanted."""
+
+    file: Path | None
+    folder: Path | None
+    folder_format: Format
+
+    @classmethod
+    def prepared(
+        cls, file: Path | None = None, folder: Path | None = None, picture_format: str = "svg"
+    ) -> Drawing:
+        """Where the options say. Raises BadField for a format that is none and for a place that
+        cannot be written to, ExtraNeeded without matplotlib; leaves nothing behind."""
+        folder_format = pictures.format_of(Path(f"picture.{picture_format}"))
+        if file is not None:
+            pictures.format_of(file)
+            _check_file(file)
+        if folder is not None:
+            _check_folder("pictures", folder)
+        if file is not None or folder is not None:
+            pictures.need_plots()
+        return cls(file, folder, folder_format)
+
+    def draw_one(self, draw: Callable[[Format], bytes]) -> None:
+        """Draw into the file, where one is wanted."""
+        if self.file is not None:
+            self.file.parent.mkdir(parents=True, exist_ok=True)
+            write_whole(self.file, [draw(pictures.format_of(self.file))])
+
+    def draw_all(self, draw: Callable[[Format], Iterable[tuple[str, bytes]]]) -> None:
+        """Draw into the folder, by the names of files, where one is wanted."""
+        if self.folder is not None:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            for name, content in draw(self.folder_format):
+                write_whole(self.folder / name, [content])
+
+
+def _check_file(file: Path) -> None:
+    _check_folder("picture", file.parent)
+    try:
+        is_folder = file.is_dir()
+    except OSError as problem:  # a name that is too long
+        raise _unwritable("picture", file, problem) from None
+    if is_folder:
+        raise fields.bad_field("picture", f"{file} is a folder, not a file")
+
+
+def _check_folder(option: str, folder: Path) -> None:
+    """Whether files can be put there; only trying tells, of folders that the system makes up
+    and of those who may write anywhere."""
+    try:
+        made = [place for place in (folder, *folder.parents) if not place.exists()]
+    except OSError as problem:
+        raise _unwritable(option, folder, problem) from None
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as problem:
+        raise _unwritable(option, folder, problem) from None
+    finally:
+        for place in made:
+            with suppress(OSError):
+                place.rmdir()
+
+
+def _unwritable(option: str, folder: Path, problem: OSError) -> BadField:
+    reasons = {
+        FileExistsError: "there is a file of that name",
+        NotADirectoryError: "a part of that path is a file",
+        FileNotFoundError: "no folder can be made there",
+        PermissionError: "that is not permitted",
+    }
+    why = reasons.get(type(problem), problem.strerror)
+    return fields.bad_field(option, f"nothing can be written to {folder}: {why}")

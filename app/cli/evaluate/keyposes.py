@@ -1,0 +1,166 @@
+"""`kinedex evaluate keyposes`: Table 1 and figures 3 to 6 of Perera 2009 for one's own library."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from app import evaluate
+from app.cli.evaluate.drawing import Drawing
+from app.cli.evaluate.running import wanted_of
+from app.cli.options import FilterJson, PictureFormat
+from app.cli.output import AsJson, print_json, print_table, progress_bar
+from app.cli.settings import open_library
+from app.evaluate import KeyposeEvaluation
+from app.evaluate import charts as pictures
+from app.evaluate.keyposes import pictures as keypose_pictures
+from app.models.keyposes.matching import TOLERANCE
+from app.models.keyposes.thresholds import USUAL, ThresholdCurve
+from app.services.keypose_learning import told
+from app.services.library import Library
+from app.store.clips.record import ClipRecord
+
+Tolerance = Annotated[
+    float, typer.Option(help="Seconds by which a keypose may be missed and is still the same.")
+]
+Picture = Annotated[
+    Path | None,
+    typer.Option(help="Draw precision and recall over T1 and T2: a .svg, .png or .pdf file."),
+]
+Pictures = Annotated[
+    Path | None,
+    typer.Option(
+        "--pictures",
+        help="Draw energies, beats and keyposes of every clip, annotated or not, into this folder.",
+    ),
+]
+TOLD_EVERY = 2
+"""Of the values of a curve every second one is printed: that many fit a line."""
+
+
+def keyposes(
+    context: typer.Context,
+    tolerance: Tolerance = TOLERANCE,
+    filter_json: FilterJson = None,
+    picture: Picture = None,
+    pictures_dir: Pictures = None,
+    picture_format: PictureFormat = "svg",
+    as_json: AsJson = False,
+) -> None:
+    """Keyposes found against those that people named (Perera 2009, table 1, figs 3 to 6)."""
+    wanted = wanted_of(filter_json)
+    drawing = Drawing.prepared(picture, pictures_dir, picture_format)
+    with open_library(context) as lib:
+        if pictures_dir is not None:
+            clips = keypose_pictures.clips_to_draw(lib, wanted)
+            drawing.draw_all(lambda form: _clip_figures(lib, clips, form))
+            typer.echo(f"{len(clips)} pictures are in {pictures_dir}.\n", err=as_json)
+            if not evaluate.is_any_annotated(lib, wanted):
+                return  # the pictures were all that could be had
+        found = evaluate.judge_keyposes(lib, wanted, tolerance)
+    if as_json:
+        print_json(_document(found))
+    else:
+        _print(found)
+    drawing.draw_one(lambda form: keypose_pictures.threshold_figure(found, form))
+
+
+def _clip_figures(
+    lib: Library, clips: Sequence[ClipRecord], form: pictures.Format
+) -> Iterator[tuple[str, bytes]]:
+    """A picture of each clip, by its id: names are others', and not fit for files."""
+    with progress_bar() as bar:
+        for clip in bar.track(clips, description="drawing"):
+            yield f"{clip.id}.{form}", keypose_pictures.clip_figure(lib, clip, form)
+
+
+def _document(found: KeyposeEvaluation) -> dict[str, Any]:
+    return {
+        "tolerance": found.tolerance,
+        "recordings": found.recordings,
+        "clips": [
+            {
+                "clip_id": clip.clip_id,
+                "name": clip.name,
+                "task": clip.task,
+                "true": clip.true,
+                "methods": {
+                    method: {"found": counts.found, "correct": counts.correct}
+                    for method, counts in clip.counts.items()
+                },
+            }
+            for clip in found.clips
+        ],
+        "methods": {
+            judged.method: {
+                "held_out": told(judged.counts),
+                "usual_thresholds": told(judged.usual),
+                "learned": asdict(judged.learned),
+                "over_t1": _curve(judged.t1),
+                "over_t2": _curve(judged.t2),
+            }
+            for judged in found.methods
+        },
+    }
+
+
+def _curve(curve: ThresholdCurve) -> dict[str, list[float]]:
+    return {
+        "values": curve.values.tolist(),
+        "precision": curve.precision.tolist(),
+        "recall": curve.recall.tolist(),
+    }
+
+
+def _print(found: KeyposeEvaluation) -> None:
+    methods = [judged.method for judged in found.methods]
+    typer.echo(
+        f"Keyposes of {len(found.clips)} clips, right within {found.tolerance:g} s (table 1):\n"
+    )
+    print_table(
+        ["clip", "true", *(f"{what} {m[0]}" for m in methods for what in ("found", "right"))],
+        [
+            [clip.name, clip.true]
+            + [n for m in methods for n in (clip.counts[m].found, clip.counts[m].correct)]
+            for clip in found.clips
+        ],
+    )
+    typer.echo("\n" + ", ".join(f"{method[0]}: {method}" for method in methods) + ".\n")
+    print_table(
+        ["method", "thresholds", "T1", "T2", "found", "right", "precision", "recall", "F"],
+        [row for judged in found.methods for row in _rows(judged, found.recordings)],
+    )
+    typer.echo("\nlearned: what all clips teach; each is judged by what other recordings teach.\n")
+    for judged in found.methods:
+        for name, curve, held in (
+            ("T1", judged.t1, f"T2 = {judged.learned.t2:g}"),
+            ("T2", judged.t2, f"T1 = {judged.learned.t1:g}"),
+        ):
+            _print_curve(f"{judged.method}, {held}", name, curve)
+
+
+def _rows(judged: evaluate.JudgedKeyposes, recordings: int) -> list[list[object]]:
+    ways = [("usual", USUAL, judged.usual)]
+    if recordings > 1:
+        ways.insert(0, ("learned", judged.learned, judged.counts))
+    return [
+        [judged.method, name, pair.t1, pair.t2, counts.found, counts.correct,
+         counts.precision, counts.recall, counts.f]
+        for name, pair, counts in ways
+    ]  # fmt: skip
+
+
+def _print_curve(title: str, name: str, curve: ThresholdCurve) -> None:
+    """Precision and recall in lines of per cent, so that eleven values fit 80 columns."""
+    typer.echo(title)
+    for label, values, form in (
+        (name, curve.values, "{:5.2g}"),
+        ("precision", 100 * curve.precision, "{:5.0f}"),
+        ("recall", 100 * curve.recall, "{:5.0f}"),
+    ):
+        typer.echo(f"{label:<10}" + "".join(form.format(v) for v in values[::TOLD_EVERY]))
+    typer.echo("")

@@ -1,0 +1,131 @@
+"""`kinedex evaluate low-dimensional`: section 4 of Perera 2009 for one's own library."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from app import evaluate
+from app.analysis.low_dimensional.eigen_motion import Basis
+from app.cli.evaluate.drawing import Drawing
+from app.cli.evaluate.running import judging, wanted_of
+from app.cli.options import FilterJson, PictureFormat
+from app.cli.output import AsJson, print_json, print_table
+from app.evaluate import LowDimensionalEvaluation
+from app.evaluate.low_dimensional import pictures as low_dimensional_pictures
+
+Pictures = Annotated[
+    Path | None, typer.Option("--pictures", help="Draw figures 7 to 14 into this folder.")
+]
+
+
+def low_dimensional(
+    context: typer.Context,
+    filter_json: FilterJson = None,
+    pictures_dir: Pictures = None,
+    picture_format: PictureFormat = "svg",
+    as_json: AsJson = False,
+) -> None:
+    """Motions drawn from few dimensions of keyposes, and of uniform poses (Perera 2009)."""
+    wanted = wanted_of(filter_json)
+    drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
+    with judging(context, "drawing") as (lib, progress):
+        found = evaluate.judge_low_dimensional(lib, wanted, progress)
+    if as_json:
+        print_json(_document(found))
+    else:
+        _print(found)
+    drawing.draw_all(lambda form: low_dimensional_pictures.all_figures(found, form).items())
+
+
+def _document(found: LowDimensionalEvaluation) -> dict[str, Any]:
+    return {
+        "clips": found.clips,
+        "left_out": found.left_out,
+        "dimensions": [
+            {
+                "dimensions": row.dimensions,
+                "clips": row.clips,
+                "variance_kept": dict(row.variance),
+                "error_mm": {**row.error, "all_frames": row.best},
+                "keypose_better": row.keypose_better,
+            }
+            for row in found.dimensions
+        ],
+        "poses": [
+            {
+                "basis": row.name,
+                "frames": row.frames,
+                "implausible": row.implausible,
+                "faults": dict(row.faults),
+                "silhouette": row.silhouette,
+            }
+            for row in found.poses
+        ],
+        "more_clustered": found.more_clustered,
+        "groups": [
+            {
+                "task": row.task,
+                "persons": row.persons,
+                "poses": row.poses,
+                "variance_kept": dict(row.variance),
+                "error_mm": dict(row.error),
+                "silhouette": dict(row.silhouette),
+                "gap": dict(row.gap),
+            }
+            for row in found.groups
+        ],
+    }
+
+
+def _print(found: LowDimensionalEvaluation) -> None:
+    """Columns are told by k for keyposes and u for uniform poses: 80 characters must do."""
+    key, uniform = (basis.value for basis in Basis)
+    typer.echo(
+        f"{found.clips} clips, each drawn from its own keyposes (k) or as many uniform poses (u);"
+        f"\n{found.left_out} others have too few keyposes.\n"
+    )
+    print_table(
+        ["K'", "clips", "kept k", "kept u", "mm k", "mm u", "mm least", "k better"],
+        [
+            [row.dimensions, row.clips, row.variance[key], row.variance[uniform], row.error[key],
+             row.error[uniform], row.best, row.keypose_better]
+            for row in found.dimensions
+        ],
+    )  # fmt: skip
+    typer.echo(
+        "\nkept: variance of the model's own poses (eq. 9, fig. 11); mm: error of the whole "
+        "motion,\nat least that of the axes of all frames; k better: share of clips.\n"
+    )
+    faults = list(found.poses[0].faults)
+    print_table(
+        ["basis", "frames", "faulty", *(f.replace("_", " ") for f in faults), "clusters"],
+        [
+            [row.name, row.frames, row.implausible, *(row.faults[f] for f in faults),
+             row.silhouette]
+            for row in found.poses
+        ],
+    )  # fmt: skip
+    typer.echo(
+        "\nAt 3 dimensions; faulty: frames with a pose that no body takes (figs 13, 14);\n"
+        "clusters: silhouette of the model's poses (figs 7, 8). Keyposes cluster better in "
+        f"{found.more_clustered:.0%} of the clips.\n"
+    )
+    if found.groups:
+        _print_groups(found)
+
+
+def _print_groups(found: LowDimensionalEvaluation) -> None:
+    key, uniform = (basis.value for basis in Basis)
+    typer.echo("Several persons in one model, a clip of each, 3 dimensions (section 4.2):\n")
+    print_table(
+        ["task", "who", "K", "kept k", "kept u", "mm k", "mm u", "gap k", "gap u"],
+        [
+            [row.task, row.persons, row.poses, row.variance[key], row.variance[uniform],
+             row.error[key], row.error[uniform], row.gap[key], row.gap[uniform]]
+            for row in found.groups
+        ],
+    )  # fmt: skip
+    typer.echo("\ngap: by how much the silhouette exceeds that of poses without clusters.")

@@ -1,0 +1,63 @@
+"""`kinedex evaluate recognition`: who does what, held out, for one's own library."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app import evaluate
+from app.cli.evaluate.drawing import Drawing
+from app.cli.evaluate.recognition_document import document
+from app.cli.evaluate.recognition_tables import print_tables
+from app.cli.evaluate.running import judging, wanted_of
+from app.cli.options import FilterJson, PictureFormat
+from app.cli.output import AsJson, print_json
+from app.evaluate.recognition import pictures as recognition_pictures
+
+Methods = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--method",
+        help=f"Judge this one; may be repeated. One of {', '.join(evaluate.RECOGNISERS)}.",
+    ),
+]
+Rate = Annotated[
+    float | None,
+    typer.Option(
+        "--false-accept-rate",
+        help="Of default and perera, 0..1: how often something new may be called known.",
+    ),
+]
+Pictures = Annotated[
+    Path | None,
+    typer.Option("--pictures", help="Draw confusions and curves of the unknown into this folder."),
+]
+
+
+def recognition(
+    context: typer.Context,
+    method: Methods = None,
+    false_accept_rate: Rate = None,
+    filter_json: FilterJson = None,
+    pictures_dir: Pictures = None,
+    picture_format: PictureFormat = "svg",
+    as_json: AsJson = False,
+) -> None:
+    """Person and task, held out by take, person, task and source (Vasilescu; Perera, 5)."""
+    wanted = wanted_of(filter_json)
+    drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
+    with judging(context, "asking") as (lib, progress):
+        found = evaluate.judge_recognition(
+            lib,
+            wanted,
+            tuple(method or evaluate.RECOGNISERS),
+            false_accept_rate=false_accept_rate,
+            progress=progress,
+        )
+    if as_json:
+        print_json(document(found))
+    else:
+        print_tables(found)
+    drawing.draw_all(lambda form: recognition_pictures.all_figures(found, form).items())

@@ -1,0 +1,223 @@
+"""An evaluation of recognition as tables for people."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import typer
+
+from app.cli.evaluate.confusion_table import print_confusion
+from app.cli.output import print_table, print_text
+from app.evaluate import RecognitionEvaluation
+from app.evaluate.recognition.clips import names_of
+from app.evaluate.recognition.perera import PereraEvaluation
+from app.evaluate.recognition.results import HeldOut, Judged, WhenTold
+from app.evaluate.recognition.rounds import DRAWS, LeftOut
+from app.evaluate.recognition.shares import Recognised, Share, Unknown
+
+_WAYS = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
+MOST_SHOWN = 40
+"""Labels in a printed table; --json has all."""
+
+
+def print_tables(found: RecognitionEvaluation) -> None:
+    """The tables, the confusions of the first method, and what could not be judged."""
+    clips = found.clips
+    kinds = {"person": clips.persons, "task": clips.tasks, "source": clips.sources}
+    told = ", ".join(_counted(len(names_of(labels)), kind) for kind, labels in kinds.items())
+    typer.echo(f"{len(clips)} clips: {told}. No method has seen what it is asked about.")
+    _print_recognised(found)
+    _print_told(found.told)
+    for way, factor in _WAYS.items():
+        if way in found.held_out:
+            _print_new(found.held_out[way], factor)
+    if LeftOut.SOURCE in found.held_out:
+        _print_sources(found.held_out[LeftOut.SOURCE])
+    if found.perera is not None:
+        _print_perera(found.perera)
+    for kind, rows in (found.made or {}).items():
+        _print_made(kind, rows)
+    _print_confusions(found)
+    print_text("\n" + "\n".join(_remarks(found)))
+
+
+def _print_recognised(found: RecognitionEvaluation) -> None:
+    if LeftOut.TAKE in found.held_out:
+        _print_shares("A fifth of the takes left out in turn", found.held_out[LeftOut.TAKE])
+    for takes, held in found.takes.items():
+        _print_shares(f"{_counted(takes, 'take')} a cell learned, drawn {DRAWS} times", held)
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def _print_shares(title: str, held: HeldOut) -> None:
+    typer.echo(f"\n{title}; neither person nor task told, the best candidate counts:\n")
+    rows: list[list[object]] = [
+        [one.method, *_values(one.recognised), one.recognised.both.of] for one in held.methods
+    ]
+    person, task, both = held.chance
+    rows.append(["chance", task, person, both, held.methods[0].recognised.both.of])
+    print_table(["method", "task", "person", "both", "clips"], rows)
+
+
+def _values(found: Recognised) -> list[object]:
+    return [found.task.value, found.person.value, found.both.value]
+
+
+def _print_told(told: Sequence[WhenTold]) -> None:
+    if not told:
+        return
+    typer.echo("\nEach recording left out, the other label told or not (Vasilescu, 5):\n")
+    print_table(
+        ["method", "task", "person told", "person", "task told"],
+        [
+            [
+                one.method,
+                one.neither.task.value,
+                one.told.task.value,
+                one.neither.person.value,
+                one.told.person.value,
+            ]
+            for one in told
+        ],
+    )
+
+
+def _print_new(held: HeldOut, factor: str) -> None:
+    """Of persons (tasks) left out: their tasks (persons), and whether they are called new."""
+    other = "task" if factor == "person" else "person"
+    typer.echo(
+        f"\nA {factor} left out, {held.rounds} in turn: which {other} it is, whether the {factor} "
+        "is\ncalled new, and known ones known meanwhile (together: of a person at a task of "
+        "theirs):\n"
+    )
+    print_table(
+        ["method", other, "new", "known", "together", "balanced", "AUC", "EER", "worst"],
+        [_new_row(one, factor, other) for one in held.methods],
+    )
+    judged = next((one for one in held.methods if factor in one.unknown), None)
+    if judged is not None:
+        _print_categories(judged.method, judged.unknown[factor], factor)
+
+
+def _new_row(judged: Judged, factor: str, other: str) -> list[object]:
+    share: Share = getattr(judged.of_new, other)
+    found = judged.unknown.get(factor)
+    if found is None:
+        return [judged.method, share.value, *[None] * 7]
+    return [
+        judged.method,
+        share.value,
+        found.refused.value,
+        found.accepted.value,
+        found.accepted_together.value,
+        found.balanced_accuracy,
+        found.area_under_curve,
+        found.equal_error_rate,
+        found.worst.balanced_accuracy if found.worst else None,
+    ]
+
+
+def _print_categories(method: str, found: Unknown, factor: str) -> None:
+    """One by one, the worst first."""
+    ordered = sorted(found.categories, key=lambda one: (one.balanced_accuracy or 0.0, one.label))
+    typer.echo(f"\nOne by one, by {method}, the worst first:\n")
+    print_table(
+        [f"{factor} left out", "clips", "called new", "balanced", "else taken for"],
+        [
+            [one.label, one.refused.of, one.refused.value, one.balanced_accuracy, one.taken_for]
+            for one in ordered[:MOST_SHOWN]
+        ],
+    )
+    if len(ordered) > MOST_SHOWN:
+        typer.echo(f"... and {len(ordered) - MOST_SHOWN} more: --json tells all.")
+
+
+def _print_sources(held: HeldOut) -> None:
+    typer.echo(
+        "\nA source left out: its clips of tasks that others have too, by what they teach:\n"
+    )
+    names = list(held.methods[0].by_name)
+    print_table(
+        ["method", *(f"source {number}" for number in range(1, len(names) + 1)), "all"],
+        [
+            [
+                one.method,
+                *(one.by_name[name].task.value for name in names),
+                one.recognised.task.value,
+            ]
+            for one in held.methods
+        ],
+    )
+    for number, name in enumerate(names, 1):
+        clips = held.methods[0].by_name[name].task.of
+        typer.echo(f"source {number}: {name}, {clips} clips")
+    rows: list[list[object]] = [
+        [one.method, found.refused.value, found.accepted.value, found.balanced_accuracy,
+         found.area_under_curve]
+        for one in held.methods
+        if (found := one.unknown.get("task")) is not None
+    ]  # fmt: skip
+    if rows:
+        typer.echo("\nIts tasks that no other source has, called new:\n")
+        print_table(["method", "new", "known", "balanced", "AUC"], rows)
+
+
+def _print_perera(found: PereraEvaluation) -> None:
+    typer.echo(
+        f"\nPerera's experiments: {found.segments} segments between keyposes, of {found.persons} "
+        f"persons and {found.tasks}\ntasks; one cycle learned, another probed:\n"
+    )
+    rows: list[list[object]] = []
+    for reading, table in found.tables.items():
+        for row in table:
+            balanced = row.balanced_accuracy if row.known_probed else None
+            rows.append(
+                [
+                    row.table,
+                    reading.value,
+                    row.category.replace(" recognition", ""),
+                    row.probed,
+                    row.accuracy,
+                    balanced,
+                    row.paper,
+                ]
+            )
+    print_table(["table", "eq. 14", "recognition", "probed", "right", "balanced", "paper"], rows)
+
+
+def _print_made(kind: str, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Whose, and of what, the real clip is that is nearest to a made one, by how many given."""
+    given = {"new_task": "other persons", "new_person": "other tasks"}[kind]
+    typer.echo(
+        f"\nMotions made for cells left out, a {kind.replace('_', ' ')}: the labels of the nearest "
+        "real clip\nare right (Vasilescu, 7); at the right both, by baselines and of real takes:\n"
+    )
+    names = ("given", "trials", "person", "task", "hit", "effects", "task_mean", "real")
+    columns = [given, "trials", "person", "task", "both", "effects", "mean motion", "real"]
+    print_table(columns, [[row.get(name) for name in names] for row in rows])
+
+
+def _print_confusions(found: RecognitionEvaluation) -> None:
+    held = found.held_out.get(LeftOut.TAKE)
+    if held is None or not held.methods:
+        return
+    first = held.methods[0]
+    for factor, (names, shares) in first.confusion.items():
+        if names:
+            typer.echo(f"\nWhat {factor}s are taken for by {first.method}, takes left out, %:\n")
+            print_confusion(names, shares)
+
+
+def _remarks(found: RecognitionEvaluation) -> list[str]:
+    remarks = [
+        f"{method}: {1000 * seconds.fit:.0f} ms a fit, {1000 * seconds.probe:.2f} ms a probe "
+        "after its features (medians)."
+        for method, seconds in found.seconds.items()
+    ]
+    if found.clips.unlabelled:
+        remarks.append(f"{found.clips.unlabelled} clips carry neither label and were left out.")
+    return remarks + [f"Not judged, {name}: {why}" for name, why in found.not_judged.items()]

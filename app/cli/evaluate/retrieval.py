@@ -1,0 +1,159 @@
+"""`kinedex evaluate retrieval`: the tables and figures of Sun 2011 for one's own library."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+from app import evaluate
+from app.cli.evaluate.confusion_table import print_confusion
+from app.cli.evaluate.drawing import Drawing
+from app.cli.evaluate.running import judging, wanted_of
+from app.cli.options import FilterJson, PictureFormat
+from app.cli.output import AsJson, print_json, print_table, print_text
+from app.evaluate import RetrievalEvaluation, VolumeEvaluation
+from app.evaluate import charts as pictures
+from app.evaluate.retrieval import pictures as retrieval_pictures
+from app.search.example.methods import Method
+
+Classes = Annotated[
+    str | None,
+    typer.Option(help="Tasks of table 1, as walk,run,jump,kick; default: the four largest."),
+]
+Methods = Annotated[
+    list[Method] | None, typer.Option("--method", help="Judge this one; may be repeated.")
+]
+K = Annotated[int, typer.Option("--k", min=1, help="Look at so many of the nearest.")]
+Eta = Annotated[
+    float,
+    typer.Option(
+        min=0.0, help="Judge the MSV methods with this threshold too, in body lengths, as 0.3."
+    ),
+]
+Queries = Annotated[
+    int, typer.Option(min=1, help="At most so many clips ask, drawn evenly from the tasks.")
+]
+Picture = Annotated[
+    Path | None, typer.Option(help="Draw the confusion matrices: a .svg, .png or .pdf file.")
+]
+Pictures = Annotated[
+    Path | None,
+    typer.Option("--pictures", help="Draw confusions, vectors, convergence into this folder."),
+]
+
+
+def retrieval(
+    context: typer.Context,
+    classes: Classes = None,
+    method: Methods = None,
+    k: K = evaluate.K,
+    eta: Eta = 0.0,
+    queries: Queries = evaluate.MOST_QUERIES,
+    filter_json: FilterJson = None,
+    picture: Picture = None,
+    pictures_dir: Pictures = None,
+    picture_format: PictureFormat = "svg",
+    as_json: AsJson = False,
+) -> None:
+    """Each clip asks for the others; relevant is what carries the same task (Sun 2011)."""
+    wanted = wanted_of(filter_json)
+    names = None if classes is None else [name.strip() for name in classes.split(",")]
+    drawing = Drawing.prepared(picture, pictures_dir, picture_format)
+    with judging(context, "asking") as (lib, progress):
+        found = evaluate.judge_retrieval(
+            lib,
+            wanted,
+            method or evaluate.JUDGED,
+            classes=names,
+            k=k,
+            threshold=eta,
+            most_queries=queries,
+            progress=progress,
+        )
+        volumes = evaluate.judge_volumes(lib, wanted, classes=names, threshold=eta)
+    if as_json:
+        print_json(_document(found, volumes))
+    else:
+        _print(found, volumes)
+    drawing.draw_one(lambda form: _confusions(found, form))
+    drawing.draw_all(lambda form: retrieval_pictures.all_figures(found, volumes, form).items())
+
+
+def _confusions(found: RetrievalEvaluation, form: pictures.Format) -> bytes:
+    return retrieval_pictures.confusion_figure(found, retrieval_pictures.shown_ways(found), form)
+
+
+def _document(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> dict[str, Any]:
+    return {
+        "figures": [asdict(way.figures) for way in found.ways],
+        "true_positive_rates": {
+            "classes": found.chosen,
+            "k": found.k,
+            "mixture": found.mixture,
+            "methods": {
+                way.figures.method: {
+                    **dict(zip(found.chosen, way.rates.tolist(), strict=True)),
+                    "overall": way.overall,
+                }
+                for way in found.ways
+            },
+        },
+        "confusion": {
+            "classes": found.classes,
+            "k": found.k,
+            "methods": {way.figures.method: way.confusion.tolist() for way in found.ways},
+        },
+        "left_out": {"unlabelled": found.unlabelled, "alone": found.alone},
+        "volumes": {
+            "q": volumes.q,
+            "eta": volumes.threshold,
+            "clips": len(volumes.iterations),
+            "converged": volumes.converged,
+            "median_iterations": float(np.median(volumes.iterations)),
+            "most_iterations": max(volumes.iterations),
+            "compression": asdict(volumes.compression),
+        },
+    }
+
+
+def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
+    queries = found.ways[0].figures.queries if found.ways else 0
+    typer.echo(f"{queries} clips ask for the others of their task, among {found.mixture}:\n")
+    print_table(
+        ["method", "1-NN", "P@4", "P@20", "MAP"],
+        [list(asdict(way.figures).values())[:5] for way in found.ways],
+    )
+    typer.echo(f"\nTrue-positive rates: of the {found.k} nearest in the mixture (table 1):\n")
+    print_table(
+        ["method", *found.chosen, "overall"],
+        [[way.figures.method, *way.rates.tolist(), way.overall] for way in found.ways],
+    )
+    for way in found.ways:
+        if way.figures.method in retrieval_pictures.shown_ways(found):
+            typer.echo(f"\nWhat the {found.k} nearest are by {way.figures.method}, % (figure 8):\n")
+            print_confusion(found.classes, way.confusion)
+    print_text("\n" + "\n".join(_remarks(found, volumes)))
+
+
+def _remarks(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> list[str]:
+    compression = volumes.compression
+    remarks = [
+        f"Of a task with fewer than {found.k} other clips, as many of the nearest are looked at.",
+        f"Rank-1 factors (q = {volumes.q}) of {len(volumes.iterations)} clips of these tasks:"
+        f" {volumes.converged} converged, in {np.median(volumes.iterations):.0f} iterations"
+        f" (median; {max(volumes.iterations)} at most).",
+        f"Compression ratio (section 5.3): {compression.formula:.4f} by the formula,"
+        f" {compression.measured:.4f} as stored, of {compression.clips} clips"
+        f" with {compression.frames} frames.",
+    ]
+    if found.alone:
+        remarks.append(
+            f"{found.alone} clips are the only recording of their task: they asked nothing."
+        )
+    if found.unlabelled:
+        remarks.append(f"{found.unlabelled} clips carry no task and were left out.")
+    return remarks

@@ -1,0 +1,141 @@
+"""`kinedex evaluate words`: the tables and figures of Takano for one's own library."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from app import evaluate
+from app.cli.evaluate.drawing import Drawing
+from app.cli.evaluate.running import wanted_of
+from app.cli.options import FilterJson
+from app.cli.output import AsJson, print_json, print_table, print_text
+from app.cli.settings import open_library
+from app.evaluate import WordExample
+from app.models.held_out.words import (
+    LEAST_RECORDINGS,
+    RECALLS,
+    JudgedWord,
+    WordEvaluation,
+    WordFigures,
+)
+
+Queries = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--query",
+        help="Words of an example for table 2, as 'high kick'; may be repeated. "
+        "Default: the most frequent words.",
+    ),
+]
+Picture = Annotated[
+    Path | None, typer.Option(help="Draw recall against precision: a .svg, .png or .pdf file.")
+]
+MOST_SHOWN = 40
+"""Words in the printed table; --json has all."""
+
+
+def words(
+    context: typer.Context,
+    query: Queries = None,
+    filter_json: FilterJson = None,
+    picture: Picture = None,
+    as_json: AsJson = False,
+) -> None:
+    """Words for clips and clips for words, held out and in-sample, beside their frequency."""
+    wanted, drawing = wanted_of(filter_json), Drawing.prepared(picture)
+    with open_library(context) as lib:
+        found = evaluate.judge_words(lib, wanted)
+        examples = evaluate.word_examples(lib, query, wanted)
+    if as_json:
+        print_json(_document(found, examples))
+    else:
+        _print(found, examples)
+    drawing.draw_one(lambda form: evaluate.draw_words(found, form))
+
+
+def _document(found: WordEvaluation, examples: Sequence[WordExample]) -> dict[str, Any]:
+    document = asdict(found)
+    return document | {
+        "recalls": RECALLS.tolist(),
+        "least_recordings": LEAST_RECORDINGS,
+        "examples": [asdict(example) for example in examples],
+    }
+
+
+def _print(found: WordEvaluation, examples: Sequence[WordExample]) -> None:
+    typer.echo(
+        f"{found.clips} clips, {found.words} words. Held out, {found.folds} folds by recording:\n"
+    )
+    _print_figures(found.figures)
+    typer.echo("\nIn-sample, as the paper judged retrieval (section 3):\n")
+    _print_figures(found.in_sample)
+    typer.echo("\nPrecision of single words at a recall, held out (figure 7):\n")
+    _print_curves(found.figures)
+    for method, told in found.reliability.items():
+        print_text(
+            f"\nScores of {method} as probabilities, held out: expected calibration error "
+            f"{told.word_error:.4f} and Brier score {told.word_brier:.4f} of single words (by "
+            f"frequency {told.prior_brier:.4f}); {told.set_error:.4f} and {told.set_brier:.4f} "
+            "of whole label sets."
+        )
+    for kind, correlations in found.correlations.items():
+        shown = " ".join(f"{one:.3f}" for one in correlations)
+        print_text(f"Canonical correlations ({kind.replace('_', '-')}): {shown}")
+    typer.echo("\nWord by word, held out:\n")
+    _print_words(found.by_word)
+    for example in examples:
+        _print_example(example)
+
+
+def _print_figures(figures: Sequence[WordFigures]) -> None:
+    print_table(
+        ["method", "top-3 words", "word F", "word MAP", "set F", "set MAP"],
+        [
+            [f.method, f.top_3_recognition, f.word_f, f.word_map, f.set_f, f.set_map]
+            for f in figures
+        ],
+    )
+
+
+def _print_curves(figures: Sequence[WordFigures]) -> None:
+    places = range(2, len(RECALLS), 2)
+    print_table(
+        ["method", *(f"{RECALLS[place]:.1f}" for place in places)],
+        [[one.method, *(one.precision[place] for place in places)] for one in figures],
+    )
+
+
+def _print_words(by_word: Sequence[JudgedWord]) -> None:
+    judged = [one for one in by_word if not one.too_rare]
+    print_table(
+        ["word", "clips", "recordings", "AP", "F", "AUC"],
+        [
+            [o.word, o.clips, o.recordings, o.average_precision, o.f, o.area_under_curve]
+            for o in judged[:MOST_SHOWN]
+        ],
+    )
+    if len(judged) > MOST_SHOWN:
+        typer.echo(f"... and {len(judged) - MOST_SHOWN} words more: --json tells all.")
+    rare = [one.word for one in by_word if one.too_rare]
+    if rare:
+        more = "" if len(rare) <= MOST_SHOWN else f" and {len(rare) - MOST_SHOWN} more"
+        print_text(
+            f"Too rare to judge one by one, in fewer than {LEAST_RECORDINGS} recordings: "
+            f"{', '.join(rare[:MOST_SHOWN])}{more}."
+        )
+
+
+def _print_example(example: WordExample) -> None:
+    typer.echo(f"\nNearest to {', '.join(example.words)} in the correlated space (table 2):\n")
+    print_table(
+        ["clip", "distance / shortest", "carries", "words"],
+        [
+            [near.name, near.ratio, "yes" if near.carries else "", " ".join(near.words)]
+            for near in example.nearest
+        ],
+    )

@@ -1,0 +1,59 @@
+"""How good the methods are on a library's own labels: the figures of the papers.
+
+Retrieval goes through the very ranking that searches use. Words and recognition are held
+out: no clip is judged by a model that has seen it, or another file of its recording.
+"""
+
+from app.evaluate.keyposes.evaluation import (
+    JUDGED_KEYPOSES,
+    JudgedClip,
+    JudgedKeyposes,
+    KeyposeEvaluation,
+    is_any_annotated,
+    judge_keyposes,
+)
+from app.evaluate.low_dimensional.evaluation import LowDimensionalEvaluation, judge_low_dimensional
+from app.evaluate.recognition.evaluation import judge_recognition
+from app.evaluate.recognition.methods import METHODS as RECOGNISERS
+from app.evaluate.recognition.results import RecognitionEvaluation
+from app.evaluate.retrieval.evaluation import (
+    JUDGED,
+    MOST_QUERIES,
+    JudgedWay,
+    K,
+    RetrievalEvaluation,
+    RetrievalFigures,
+    judge_retrieval,
+)
+from app.evaluate.retrieval.volumes import VolumeEvaluation, judge_volumes
+from app.evaluate.words.evaluation import WordExample, draw_words, judge_words, word_examples
+from app.evaluate.words.symbols import draw_symbols, judge_symbols
+
+__all__ = [
+    "JUDGED",
+    "JUDGED_KEYPOSES",
+    "MOST_QUERIES",
+    "RECOGNISERS",
+    "JudgedClip",
+    "JudgedKeyposes",
+    "JudgedWay",
+    "K",
+    "KeyposeEvaluation",
+    "LowDimensionalEvaluation",
+    "RecognitionEvaluation",
+    "RetrievalEvaluation",
+    "RetrievalFigures",
+    "VolumeEvaluation",
+    "WordExample",
+    "draw_symbols",
+    "draw_words",
+    "is_any_annotated",
+    "judge_keyposes",
+    "judge_low_dimensional",
+    "judge_recognition",
+    "judge_retrieval",
+    "judge_symbols",
+    "judge_volumes",
+    "judge_words",
+    "word_examples",
+]

@@ -1,0 +1,23 @@
+"""Pictures of figures and curves, as SVG, PNG or PDF: the same input gives the same bytes.
+
+They need matplotlib, the extra `plots`; nothing else in Kinedex does.
+"""
+
+from app.evaluate.charts.confusion import confusion_picture, confusions_picture
+from app.evaluate.charts.curves import Curve, Panel, curves_picture
+from app.evaluate.charts.drawing import Format, format_of, need_plots, shown
+from app.evaluate.charts.scatter import Cloud, scatter_picture
+
+__all__ = [
+    "Cloud",
+    "Curve",
+    "Format",
+    "Panel",
+    "confusion_picture",
+    "confusions_picture",
+    "curves_picture",
+    "format_of",
+    "need_plots",
+    "scatter_picture",
+    "shown",
+]

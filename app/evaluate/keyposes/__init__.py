@@ -1,0 +1,1 @@
+"""Precision and recall of keyposes against annotations (Perera 2009)."""

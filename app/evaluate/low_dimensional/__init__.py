@@ -1,0 +1,1 @@
+"""Errors of low-dimensional motion (Perera 2009)."""

@@ -1,0 +1,247 @@
+"""Who does what (Vasilescu, Perera 5) on one's own library, by models that have not seen it.
+
+What cannot be judged on a library is told with the reason, never guessed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from statistics import median
+from typing import TypeVar
+
+from app.errors import NotEnoughLabels
+from app.evaluate.recognition.clips import JudgedClips, read_judged_clips, read_training
+from app.evaluate.recognition.methods import (
+    DEFAULT,
+    METHODS,
+    RANKING,
+    SIGNATURES,
+    Method,
+    methods_at,
+)
+from app.evaluate.recognition.perera import judge_perera
+from app.evaluate.recognition.results import (
+    HeldOut,
+    Judged,
+    Made,
+    RecognitionEvaluation,
+    Seconds,
+    WhenTold,
+)
+from app.evaluate.recognition.rounds import (
+    LeftOut,
+    Round,
+    rounds,
+    rounds_by_recording,
+    rounds_by_takes,
+)
+from app.evaluate.recognition.shares import (
+    Recognised,
+    Unknown,
+    chance,
+    confusion,
+    recognised,
+    unknown,
+)
+from app.evaluate.recognition.trials import Stopwatch, Trial, run, run_told
+from app.services import fields
+from app.services.library import Library
+from app.services.synthesis_fit import fit_on
+from app.store.clips.filter import ClipFilter
+
+FACTORS = ("person", "task")
+TAKES = (3, 1)
+"""Takes a cell that are learned from."""
+TOLD, MADE, PERERA = "told", "made", "perera"
+"""Vasilescu's and Perera's experiments, among what could not be judged."""
+
+Key = TypeVar("Key")
+Found = TypeVar("Found")
+Progress = Callable[[int, int], None]
+"""Told after each step: done, in all."""
+
+
+def judge_recognition(
+    lib: Library,
+    wanted: ClipFilter | None = None,
+    methods: Sequence[str] = tuple(METHODS),
+    *,
+    false_accept_rate: float | None = None,
+    progress: Progress | None = None,
+) -> RecognitionEvaluation:
+    """Of the ready clips that pass the filter, by each method.
+
+    false_accept_rate: above 0, below 1, of default and perera; where None its own threshold.
+    Raises BadField for an unknown method or a wrong rate, NotEnoughLabels below two labelled
+    clips.
+    """
+    _check(methods, false_accept_rate)
+    clips = read_judged_clips(lib, wanted)
+    if len(clips) < 2:
+        raise NotEnoughLabels("Two ready clips with a person or a task are needed to judge.")
+    known = methods_at(false_accept_rate)
+    found = judge_clips(clips, {name: known[name] for name in methods}, progress)
+    reasons = dict(found.not_judged)
+    perera = _or_reason(PERERA, reasons, lambda: judge_perera(lib, wanted))
+    made = _or_reason(MADE, reasons, lambda: _judge_made(lib, wanted))
+    return replace(found, perera=perera, made=made, not_judged=reasons)
+
+
+def _judge_made(lib: Library, wanted: ClipFilter | None) -> Made:
+    figures: Made = fit_on(lib.store, read_training(lib, wanted))[1]["held_out"]
+    return figures
+
+
+def _or_reason(name: str, reasons: dict[str, str], judge: Callable[[], Found]) -> Found | None:
+    """What is found, or None and among the reasons why not."""
+    try:
+        return judge()
+    except NotEnoughLabels as reason:
+        reasons[name] = reason.detail
+        return None
+
+
+def judge_clips(
+    clips: JudgedClips, methods: Mapping[str, Method], progress: Progress | None = None
+) -> RecognitionEvaluation:
+    """The same of clips that were read. What cannot be judged is in `not_judged`."""
+    reasons: dict[str, str] = {}
+
+    def plan(name: str, found: Callable[[], list[Round]]) -> list[Round]:
+        return _or_reason(name, reasons, found) or []
+
+    held = {way: plan(way.value, partial(rounds, clips, way)) for way in LeftOut}
+    takes = {n: plan(takes_key(n), partial(rounds_by_takes, clips, n)) for n in TAKES}
+    told = plan(TOLD, partial(rounds_by_recording, clips))
+    counted = (*held.values(), *takes.values(), told)
+    asking = _Asking(clips, methods, sum(map(len, counted)) * len(methods), progress, reasons)
+    return RecognitionEvaluation(
+        clips=clips,
+        held_out=_judged_ones({w: asking.held_out(w.value, found) for w, found in held.items()}),
+        takes=_judged_ones({n: asking.held_out(takes_key(n), found) for n, found in takes.items()}),
+        told=asking.told(told),
+        seconds=asking.seconds(),
+        not_judged=asking.reasons,
+    )
+
+
+def _judged_ones(found: Mapping[Key, HeldOut]) -> dict[Key, HeldOut]:
+    return {key: held for key, held in found.items() if held.methods}
+
+
+def takes_key(takes: int) -> str:
+    """What `takes` takes a cell are called among what could not be judged."""
+    return f"{takes}-takes"
+
+
+def _check(methods: Sequence[str], false_accept_rate: float | None) -> None:
+    for name in methods:
+        if name not in METHODS:
+            raise fields.bad_field("method", f"must be one of {', '.join(METHODS)}")
+    if false_accept_rate is not None and not 0 < false_accept_rate < 1:
+        raise fields.bad_field("false_accept_rate", "must be above 0 and below 1")
+
+
+class _Asking:
+    """Asks all methods, and counts the steps."""
+
+    def __init__(
+        self,
+        clips: JudgedClips,
+        methods: Mapping[str, Method],
+        steps: int,
+        progress: Progress | None,
+        reasons: dict[str, str],
+    ) -> None:
+        self._clips, self._methods, self._steps, self._progress = clips, methods, steps, progress
+        self._watches = {name: Stopwatch() for name in methods}
+        self._done = 0
+        self.reasons = reasons
+
+    def held_out(self, name: str, found: Sequence[Round]) -> HeldOut:
+        trials: dict[str, tuple[Trial, ...]] = {}
+        quickly = name not in set(_NEW) | {LeftOut.SOURCE}
+        for method, learn, watch in self._learners(quickly=quickly) if found else ():
+            try:
+                trials[method] = run(learn, self._seen_by(method), found, watch, self._step)
+            except NotEnoughLabels as reason:
+                self.reasons[f"{name}, {method}"] = reason.detail
+        every = next(iter(trials.values()), ())
+        judged = tuple(_judged(method, some, name) for method, some in trials.items())
+        return HeldOut(len(found), judged, chance(every))
+
+    def told(self, found: Sequence[Round]) -> tuple[WhenTold, ...]:
+        judged = []
+        for method, learn, watch in self._learners(quickly=True) if found else ():
+            try:
+                clips = self._seen_by(method)
+                neither, told = run_told(learn, clips, found, watch, self._step)
+            except NotEnoughLabels as reason:
+                self.reasons[f"{TOLD}, {method}"] = reason.detail
+            else:
+                judged.append(WhenTold(method, recognised(neither), recognised(told)))
+        return tuple(judged)
+
+    def _seen_by(self, method: str) -> JudgedClips:
+        if method == DEFAULT:
+            return self._clips.in_full()
+        return self._clips.in_angles() if method == SIGNATURES else self._clips
+
+    def _learners(self, *, quickly: bool) -> Iterator[tuple[str, Method, Stopwatch]]:
+        """The methods; quickly: only best candidates are wanted. Such fits are not timed."""
+        for name, method in self._methods.items():
+            if quickly and name in RANKING:
+                yield name, RANKING[name], Stopwatch()
+            else:
+                yield name, method, self._watches[name]
+
+    def seconds(self) -> dict[str, Seconds]:
+        return {
+            name: Seconds(median(watch.fits), median(watch.probes))
+            for name, watch in self._watches.items()
+            if watch.probes
+        }
+
+    def _step(self) -> None:
+        self._done += 1
+        if self._progress is not None:
+            self._progress(self._done, self._steps)
+
+
+_NEW: dict[str, str] = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
+"""Of which factor whole labels are left out."""
+
+
+def _judged(method: str, trials: Sequence[Trial], way: str) -> Judged:
+    factor = _NEW.get(way)
+    of_new: list[Trial] = []
+    if factor is not None:
+        # a label that the held-out takes alone carried is new too, but was not left out
+        trials = [t for t in trials if not t.of(factor).new or t.of(factor).truth in t.left_out]
+        of_new = [t for t in trials if t.of(factor).new]
+    return Judged(
+        method=method,
+        recognised=recognised(trials),
+        of_new=recognised(of_new),
+        unknown=_unknown(trials, way),
+        confusion={name: confusion(trials, name) for name in FACTORS},
+        by_name=_by_left_out(trials),
+    )
+
+
+def _unknown(trials: Sequence[Trial], way: str) -> dict[str, Unknown]:
+    """By factor, where whole labels of it were left out, or whole sources."""
+    factors = FACTORS if way == LeftOut.SOURCE else [_NEW[way]] if way in _NEW else []
+    found = {name: unknown(trials, name) for name in factors}
+    return {name: one for name, one in found.items() if one is not None}
+
+
+def _by_left_out(trials: Sequence[Trial]) -> dict[str, Recognised]:
+    """Shares by the labels that were left out, joined by commas."""
+    parties = sorted({trial.left_out for trial in trials if trial.left_out})
+    return {
+        ", ".join(party): recognised([t for t in trials if t.left_out == party])
+        for party in parties
+    }

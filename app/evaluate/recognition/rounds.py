@@ -1,0 +1,168 @@
+"""What is held out in turn: takes, a person, a task, a source, all but so many takes a cell."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from app.errors import NotEnoughLabels
+from app.evaluate.recognition.clips import JudgedClips, Labels, names_of
+from app.models.holding_out import FOLDS, LEAST_LABELS
+from app.numerics.arrays import IntArray
+
+MOST_ROUNDS = 40
+"""Labels (or recordings) beyond so many leave in parties, dealt evenly."""
+
+DRAWS = 5
+"""Times that takes are drawn from the cells."""
+
+
+class LeftOut(StrEnum):
+    """What a model has not seen of the clips that it is asked about."""
+
+    TAKE = "take"
+    """A fifth of the recordings; persons and tasks are mostly known from others."""
+    PERSON = "person"
+    """All clips of a person; known persons are asked about too."""
+    TASK = "task"
+    """All clips of a task; known tasks are asked about too."""
+    SOURCE = "source"
+    """All clips of a source."""
+
+
+@dataclass(frozen=True, slots=True)
+class Round:
+    """Learn from the clips at `train` and ask about those at `probe`, (n,) indices each.
+
+    left_out: the labels or sources that were left out whole; none where it is takes.
+    """
+
+    left_out: tuple[str, ...]
+    train: IntArray
+    probe: IntArray
+
+
+def rounds(clips: JudgedClips, left_out: LeftOut) -> list[Round]:
+    """In the order of the names. Raises NotEnoughLabels where nothing can be held out."""
+    found = {
+        LeftOut.TAKE: lambda: _by_fold(clips, FOLDS),
+        LeftOut.PERSON: lambda: _by_label(clips, "person"),
+        LeftOut.TASK: lambda: _by_label(clips, "task"),
+        LeftOut.SOURCE: lambda: _by_source(clips),
+    }[left_out]()
+    return _fit_to_judge(found)
+
+
+def rounds_by_recording(clips: JudgedClips) -> list[Round]:
+    """Each recording with both labels left out in turn (Vasilescu, section 7).
+
+    Raises NotEnoughLabels where no cell has a second take.
+    """
+    both = _both(clips)
+    folds = min(MOST_ROUNDS, len({clips.groups[i] for i in both}))
+    found = [
+        Round((), np.intersect1d(one.train, both), np.intersect1d(one.probe, both))
+        for one in _by_fold(clips, max(folds, 1))
+    ]
+    return _fit_to_judge(found)
+
+
+def rounds_by_takes(clips: JudgedClips, takes: int) -> list[Round]:
+    """`takes` takes of each cell to learn from, drawn anew DRAWS times, the others to ask about.
+
+    A take is a recording. Only cells with more than `takes` are there, so that each can be
+    asked about. Raises NotEnoughLabels unless those are of two persons and two tasks.
+    """
+    cells = {cell: some for cell, some in _takes(clips).items() if len(some) > takes}
+    persons, tasks = (len({cell[factor] for cell in cells}) for factor in (0, 1))
+    if min(persons, tasks) < 2:
+        raise NotEnoughLabels(
+            f"Two persons and two tasks with {takes + 1} takes each are needed; there are "
+            f"{len(cells)} such cells of {persons} persons and {tasks} tasks."
+        )
+    return [_drawn(cells, takes, seed) for seed in range(DRAWS)]
+
+
+def _both(clips: JudgedClips) -> IntArray:
+    pairs = enumerate(zip(clips.persons, clips.tasks, strict=True))
+    return np.array([i for i, labels in pairs if all(labels)], dtype=np.int64)
+
+
+def _takes(clips: JudgedClips) -> dict[tuple[str, str], list[list[int]]]:
+    """By person and task the takes, each the indices of its clips; in order of their names."""
+    cells: dict[tuple[str, str], dict[str, list[int]]] = defaultdict(lambda: defaultdict(list))
+    for i in _both(clips).tolist():
+        cell = clips.persons[i] or "", clips.tasks[i] or ""
+        cells[cell][clips.groups[i]].append(i)
+    return {cell: [some[name] for name in sorted(some)] for cell, some in sorted(cells.items())}
+
+
+def _drawn(cells: dict[tuple[str, str], list[list[int]]], takes: int, seed: int) -> Round:
+    rng = np.random.RandomState(seed)
+    train, probe = [], []
+    for some in cells.values():
+        order = rng.permutation(len(some)).tolist()
+        train += [clip for place in order[:takes] for clip in some[place]]
+        probe += [clip for place in order[takes:] for clip in some[place]]
+    return Round((), np.sort(train), np.sort(probe))
+
+
+def _by_fold(clips: JudgedClips, folds: int) -> Iterator[Round]:
+    fold = _folds(clips, folds)
+    for each in range(folds):
+        yield Round((), np.flatnonzero(fold != each), np.flatnonzero(fold == each))
+
+
+def _folds(clips: JudgedClips, folds: int) -> IntArray:
+    """(N,) fold of each clip: the recordings of a task, and of a cell, are dealt out in turn, so
+    that what was recorded twice is never wholly in one fold."""
+    keys = sorted(set(zip(_told(clips.tasks), _told(clips.persons), clips.groups, strict=True)))
+    place = {group: number % folds for number, (_, _, group) in enumerate(keys)}
+    return np.array([place[group] for group in clips.groups], dtype=np.int64)
+
+
+def _told(labels: Labels) -> list[str]:
+    return [label or "" for label in labels]
+
+
+def _by_label(clips: JudgedClips, factor: str) -> Iterator[Round]:
+    """All clips of a label are new; a fold of the others is held out as known ones."""
+    labels = clips.labels(factor)
+    names = names_of(labels)
+    if len(names) < LEAST_LABELS:
+        raise NotEnoughLabels(
+            f"{LEAST_LABELS} {factor}s are needed to leave one out; there are {len(names)}."
+        )
+    fold = _folds(clips, FOLDS)
+    for number, party in enumerate(_parties(names)):
+        new = np.array([label in party for label in labels])
+        held = fold == number % FOLDS
+        yield Round(tuple(party), np.flatnonzero(~(new | held)), np.flatnonzero(new | held))
+
+
+def _by_source(clips: JudgedClips) -> Iterator[Round]:
+    names = names_of(clips.sources)
+    if len(names) < 2:
+        raise NotEnoughLabels(
+            f"Two sources are needed to leave one out; the clips come from {len(names)}."
+        )
+    for party in _parties(names):
+        new = np.array([source in party for source in clips.sources])
+        yield Round(tuple(party), np.flatnonzero(~new), np.flatnonzero(new))
+
+
+def _parties(names: Sequence[str]) -> list[list[str]]:
+    """Each name alone, or with others where they are more than MOST_ROUNDS."""
+    count = min(len(names), MOST_ROUNDS)
+    return [list(names[place::count]) for place in range(count)]
+
+
+def _fit_to_judge(found: Iterator[Round] | Sequence[Round]) -> list[Round]:
+    usable = [one for one in found if len(one.train) >= 2 and len(one.probe)]
+    if not usable:
+        raise NotEnoughLabels("There are too few recordings to hold any out.")
+    return usable

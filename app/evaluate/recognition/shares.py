@@ -1,0 +1,230 @@
+"""Figures of trials: shares that were recognized, confusions, and how well new labels are found."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.evaluate.recognition.trials import Told, Trial
+from app.numerics.area_under_curve import area_under_curve
+from app.numerics.arrays import FloatArray
+from app.numerics.binomial import wilson_interval
+
+CURVE_POINTS = 101
+"""Of the curve of false acceptance against false rejection."""
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """`right` of `of` trials."""
+
+    right: int
+    of: int
+
+    @property
+    def value(self) -> float | None:
+        """0..1, None of no trials."""
+        return self.right / self.of if self.of else None
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Where the share of all such clips lies, with 95 % confidence (Wilson)."""
+        return wilson_interval(self.right, self.of)
+
+    @classmethod
+    def that(cls, hits: Iterable[bool]) -> Share:
+        """Of some yes and no."""
+        every = list(hits)
+        return cls(sum(every), len(every))
+
+
+@dataclass(frozen=True, slots=True)
+class Recognised:
+    """Shares of clips whose best candidate is right.
+
+    person, task: of the clips whose label the method has seen; both: of the clips whose person
+    and task it has both seen.
+    """
+
+    person: Share
+    task: Share
+    both: Share
+
+
+@dataclass(frozen=True, slots=True)
+class Category:
+    """The figures of one label that was left out of the training.
+
+    refused: its clips that were called new; accepted: the known clips of the same rounds that
+    were called known; taken_for: the label that most of its other clips got.
+    """
+
+    label: str
+    refused: Share
+    accepted: Share
+    taken_for: str | None
+
+    @property
+    def balanced_accuracy(self) -> float | None:
+        """Mean of the two shares."""
+        values = self.refused.value, self.accepted.value
+        return None if None in values else sum(filter(None, values)) / 2
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """How well a method separates labels that it has not seen from labels that it has.
+
+    refused: new clips that were called new; accepted: known clips that were called known;
+    accepted_together: the same for known clips whose person was seen at the same task;
+    area_under_curve: the chance that a new clip has a larger novelty than a known one;
+    categories: the figures of each label that was left out; curve: (P, 2) false acceptance and
+    false rejection at P thresholds.
+    """
+
+    refused: Share
+    accepted: Share
+    accepted_together: Share
+    area_under_curve: float
+    categories: tuple[Category, ...]
+    curve: FloatArray
+
+    @property
+    def false_acceptance(self) -> float:
+        """Share of new ones called known."""
+        return 1.0 - (self.refused.value or 0.0)
+
+    @property
+    def false_rejection(self) -> float:
+        """Share of known ones called new."""
+        return 1.0 - (self.accepted.value or 0.0)
+
+    @property
+    def balanced_accuracy(self) -> float:
+        """One half is chance."""
+        return 1.0 - (self.false_acceptance + self.false_rejection) / 2
+
+    @property
+    def equal_error_rate(self) -> float:
+        """The error at the threshold where false acceptance and false rejection are equal."""
+        place = int(np.argmin(np.abs(self.curve[:, 0] - self.curve[:, 1])))
+        return float(self.curve[place].mean())
+
+    @property
+    def worst(self) -> Category | None:
+        """The label with the smallest balanced accuracy."""
+        judged = [one for one in self.categories if one.balanced_accuracy is not None]
+        return min(judged, key=lambda one: one.balanced_accuracy or 0.0, default=None)
+
+
+def recognised(trials: Iterable[Trial]) -> Recognised:
+    """Closed-set shares of trials."""
+    judged = list(trials)
+    both = [t for t in judged if _is_judged(t.person) and _is_judged(t.task)]
+    return Recognised(
+        person=Share.that(t.person.right for t in judged if _is_judged(t.person)),
+        task=Share.that(t.task.right for t in judged if _is_judged(t.task)),
+        both=Share.that(t.person.right and t.task.right for t in both),
+    )
+
+
+def chance(trials: Iterable[Trial]) -> tuple[float | None, float | None, float | None]:
+    """The shares of person, task and both that guessing would reach; None without trials."""
+    judged = list(trials)
+    person = [1 / t.person.labels for t in judged if _is_judged(t.person)]
+    task = [1 / t.task.labels for t in judged if _is_judged(t.task)]
+    both = [
+        1 / (t.person.labels * t.task.labels)
+        for t in judged
+        if _is_judged(t.person) and _is_judged(t.task)
+    ]
+    return _mean(person), _mean(task), _mean(both)
+
+
+def unknown(trials: Sequence[Trial], factor: str) -> Unknown | None:
+    """None unless there are new ones and known ones of the factor "person" or "task"."""
+    pairs = [(trial, trial.of(factor)) for trial in trials if trial.of(factor).truth]
+    new = [told for _, told in pairs if told.new]
+    known = [told for _, told in pairs if not told.new]
+    if not new or not known:
+        return None
+    together = [told for trial, told in pairs if not told.new and trial.together]
+    known_novelty, new_novelty = _novelty(known), _novelty(new)
+    return Unknown(
+        refused=_refused(new),
+        accepted=_accepted(known),
+        accepted_together=_accepted(together),
+        area_under_curve=area_under_curve(new_novelty, known_novelty),
+        categories=_categories(pairs),
+        curve=_curve(known_novelty, new_novelty),
+    )
+
+
+def confusion(trials: Iterable[Trial], factor: str) -> tuple[tuple[str, ...], FloatArray]:
+    """The confusion matrix of the factor "person" or "task".
+
+    Returns C labels, sorted, and (C, C) shares: a row for each true label, a column for the label
+    that was answered. Only clips whose label had been seen count. The row of a label that was
+    answered but never true is 0.
+    """
+    judged = [told for told in (trial.of(factor) for trial in trials) if _is_judged(told)]
+    pairs = [(told.truth or "", told.guess.label or "") for told in judged if told.guess.label]
+    names = tuple(sorted({name for pair in pairs for name in pair}))
+    counts = np.zeros((len(names), len(names)))
+    for truth, guess in pairs:
+        counts[names.index(truth), names.index(guess)] += 1
+    return names, counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    return float(np.mean(values)) if values else None
+
+
+def _is_judged(told: Told) -> bool:
+    return told.truth is not None and not told.new
+
+
+def _refused(new: Iterable[Told]) -> Share:
+    return Share.that(not told.guess.known for told in new)
+
+
+def _accepted(known: Iterable[Told]) -> Share:
+    return Share.that(told.guess.known for told in known)
+
+
+def _categories(pairs: Sequence[tuple[Trial, Told]]) -> tuple[Category, ...]:
+    """A category for each label that was left out, by name; pairs: trials and their answers."""
+    names = sorted({told.truth or "" for _, told in pairs if told.new})
+    return tuple(_category(name, pairs) for name in names)
+
+
+def _category(name: str, pairs: Sequence[tuple[Trial, Told]]) -> Category:
+    own = [(trial, told) for trial, told in pairs if told.new and told.truth == name]
+    rounds = {trial.left_out for trial, _ in own}
+    known = [told for trial, told in pairs if not told.new and trial.left_out in rounds]
+    answers = [told for _, told in own]
+    return Category(name, _refused(answers), _accepted(known), _mostly_taken_for(answers))
+
+
+def _mostly_taken_for(new: Iterable[Told]) -> str | None:
+    """The label that most of the new ones got that were called known; the first of several."""
+    labels = sorted(told.guess.label or "" for told in new if told.guess.known)
+    return Counter(labels).most_common(1)[0][0] if labels else None
+
+
+def _novelty(some: Iterable[Told]) -> FloatArray:
+    """(n,) how new the method took each to be."""
+    return np.array([told.guess.novelty for told in some])
+
+
+def _curve(known: FloatArray, new: FloatArray) -> FloatArray:
+    """(P, 2) false acceptance and false rejection by rising threshold."""
+    every = np.unique(np.concatenate([known, new]))
+    cuts = np.concatenate([[every[0] - 1.0], every])
+    places = np.unique(np.linspace(0, len(cuts) - 1, CURVE_POINTS).round().astype(int))
+    accepted = np.searchsorted(np.sort(new), cuts[places], side="right") / len(new)
+    rejected = 1 - np.searchsorted(np.sort(known), cuts[places], side="right") / len(known)
+    return np.stack([accepted, rejected], axis=1)

@@ -1,0 +1,176 @@
+"""What methods say of clips that they have not seen, beside what is true."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.errors import NotEnoughLabels
+from app.evaluate.recognition.clips import JudgedClips
+from app.evaluate.recognition.methods import Guess, Judge, Method
+from app.evaluate.recognition.rounds import Round
+from app.models.held_out.recognition import Clips
+from app.numerics.arrays import FloatArray, IntArray
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """One factor of a probe: the truth, None where nobody knows; whether the method had not
+    seen that label; what it guessed; of how many labels."""
+
+    truth: str | None
+    new: bool
+    guess: Guess
+    labels: int
+
+    @property
+    def right(self) -> bool:
+        """Whether the best candidate is the true label, be it called known or not."""
+        return self.guess.label == self.truth
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A clip (its index) that was asked about while these labels, or sources, were left out.
+
+    together: whether the same person at the same task had been seen, not only each elsewhere.
+    """
+
+    clip: int
+    left_out: tuple[str, ...]
+    person: Told
+    task: Told
+    together: bool
+
+    def of(self, factor: str) -> Told:
+        """What was told of the factor "person" or "task"."""
+        return self.person if factor == "person" else self.task
+
+
+@dataclass(slots=True)
+class Stopwatch:
+    """Seconds that each fit, and each probe, took."""
+
+    fits: list[float] = field(default_factory=list)
+    probes: list[float] = field(default_factory=list)
+
+
+def run(
+    method: Method,
+    clips: JudgedClips,
+    rounds: Iterable[Round],
+    watch: Stopwatch,
+    step: Callable[[], None] = lambda: None,
+) -> tuple[Trial, ...]:
+    """Ask about each round's probes; rounds that teach too little for the method are left out.
+
+    `step` is called after each round. Raises NotEnoughLabels where no round is left.
+    """
+    trials: list[Trial] = []
+    reason = None
+    for one in rounds:
+        train = clips.part(one.train)
+        try:
+            start = time.perf_counter()
+            judge = method(train)
+            watch.fits.append(time.perf_counter() - start)
+        except NotEnoughLabels as too_few:
+            reason = too_few
+        else:
+            start = time.perf_counter()
+            guesses = judge(clips.samples[one.probe])
+            watch.probes.append((time.perf_counter() - start) / len(one.probe))
+            trials += _trials(clips, one, train, one.probe, guesses)
+        step()
+    if not trials and reason is not None:
+        raise reason
+    return tuple(trials)
+
+
+def run_told(
+    method: Method,
+    clips: JudgedClips,
+    rounds: Iterable[Round],
+    watch: Stopwatch,
+    step: Callable[[], None] = lambda: None,
+) -> tuple[tuple[Trial, ...], tuple[Trial, ...]]:
+    """As `run`, and the same where the person is asked with the task told, and the task with
+    the person (Vasilescu, section 5).
+
+    All probes have both labels; those with a label that is new to the method are left out.
+    Raises NotEnoughLabels where no probe is left.
+    """
+    neither: list[Trial] = []
+    either: list[Trial] = []
+    for one in rounds:
+        train = clips.part(one.train)
+        known = [i for i in one.probe.tolist() if _is_known(clips, i, train)]
+        judge = _learned(method, train, watch) if known else None
+        if judge is not None:
+            guesses = judge(clips.samples[known])
+            neither += _trials(clips, one, train, known, guesses)
+            who = _with_told(judge, clips, known, "task")
+            what = _with_told(judge, clips, known, "person")
+            guesses = [(who[i][0], what[i][1]) for i in known]
+            either += _trials(clips, one, train, known, guesses)
+        step()
+    if not neither:
+        raise NotEnoughLabels("No recording has a person and a task that others have too.")
+    return tuple(neither), tuple(either)
+
+
+def _learned(method: Method, train: Clips, watch: Stopwatch) -> Judge | None:
+    """What the method makes of these clips, None where they are too few for it."""
+    start = time.perf_counter()
+    try:
+        judge = method(train)
+    except NotEnoughLabels:
+        return None
+    watch.fits.append(time.perf_counter() - start)
+    return judge
+
+
+def _is_known(clips: JudgedClips, i: int, train: Clips) -> bool:
+    return clips.persons[i] in train.persons and clips.tasks[i] in train.tasks
+
+
+def _with_told(
+    judge: Judge, clips: JudgedClips, probes: Sequence[int], told: str
+) -> dict[int, tuple[Guess, Guess]]:
+    """By clip, what is said when its label of the factor `told` is known."""
+    labels = clips.labels(told)
+    found: dict[int, tuple[Guess, Guess]] = {}
+    for name in sorted({labels[i] or "" for i in probes}):
+        some = [i for i in probes if labels[i] == name]
+        samples: FloatArray = clips.samples[some]
+        guesses = judge(samples, task=name) if told == "task" else judge(samples, person=name)
+        found |= dict(zip(some, guesses, strict=True))
+    return found
+
+
+def _trials(
+    clips: JudgedClips,
+    one: Round,
+    train: Clips,
+    probes: Sequence[int] | IntArray,
+    guesses: Sequence[tuple[Guess, Guess]],
+) -> list[Trial]:
+    persons, tasks = ({label for label in labels if label} for labels in train[1:3])
+    cells = set(zip(train.persons, train.tasks, strict=True))
+    return [
+        Trial(
+            clip=i,
+            left_out=one.left_out,
+            person=_told(clips.persons[i], persons, who),
+            task=_told(clips.tasks[i], tasks, what),
+            together=(clips.persons[i], clips.tasks[i]) in cells,
+        )
+        for i, (who, what) in zip(np.asarray(probes).tolist(), guesses, strict=True)
+    ]
+
+
+def _told(truth: str | None, seen: set[str], guess: Guess) -> Told:
+    return Told(truth or None, truth not in seen, guess, len(seen))

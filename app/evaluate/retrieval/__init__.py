@@ -1,0 +1,1 @@
+"""Retrieval rates and confusion matrices (Sun 2011)."""

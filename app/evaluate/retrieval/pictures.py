@@ -1,0 +1,133 @@
+"""The figures of Sun 2011 for a library: confusion (8), convergence (7), vectors (6)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from app.evaluate.charts import Curve, Format, Panel, confusions_picture, curves_picture
+from app.evaluate.retrieval.evaluation import RetrievalEvaluation
+from app.evaluate.retrieval.volumes import VolumeEvaluation
+from app.motion.frame.body_frame import ANALYSIS_RATE
+from app.motion.roles.joint_roles import SUN_ROLES
+from app.numerics.arrays import FloatArray
+from app.numerics.tensors.rank1 import Rank1
+from app.search.example.methods import Method
+
+SIDE_BY_SIDE = (Method.MSV_XCORR, Method.MSV_DTW, Method.FUSED)
+"""Figure 8's two, and the default of searches."""
+ENOUGH_ITERATIONS = 5
+"""So many suffice, says the paper."""
+SMALLEST_DRAWN = 1e-16
+"""Changes of lambda below are rounding."""
+
+
+def shown_ways(evaluation: RetrievalEvaluation) -> tuple[str, ...]:
+    """Of which methods the confusion is shown where nothing else is wanted: all when few."""
+    there = tuple(way.figures.method for way in evaluation.ways)
+    return tuple(name for name in SIDE_BY_SIDE if name in there) or there[: len(SIDE_BY_SIDE)]
+
+
+def confusion_figure(evaluation: RetrievalEvaluation, names: Sequence[str], form: Format) -> bytes:
+    """The confusion matrices of these methods beside one another."""
+    matrices = {
+        f"{way.figures.method}, {evaluation.k} nearest": way.confusion
+        for way in evaluation.ways
+        if way.figures.method in names
+    }
+    return confusions_picture(matrices, evaluation.classes, form, columns="retrieved")
+
+
+def vectors_figure(volumes: VolumeEvaluation, form: Format) -> bytes:
+    """Above the primary, below the secondary vectors; one column a class, one curve a clip."""
+    joints = [role.value.replace("_", " ") for role in SUN_ROLES]
+    places = np.arange(float(len(joints)))
+    everything = [one for some in volumes.factors.values() for one in some]
+    rho_range = _range([one.primary for one in everything])
+    epsilon_range = _range([one.secondary for one in everything])
+    above = [
+        Panel(
+            [Curve(places, one.primary) for one in some],
+            title=f"{name} ({len(some)} clips)",
+            y_label="primary vector ρ" if first else "",
+            ticks=joints,
+            y_range=rho_range,
+        )
+        for first, (name, some) in _told(volumes)
+    ]
+    below = [
+        Panel(
+            [Curve(np.arange(len(one.secondary)) / ANALYSIS_RATE, one.secondary) for one in some],
+            x_label="seconds",
+            y_label="secondary vector ε" if first else "",
+            y_range=epsilon_range,
+        )
+        for first, (_, some) in _told(volumes)
+    ]
+    title = f"Rank-1 factors of the motion sequence volumes, q = {volumes.q}{_eta(volumes)}"
+    return curves_picture([*above, *below], form, title=title, columns=len(volumes.factors))
+
+
+def convergence_figure(volumes: VolumeEvaluation, form: Format) -> bytes:
+    """What the factors leave unexplained, and the change of lambda, after each iteration."""
+    errors = Panel(
+        _by_iteration(volumes, lambda one: one.errors),
+        title="|A - λ ρ∘ρ∘ε| / |A|",
+        x_label="iteration",
+        marked=[ENOUGH_ITERATIONS],
+    )
+    changes = Panel(
+        _by_iteration(volumes, lambda one: np.maximum(one.changes, SMALLEST_DRAWN)),
+        title="change of λ / λ",
+        x_label="iteration",
+        marked=[ENOUGH_ITERATIONS],
+        log_y=True,
+    )
+    title = f"Rank-1 decomposition, q = {volumes.q}{_eta(volumes)}"
+    return curves_picture([errors, changes], form, title=title)
+
+
+def _by_iteration(
+    volumes: VolumeEvaluation, values_of: Callable[[Rank1], FloatArray]
+) -> list[Curve]:
+    return [
+        Curve(np.arange(1.0, one.iterations + 1), values_of(one), name)
+        for name, some in volumes.factors.items()
+        for one in some
+    ]
+
+
+def all_figures(
+    evaluation: RetrievalEvaluation, volumes: VolumeEvaluation, form: Format
+) -> dict[str, bytes]:
+    """Every picture by file name; one confusion matrix a method."""
+    figures = {
+        f"confusion-{_file_name(way.figures.method)}.{form}": confusion_figure(
+            evaluation, [way.figures.method], form
+        )
+        for way in evaluation.ways
+    }
+    figures[f"vectors.{form}"] = vectors_figure(volumes, form)
+    figures[f"convergence.{form}"] = convergence_figure(volumes, form)
+    return figures
+
+
+def _told(volumes: VolumeEvaluation) -> list[tuple[bool, tuple[str, tuple[Rank1, ...]]]]:
+    return [(place == 0, item) for place, item in enumerate(volumes.factors.items())]
+
+
+def _range(vectors: Sequence[FloatArray]) -> tuple[float, float]:
+    """Limits that all columns of a row share, so that they can be compared by eye."""
+    low, high = (float(pick([pick(v) for v in vectors])) for pick in (np.min, np.max))
+    margin = 0.05 * (high - low) or 0.05
+    return low - margin, high + margin
+
+
+def _eta(volumes: VolumeEvaluation) -> str:
+    return f", η = {volumes.threshold:g}" if volumes.threshold else ""
+
+
+def _file_name(method: str) -> str:
+    return re.sub(r"[^a-z0-9.-]+", "-", method.replace("=", ""))

@@ -1,0 +1,110 @@
+"""What becomes of a library's motions as volumes: figures 6 and 7 and section 5.3 of Sun 2011."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.analysis.descriptors.motion_volume import compression_ratio
+from app.evaluate.retrieval.evaluation import HIDDEN_CLASSES
+from app.evaluate.retrieval.labelled import LabelledClips, read_labelled
+from app.evaluate.retrieval.rankings import Volumes
+from app.numerics.tensors.rank1 import Rank1
+from app.search.example.distances import EPSILON, RHO
+from app.services.library import Library
+from app.store.clips import arrays
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord
+
+MOST_OF_A_CLASS = 40
+"""Clips of a class whose vectors are told and drawn; more would only cover one another."""
+AT_ONCE = 256
+"""Clips whose arrays are measured at a time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Compression:
+    """What the factors of `clips` clips of `frames` frames in all take, of their 13 joints.
+
+    formula: section 5.3; measured: bytes of rho and epsilon by bytes of the joints'
+    positions, as the store holds them.
+    """
+
+    clips: int
+    frames: int
+    formula: float
+    measured: float
+
+
+@dataclass(frozen=True, slots=True)
+class VolumeEvaluation:
+    """Rank-1 factors of clips of some classes, by class, and what is saved by them.
+
+    q, threshold: of the self-similarity matrices; factors: at most MOST_OF_A_CLASS a class.
+    """
+
+    q: int
+    threshold: float
+    factors: dict[str, tuple[Rank1, ...]]
+    compression: Compression
+
+    @property
+    def iterations(self) -> tuple[int, ...]:
+        """Of each clip, how many iterations were made."""
+        return tuple(one.iterations for some in self.factors.values() for one in some)
+
+    @property
+    def converged(self) -> int:
+        """How many of the clips came to rest."""
+        return sum(one.converged for some in self.factors.values() for one in some)
+
+
+def judge_volumes(
+    lib: Library,
+    wanted: ClipFilter | None = None,
+    *,
+    classes: Sequence[str] | None = None,
+    q: int = 2,
+    threshold: float = 0.0,
+    step: Callable[[], None] = lambda: None,
+) -> VolumeEvaluation:
+    """Of the classes told, or of the largest four. Raises NotEnoughLabels, BadField."""
+    labelled = read_labelled(lib, wanted)
+    some = {
+        name: _some(labelled, name, MOST_OF_A_CLASS)
+        for name in labelled.chosen(classes, HIDDEN_CLASSES)
+    }
+    return VolumeEvaluation(
+        q=q,
+        threshold=threshold,
+        factors={
+            name: tuple(
+                Volumes.of(lib, members, q=q, threshold=threshold, step=step).factors.values()
+            )
+            for name, members in some.items()
+        },
+        compression=_compression(lib, labelled.clips),
+    )
+
+
+def _some(labelled: LabelledClips, name: str, most: int) -> list[ClipRecord]:
+    """Clips of a class, evenly spread over its clips by id where there are too many."""
+    members = [clip for clip in labelled.clips if clip.task == name]
+    places = np.unique(np.linspace(0, len(members) - 1, min(most, len(members))).round())
+    return [members[int(place)] for place in places]
+
+
+def _compression(lib: Library, measured: Sequence[ClipRecord]) -> Compression:
+    frames, kept, positions = [], 0, 0
+    for start in range(0, len(measured), AT_ONCE):
+        ids = [clip.id for clip in measured[start : start + AT_ONCE]]
+        with lib.store.read() as tx:
+            rhos, epsilons, joints = (
+                arrays.get_many(tx, ids, name) for name in (RHO, EPSILON, "role_positions")
+            )
+        frames += [len(epsilon) for epsilon in epsilons.values()]
+        kept += sum(array.nbytes for part in (rhos, epsilons) for array in part.values())
+        positions += sum(array.nbytes for array in joints.values())
+    return Compression(len(frames), sum(frames), compression_ratio(frames), kept / positions)

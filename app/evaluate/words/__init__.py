@@ -1,0 +1,1 @@
+"""Words from motion and motion from words (Takano)."""

@@ -1,0 +1,37 @@
+"""Motion symbols of a library: how well the space keeps their divergences (Takano, fig. 3)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.evaluate.charts import Curve, Format, Panel, curves_picture
+from app.models.held_out.symbols import SymbolFigures, symbol_figures
+from app.services.library import Library
+from app.services.training import read_training_set, ready_only
+from app.store.clips.filter import ClipFilter
+
+
+def judge_symbols(lib: Library, wanted: ClipFilter | None = None) -> SymbolFigures:
+    """The figures of the ready clips' symbols. Raises NotEnoughLabels."""
+    return symbol_figures(read_training_set(lib.store, ready_only(wanted)).symbols)
+
+
+def draw_symbols(found: SymbolFigures, form: Format) -> bytes:
+    """Error against dimensions (fig. 3), by how the points were found."""
+    dimensions = np.array([errors.dimensions for errors in found.errors], dtype=float)
+    curves = [
+        Curve(dimensions, np.array([getattr(errors, way) for errors in found.errors]), name)
+        for way, name in (
+            ("classical", "classical scaling"),
+            ("smacof", "SMACOF"),
+            ("s_stress", "error of eq. 3 minimised"),
+        )
+    ]
+    panel = Panel(
+        curves,
+        x_label="dimensions of the motion symbol space",
+        y_label="error T a pair (eq. 3)",
+        log_y=True,
+        marked=(10,),
+    )
+    return curves_picture([panel], form, title=f"{found.symbols} motion symbols", columns=1)

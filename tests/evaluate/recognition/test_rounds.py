@@ -1,0 +1,126 @@
+"""What is held out, and that nothing of it is learned."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.errors import NotEnoughLabels
+from app.evaluate.recognition.clips import JudgedClips
+from app.evaluate.recognition.rounds import (
+    DRAWS,
+    MOST_ROUNDS,
+    LeftOut,
+    rounds,
+    rounds_by_recording,
+    rounds_by_takes,
+)
+from tests.evaluate.recognition.recognition_library import invented, some
+
+
+@pytest.mark.parametrize("left_out", LeftOut)
+def test_nothing_asked_about_was_learned(left_out: LeftOut) -> None:
+    clips = invented(sources=2)
+    for one in rounds(clips, left_out):
+        recordings = [{clips.groups[i] for i in part.tolist()} for part in (one.train, one.probe)]
+        assert not recordings[0] & recordings[1]
+
+
+def test_takes_leave_each_once_and_no_label_wholly() -> None:
+    clips = invented()
+    found = rounds(clips, LeftOut.TAKE)
+    assert sorted(np.concatenate([one.probe for one in found]).tolist()) == list(range(len(clips)))
+    for one in found:
+        for labels in (clips.persons, clips.tasks):
+            assert {labels[i] for i in one.train.tolist()} == set(labels)
+
+
+def test_what_was_recorded_twice_can_be_learned() -> None:
+    clips = some(invented(), np.arange(70, 120))
+    rare = [7, 33]
+    clips = replace(clips, tasks=["rare" if i in rare else t for i, t in enumerate(clips.tasks)])
+    for one in rounds(clips, LeftOut.TAKE):
+        assert len(set(rare) & set(one.probe.tolist())) < 2
+
+
+@pytest.mark.parametrize("factor", ["person", "task"])
+def test_a_label_is_left_out_whole_beside_known_ones(factor: str) -> None:
+    clips = invented()
+    labels = clips.labels(factor)
+    found = rounds(clips, LeftOut(factor))
+    assert [one.left_out for one in found] == [(name,) for name in sorted(set(labels))]  # type: ignore[type-var]
+    for one in found:
+        assert one.left_out[0] not in {labels[i] for i in one.train.tolist()}
+        asked = Counter(labels[i] for i in one.probe.tolist())
+        assert asked[one.left_out[0]] == labels.count(one.left_out[0])
+        assert len(asked) > 1
+
+
+def test_many_labels_leave_in_parties() -> None:
+    clips = invented(persons=MOST_ROUNDS + 5, tasks=2, takes=2)
+    found = rounds(clips, LeftOut.PERSON)
+    assert len(found) == MOST_ROUNDS
+    assert sum(len(one.left_out) for one in found) == MOST_ROUNDS + 5
+
+
+def test_a_source_leaves_whole_and_alone() -> None:
+    clips = invented(sources=3)
+    for one in rounds(clips, LeftOut.SOURCE):
+        assert {clips.sources[i] for i in one.probe.tolist()} == set(one.left_out)
+        assert len(one.train) + len(one.probe) == len(clips)
+
+
+@given(takes=st.integers(1, 3), seed=st.integers(0, 20))
+def test_so_many_takes_of_each_cell_are_learned(takes: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    clips = some(invented(), np.sort(rng.choice(120, 90, replace=False)))
+    sizes = Counter(zip(clips.persons, clips.tasks, strict=True))
+    for one in rounds_by_takes(clips, takes):
+        learned = Counter((clips.persons[i], clips.tasks[i]) for i in one.train.tolist())
+        asked = Counter((clips.persons[i], clips.tasks[i]) for i in one.probe.tolist())
+        assert set(learned.values()) == {takes}
+        assert set(learned) == set(asked) == {cell for cell, size in sizes.items() if size > takes}
+        assert all(learned[cell] + asked[cell] == sizes[cell] for cell in learned)
+
+
+def test_two_files_of_a_recording_are_one_take() -> None:
+    clips = invented(persons=2, tasks=2, takes=2)
+    twice = some(clips, np.repeat(np.arange(len(clips)), 2))
+    found = rounds_by_takes(twice, 1)
+    assert len(found) == DRAWS
+    assert [len(one.train) for one in found] == [8] * DRAWS
+    with pytest.raises(NotEnoughLabels, match="with 3 takes each"):
+        rounds_by_takes(twice, 2)
+
+
+def test_draws_differ_and_are_the_same_each_time() -> None:
+    clips = invented()
+    first, again = rounds_by_takes(clips, 1), rounds_by_takes(clips, 1)
+    assert all((a.train == b.train).all() for a, b in zip(first, again, strict=True))
+    assert len({tuple(one.train.tolist()) for one in first}) == DRAWS
+
+
+def test_each_recording_leaves_alone_where_they_are_few() -> None:
+    clips = invented(persons=2, tasks=3, takes=2)
+    alone = sorted(one.probe.tolist() for one in rounds_by_recording(clips))
+    assert alone == [[i] for i in range(12)]
+    assert len(rounds_by_recording(invented())) == MOST_ROUNDS
+
+
+@pytest.mark.parametrize(
+    ("left_out", "clips", "told"),
+    [
+        (LeftOut.PERSON, invented(persons=2), "3 persons are needed to leave one out; there are 2"),
+        (LeftOut.TASK, invented(tasks=1), "3 tasks are needed to leave one out; there are 1"),
+        (LeftOut.SOURCE, invented(), "Two sources are needed"),
+        (LeftOut.TAKE, invented(1, 1, 2), "too few recordings"),
+    ],
+)
+def test_too_little_is_said(left_out: LeftOut, clips: JudgedClips, told: str) -> None:
+    with pytest.raises(NotEnoughLabels, match=told):
+        rounds(clips, left_out)

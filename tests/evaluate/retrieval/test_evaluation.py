@@ -1,0 +1,122 @@
+"""Query by example, judged on a library's own labels."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app import evaluate
+from app.errors import BadField, NotEnoughLabels
+from app.search.example.methods import Method
+from app.services import find
+from app.services.find import MotionQuery
+from app.services.library import Library
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord
+
+SUNS = (Method.MSV_DTW, Method.MSV_XCORR)
+
+
+def test_retrieval_counts_what_searches_answer(
+    ready_library: Library, ready_clips: list[ClipRecord]
+) -> None:
+    methods = [Method.FUSED, Method.VECTOR, *SUNS]
+    found = evaluate.judge_retrieval(ready_library, methods=methods)
+    told = [way.figures.method for way in found.ways]
+    assert told == [*methods, "msv-dtw q=1", "msv-xcorr q=1"]
+    for way in found.ways[: len(methods)]:
+        hits = 0
+        for clip in ready_clips:
+            asked = MotionQuery(clip.id, method=way.figures.method, limit=1)
+            hits += find.find_motion(ready_library, asked).items[0].clip.task == clip.task
+        assert way.figures.nearest == pytest.approx(hits / 12)
+        assert 0 <= way.figures.precision_at_4 <= 0.5
+        assert way.figures.precision_at_20 == pytest.approx(2 / 11)
+        assert 0 < way.figures.mean_average_precision <= 1
+
+
+def test_progress_reaches_its_end(ready_library: Library) -> None:
+    told: list[tuple[int, int]] = []
+    evaluate.judge_retrieval(
+        ready_library,
+        methods=[Method.VECTOR, Method.MSV_XCORR],
+        threshold=0.3,
+        progress=lambda *step: told.append(step),
+    )
+    # 12 queries by two methods, and by one with three other settings of 12 volumes each
+    assert told == [(done, 96) for done in range(1, 97)]
+
+
+def test_the_tables_of_the_paper(ready_library: Library) -> None:
+    found = evaluate.judge_retrieval(
+        ready_library, methods=[Method.VECTOR], classes=["kick", "walk"], k=2
+    )
+    (way,) = found.ways
+    assert (found.chosen, found.mixture, found.k) == (("kick", "walk"), 12, 2)
+    assert (found.unlabelled, found.alone) == (0, 0)
+    assert found.classes == ("bow", "kick", "walk", "wave")
+    assert way.confusion.shape == (4, 4)
+    np.testing.assert_allclose(way.confusion.sum(axis=1), 1.0)
+    # three clips a class: two are relevant, so that both look at the same two
+    np.testing.assert_allclose(way.rates, np.diag(way.confusion)[[1, 2]])
+    assert way.overall == pytest.approx(way.rates.mean())
+
+
+def test_with_a_threshold_above_all_distances_only_durations_are_compared(
+    ready_library: Library,
+) -> None:
+    found = evaluate.judge_retrieval(ready_library, methods=SUNS, threshold=50.0)
+    by_name = {way.figures.method: way for way in found.ways}
+    assert set(by_name) == {
+        *SUNS, "msv-dtw q=1", "msv-xcorr q=1",
+        "msv-dtw q=1 eta=50", "msv-xcorr q=1 eta=50",
+        "msv-dtw q=2 eta=50", "msv-xcorr q=2 eta=50",
+    }  # fmt: skip
+    # matrices of ones, whatever q
+    for method in SUNS:
+        q1, q2 = (by_name[f"{method} q={q} eta=50"].figures for q in (1, 2))
+        assert q1.mean_average_precision == pytest.approx(q2.mean_average_precision)
+
+
+def test_few_may_ask(ready_library: Library) -> None:
+    found = evaluate.judge_retrieval(ready_library, methods=[Method.VECTOR], most_queries=8)
+    assert found.ways[0].figures.queries == 8
+
+
+def test_a_filter_narrows_what_is_judged(ready_library: Library) -> None:
+    two = ClipFilter(task=("walk", "kick"))
+    found = evaluate.judge_retrieval(ready_library, two, [Method.VECTOR])
+    figures = found.ways[0].figures
+    assert (figures.queries, figures.nearest) == (6, 1.0)
+    assert figures.mean_average_precision > 0.9
+    np.testing.assert_allclose(found.ways[0].confusion, np.eye(2), atol=0.2)
+
+
+def test_a_library_without_labels_cannot_be_judged(lib: Library) -> None:
+    with pytest.raises(NotEnoughLabels):
+        evaluate.judge_retrieval(lib)
+    with pytest.raises(NotEnoughLabels):
+        evaluate.judge_volumes(lib)
+
+
+def test_one_task_alone_cannot_be_judged(ready_library: Library) -> None:
+    with pytest.raises(NotEnoughLabels, match="'walk': whatever is found is right"):
+        evaluate.judge_retrieval(ready_library, ClipFilter(task=("walk",)))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "place"),
+    [
+        ({"k": 0}, "k"),
+        ({"threshold": -0.1}, "threshold"),
+        ({"threshold": float("nan")}, "threshold"),
+        ({"most_queries": 0}, "queries"),
+        ({"classes": ["walk", "fly"]}, "classes"),
+    ],
+)
+def test_wrong_numbers_and_names_are_refused(
+    ready_library: Library, wrong: dict[str, object], place: str
+) -> None:
+    with pytest.raises(BadField) as refused:
+        evaluate.judge_retrieval(ready_library, **wrong)  # type: ignore[arg-type]
+    assert [p.location for p in refused.value.places] == [place]

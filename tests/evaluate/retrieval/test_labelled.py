@@ -1,0 +1,95 @@
+"""Which clips ask, and what counts as their like."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+
+import pytest
+
+from app.errors import BadField, NotEnoughLabels
+from app.evaluate.retrieval.labelled import LabelledClips, labelled_among
+from app.store.clips.record import ClipRecord
+
+
+def _clips(like: ClipRecord, *told: tuple[str, str, str | None]) -> list[ClipRecord]:
+    """Clips by (id, file name, task)."""
+    return [replace(like, id=i, file_name=name, task=task) for i, name, task in told]
+
+
+@pytest.fixture
+def some(ready_clips: list[ClipRecord]) -> list[ClipRecord]:
+    return _clips(
+        ready_clips[0],
+        ("a", "walk_1.bvh", "walk"),
+        ("b", "walk_2.bvh", "walk"),
+        ("c", "walk_2.amc", "walk"),
+        ("d", "run_1.bvh", "run"),
+        ("e", "run_2.bvh", "run"),
+        ("f", "bow_1.bvh", "bow"),
+        ("g", "bow_1.amc", "bow"),
+        ("h", "dance.bvh", "dance"),
+        ("i", "who_knows.bvh", None),
+    )
+
+
+def test_classes_are_tasks_of_two_recordings_the_largest_first(some: list[ClipRecord]) -> None:
+    labelled = labelled_among(some)
+    assert labelled.classes == ("walk", "run")  # one bow as two files cannot find another
+    assert [clip.id for clip in labelled.in_a_class] == list("abcde")
+    assert len(labelled.clips) == 8
+    assert labelled.unlabelled == 1
+
+
+def test_copies_of_the_recording_and_unlabelled_clips_are_not_judged(
+    some: list[ClipRecord],
+) -> None:
+    labelled = labelled_among(some)
+    judged = labelled.judge(some[1], ["c", "i", "f", "a", "d"], k=20)  # b's own copy is c
+    assert judged.precision.tolist() == pytest.approx([0, 1 / 3, 1 / 3])  # f a d are left
+    assert judged.average_precision == pytest.approx(1 / 2)
+    assert judged.retrieved.tolist() == [1.0, 0.0]  # of a, the first that is of a class
+
+
+def test_queries_are_drawn_evenly_and_the_same_each_time(ready_clips: list[ClipRecord]) -> None:
+    told = [(f"w{i:02}", f"w{i}.bvh", "walk") for i in range(30)]
+    told += [(f"r{i}", f"r{i}.bvh", "run") for i in range(4)]
+    labelled = labelled_among(_clips(ready_clips[0], *told))
+    assert len(labelled.queries(1000)) == 34
+    some = labelled.queries(10)
+    assert Counter(clip.task for clip in some) == {"walk": 6, "run": 4}
+    assert some == labelled.queries(10)
+    assert Counter(clip.task for clip in labelled.queries(1)) == {"walk": 1, "run": 1}
+
+
+def test_the_classes_of_table_1_are_those_told_or_the_largest(some: list[ClipRecord]) -> None:
+    labelled = labelled_among(some)
+    assert labelled.chosen(None, 1) == ("walk",)
+    assert labelled.chosen(["run", "walk", "run"], 4) == ("run", "walk")
+    with pytest.raises(BadField, match="'bow'; they do of walk, run"):
+        labelled.chosen(["bow"], 4)
+
+
+@pytest.mark.parametrize(
+    ("tasks", "message"),
+    [
+        ([], "No two ready clips carry the same task"),
+        ([None, None], "No two ready clips carry the same task"),
+        (["walk", "run"], "No two ready clips carry the same task"),
+        (["walk", "walk"], "All labelled clips carry the task 'walk'"),
+    ],
+)
+def test_what_cannot_be_judged_is_said(
+    ready_clips: list[ClipRecord], tasks: list[str | None], message: str
+) -> None:
+    told = [(str(i), f"{i}.bvh", task) for i, task in enumerate(tasks)]
+    with pytest.raises(NotEnoughLabels, match=message):
+        labelled_among(_clips(ready_clips[0], *told))
+
+
+def test_one_class_among_others_can_be_judged(ready_clips: list[ClipRecord]) -> None:
+    told = [("a", "a.bvh", "walk"), ("b", "b.bvh", "walk"), ("c", "c.bvh", "run")]
+    labelled: LabelledClips = labelled_among(_clips(ready_clips[0], *told))
+    assert labelled.classes == ("walk",)
+    judged = labelled.judge(labelled.clips[0], ["c", "b"], k=20)
+    assert (judged.true_positives, judged.retrieved.tolist()) == (0.0, [1.0])

@@ -1,0 +1,42 @@
+"""What becomes of a library's motions as volumes."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+
+from app import evaluate
+from app.analysis.descriptors.motion_volume import compression_ratio
+from app.evaluate.retrieval import volumes as under_test
+from app.services.library import Library
+from app.store.clips.record import ClipRecord
+
+
+def test_factors_by_class_and_how_they_converged(ready_library: Library) -> None:
+    found = evaluate.judge_volumes(ready_library, classes=["walk", "kick"])
+    assert {name: len(some) for name, some in found.factors.items()} == {"walk": 3, "kick": 3}
+    assert found.converged == len(found.iterations) == 6
+    assert all(3 < count < 60 for count in found.iterations)
+    assert all(len(one.primary) == 13 for some in found.factors.values() for one in some)
+
+
+def test_what_is_saved_is_what_the_formula_says(
+    ready_library: Library, ready_clips: list[ClipRecord]
+) -> None:
+    compression = evaluate.judge_volumes(ready_library).compression
+    assert compression.clips == 12
+    frames = [round((clip.duration or 0) * 30) for clip in ready_clips]
+    assert compression.frames == pytest.approx(sum(frames), abs=12)
+    assert compression.formula == pytest.approx(compression_ratio(frames), rel=0.01)
+    assert compression.measured == pytest.approx(compression.formula)
+
+
+def test_of_a_large_class_some_are_told(
+    ready_library: Library, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(under_test, "MOST_OF_A_CLASS", 2)
+    monkeypatch.setattr(under_test, "AT_ONCE", 5)
+    found = evaluate.judge_volumes(ready_library)
+    assert Counter(len(some) for some in found.factors.values()) == {2: 4}
+    assert found.compression.clips == 12
