@@ -13,7 +13,7 @@ import numpy as np
 
 from app.errors import KinedexError
 from app.json_stderr import json_stderr
-from app.services.analysis_pool import AnalysisPool, Limits, Order
+from app.services.library.analysis_pool import AnalysisPool, Limits, Order
 
 KEY = "kx_0123456789ab_" + "s" * 43
 

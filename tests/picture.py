@@ -15,12 +15,12 @@ from pathlib import Path
 from app.cli.library import follow, register, working
 from app.config import load_settings
 from app.demo.library import write_demo
-from app.services.find import MotionQuery, find_motion
-from app.services.hits import Hits
-from app.services.library import Library
-from app.services.stick_figure import TRUNK, text
-from app.services.thumbnail import HEIGHT, WIDTH
-from app.services.views import thumbnail_svg
+from app.services.figures.stick_figure import TRUNK, text
+from app.services.figures.thumbnail import HEIGHT, WIDTH
+from app.services.find.find import MotionQuery, find_motion
+from app.services.find.hits import Hits
+from app.services.library.library import Library
+from app.services.views.views import thumbnail_svg
 from app.store.clips import listing as clip_listing
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord

@@ -49,7 +49,7 @@ from app.api.schemas.synthesis import Synthesize
 from app.api.slow_bodies import SlowBodies
 from app.config import Settings
 from app.errors import KinedexError
-from app.services.library import Library
+from app.services.library.library import Library
 
 _SUMMARY = "Search human motion by example and by words, and ask who does what."
 _DESCRIPTION = """\

@@ -8,7 +8,7 @@ from fastapi.security.utils import get_authorization_scheme_param
 from starlette.datastructures import Headers
 
 from app.errors import Forbidden, Unauthorized
-from app.services.library import Library
+from app.services.library.library import Library
 from app.store import keys
 from app.store.database.engine import Tx
 from app.store.key_role import KeyRole

@@ -15,7 +15,7 @@ from fastapi.security import APIKeyHeader, HTTPAuthorizationCredentials, HTTPBea
 
 from app.api.callers import Caller
 from app.api.problems import NotReadyYet
-from app.services.library import Library
+from app.services.library.library import Library
 from app.store.key_role import KeyRole
 
 _bearer = HTTPBearer(auto_error=False, description="An API key (`kinedex keys create`).")

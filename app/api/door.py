@@ -18,7 +18,7 @@ from app.api.own_address import refuse_other_sites
 from app.api.paths import path_of
 from app.api.problems import NotReadyYet
 from app.errors import KinedexError
-from app.services.library import Library
+from app.services.library.library import Library
 
 PROBES = frozenset({"/livez", "/readyz"})
 """Whoever runs the service asks these, by any name; they hold nothing of the library."""

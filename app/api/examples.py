@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.api.callers import is_open
-from app.services.library import Library
+from app.services.library.library import Library
 from app.store.clips import listing as clip_listing
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipState

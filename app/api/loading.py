@@ -5,8 +5,8 @@ from __future__ import annotations
 import logging
 import threading
 
-from app.services.child_processes import import_libraries
-from app.services.library import Library
+from app.services.children.processes import import_libraries
+from app.services.library.library import Library
 
 log = logging.getLogger(__name__)
 

@@ -17,7 +17,7 @@ from fastapi.responses import Response
 
 from app.api.pieces import Pieces
 from app.numerics.arrays import FloatArray
-from app.services.views import MotionView
+from app.services.views.views import MotionView
 
 OCTETS = "application/octet-stream"
 NUMBERS_AT_ONCE = 50_000

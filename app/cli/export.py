@@ -12,7 +12,7 @@ from app.cli.files import write_whole
 from app.cli.output import AsJson, print_json
 from app.cli.settings import open_library
 from app.errors import BadField, Place
-from app.services.export_format import ExportFormat, ExportSkeleton
+from app.services.views.export_format import ExportFormat, ExportSkeleton
 
 
 def export(
@@ -43,8 +43,8 @@ def export(
     as_json: AsJson = False,
 ) -> None:
     """Export a clip as BVH, GLB, NPZ or CSV."""
-    from app.services import export as exporting
-    from app.services.low_dimensional import Reduction
+    from app.services.views import export as exporting
+    from app.services.views.low_dimensional import Reduction
 
     wanted = format or _by_ending(output)
     with open_library(context) as lib:

@@ -19,7 +19,7 @@ from app.search.example.methods import Method
 
 if TYPE_CHECKING:
     from app.api.schemas.recognition import Answer
-    from app.services.hits import Hits
+    from app.services.find.hits import Hits
     from app.store.files.files import Readable
 
 Query = Annotated[str, typer.Argument(help="A motion file, or the id of a stored clip.")]
@@ -67,7 +67,7 @@ def search(
     as_json: AsJson = False,
 ) -> None:
     """Find motions like one (a file or a stored clip), or motions for words."""
-    from app.services import find
+    from app.services.find import find
 
     if (query is None) == (not words):
         raise typer.BadParameter("give either a file or clip id, or --words")
@@ -120,7 +120,7 @@ def recognize(
 ) -> None:
     """Tell who it is, what they do, and in which words."""
     from app.api.schemas.recognition import Recognition
-    from app.services import recognise
+    from app.services.recognition import recognise
 
     with (
         open_library(context) as lib,

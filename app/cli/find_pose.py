@@ -40,7 +40,7 @@ def search_pose(
     as_json: AsJson = False,
 ) -> None:
     """Find the clips that take a pose, and when they do."""
-    from app.services.find_pose import PoseQuery, find_pose
+    from app.services.find.by_pose import PoseQuery, find_pose
 
     if (query is None) == (positions is None):
         raise typer.BadParameter("give either a file or clip id with --time, or --positions")

@@ -20,7 +20,7 @@ def fit(context: typer.Context, as_json: AsJson = False) -> None:
     """Fit the models on the library as it is now, and show their held-out figures."""
     from app.api.schemas.jobs import Job
     from app.cli.library import FAILURE, follow, working
-    from app.services import models
+    from app.services.training import models
     from app.store.jobs.record import JobState
 
     with open_library(context) as lib:

@@ -15,7 +15,7 @@ from app.cli.output import AsJson, print_json, print_table, progress_bar
 from app.cli.settings import open_library
 
 if TYPE_CHECKING:
-    from app.services.library import Library
+    from app.services.library.library import Library
     from app.store.jobs.record import JobRecord
 
 POLL_S = 0.2
@@ -57,7 +57,7 @@ def import_clips(
 
 def register(lib: Library, path: Path) -> JobRecord:
     """Take in every file below `path`, with a progress bar."""
-    from app.services import imports
+    from app.services.imports import imports
 
     with progress_bar() as bar:
         task = bar.add_task("registering", total=None)
@@ -85,7 +85,7 @@ def working(lib: Library) -> Iterator[None]:
 
 def follow(lib: Library, job_id: str, doing: str) -> JobRecord:
     """Show a job's progress until it has ended."""
-    from app.services import jobs
+    from app.services.clips import jobs
 
     with progress_bar() as bar:
         task = bar.add_task(doing, total=PROGRESS_STEPS)
@@ -99,7 +99,7 @@ def follow(lib: Library, job_id: str, doing: str) -> JobRecord:
 
 def fit_if_due(lib: Library) -> None:
     """Have the models fitted where the library has changed enough, and wait for that."""
-    from app.services import models
+    from app.services.training import models
 
     waiting = _open_fit(lib)
     if waiting is None:
@@ -112,7 +112,7 @@ def fit_if_due(lib: Library) -> None:
 
 def _open_fit(lib: Library) -> JobRecord | None:
     """A fit that is queued or being done, by this worker or another."""
-    from app.services import jobs
+    from app.services.clips import jobs
     from app.store.jobs.record import JobKind
 
     recent = jobs.list_jobs(lib, kind=JobKind.FIT, limit=RECENT).items
@@ -122,7 +122,7 @@ def _open_fit(lib: Library) -> JobRecord | None:
 def _document(lib: Library, job: JobRecord) -> dict[str, Any]:
     """The job as the API has it, its result with every file that is recorded."""
     from app.api.schemas.jobs import Job, JobFile
-    from app.services import jobs
+    from app.services.clips import jobs
 
     document: dict[str, Any] = Job.of(job).model_dump(mode="json")
     if document["result"] is not None:
@@ -146,8 +146,8 @@ def show_import(lib: Library, job: JobRecord) -> None:
 
 
 def _show_failures(lib: Library, job_id: str, absent: int) -> None:
-    from app.services import jobs
-    from app.services.import_plan import MOST_ABSENT
+    from app.services.clips import jobs
+    from app.services.imports.plan import MOST_ABSENT
     from app.store.jobs.import_files import FileOutcome
 
     failures = [

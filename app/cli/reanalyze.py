@@ -11,7 +11,7 @@ from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.settings import open_library
 
 if TYPE_CHECKING:
-    from app.services.library import Library
+    from app.services.library.library import Library
 
 
 def reanalyze(
@@ -31,7 +31,7 @@ def reanalyze(
     ready stay so, and searches find them, until the new analysis replaces the old one.
     """
     from app.cli.library import fit_if_due, working
-    from app.services import reanalysis
+    from app.services.clips import reanalysis
 
     with open_library(context) as lib:
         queued = reanalysis.requeue_outdated(lib)

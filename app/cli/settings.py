@@ -12,7 +12,7 @@ from app.errors import ConfigurationError
 
 if TYPE_CHECKING:
     from app.config import Settings
-    from app.services.library import Library
+    from app.services.library.library import Library
     from app.store.store import Store
 
 
@@ -51,7 +51,7 @@ def open_store(context: typer.Context) -> Iterator[Store]:
 @contextmanager
 def open_library(context: typer.Context) -> Iterator[Library]:
     """The library of the settings, closed at the end."""
-    from app.services.library import Library
+    from app.services.library.library import Library
 
     library = Library.open(settings_of(context))
     try:

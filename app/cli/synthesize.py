@@ -12,7 +12,7 @@ from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 
 if TYPE_CHECKING:
-    from app.services.synthesise import Synthesised
+    from app.services.synthesis.synthesise import Synthesised
 
 
 def synthesize(
@@ -32,7 +32,7 @@ def synthesize(
     as_json: AsJson = False,
 ) -> None:
     """Make a motion that a person never recorded, as a BVH file, and tell what to expect."""
-    from app.services.synthesise import SynthesisQuery, synthesise
+    from app.services.synthesis.synthesise import SynthesisQuery, synthesise
 
     if (person is None) == (not clip):
         raise typer.BadParameter("give either --person or --clip")
@@ -73,7 +73,7 @@ def _tell(made: Synthesised, path: Path) -> None:
 
 
 def _made_of(made: Synthesised) -> str:
-    from app.services.synthesis_plan import SynthesisKind
+    from app.services.synthesis.plan import SynthesisKind
 
     quality = made.quality
     if quality.kind is SynthesisKind.SEEN:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import logging
 import time
 
-from app.services import jobs
-from app.services.library import Library
+from app.services.clips import jobs
+from app.services.library.library import Library
 
 _log = logging.getLogger(__name__)
 

@@ -20,8 +20,9 @@ from typing import Any
 from app.config import Settings
 from app.errors import LeaseLost, NotFound, StorageError
 from app.logs import job_id
-from app.services import models, persons, reanalysis
-from app.services.library import Library
+from app.services.clips import persons, reanalysis
+from app.services.library.library import Library
+from app.services.training import models
 from app.store.clips import repository as clips
 from app.store.clips.record import ClipRecord
 from app.store.database.engine import Tx

@@ -14,10 +14,10 @@ from typing import Any, Protocol
 
 from app.analysis.analyse import Analysis
 from app.errors import AnalysisInterrupted, Canceled, ClipNotFound, KinedexError, StorageError
-from app.services import ingest
-from app.services.analysis_pool import AnalysisPool
-from app.services.child import ChildDied, ChildEnded
-from app.services.library import Library
+from app.services.children.child import ChildDied, ChildEnded
+from app.services.clips import ingest
+from app.services.library.analysis_pool import AnalysisPool
+from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
 from app.store.database.engine import Tx
 from app.store.jobs import leases, outcomes

@@ -9,12 +9,13 @@ from typing import Any
 
 from app.errors import KinedexError
 from app.logs import level_of_process
-from app.services import imports, ingest
-from app.services.analysis_pool import AnalysisPool
-from app.services.child_pool import ChildPool
-from app.services.child_processes import log_like_parent
-from app.services.fit_process import fit_in_child
-from app.services.library import Library, ingest_limits
+from app.services.children.pool import ChildPool
+from app.services.children.processes import log_like_parent
+from app.services.clips import ingest
+from app.services.imports import imports
+from app.services.library.analysis_pool import AnalysisPool
+from app.services.library.library import Library, ingest_limits
+from app.services.training.fit_process import fit_in_child
 from app.store.clips.record import ClipRecord
 from app.store.jobs import outcomes
 from app.store.jobs.record import ClaimedJob, JobKind

@@ -12,8 +12,8 @@ from urllib.parse import urlsplit
 import httpx2
 import pytest
 
-from app.services.manifest import Manifest
-from app.services.manifest_table import ManifestLimits
+from app.services.imports.manifest import Manifest
+from app.services.imports.manifest_table import ManifestLimits
 from tests.api.conftest import assert_problem
 from tests.live import Live
 

@@ -15,12 +15,12 @@ from app.analysis.descriptors.frame_features import frame_features
 from app.errors import BadContent
 from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
-from app.services import clips
-from app.services.clips import NewClip
-from app.services.library import Library
+from app.services.clips import catalogue as clips
+from app.services.clips.catalogue import NewClip
+from app.services.library.library import Library
 from tests.bodies import motion_of, turned_about_y
+from tests.libraries import work
 from tests.real_clips import manifest, real_clips
-from tests.services.conftest import work
 from tests.streams import Stream, at_rate, body_of, joined, npz_of, of_size, warped
 
 RATE = 30.0

@@ -49,10 +49,13 @@ from app.numerics import diffusion
 from app.numerics.alignment.dtw import dtw_distances
 from app.search.example import fusion
 from app.search.example.methods import LEARNED, Method
-from app.services import clips, find, imports, jobs
+from app.services.clips import catalogue as clips
+from app.services.clips import jobs
 from app.services.fields import MAX_LIMIT
-from app.services.find import MotionQuery
-from app.services.library import Library
+from app.services.find import find
+from app.services.find.find import MotionQuery
+from app.services.imports import imports
+from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
 from app.worker.loop import run_worker
 from tests.bench.page import Section

@@ -37,10 +37,10 @@ from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray, IntArray
 from app.search.windows import in_windows
 from app.search.windows.overlap_merging import Candidates, places
-from app.services import find
-from app.services.find import MotionQuery
-from app.services.hits import Hit
-from app.services.library import Library
+from app.services.find import find
+from app.services.find.find import MotionQuery
+from app.services.find.hits import Hit
+from app.services.library.library import Library
 from tests.bench.hidden_pieces import (
     COPIES,
     LENGTHS,

@@ -26,7 +26,7 @@ from app.config import Settings
 from app.models.words.symbol_space import LANDMARKS, symbol_distances
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
-from app.services.training import NAMES
+from app.services.training.training_set import NAMES
 from app.store import identity
 from app.store.database import tables as t
 from app.store.database.blobs import to_blob

@@ -10,7 +10,7 @@ from click.testing import Result
 from typer.testing import CliRunner
 
 from app.cli.main import program
-from app.services.library import Library
+from app.services.library.library import Library
 
 Run = Callable[..., Result]
 

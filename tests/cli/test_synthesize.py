@@ -9,10 +9,10 @@ import pytest
 
 from app.errors import NotFound
 from app.formats.read import read_recording
-from app.services.library import Library
+from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
 from tests.cli.in_process import Run, running
-from tests.services.conftest import ready_clips, ready_library, some_demo_clips  # noqa: F401
+from tests.libraries import ready_clips, ready_library, some_demo_clips  # noqa: F401
 
 
 @pytest.fixture

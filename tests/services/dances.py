@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
-from app.services import clips
-from app.services.clips import NewClip
-from app.services.library import Library
+from app.services.clips import catalogue as clips
+from app.services.clips.catalogue import NewClip
+from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
 from tests.cyclic_dances import CyclicDance
 from tests.formats.npz.files import npz

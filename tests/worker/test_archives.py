@@ -11,13 +11,15 @@ import pytest
 
 from app.demo import DemoClip, demo_clips
 from app.errors import FileDamaged
-from app.services import clips, imports, jobs
-from app.services.library import Library
+from app.services.clips import catalogue as clips
+from app.services.clips import jobs
+from app.services.imports import imports
+from app.services.library.library import Library
 from app.store.clips.record import ClipState
 from app.store.jobs.record import JobState
 from app.worker.sweeps import Sweeps
+from tests.libraries import settings_for, upload, work
 from tests.live import wait_until
-from tests.services.conftest import settings_for, upload, work
 
 
 @pytest.fixture

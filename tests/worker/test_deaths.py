@@ -18,16 +18,19 @@ import pytest
 
 from app.config import Settings
 from app.demo import DemoClip, demo_clips
-from app.services import analysis_pool, clips, jobs, models
-from app.services.library import Library
+from app.services.clips import catalogue as clips
+from app.services.clips import jobs
+from app.services.library import analysis_pool
+from app.services.library.library import Library
+from app.services.training import models
 from app.store.clips.record import ClipRecord, ClipState
 from app.store.database import ids
 from app.store.jobs import leases, outcomes
 from app.store.jobs.record import JobState
 from app.worker.loop import Worker, run_worker
 from tests.busy_processes import busy_children, children_of, repeated, server_of
+from tests.libraries import settings_for, upload
 from tests.live import wait_until
-from tests.services.conftest import settings_for, upload
 
 NET_S = 120.0
 
@@ -144,7 +147,7 @@ def test_after_many_kills_a_clip_is_tried_alone_and_then_given_up(
 def test_a_child_that_dies_by_its_own_work_counts(
     lib: Library, long_clip: DemoClip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.services.ingest.RETRY_DELAY_S", 0.0)
+    monkeypatch.setattr("app.services.clips.ingest.RETRY_DELAY_S", 0.0)
     clip = upload(lib, long_clip).clip
     with _worker_thread(lib.settings):
         for _ in range(lib.settings.job_max_attempts):

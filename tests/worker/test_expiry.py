@@ -9,13 +9,14 @@ from typing import Any
 import pytest
 from sqlalchemy import update
 
-from app.services import imports, jobs
-from app.services.library import Library
+from app.services.clips import jobs
+from app.services.imports import imports
+from app.services.library.library import Library
 from app.store.database.ids import utc_now
 from app.store.database.tables import jobs as table
 from app.worker.expiry import Expiry
-from tests.services.conftest import settings_for
-from tests.services.test_large_imports import archive_of
+from tests.libraries import settings_for
+from tests.services.imports.test_large_imports import archive_of
 
 
 def _library(folder: Path, **settings: Any) -> tuple[Library, str]:

@@ -21,12 +21,15 @@ import pytest
 from app.config import Settings
 from app.demo import DemoClip, demo_clips
 from app.errors import LeaseLost
-from app.services import clips, imports, jobs, models
-from app.services.library import Library
+from app.services.clips import catalogue as clips
+from app.services.clips import jobs
+from app.services.imports import imports
+from app.services.library.library import Library
+from app.services.training import models
 from app.store.clips.record import ClipRecord, ClipState
 from app.store.jobs.record import JobKind, JobRecord, JobState
 from app.worker.loop import Worker, run_worker
-from tests.services.conftest import settings_for, upload, work
+from tests.libraries import settings_for, upload, work
 
 SHORT_LEASES = {"job_lease_s": 1.0, "job_heartbeat_s": 0.2}
 

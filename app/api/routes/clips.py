@@ -18,9 +18,9 @@ from app.api.queries import file_of
 from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch, ClipQuery
 from app.api.schemas.jobs import Job
 from app.errors import ClipNotFound
-from app.services import clips
-from app.services.clips import NewClip, StoredFile
-from app.services.recordings import NewRecording
+from app.services.clips import catalogue as clips
+from app.services.clips.catalogue import NewClip, StoredFile
+from app.services.clips.recordings import NewRecording
 
 router = APIRouter(prefix="/v1/clips", tags=["clips"])
 

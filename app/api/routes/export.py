@@ -13,8 +13,8 @@ from app.api.deps import Lib, reads
 from app.api.openapi import ClipId, refusals
 from app.api.pieces import Pieces
 from app.api.schemas.export import ExportQuery
-from app.services.export import export
-from app.services.export_format import ExportFormat
+from app.services.views.export import export
+from app.services.views.export_format import ExportFormat
 
 router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
 

@@ -10,7 +10,7 @@ from app.api.deps import Lib
 from app.api.openapi import refusals
 from app.api.problems import NotReadyYet, Unhealthy
 from app.api.schemas.health import Alive, Ready
-from app.services.library import Library
+from app.services.library.library import Library
 
 router = APIRouter(tags=["service"])
 

@@ -13,7 +13,7 @@ from app.api.deps import Lib, writes
 from app.api.openapi import body, refusals
 from app.api.schemas.imports import ImportForm
 from app.api.schemas.jobs import Job, JobStarted
-from app.services import imports
+from app.services.imports import imports
 
 router = APIRouter(prefix="/v1/imports", tags=["clips"])
 

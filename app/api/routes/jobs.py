@@ -15,8 +15,8 @@ from app.api.deps import Lib, reads, writes
 from app.api.openapi import JobId, refusals
 from app.api.schemas.jobs import Job, JobFile, JobFileList, JobFileQuery, JobList, JobQuery
 from app.errors import JobNotFound
-from app.services import jobs
-from app.services.library import Library
+from app.services.clips import jobs
+from app.services.library.library import Library
 from app.store.jobs.record import JobRecord
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])

@@ -11,7 +11,7 @@ from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.keyposes import KeyposeQuery, Keyposes, KeyposesNamed, NamedKeyposes
-from app.services import keyposes
+from app.services.views import keyposes
 
 router = APIRouter(prefix="/v1/clips/{clip_id}/keyposes", tags=["clips"])
 

@@ -11,7 +11,8 @@ from app.api.admission import changes, quick
 from app.api.deps import Lib, reads, writes
 from app.api.openapi import refusals
 from app.api.schemas.labels import LabelPage, NamedCounts, WordBeginning
-from app.services import labels, persons, suggestions
+from app.services.clips import labels, persons
+from app.services.recognition import suggestions
 from app.store.clips.labels import LabelKind
 
 MOST_WORDS, MOST_COMPLETIONS = 1000, 10

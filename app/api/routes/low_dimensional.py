@@ -17,8 +17,8 @@ from app.api.schemas.low_dimensional import (
     LowDimensionalQuery,
 )
 from app.api.streams import as_json, as_octets, wants_octets
-from app.services import low_dimensional
-from app.services.animations import animation_svg
+from app.services.views import low_dimensional
+from app.services.views.animations import animation_svg
 
 router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
 

@@ -12,8 +12,8 @@ from app.api.deps import Lib, reads, writes
 from app.api.openapi import refusals
 from app.api.schemas.jobs import Job, JobStarted
 from app.api.schemas.models import Model, ModelList, ModelPatch, UnfittedModel
-from app.services import models
-from app.services.errors_in_force import errors_in_force
+from app.services.training import models
+from app.services.training.errors_in_force import errors_in_force
 
 router = APIRouter(prefix="/v1/models", tags=["models"])
 

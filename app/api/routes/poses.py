@@ -9,8 +9,8 @@ from app.api.bodies import require_json
 from app.api.deps import Lib, reads
 from app.api.openapi import refusals
 from app.api.schemas.pose import PoseHits, PoseSearch
-from app.services import find_pose
-from app.services.find_pose import PoseQuery
+from app.services.find import by_pose as find_pose
+from app.services.find.by_pose import PoseQuery
 
 router = APIRouter(prefix="/v1/search", tags=["search"])
 

@@ -12,8 +12,8 @@ from app.api.deps import Lib, reads
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, exactly_one, file_of
 from app.api.schemas.recognition import Recognition, Recognize, RecognizeForm
-from app.services import recognise
-from app.services.recognise import RecogniseQuery
+from app.services.recognition import recognise
+from app.services.recognition.recognise import RecogniseQuery
 
 router = APIRouter(prefix="/v1/recognize", tags=["recognition"])
 

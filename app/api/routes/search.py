@@ -12,8 +12,8 @@ from app.api.deps import Lib, reads
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, exactly_one, file_of
 from app.api.schemas.search import MotionHits, MotionSearch, MotionSearchForm, WordHits, WordSearch
-from app.services import find
-from app.services.find import MotionQuery, WordQuery
+from app.services.find import find
+from app.services.find.find import MotionQuery, WordQuery
 
 router = APIRouter(prefix="/v1/search", tags=["search"])
 

@@ -8,7 +8,7 @@ from app.api.admission import heavy
 from app.api.deps import Lib, reads
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.segments import SegmentList
-from app.services.segments import list_segments
+from app.services.views.segments import list_segments
 
 router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
 

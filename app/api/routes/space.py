@@ -10,7 +10,7 @@ from app.api.admission import heavy
 from app.api.deps import Lib, reads
 from app.api.openapi import refusals
 from app.api.schemas.space import SpaceMap, SpaceQuery
-from app.services import space
+from app.services.find import map as space
 
 router = APIRouter(prefix="/v1/space", tags=["search"], dependencies=[reads])
 

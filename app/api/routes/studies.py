@@ -26,8 +26,8 @@ from app.api.schemas.studies import (
 )
 from app.api.schemas.views import Motion
 from app.api.streams import as_json, as_octets, wants_octets
-from app.services import studies
-from app.services.studies import Side
+from app.services.views import studies
+from app.services.views.studies import Side
 
 router = APIRouter(tags=["studies"])
 

@@ -12,7 +12,7 @@ from app.api.deps import Lib, reads, writes
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.clips import Clip
 from app.api.schemas.labels import AcceptedWords, WordSuggestions
-from app.services import suggestions
+from app.services.recognition import suggestions
 
 router = APIRouter(prefix="/v1/clips/{clip_id}/word-suggestions", tags=["clips"])
 

@@ -10,7 +10,7 @@ from app.api.openapi import ClipId, refusals
 from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.schemas.symbols import SymbolMotion, channels_json
 from app.api.streams import as_json, as_octets, wants_octets
-from app.services import symbol_motion
+from app.services.views import symbol_motion
 
 router = APIRouter(tags=["clips"], dependencies=[reads])
 

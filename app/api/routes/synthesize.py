@@ -11,8 +11,8 @@ from app.api.openapi import refusals
 from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.schemas.synthesis import Synthesis, Synthesize
 from app.api.streams import as_octets, wants_octets
-from app.services import synthesise
-from app.services.synthesise import SynthesisQuery
+from app.services.synthesis import synthesise
+from app.services.synthesis.synthesise import SynthesisQuery
 
 router = APIRouter(prefix="/v1/synthesize", tags=["recognition"])
 

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 from app.motion.roles.joint_roles import JointRole
 from app.search.index.filters import LONGEST_LABEL, MOST_LABELS
 from app.services import fields
-from app.services.frame_rates import LEAST_FPS, MOST_FPS
+from app.services.views.frame_rates import LEAST_FPS, MOST_FPS
 from app.store.database.paging import MAX_CURSOR_LENGTH
 
 Value = TypeVar("Value")

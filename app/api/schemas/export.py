@@ -6,7 +6,7 @@ from pydantic import Field
 
 from app.api.schemas.base import Fps
 from app.api.schemas.low_dimensional import ReductionFields
-from app.services.export_format import ExportFormat, ExportSkeleton
+from app.services.views.export_format import ExportFormat, ExportSkeleton
 
 
 class ExportQuery(ReductionFields):

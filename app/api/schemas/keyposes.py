@@ -10,7 +10,7 @@ from app.api.schemas.base import Incoming, Outgoing, Seconds
 from app.api.schemas.views import Point, plain
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.services.fields import MAX_KEYPOSES
-from app.services.keyposes import KeyposesView
+from app.services.views.keyposes import KeyposesView
 
 Source = Literal["given", "learned", "default"]
 

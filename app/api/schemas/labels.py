@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pydantic import Field
 
 from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, PartOfName, Words
-from app.services.labels import LabelCount
+from app.services.clips.labels import LabelCount
 
 
 class NamedCount(Outgoing):

@@ -13,7 +13,7 @@ from app.api.schemas.views import Motion, Point, plain
 from app.errors import BadField, Place
 from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.motion.roles.joint_roles import JointRole
-from app.services.low_dimensional import (
+from app.services.views.low_dimensional import (
     MOST_MODEL_CLIPS,
     MOST_POSES,
     ModelPose,

@@ -9,9 +9,9 @@ from typing import Any
 from pydantic import Field
 
 from app.api.schemas.base import Incoming, Outgoing
-from app.services import models as services
-from app.services.errors_in_force import Errors
-from app.services.model_shelf import FALSE_ACCEPT_RATE
+from app.services.library.fitted_models import FALSE_ACCEPT_RATE
+from app.services.training import models as services
+from app.services.training.errors_in_force import Errors
 from app.store.models import ModelRecord
 
 

@@ -11,7 +11,7 @@ from app.api.schemas.filters import Filter
 from app.api.schemas.search import ClipId, Hit, MotionHits
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.search.pose.pose_places import Places
-from app.services import hits as services
+from app.services.find import hits as services
 
 _POINT = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
 Positions = Annotated[

@@ -10,7 +10,7 @@ from app.api.schemas.base import Cursor, Id, Incoming, Limit, Outgoing, Roles, S
 from app.api.schemas.clips import Clip, FrameRate, Stack
 from app.api.schemas.filters import Filter
 from app.search.example.methods import Method
-from app.services import hits as services
+from app.services.find import hits as services
 
 
 class _MotionOptions(Incoming):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from app.api.schemas.base import Outgoing
-from app.services import segments
+from app.services.views import segments
 
 
 class Segment(Outgoing):

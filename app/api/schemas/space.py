@@ -9,7 +9,7 @@ from pydantic import Field
 from app.api.schemas.base import Outgoing
 from app.api.schemas.filters import Filter
 from app.search.index.filters import parse_filter
-from app.services.space import MOST_POINTS, Map, SpaceName
+from app.services.find.map import MOST_POINTS, Map, SpaceName
 from app.store.clips.filter import ClipFilter
 
 

@@ -8,9 +8,9 @@ from pydantic import ConfigDict, Field
 
 from app.analysis.low_dimensional.eigen_motion import SHOWN
 from app.api.schemas.base import Cursor, Fps, Id, Incoming, Limit, Outgoing
-from app.services import studies
-from app.services.low_dimensional import MOST_MODEL_CLIPS
-from app.services.studies import MOST_SEQUENCES, MOST_VOTER
+from app.services.views import studies
+from app.services.views.low_dimensional import MOST_MODEL_CLIPS
+from app.services.views.studies import MOST_SEQUENCES, MOST_VOTER
 from app.store.studies import Choice, PairRecord
 
 PAIRS = "/v1/studies/low-dimensional/pairs"

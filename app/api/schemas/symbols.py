@@ -9,7 +9,7 @@ from pydantic import Field
 from app.analysis.symbols.channels import CHANNELS
 from app.api.schemas.base import Outgoing
 from app.api.schemas.views import Motion, plain
-from app.services.symbol_motion import SymbolMotionView
+from app.services.views.symbol_motion import SymbolMotionView
 
 
 class Channel(Outgoing):

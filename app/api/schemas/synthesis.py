@@ -11,10 +11,10 @@ from app.api.schemas.clips import Clip
 from app.api.schemas.jobs import Job
 from app.api.schemas.search import ClipId
 from app.api.schemas.views import Motion, plain
-from app.services.synthesis_plan import SynthesisKind
-from app.services.synthesis_quality import Quality as FoundQuality
-from app.services.synthesise import MOST_CLIPS, SECONDS, Synthesised
-from app.services.synthesized import SYNTHESIZED
+from app.services.library.synthesized import SYNTHESIZED
+from app.services.synthesis.plan import SynthesisKind
+from app.services.synthesis.quality import Quality as FoundQuality
+from app.services.synthesis.synthesise import MOST_CLIPS, SECONDS, Synthesised
 
 
 class Synthesize(Incoming):

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from app.api.schemas.base import Fps, Incoming, Outgoing
 from app.numerics.tensors.rank1 import MAX_ITERATIONS
-from app.services.views import DescriptorView
+from app.services.views.views import DescriptorView
 
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 

@@ -20,8 +20,8 @@ from app.evaluate import charts as pictures
 from app.evaluate.keyposes import pictures as keypose_pictures
 from app.models.keyposes.matching import TOLERANCE
 from app.models.keyposes.thresholds import USUAL, ThresholdCurve
-from app.services.keypose_learning import told
-from app.services.library import Library
+from app.services.library.library import Library
+from app.services.training.keypose_learning import told
 from app.store.clips.record import ClipRecord
 
 Tolerance = Annotated[

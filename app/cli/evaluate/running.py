@@ -11,7 +11,7 @@ from app.cli.find import filter_of
 from app.cli.output import progress_bar
 from app.cli.settings import open_library
 from app.search.index.filters import parse_filter
-from app.services.library import Library
+from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
 
 Progress = Callable[[int, int], None]

@@ -24,9 +24,9 @@ from app.models.keyposes.thresholds import (
     lesson,
 )
 from app.services import fields
-from app.services.annotated import AnnotatedClip, annotated_ids, read_annotated
-from app.services.keypose_learning import NOBODY, examples_of
-from app.services.library import Library
+from app.services.library.library import Library
+from app.services.training.annotated import AnnotatedClip, annotated_ids, read_annotated
+from app.services.training.keypose_learning import NOBODY, examples_of
 from app.store.clips.filter import ClipFilter
 
 END_EFFECTORS = "end-effectors"

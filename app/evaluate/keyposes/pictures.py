@@ -13,10 +13,10 @@ from app.evaluate.keyposes.evaluation import KeyposeEvaluation
 from app.motion.frame.body_frame import turned
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
-from app.services.keyposes import KeyposesView, view
-from app.services.library import Library
-from app.services.stick_figure import LEFT, RIGHT, TRUNK
-from app.services.training import ready_only
+from app.services.figures.stick_figure import LEFT, RIGHT, TRUNK
+from app.services.library.library import Library
+from app.services.training.training_set import ready_only
+from app.services.views.keyposes import KeyposesView, view
 from app.store.clips import listing as clip_listing
 from app.store.clips import repository as clips
 from app.store.clips.filter import ClipFilter

@@ -27,10 +27,10 @@ from app.errors import NotEnoughKeyposes
 from app.motion.frame.body_frame import BodyTrack, body_track
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.clusteredness import best_clusters, clusteredness
-from app.services.keypose_frames import keypose_frames
-from app.services.library import Library
-from app.services.stored_motion import load_motion
-from app.services.training import ready_only
+from app.services.library.keypose_frames import keypose_frames
+from app.services.library.library import Library
+from app.services.library.stored_motion import load_motion
+from app.services.training.training_set import ready_only
 from app.store.clips import listing as clip_listing
 from app.store.clips import repository as stored
 from app.store.clips.filter import ClipFilter

@@ -13,8 +13,8 @@ from app.evaluate.low_dimensional.evaluation import JudgedClip, LowDimensionalEv
 from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray
 from app.numerics.clusteredness import best_clusters
-from app.services.animated_figure import animated_svg
-from app.services.animations import role_figure
+from app.services.figures.animated_figure import animated_svg
+from app.services.views.animations import role_figure
 
 AXES = ("first axis", "second axis", "third axis")
 PLAYED = (1, 2, 3, 4)

@@ -11,8 +11,8 @@ from app.errors import NotEnoughLabels
 from app.models.held_out.recognition import Clips
 from app.models.recognition.views import full_samples
 from app.numerics.arrays import FloatArray, IntArray
-from app.services.library import Library
-from app.services.training import TrainingSet, read_training_set, ready_only
+from app.services.library.library import Library
+from app.services.training.training_set import TrainingSet, read_training_set, ready_only
 from app.store.clips.filter import ClipFilter
 
 Labels = Sequence[str | None]

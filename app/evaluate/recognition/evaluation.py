@@ -47,8 +47,8 @@ from app.evaluate.recognition.shares import (
 )
 from app.evaluate.recognition.trials import Stopwatch, Trial, run, run_told
 from app.services import fields
-from app.services.library import Library
-from app.services.synthesis_fit import fit_on
+from app.services.library.library import Library
+from app.services.training.synthesis_fit import fit_on
 from app.store.clips.filter import ClipFilter
 
 FACTORS = ("person", "task")

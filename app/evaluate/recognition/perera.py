@@ -15,8 +15,8 @@ from app.models.held_out.danced_tasks import DancedTasks, arrange
 from app.models.held_out.perera_experiment import Row, perera_tables
 from app.models.recognition.task_model import Reading
 from app.search.example.distances import FEATURES
-from app.services.library import Library
-from app.services.training import ready_only
+from app.services.library.library import Library
+from app.services.training.training_set import ready_only
 from app.store.clips import arrays
 from app.store.clips import listing as clip_listing
 from app.store.clips import repository as clips

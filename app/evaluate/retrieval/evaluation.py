@@ -15,7 +15,7 @@ from app.models.held_out.class_rankings import JudgedRanking, confusion_matrix, 
 from app.numerics.arrays import FloatArray
 from app.search.example.methods import Method
 from app.services import fields
-from app.services.library import Library
+from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
 
 K = 20

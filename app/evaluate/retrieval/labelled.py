@@ -11,8 +11,8 @@ import numpy as np
 from app.errors import NotEnoughLabels
 from app.models.held_out.class_rankings import JudgedRanking, judge_ranking
 from app.services import fields
-from app.services.library import Library
-from app.services.training import ready_only, recording_of_clip
+from app.services.library.library import Library
+from app.services.training.training_set import ready_only, recording_of_clip
 from app.store.clips import listing as clip_listing
 from app.store.clips import repository as clips
 from app.store.clips.filter import ClipFilter

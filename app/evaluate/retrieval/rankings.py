@@ -15,8 +15,8 @@ from app.search.example.by_example import rank_by_example
 from app.search.example.distances import EPSILON, FEATURES, RHO, QueryArrays
 from app.search.example.methods import Method
 from app.search.index.vector_index import VECTOR
-from app.services.library import Library
-from app.services.stored_motion import load_motion
+from app.services.library.library import Library
+from app.services.library.stored_motion import load_motion
 from app.store.clips import arrays
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord

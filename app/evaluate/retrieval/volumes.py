@@ -13,7 +13,7 @@ from app.evaluate.retrieval.labelled import LabelledClips, read_labelled
 from app.evaluate.retrieval.rankings import Volumes
 from app.numerics.tensors.rank1 import Rank1
 from app.search.example.distances import EPSILON, RHO
-from app.services.library import Library
+from app.services.library.library import Library
 from app.store.clips import arrays
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord

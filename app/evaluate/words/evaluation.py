@@ -17,9 +17,9 @@ from app.models.words.vocabulary import WordVocabulary
 from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from app.services import fields
-from app.services.library import Library
-from app.services.stored_motion import load_motion
-from app.services.training import TrainingSet, read_training_set, ready_only
+from app.services.library.library import Library
+from app.services.library.stored_motion import load_motion
+from app.services.training.training_set import TrainingSet, read_training_set, ready_only
 from app.store.clips.filter import ClipFilter
 
 EXAMPLES = 4

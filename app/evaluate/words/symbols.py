@@ -6,8 +6,8 @@ import numpy as np
 
 from app.evaluate.charts import Curve, Format, Panel, curves_picture
 from app.models.held_out.symbols import SymbolFigures, symbol_figures
-from app.services.library import Library
-from app.services.training import read_training_set, ready_only
+from app.services.library.library import Library
+from app.services.training.training_set import read_training_set, ready_only
 from app.store.clips.filter import ClipFilter
 
 

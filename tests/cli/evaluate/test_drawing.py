@@ -9,7 +9,7 @@ import pytest
 
 from app.cli.evaluate.drawing import Drawing
 from app.errors import BadField
-from app.services.library import Library
+from app.services.library.library import Library
 from tests.cli.conftest import Kinedex
 
 WITH_FOLDER = ("recognition", "retrieval", "keyposes", "low-dimensional")

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from app.services.imports import import_path
-from app.services.library import Library
+from app.services.imports.imports import import_path
+from app.services.library.library import Library
 from tests.cli.conftest import Kinedex
+from tests.libraries import settings_for, work
 from tests.named_dances import TEMPI, write_dances
-from tests.services.conftest import settings_for, work
 
 COMMAND = ("evaluate", "keyposes")
 

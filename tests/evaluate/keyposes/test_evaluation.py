@@ -13,12 +13,12 @@ from app.errors import BadField, NotEnoughLabels
 from app.evaluate import JUDGED_KEYPOSES, judge_keyposes
 from app.evaluate.keyposes.pictures import clip_figure, clips_to_draw, threshold_figure
 from app.models.keyposes.matching import match
-from app.services.annotated import read_annotated
-from app.services.imports import import_path
-from app.services.library import Library
+from app.services.imports.imports import import_path
+from app.services.library.library import Library
+from app.services.training.annotated import read_annotated
 from app.store.clips.filter import ClipFilter
+from tests.libraries import settings_for, work
 from tests.named_dances import write_dances
-from tests.services.conftest import settings_for, work
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -11,10 +11,10 @@ from app.analysis.low_dimensional.eigen_motion import Basis
 from app.errors import NotEnoughKeyposes
 from app.evaluate import LowDimensionalEvaluation, judge_low_dimensional
 from app.evaluate.low_dimensional.pictures import all_figures
-from app.services.library import Library
-from app.services.low_dimensional import Reduction, reduce, view
+from app.services.library.library import Library
+from app.services.views.low_dimensional import Reduction, reduce, view
 from app.store.clips.filter import ClipFilter
-from tests.services.conftest import FindClip
+from tests.libraries import FindClip
 
 
 @pytest.fixture(scope="module")

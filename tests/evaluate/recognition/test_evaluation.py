@@ -13,7 +13,7 @@ from app.evaluate.recognition.evaluation import judge_clips, takes_key
 from app.evaluate.recognition.methods import METHODS
 from app.evaluate.recognition.results import RecognitionEvaluation
 from app.evaluate.recognition.rounds import LeftOut
-from app.services.library import Library
+from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
 from tests.evaluate.recognition.recognition_library import invented, some
 

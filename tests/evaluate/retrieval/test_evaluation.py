@@ -8,9 +8,9 @@ import pytest
 from app import evaluate
 from app.errors import BadField, NotEnoughLabels
 from app.search.example.methods import Method
-from app.services import find
-from app.services.find import MotionQuery
-from app.services.library import Library
+from app.services.find import find
+from app.services.find.find import MotionQuery
+from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
 

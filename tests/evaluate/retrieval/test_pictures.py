@@ -8,7 +8,7 @@ from app import evaluate
 from app.evaluate import RetrievalEvaluation, VolumeEvaluation
 from app.evaluate.retrieval import pictures as retrieval_pictures
 from app.search.example.methods import Method
-from app.services.library import Library
+from app.services.library.library import Library
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 
 from app.evaluate.retrieval.rankings import Volumes, by_method
 from app.search.example.methods import Method
-from app.services.library import Library
+from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
 
 

@@ -9,7 +9,7 @@ import pytest
 from app import evaluate
 from app.analysis.descriptors.motion_volume import compression_ratio
 from app.evaluate.retrieval import volumes as under_test
-from app.services.library import Library
+from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from app import evaluate
 from app.errors import BadField, NotEnoughLabels
-from app.services.library import Library
+from app.services.library.library import Library
 
 
 def test_the_default_stands_beside_the_prior(ready_library: Library) -> None:

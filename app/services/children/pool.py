@@ -1,0 +1,208 @@
+"""A pool of child processes that may be killed at any moment.
+
+Each child has a pipe of its own and does one task at a time. A child that dies ends its own
+task and no other one. The pool does not use the clock on the wall: a task has its time by the
+kernel's monotonic clock, in the wait for the pipe.
+
+Written here because the pools of the libraries share one pipe and one lock between all
+children (a child killed while it sends its result stops all others), end for good when the
+server that forks the children dies, or measure time by the wall clock.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future, InvalidStateError
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+from app.services.children.child import Answer, Child, ChildEnded
+
+_Found = TypeVar("_Found")
+
+TASKS_PER_CHILD = 500
+"""A child is replaced after so many tasks, in case a library leaks memory."""
+
+BEGIN_TRIES = 3
+"""Of a task whose child dies before it takes the task."""
+
+
+class TaskTimedOut(Exception):
+    """A task took longer than its time, and its child was killed."""
+
+
+@dataclass(eq=False, slots=True)
+class _Task:
+    """Work to do in a child; is_alone: while no other task of the pool runs."""
+
+    work: Callable[..., Any]
+    arguments: tuple[Any, ...]
+    seconds: float | None
+    is_alone: bool
+    future: Future[Any] = field(default_factory=Future)
+    child: Child | None = None
+
+
+class ChildPool:
+    """At most `size` child processes, started when there is work; safe to share between threads.
+
+    prepare, arguments: called in each child before its first task.
+    """
+
+    def __init__(self, size: int, prepare: Callable[..., None], *arguments: Any) -> None:
+        self._size = size
+        self._prepare, self._arguments = prepare, arguments
+        self._changed = threading.Condition()
+        self._waiting: deque[_Task] = deque()
+        self._busy = 0
+        self._is_one_alone = False
+        self._is_closed = False
+        self._threads: list[threading.Thread] = []
+        self._children: set[Child] = set()
+
+    def submit(
+        self,
+        work: Callable[..., _Found],
+        *arguments: Any,
+        seconds: float | None = None,
+        is_alone: bool = False,
+    ) -> Future[_Found]:
+        """Begin a task; its future holds what `work` returns or raises in the child.
+
+        seconds: after which the child is killed and the future holds TaskTimedOut. A child that
+        died gives ChildEnded. Cancelling the future kills the child, also while it works.
+        """
+        task = _Task(work, arguments, seconds, is_alone)
+        with self._changed:
+            if self._is_closed:
+                raise RuntimeError("The pool is closed.")
+            self._waiting.append(task)
+            if len(self._threads) < min(self._size, self._busy + len(self._waiting)):
+                self._start_thread()
+            self._changed.notify_all()
+        return task.future
+
+    def close(self) -> None:
+        """Kill the children and cancel what waits; returns when all have ended."""
+        with self._changed:
+            self._is_closed = True
+            for task in self._waiting:
+                task.future.cancel()
+            for child in self._children:
+                child.kill()
+            self._changed.notify_all()
+        for thread in self._threads:
+            thread.join()
+
+    def _start_thread(self) -> None:
+        thread = threading.Thread(target=self._work, name="children", daemon=True)
+        self._threads.append(thread)
+        thread.start()
+
+    def _work(self) -> None:
+        """One thread for each child: it waits for a task and then for the child."""
+        child: Child | None = None
+        while (task := self._next()) is not None:
+            try:
+                child = self._do(task, child)
+            except Exception as failure:  # noqa: BLE001 - whatever it is, the task must end
+                child = None
+                _end(task.future, failure)
+            finally:
+                with self._changed:
+                    self._busy -= 1
+                    self._is_one_alone = False
+                    self._changed.notify_all()
+        if child is not None:
+            self._drop(child)
+
+    def _next(self) -> _Task | None:
+        """The next task, when it may begin; None when the pool is closed."""
+        with self._changed:
+            while not self._is_closed:
+                if self._waiting and self._may_begin(self._waiting[0]):
+                    self._busy += 1
+                    self._is_one_alone = self._waiting[0].is_alone
+                    return self._waiting.popleft()
+                self._changed.wait()
+        return None
+
+    def _may_begin(self, task: _Task) -> bool:
+        return self._busy == 0 if task.is_alone else not self._is_one_alone
+
+    def _do(self, task: _Task, child: Child | None) -> Child | None:
+        """Have a task done; the child, if it still lives."""
+        # The future stays pending while the child works: so it can be cancelled.
+        task.future.add_done_callback(lambda _: self._kill_if_cancelled(task))
+        for last in (*(False,) * (BEGIN_TRIES - 1), True):
+            if task.future.cancelled():
+                break
+            child = self._living(child)
+            try:
+                answer = self._ask(task, child)
+            except (ChildEnded, TaskTimedOut) as failure:
+                self._drop(child)
+                child = None
+                if not last and isinstance(failure, ChildEnded) and not failure.had_begun:
+                    continue  # it died before it took the task: another child takes it
+                _end(task.future, failure)
+            else:
+                _end(task.future, answer.failure, answer.value)
+            break
+        if task.future.cancelled():
+            _end(task.future, None)
+            if child is not None:
+                self._drop(child)  # it may have been killed after its last answer
+            return None
+        return child
+
+    def _living(self, child: Child | None) -> Child:
+        """The child, or a new one where it has ended or has done enough."""
+        if child is not None and (child.tasks >= TASKS_PER_CHILD or child.has_ended()):
+            self._drop(child)
+            child = None
+        return child or self._new_child()
+
+    def _ask(self, task: _Task, child: Child) -> Answer:
+        with self._changed:
+            task.child = child
+        try:
+            return child.do(task.work, task.arguments, task.seconds)
+        except TimeoutError:
+            raise TaskTimedOut from None
+        finally:
+            with self._changed:
+                task.child = None  # a late cancellation must not kill the child's next task
+
+    def _kill_if_cancelled(self, task: _Task) -> None:
+        with self._changed:
+            if task.future.cancelled() and task.child is not None:
+                task.child.kill()
+
+    def _new_child(self) -> Child:
+        child = Child.start(self._prepare, self._arguments)
+        with self._changed:
+            self._children.add(child)
+            if self._is_closed:
+                child.kill()
+        return child
+
+    def _drop(self, child: Child) -> None:
+        with self._changed:
+            self._children.discard(child)
+        child.end()
+
+
+def _end(future: Future[Any], failure: BaseException | None, value: Any = None) -> None:
+    """Give a future its result or failure, unless it was cancelled meanwhile."""
+    with suppress(InvalidStateError):
+        if failure is None:
+            future.set_result(value)
+        else:
+            future.set_exception(failure)
+    if future.cancelled():
+        with suppress(RuntimeError):
+            future.set_running_or_notify_cancel()

@@ -1,0 +1,1 @@
+"""Clips: take in, analyze, list, change, remove."""

@@ -1,0 +1,153 @@
+"""From a stored file to a ready clip: what the analysis needs, and what becomes of it.
+
+Everything that an analysis finds enters in one transaction with the clip's state, the
+library's version, the job and the imports that wait: a clip is ready wholly or not at all.
+"""
+
+from __future__ import annotations
+
+from app.analysis.analyse import ANALYSIS_VERSION, Analysis
+from app.analysis.energy.energy import EnergyMethod
+from app.errors import (
+    MAX_MESSAGE,
+    AnalysisCrashed,
+    AnalysisInterrupted,
+    AnalysisTimedOut,
+    BadContent,
+    KinedexError,
+    ModelNotFitted,
+    NotFound,
+    StorageError,
+    StoredFileMissing,
+    TooLarge,
+    shortened,
+)
+from app.services.children.child import ChildDied
+from app.services.library.analysis_pool import Order
+from app.services.library.keypose_frames import named_keyposes
+from app.services.library.library import Library
+from app.services.library.stored_motion import motion_arrays
+from app.store.clips import repository as stored
+from app.store.clips.record import ClipFacts, ClipRecord, ClipWarning
+from app.store.database.engine import Tx
+from app.store.jobs import leases, outcomes
+from app.store.jobs.record import ClaimedJob
+
+MOST_WARNINGS = 50
+"""Of one clip."""
+RETRY_DELAY_S = 5.0
+"""Before a failure that may pass is tried again."""
+
+
+def order_for(lib: Library, clip: ClipRecord) -> Order:
+    """What to analyse for a clip. Raises StoredFileMissing where one of its files is gone."""
+    skeleton, audio = clip.skeleton_sha256, clip.audio_sha256
+    return Order(
+        path=_place(lib, clip.sha256, "motion file"),
+        skeleton_path=None if skeleton is None else _place(lib, skeleton, "skeleton file"),
+        stack=clip.stack_override,
+        frame_rate=clip.frame_rate_override,
+        metres_per_unit=clip.metres_per_unit_override,
+        roles=clip.roles_override,
+        thresholds=_thresholds(lib),
+        audio_path=None if audio is None else _place(lib, audio, "recording"),
+        beats=clip.beats_override,
+        tempo=clip.tempo_override,
+        audio_offset=clip.audio_offset_override,
+    )
+
+
+def _place(lib: Library, sha256: str, what: str) -> str:
+    try:
+        return str(lib.store.files.path(sha256))
+    except NotFound as missing:
+        told = f"The stored {what} of this clip is missing ({sha256})"
+        raise StoredFileMissing(told) from missing
+
+
+def _thresholds(lib: Library) -> tuple[float, float] | None:
+    try:
+        learned = lib.models.keyposes(lib.store).model.by_method.get(EnergyMethod.RMS)
+    except ModelNotFitted:
+        return None
+    return None if learned is None else (learned.t1, learned.t2)
+
+
+def finish(tx: Tx, claimed: ClaimedJob, clip: ClipRecord, found: Analysis) -> None:
+    """Make the clip ready, unless it was changed meanwhile and waits for another analysis.
+
+    `clip` is as it was when the analysis began. Imports that wait for it are the caller's to
+    settle. Raises LeaseLost, ClipNotFound, StorageError.
+    """
+    if _is_superseded(tx, clip):
+        _leave(tx, claimed, clip)
+        return
+    arrays = {**found.arrays, **motion_arrays(found.motion), **named_keyposes(tx, clip, found)}
+    outcomes.finish_ingest(tx, claimed.lease, clip.id, facts(found), arrays, settles_imports=False)
+
+
+def fail(
+    tx: Tx, claimed: ClaimedJob, clip: ClipRecord, problem: KinedexError, max_failures: int
+) -> None:
+    """Fail the clip for its own reason; what may pass is tried again. Raises LeaseLost.
+
+    A child that was killed from outside is no failure of the clip.
+    """
+    if _is_superseded(tx, clip):
+        _leave(tx, claimed, clip)
+    elif isinstance(problem, AnalysisInterrupted):
+        outcomes.retry_after_kill(tx, claimed, _never_left_alone(problem).as_problem())
+    elif isinstance(problem, ChildDied | StorageError):
+        outcomes.retry_or_fail(
+            tx, claimed, problem.as_problem(), delay_s=RETRY_DELAY_S, most=max_failures
+        )
+    else:
+        outcomes.fail_job(tx, claimed, problem.as_problem(), is_verdict=_is_verdict(problem))
+
+
+def _never_left_alone(problem: KinedexError) -> KinedexError:
+    """What a clip ends with whose analysis was killed from outside every time."""
+    return AnalysisCrashed(
+        f"{problem.detail} This happened {outcomes.MOST_KILLS + 1} times, the last time while no"
+        " other file was analyzed here. Find out what stops the process (often a limit on"
+        " memory), then send the file again or run `kinedex reanalyze --failed`."
+    )
+
+
+def _is_verdict(problem: KinedexError) -> bool:
+    """Whether a reader refused the content, so that another try can find nothing else."""
+    is_machine = isinstance(problem, AnalysisCrashed | AnalysisTimedOut)
+    return isinstance(problem, BadContent | TooLarge) and not is_machine
+
+
+def facts(found: Analysis) -> ClipFacts:
+    """What a clip's row tells of its motion."""
+    motion = found.motion
+    doubts = (*motion.cautions, *found.cautions)
+    return ClipFacts(
+        format=motion.format,
+        frames=motion.frames,
+        frame_rate=motion.frame_rate,
+        declared_frame_rate=motion.declared_frame_rate,
+        duration=motion.duration,
+        joints=len(motion.names),
+        metres_per_unit=motion.metres_per_unit,
+        roles={role.value: motion.names[joint] for role, joint in motion.roles.items()},
+        missing_roles=tuple(role.value for role in motion.missing_roles),
+        warnings=tuple(
+            ClipWarning(c.code, shortened(c.detail, MAX_MESSAGE), c.likely)
+            for c in doubts[:MOST_WARNINGS]
+        ),
+        analysis_version=ANALYSIS_VERSION,
+        audio_offset=found.audio_offset,
+    )
+
+
+def _is_superseded(tx: Tx, clip: ClipRecord) -> bool:
+    """Whether what the client says of the file has changed since the analysis began."""
+    return stored.overrides(tx, clip.id) != clip.overrides
+
+
+def _leave(tx: Tx, claimed: ClaimedJob, clip: ClipRecord) -> None:
+    """Leave the clip to the job that was queued when it was changed."""
+    leases.succeed(tx, claimed.lease, {"clip_id": clip.id, "superseded": True})

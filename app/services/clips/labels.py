@@ -1,0 +1,57 @@
+"""The names in use in a library, with how many clips carry each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from app.services.library.library import Library
+from app.services.library.synthesized import SYNTHESIZED
+from app.store.clips import labels as stored
+from app.store.clips.labels import LabelKind
+from app.store.database.engine import Tx
+from app.store.database.paging import Page
+
+
+@dataclass(frozen=True, slots=True)
+class LabelCount:
+    """A label; recordings: how many clips of what people did carry it; synthesized: how many of
+    what we made. Their states do not matter."""
+
+    name: str
+    recordings: int
+    synthesized: int
+
+
+def persons(lib: Library) -> list[LabelCount]:
+    """Who moves, by name."""
+    return _counted(lib, stored.persons)
+
+
+def tasks(lib: Library) -> list[LabelCount]:
+    """What is done, by name."""
+    return _counted(lib, stored.tasks)
+
+
+def words(lib: Library) -> list[LabelCount]:
+    """In which words, by word."""
+    return _counted(lib, stored.words)
+
+
+def page(lib: Library, kind: LabelKind, limit: int, cursor: str | None = None) -> Page[LabelCount]:
+    """One page of the labels of a kind, by name. Raises BadField for a bad cursor."""
+    with lib.store.read() as tx:
+        found = stored.page(tx, kind, SYNTHESIZED, limit, cursor)
+    return Page(tuple(map(_told, found.items)), found.next)
+
+
+def _counted(
+    lib: Library, count: Callable[[Tx, str], tuple[stored.Count, ...]]
+) -> list[LabelCount]:
+    with lib.store.read() as tx:
+        found = count(tx, SYNTHESIZED)
+    return list(map(_told, found))
+
+
+def _told(one: stored.Count) -> LabelCount:
+    return LabelCount(one.name, one.others, one.of_source)

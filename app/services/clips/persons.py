@@ -1,0 +1,61 @@
+"""Forgetting a person (issue 7, privacy: gait identifies people).
+
+Their label is taken from every clip and every model that holds them goes at once, in one
+transaction: from then on no search and no recognition knows them. The models are fitted again
+without them in the background; what needs those models says meanwhile that it must wait. Files
+keep their content and their names.
+"""
+
+from __future__ import annotations
+
+import logging
+
+from app.errors import NotFound, Place
+from app.services import fields
+from app.services.library.fitted_models import ModelKind, holds_persons
+from app.services.library.library import Library
+from app.services.training.models import enqueue_fit
+from app.store import models
+from app.store.clips import labels
+from app.store.clips import repository as clips
+from app.store.database.engine import Tx
+from app.store.jobs.record import JobRecord
+
+_log = logging.getLogger(__name__)
+
+
+def forget_person(lib: Library, name: str) -> JobRecord:
+    """Remove a person's labels and every model that holds them; the job fits the models anew.
+
+    Raises NotFound where no clip carries the person, BadField.
+    """
+    person = fields.text("name", name) or ""
+    job = lib.store.write_even_when_full(lambda tx: _forget(tx, person))
+    lib.store.erase_traces()
+    return job
+
+
+def _forget(tx: Tx, person: str) -> JobRecord:
+    if person not in labels.person_names(tx):
+        raise NotFound(
+            "No clip carries this person.", places=[Place("name", "is not in the library")]
+        )
+    clips.forget_person(tx, person)
+    models.remove(tx, _HOLDING_PERSONS)
+    return enqueue_fit(tx)
+
+
+def remove_person_models(lib: Library) -> bool:
+    """Remove every model that holds persons, as when their recognition is switched off.
+
+    Returns whether there was one; then a fit is queued, for what can be had without persons.
+    """
+    with lib.store.write() as tx:
+        removed = models.remove(tx, _HOLDING_PERSONS)
+        if removed:
+            enqueue_fit(tx)
+            _log.info("models that hold persons were removed")
+    return bool(removed)
+
+
+_HOLDING_PERSONS = tuple(kind.value for kind in ModelKind if holds_persons(kind))

@@ -1,0 +1,56 @@
+"""Analysing stored clips anew: those of an earlier analysis, failed ones, or all.
+
+A clip's file is kept, so that whatever an analysis finds can be found again by a better one.
+A ready clip stays ready and searchable with the analysis that it has, until the new one replaces
+it in one transaction. So during an upgrade searches go on over analyses of two versions: a hit
+may rest on the older one, and a clip whose older arrays have another shape is left out of the
+index that needs them (`search.rows`, `search.span_index`) until it has been analysed again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from app.analysis.analyse import ANALYSIS_VERSION
+from app.services.clips.catalogue import BULK_PRIORITY, enqueue_ingest
+from app.services.library.library import Library
+from app.store.clips import listing as clip_listing
+from app.store.clips import repository as clips
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipState
+
+BATCH = 200
+"""Clips queued in one transaction, so that others need not wait."""
+
+
+def requeue_outdated(lib: Library) -> int:
+    """Queue the ready clips whose analysis is of another version, or older than a change of what
+    it depends on; how many."""
+    with lib.store.read() as tx:
+        ids = clip_listing.list_outdated_ids(tx, ANALYSIS_VERSION)
+    return _requeue(lib, ids)
+
+
+def requeue_ready(lib: Library) -> int:
+    """Queue every ready clip; how many."""
+    with lib.store.read() as tx:
+        ids = clip_listing.list_ids(tx, ClipFilter(state=(ClipState.READY,)))
+    return _requeue(lib, ids)
+
+
+def requeue_failed(lib: Library) -> int:
+    """Queue every clip whose last analysis failed; how many."""
+    with lib.store.read() as tx:
+        ids = clip_listing.list_unfit_ids(tx)
+    return _requeue(lib, ids)
+
+
+def _requeue(lib: Library, ids: Sequence[str]) -> int:
+    queued = 0
+    for batch in clips.in_batches(ids, BATCH):
+        with lib.store.write() as tx:
+            for clip_id in clips.get_many(tx, batch):  # without those deleted meanwhile
+                enqueue_ingest(tx, clip_id, BULK_PRIORITY)
+                clips.requeue(tx, clip_id)
+                queued += 1
+    return queued

@@ -1,0 +1,1 @@
+"""Stick figures as SVG."""

@@ -1,0 +1,1 @@
+"""Every search, and the map of all clips."""

@@ -1,0 +1,78 @@
+"""Rank clips by what the library's labels taught: the same task, or the same person, first."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from app.errors import ModelNotFitted
+from app.models.metric.learned_metric import INPUTS, Described, LearnedMetric
+from app.numerics.arrays import FloatArray
+from app.search.example.methods import Method
+from app.search.index import usable_arrays
+from app.search.index.nearest_ranking import Near
+from app.services.find.query import Arrays
+from app.services.library.fitted_models import ModelKind
+from app.services.library.library import Library
+from app.services.library.precomputed_rows import POINTS, read_known
+from app.store.clips.filter import ClipFilter
+
+KINDS = {
+    Method.METRIC_TASK: ModelKind.METRIC_TASK,
+    Method.METRIC_PERSON: ModelKind.METRIC_PERSON,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class MetricRanking:
+    """A ranking; model: id of the model that ranked; digest: of what was asked about;
+    to_score: from a distance to the probability that the labels are the same."""
+
+    ranking: Near
+    model: str
+    digest: str
+    to_score: Callable[[float], float]
+
+
+def rank_by_metric(
+    lib: Library,
+    asked: Arrays,
+    method: Method,
+    wanted: ClipFilter,
+    exclude: frozenset[str] = frozenset(),
+) -> MetricRanking:
+    """All clips that pass the filter and are not excluded; the index has caught up.
+
+    asked: the INPUTS of the query. Raises ModelNotFitted.
+    """
+    kind = KINDS[method]
+    if kind is ModelKind.METRIC_PERSON and not lib.settings.recognize_persons:
+        raise ModelNotFitted("Recognising people by how they move is switched off here.")
+    fitted = lib.models.metric(lib.store, kind)
+    model = fitted.model
+    query = model.axes.project(Described(*(asked[name][None] for name in INPUTS)))[0]
+    found = lib.metrics[kind].nearest(
+        fitted.id,
+        partial(_project, lib, model),
+        query,
+        wanted,
+        exclude,
+        partial(read_known, lib, fitted.id, POINTS),
+    )
+    content = hashlib.sha256(b"".join(asked[name].tobytes() for name in INPUTS)).hexdigest()
+    return MetricRanking(found, fitted.id, content, model.calibration.probability)
+
+
+def _project(lib: Library, model: LearnedMetric, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
+    """Coordinates by clip id; clips that are gone are left out."""
+    with lib.store.read() as tx:
+        found = [usable_arrays.get_many(tx, clip_ids, name) for name in INPUTS]
+    there = [clip_id for clip_id in clip_ids if all(clip_id in part for part in found)]
+    if not there:
+        return {}
+    described = Described(*(np.stack([part[clip_id] for clip_id in there]) for part in found))
+    return dict(zip(there, model.axes.project(described), strict=True))

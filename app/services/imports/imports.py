@@ -1,0 +1,181 @@
+"""Imports: many files at once, from a ZIP, a folder or single files.
+
+Each file becomes a clip with its own ingest job, in one transaction with the import's record
+of it. An import that is cut off goes on where it stopped, and the same files imported twice
+give the same clips. A worker does one import at a time, so a long one lets others go first now
+and then: its job returns to the queue, with its progress.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from app.errors import BadContent, EmptyFile, NotFound, StorageError, UnknownFormat
+from app.formats.sniff import HEAD_BYTES, is_zip
+from app.services import fields
+from app.services.clips.catalogue import WORKER_DEATHS
+from app.services.imports.manifest_table import ManifestLimits
+from app.services.imports.plan import Plan
+from app.services.imports.register import Progress, Registering
+from app.services.imports.skeleton_pairs import pair_skeletons
+from app.services.imports.sources import (
+    ArchiveLimits,
+    SourceFile,
+    archive_files,
+    folder_files,
+    is_archive,
+    single_file,
+)
+from app.services.library.library import Library
+from app.store.files.files import Readable
+from app.store.jobs import imports as stored
+from app.store.jobs import leases, owners
+from app.store.jobs import repository as jobs
+from app.store.jobs.record import ClaimedJob, JobKind, JobRecord, NewJob
+
+IMPORT_PRIORITY = 10
+LOWEST_PRIORITY = 20
+"""An import loses a step with each turn: new ones go first, long ones in their order."""
+TURN_S = 5.0
+"""For which an import goes on before it asks whether others wait; no less than it took to read
+the archive's directory, which each turn does anew."""
+OWN_PRIORITY = -1_000_000_000
+"""Of an import that this process does itself: no worker may take it first."""
+WAITING = "waiting for the clips' analyses"
+
+
+def start_import(lib: Library, archive: Readable, filename: str) -> JobRecord:
+    """Store a ZIP durably and queue its import.
+
+    Raises EmptyFile, UnknownFormat for what is no ZIP, TooLarge, DiskFull.
+    """
+    with lib.store.files.stage(archive, max_bytes=lib.settings.max_archive_bytes) as staged:
+        with staged.open() as file:
+            head = file.read(HEAD_BYTES)
+            if not head:
+                raise EmptyFile()
+            if not is_zip(head):
+                raise UnknownFormat("An import takes a ZIP archive.")
+        with lib.store.write() as tx:
+            staged.keep()
+            return jobs.enqueue(
+                tx,
+                NewJob(
+                    JobKind.IMPORT,
+                    file_sha256=staged.sha256,
+                    payload={"filename": fields.file_name(filename)},
+                    priority=IMPORT_PRIORITY,
+                    max_attempts=WORKER_DEATHS,
+                ),
+            )
+
+
+def unpack(
+    lib: Library, claimed: ClaimedJob, progress: Progress, should_stop: Callable[[], bool]
+) -> None:
+    """Do a claimed import: register its files, then leave the job to its clips' ingests.
+
+    Where other imports wait, it stops after its turn and gives the job back, to go on later.
+    `should_stop` is asked before each file; then Canceled is raised, and what was registered
+    stays. Raises BadContent or TooLarge where the archive as a whole cannot be used,
+    LeaseLost where the job was given to another worker.
+    """
+    if claimed.file_sha256 is None:
+        raise BadContent("The command that imported these files was interrupted: run it again.")
+    began = time.monotonic()
+    archive = lib.store.files.path(claimed.file_sha256)
+    with archive_files(archive, _limits(lib)) as files:
+        doing = Registering(lib, claimed.lease, _plan(lib, files))
+        turn = _Turn(lib, max(TURN_S, time.monotonic() - began))
+        if doing.run(progress, should_stop, turn.is_over):
+            doing.finish(WAITING)
+        else:
+            _give_turn(doing)
+
+
+def import_path(lib: Library, path: Path, progress: Progress | None = None) -> JobRecord:
+    """Import a folder, a ZIP or a single file from this machine's disk.
+
+    Returns the import's job once every file is registered; it ends when a worker has analysed
+    the clips. Raises NotFound where there is no such path, and as `unpack` does.
+    """
+    with _sources(lib, path) as files:
+        plan = _plan(lib, files)
+        doing = Registering(lib, _own_job(lib, path).lease, plan)
+        doing.run(progress or (lambda *_: None), lambda: False, lambda: False)
+        return doing.finish(WAITING)
+
+
+class _Turn:
+    """For how long an import may go on while others wait."""
+
+    def __init__(self, lib: Library, seconds: float) -> None:
+        self._lib, self._seconds = lib, seconds
+        self._began = time.monotonic()
+
+    def is_over(self) -> bool:
+        """Whether another import is to go on now; begins another turn where none waits."""
+        if time.monotonic() - self._began < self._seconds:
+            return False
+        self._began = time.monotonic()
+        with self._lib.store.read() as tx:
+            return leases.is_any_claimable(tx, [JobKind.IMPORT])
+
+
+def _give_turn(doing: Registering) -> None:
+    detail = f"{doing.done} of {doing.total} files; others go first"
+    with doing.lib.store.write() as tx:
+        stored.give_turn(tx, doing.lease, doing.done / doing.total, detail, LOWEST_PRIORITY)
+
+
+@contextmanager
+def _sources(lib: Library, path: Path) -> Iterator[list[SourceFile]]:
+    if path.is_dir():
+        yield folder_files(path)
+    elif is_archive(path):
+        with archive_files(path, _limits(lib)) as files:
+            yield files
+    elif path.is_file():
+        yield single_file(path, _skeleton_beside(path))
+    else:
+        raise NotFound(f"There is no file or folder {path}.")
+
+
+def _skeleton_beside(path: Path) -> Path | None:
+    """The ASF file in the folder of a single AMC file that is its skeleton."""
+    if path.suffix.lower() != ".amc":
+        return None
+    names = [other.name for other in path.parent.iterdir() if other.suffix.lower() == ".asf"]
+    name = pair_skeletons([path.name, *sorted(names)]).get(path.name)
+    return None if name is None else path.parent / name
+
+
+def _own_job(lib: Library, path: Path) -> ClaimedJob:
+    """A job that this process has from the start; queued and claimed in one transaction."""
+    job = NewJob(
+        JobKind.IMPORT,
+        payload={"filename": fields.file_name(str(path))},
+        priority=OWN_PRIORITY,
+        max_attempts=1,
+    )
+    with lib.store.write() as tx:
+        created = jobs.enqueue(tx, job)
+        claimed = leases.claim(tx, [JobKind.IMPORT], owners.new_owner("import"))
+        if claimed is None or claimed.job.id != created.id:
+            raise StorageError("Another import begins at this moment; try again.")
+        return claimed
+
+
+def _plan(lib: Library, files: Sequence[SourceFile]) -> Plan:
+    # A folder of this machine may hold more files than an archive may, and a row for each.
+    return Plan(files, ManifestLimits(max(lib.settings.max_archive_entries, len(files))))
+
+
+def _limits(lib: Library) -> ArchiveLimits:
+    settings = lib.settings
+    return ArchiveLimits(
+        settings.max_archive_entries, settings.max_archive_ratio, settings.max_upload_bytes
+    )

@@ -1,0 +1,125 @@
+"""What the files of an import are to each other: motions, and what goes with each.
+
+A manifest tells of motions and names their recordings; an ASF file is the skeleton of the AMC
+files beside it. Nothing but manifests is read here.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from app.errors import BadContent, KinedexError, Place, TooLarge, Unreadable
+from app.services.fields import MAX_PATH
+from app.services.imports.manifest import Manifest, ManifestRow
+from app.services.imports.manifest_table import MANIFEST_NAME, ManifestLimits
+from app.services.imports.skeleton_pairs import pair_skeletons
+from app.services.imports.sources import SourceFile
+
+MOST_ABSENT = 100
+"""Paths that a manifest names in vain and that are told one by one; the others are counted."""
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """A motion file of an import with what goes with it."""
+
+    file: SourceFile
+    row: ManifestRow
+    skeleton: SourceFile | None
+    sound: SourceFile | None
+
+
+class Plan:
+    """What is to be done with the files of an import.
+
+    motions: the files that may become a clip each; absent: the problem of each path that a
+    manifest names and that is not there, of the first MOST_ABSENT; absent_count: of all.
+    """
+
+    def __init__(self, files: Iterable[SourceFile], limits: ManifestLimits) -> None:
+        """Sort the files. Raises Unreadable, TooLarge, and what is wrong with a manifest."""
+        self._by_path = {file.path: file for file in _each_once(files)}
+        self._manifest = _read_manifests(self._by_path.values(), limits)
+        self._skeletons = pair_skeletons(self._by_path)
+        recordings = self._manifest.recordings()
+        taken = {*self._skeletons.values(), *recordings}
+        self.motions = tuple(
+            file
+            for file in self._by_path.values()
+            if not _is_manifest(file) and file.path not in taken
+        )
+        named = ((path, line) for path, line in self._manifest.named())
+        absent = {path: line for path, line in named if path not in self._by_path}
+        self.absent_count = len(absent)
+        self.absent = {
+            path: _absent(path, absent[path]) for path in heapq.nsmallest(MOST_ABSENT, absent)
+        }
+
+    def item(self, motion: SourceFile) -> Item:
+        """A motion with what goes with it."""
+        row = self._manifest.row(motion.path)
+        skeleton = self._skeletons.get(motion.path)
+        return Item(
+            motion,
+            row,
+            None if skeleton is None else self._by_path[skeleton],
+            self._by_path.get(row.audio or ""),
+        )
+
+
+def _read_manifests(files: Iterable[SourceFile], limits: ManifestLimits) -> Manifest:
+    """What every manifest among the files says; a bad one fails the whole import."""
+    manifest = Manifest(limits)
+    for file in files:
+        if _is_manifest(file):
+            _read_manifest(manifest, file)
+    return manifest
+
+
+def _read_manifest(manifest: Manifest, file: SourceFile) -> None:
+    # One that is encrypted or damaged must not be passed over: its labels would be lost.
+    if file.problem is not None:
+        raise file.problem
+    try:
+        with file.open() as content:
+            manifest.read(content, file.path.rpartition("/")[0])
+    except (Unreadable, TooLarge) as problem:
+        told = problem.detail.removeprefix(MANIFEST_NAME)
+        detail = f"{file.path}{told}" if told != problem.detail else f"{file.path}: {told}"
+        raise type(problem)(detail, places=problem.places) from problem
+
+
+def _is_manifest(file: SourceFile) -> bool:
+    return file.path.rpartition("/")[2] == MANIFEST_NAME
+
+
+def _each_once(files: Iterable[SourceFile]) -> Iterable[SourceFile]:
+    """The files with paths that are storable, and different where an archive repeats one."""
+    taken: set[str] = set()
+    count: dict[str, int] = {}
+    for given in files:
+        file = _storable(given)
+        path = file.path
+        while path in taken:
+            count[file.path] = count.get(file.path, 1) + 1
+            path = f"{file.path} ({count[file.path]})"
+        taken.add(path)
+        yield file if path == file.path else replace(file, path=path)
+
+
+def _storable(file: SourceFile) -> SourceFile:
+    path = file.path.encode("utf-8", "replace").decode()
+    if len(path) > MAX_PATH:
+        half = MAX_PATH // 2 - 20
+        message = f"{len(path)} characters, the limit is {MAX_PATH}"
+        path = f"{path[:half]}…{path[-half:]}"
+        problem = BadContent("The path is too long.", places=[Place(path, message)])
+        return replace(file, path=path, problem=problem)
+    return file if path == file.path else replace(file, path=path)
+
+
+def _absent(path: str, line: int) -> KinedexError:
+    place = Place(f"{MANIFEST_NAME} line {line}", f"{path} is not there")
+    return BadContent("The manifest names a file that is not there.", places=[place])

@@ -1,0 +1,221 @@
+"""Registering the files of an import: each becomes a clip with an ingest job, or a problem.
+
+A clip, its job and the import's record of it are stored in one transaction. Files that become no
+clip wait to be recorded together, because each transaction waits for the disk.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import replace
+
+from app.errors import Canceled, KinedexError, LeaseLost, StorageError
+from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
+from app.services import fields
+from app.services.clips.catalogue import BULK_PRIORITY, add, check_content, keep
+from app.services.clips.recordings import described
+from app.services.imports.manifest import ManifestRow
+from app.services.imports.plan import Item, Plan
+from app.services.imports.sources import SourceFile
+from app.services.library.library import Library
+from app.store.clips import keypose_annotations
+from app.store.clips.record import ClipState
+from app.store.clips.record import NewClip as NewRow
+from app.store.database.engine import Tx
+from app.store.files.files import Readable, StagedFile
+from app.store.jobs import imports as stored
+from app.store.jobs import leases
+from app.store.jobs.import_files import ImportOutcome
+from app.store.jobs.imports import NewEntry
+from app.store.jobs.record import JobRecord, Lease
+
+Progress = Callable[[int, int, str], None]
+"""Told after each file: files done, files in all, the file's path."""
+Over = Callable[[], bool]
+"""Whether an import is to let others go on."""
+
+MOST_TOGETHER = 500
+"""Files without a clip that are recorded in one transaction."""
+RECORD_AFTER_S = 1.0
+"""They wait no longer, so that a cancellation is noticed."""
+FIRST_CLIPS = 64
+LOWEST_STEPS = 9
+"""How far the clips of a large import stand back behind those of a small one: those after the
+first 64 by one step of priority, after 128 by two, after 256 by three."""
+JUDGED_AT_ONCE = HEAD_BYTES + TAIL_BYTES
+"""A file of so many bytes at most is judged before it is written anywhere."""
+
+
+class Registering:
+    """An import in hand: its plan, and the right to its job."""
+
+    def __init__(self, lib: Library, lease: Lease, plan: Plan) -> None:
+        self.lib, self.lease, self.plan = lib, lease, plan
+        self.done = 0
+        self._problems: list[NewEntry] = []
+        self._recorded_at = time.monotonic()
+        with lib.store.read() as tx:
+            self._recorded = stored.recorded_paths(tx, lease.job_id)
+
+    @property
+    def total(self) -> int:
+        """How many files may become clips."""
+        return len(self.plan.motions)
+
+    def run(self, progress: Progress, should_stop: Callable[[], bool], is_over: Over) -> bool:
+        """Register file after file until none is left; whether that is so.
+
+        `should_stop` is asked before each file, and then Canceled is raised; `is_over` after
+        each, and then False is returned. Raises LeaseLost and StorageError, too.
+        """
+        for number, file in enumerate(self.plan.motions, 1):
+            self.done = number
+            if should_stop():
+                raise Canceled("The import was stopped.")
+            if file.path in self._recorded:
+                continue
+            self._register(self.plan.item(file))
+            progress(self.done, self.total, file.path)
+            if number < self.total and is_over():
+                self.record_problems()
+                return False
+        self.record_problems()
+        return True
+
+    def finish(self, detail: str) -> JobRecord:
+        """Record what the manifests name in vain; the job waits for its clips from here on."""
+        with self.lib.store.write() as tx:
+            absent = [
+                NewEntry(path, ImportOutcome.ABSENT, problem=problem.as_problem())
+                for path, problem in self.plan.absent.items()
+                if path not in self._recorded
+            ]
+            stored.add_entries(tx, self.lease.job_id, absent)
+            return stored.wait_for_clips(tx, self.lease, detail, absent=self.plan.absent_count)
+
+    def record_problems(self) -> None:
+        """Record the files without a clip that wait for it. Raises LeaseLost, Canceled."""
+        if self._problems:
+            with self.lib.store.write() as tx:
+                self._record(tx)
+            self._problems = []
+
+    def _record(self, tx: Tx, *more: NewEntry) -> None:
+        """Record in the caller's transaction: that is progress, and a heartbeat.
+
+        Raises LeaseLost where another worker has the import, Canceled where it is to end; the
+        transaction is then undone.
+        """
+        if leases.heartbeat(tx, self.lease, has_progressed=True):
+            raise Canceled("The import was canceled.")
+        stored.add_entries(tx, self.lease.job_id, [*self._problems, *more])
+        self._recorded_at = time.monotonic()
+
+    def _register(self, item: Item) -> None:
+        """Store one file as a clip, or note why not; failures of the store are raised."""
+        try:
+            if problem := item.file.problem or item.row.problem:
+                raise problem
+            with item.file.open() as content:
+                self._store(judged(content), item)
+        except (StorageError, LeaseLost, Canceled):
+            raise
+        except KinedexError as problem:
+            self._note(item.file.path, problem)
+
+    def _note(self, path: str, problem: KinedexError) -> None:
+        self._problems.append(NewEntry(path, ImportOutcome.FAILED, problem=problem.as_problem()))
+        waited = time.monotonic() - self._recorded_at
+        if len(self._problems) >= MOST_TOGETHER or waited >= RECORD_AFTER_S:
+            self.record_problems()
+
+    def _store(self, content: Readable, item: Item) -> None:
+        lib, row, path = self.lib, item.row, item.file.path
+        with ExitStack() as files:
+            staged = _stage(lib, files, content)
+            is_amc = check_content(staged) == "amc"
+            companion = _staged(lib, files, item.skeleton if is_amc else None)
+            recording = _staged(lib, files, item.sound)
+            heard = {} if recording is None else described(recording, row.audio or "")
+            new = replace(_new_row(path, row, staged, companion), **heard)
+            with lib.store.write() as tx:
+                keep(staged, companion, recording)
+                created = add(tx, new, self._priority())
+                if created.is_new and row.keyposes is not None:
+                    keypose_annotations.put(tx, created.clip.id, row.keyposes)
+                is_done = not created.is_new and created.clip.state is ClipState.READY
+                outcome = ImportOutcome.EXISTS if is_done else ImportOutcome.QUEUED
+                self._record(tx, NewEntry(path, outcome, clip_id=created.clip.id))
+        self._problems = []
+
+    def _priority(self) -> int:
+        """Of the analysis of the file in hand: a large import must not hold up a small one."""
+        return BULK_PRIORITY + min((self.done // FIRST_CLIPS).bit_length(), LOWEST_STEPS)
+
+
+def judged(content: Readable) -> Readable:
+    """The same content, if it may be a motion file.
+
+    Raises EmptyFile or UnknownFormat for a small file that is none, before it is written.
+    """
+    chunks, size = [], 0
+    while size <= JUDGED_AT_ONCE and (chunk := content.read(JUDGED_AT_ONCE + 1 - size)):
+        chunks.append(chunk)
+        size += len(chunk)
+    head = b"".join(chunks)
+    if size <= JUDGED_AT_ONCE:
+        sniff(head)
+    return _Rejoined(head, content)
+
+
+class _Rejoined:
+    """What was read of a file, and then the rest of it."""
+
+    def __init__(self, head: bytes, rest: Readable) -> None:
+        self._head, self._rest = memoryview(head), rest
+
+    def read(self, size: int, /) -> bytes:
+        """At most `size` bytes; none at the end."""
+        if not self._head:
+            return self._rest.read(size)
+        part, self._head = self._head[:size], self._head[size:]
+        return bytes(part)
+
+
+def _staged(lib: Library, files: ExitStack, source: SourceFile | None) -> StagedFile | None:
+    """A file that goes with a motion, if there is one, for as long as `files` are open."""
+    if source is None:
+        return None
+    if source.problem is not None:
+        raise source.problem
+    return _stage(lib, files, files.enter_context(source.open()))
+
+
+def _stage(lib: Library, files: ExitStack, content: Readable) -> StagedFile:
+    limit = lib.settings.max_upload_bytes
+    return files.enter_context(lib.store.files.stage(content, max_bytes=limit))
+
+
+def _new_row(
+    path: str, row: ManifestRow, staged: StagedFile, skeleton: StagedFile | None
+) -> NewRow:
+    file_name = fields.file_name(path)
+    return NewRow(
+        sha256=staged.sha256,
+        file_name=file_name,
+        file_size=staged.size,
+        name=row.name or fields.stem(file_name),
+        person=row.person,
+        task=row.task,
+        words=row.words or (),
+        license=row.license,
+        source=row.source,
+        skeleton_sha256=None if skeleton is None else skeleton.sha256,
+        frame_rate_override=row.frame_rate,
+        metres_per_unit_override=row.metres_per_unit,
+        audio_offset_override=row.audio_offset,
+        tempo_override=row.tempo,
+        beats_override=row.beats,
+    )

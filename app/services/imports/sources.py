@@ -1,0 +1,193 @@
+"""Where the files of an import come from: a ZIP archive, a folder, or single files.
+
+All give the same thing, a list of `SourceFile`, each to be opened once; a file that must not
+be opened carries its problem instead. Nothing is ever unpacked to a path of the archive's
+choosing.
+"""
+
+from __future__ import annotations
+
+import lzma
+import os
+import stat
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path, PurePosixPath
+from types import TracebackType
+from typing import IO, BinaryIO
+
+from app.errors import BadContent, KinedexError, Place, TooLarge, Unreadable
+from app.services.imports.archive_directory import open_zip
+
+_ENCRYPTED = 0x1
+_COMPRESSIONS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)
+_RATIO_COUNTS_FROM = 10 * 2**20
+"""Unpacked bytes below which an archive's ratio is of no concern."""
+_READ_FAILURES = (
+    OSError,  # bzip2's complaint about bad content is one, too
+    EOFError,
+    RuntimeError,  # NotImplementedError is one
+    ValueError,
+    zipfile.BadZipFile,
+    zlib.error,
+    lzma.LZMAError,
+)
+"""What opening or reading a file or an archive's entry may raise."""
+
+
+@dataclass(frozen=True, slots=True)
+class ArchiveLimits:
+    """Most entries, largest unpacked size as a multiple of the archive's, bytes in one file."""
+
+    entries: int
+    ratio: float
+    file_bytes: int
+
+
+class SourceContent:
+    """An open file of an import. What is wrong with it is Unreadable, and its own fault:
+    an OSError in the midst of storing it would be taken for a failure of the store."""
+
+    def __init__(self, opener: Callable[[], IO[bytes]]) -> None:
+        """Raises Unreadable."""
+        with _read_failures():
+            self._file = opener()
+
+    def read(self, size: int = -1, /) -> bytes:
+        """At most `size` bytes, or all; none at the end. Raises Unreadable."""
+        with _read_failures():
+            return self._file.read(size)
+
+    def __enter__(self) -> SourceContent:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._file.close()
+
+
+@dataclass(frozen=True, slots=True)
+class SourceFile:
+    """One file of an import: its path (relative, with /), and how to open it, or why not."""
+
+    path: str
+    open: Callable[[], SourceContent]
+    problem: KinedexError | None = None
+
+
+@contextmanager
+def archive_files(archive: BinaryIO | Path, limits: ArchiveLimits) -> Iterator[list[SourceFile]]:
+    """The files of a ZIP, in its order, readable within the `with` block.
+
+    Raises Unreadable where it is no ZIP, TooLarge where it holds too many entries or would
+    unpack to too much. Single bad entries carry their problem.
+    """
+    with ExitStack() as files:
+        file = files.enter_context(archive.open("rb")) if isinstance(archive, Path) else archive
+        try:
+            opened = files.enter_context(open_zip(file, limits.entries))
+        except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as problem:
+            raise Unreadable(f"The archive cannot be read as ZIP: {problem}.") from problem
+        entries = [entry for entry in opened.infolist() if not _left_out(entry)]
+        _check_whole(entries, _size(file), limits)
+        yield [_archive_file(opened, entry, limits) for entry in entries]
+
+
+def folder_files(folder: Path) -> list[SourceFile]:
+    """The files below a folder, sorted by path, hidden ones left out; links to folders too."""
+    found = []
+    for root, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        base = Path(root)
+        found += [base / name for name in sorted(names) if not name.startswith(".")]
+    return [_disk_file(f.relative_to(folder).as_posix(), f) for f in found]
+
+
+def single_file(path: Path, companion: Path | None = None) -> list[SourceFile]:
+    """One file by itself, or with the file that it cannot be read without."""
+    files = [path] if companion is None else [path, companion]
+    return [_disk_file(file.name, file) for file in files]
+
+
+def is_archive(path: Path) -> bool:
+    """Whether a path is a ZIP archive (by its content; .npz is one, and is not meant)."""
+    return path.is_file() and path.suffix.lower() != ".npz" and zipfile.is_zipfile(path)
+
+
+def _disk_file(name: str, path: Path) -> SourceFile:
+    return SourceFile(name, partial(SourceContent, partial(_open_file, path)))
+
+
+def _open_file(path: Path) -> IO[bytes]:
+    if not stat.S_ISREG(path.stat().st_mode):
+        raise Unreadable("This is no regular file.")  # to open a pipe is to wait for a writer
+    return path.open("rb")
+
+
+@contextmanager
+def _read_failures() -> Iterator[None]:
+    try:
+        yield
+    except _READ_FAILURES as problem:
+        raise Unreadable(f"The file cannot be read: {problem}.") from problem
+
+
+def _left_out(entry: zipfile.ZipInfo) -> bool:
+    """Folders, and what macOS and version control leave behind."""
+    parts = _path_of(entry).parts
+    hidden = any(part.startswith(".") and part not in (".", "..") for part in parts)
+    return entry.is_dir() or "__MACOSX" in parts or hidden
+
+
+def _path_of(entry: zipfile.ZipInfo) -> PurePosixPath:
+    return PurePosixPath(entry.filename.replace("\\", "/"))
+
+
+def _check_whole(entries: list[zipfile.ZipInfo], size: int, limits: ArchiveLimits) -> None:
+    if len(entries) > limits.entries:
+        place = Place("archive", f"{len(entries)} entries, the limit is {limits.entries}")
+        raise TooLarge("The archive holds too many files.", places=[place])
+    unpacked = sum(entry.file_size for entry in entries)
+    if unpacked > max(size * limits.ratio, _RATIO_COUNTS_FROM):
+        message = f"{size} bytes would unpack to {unpacked}, more than {limits.ratio:g} times"
+        raise TooLarge("The archive unpacks to too much.", places=[Place("archive", message)])
+
+
+def _archive_file(
+    archive: zipfile.ZipFile, entry: zipfile.ZipInfo, limits: ArchiveLimits
+) -> SourceFile:
+    problem = _entry_problem(entry, limits)
+    opener = partial(archive.open, entry)
+    return SourceFile(entry.filename, partial(SourceContent, opener), problem)
+
+
+def _entry_problem(entry: zipfile.ZipInfo, limits: ArchiveLimits) -> KinedexError | None:
+    where = [Place(entry.filename, "refused")]
+    path = _path_of(entry)
+    if path.is_absolute() or ".." in path.parts or ":" in (path.parts or ("",))[0]:
+        return BadContent("The path leads out of the archive.", places=where)
+    if stat.S_ISLNK(entry.external_attr >> 16):
+        return BadContent("Links in an archive are not followed.", places=where)
+    if entry.flag_bits & _ENCRYPTED:
+        return BadContent("The entry is encrypted.", places=where)
+    if entry.compress_type not in _COMPRESSIONS:
+        return BadContent("The entry is compressed by an unknown method.", places=where)
+    if entry.file_size > limits.file_bytes:
+        message = f"{entry.file_size} bytes, the limit is {limits.file_bytes}"
+        return TooLarge("The file is too large.", places=[Place(entry.filename, message)])
+    return None
+
+
+def _size(archive: BinaryIO) -> int:
+    position = archive.tell()
+    size = archive.seek(0, os.SEEK_END)
+    archive.seek(position)
+    return size

@@ -1,0 +1,1 @@
+"""What every use case is given: the open library, its models and its analysis pool."""

@@ -1,0 +1,1 @@
+"""Who is it, what do they do, and which words fit."""

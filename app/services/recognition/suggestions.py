@@ -1,0 +1,88 @@
+"""Words suggested for a clip by the word model, to accept; completions of a word's beginning."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
+from app.models.words.language.inflection import base_forms
+from app.models.words.language.normalise import normalise_word
+from app.models.words.library import LibraryWords
+from app.numerics.arrays import FloatArray
+from app.services import fields
+from app.services.clips import labels
+from app.services.clips.catalogue import get_clip, update_clip
+from app.services.clips.labels import LabelCount
+from app.services.find.by_words import STATISTICS, WORD_MODES
+from app.services.find.query import described
+from app.services.library.library import Library
+from app.services.library.ready_clips import ready_clip
+from app.store.clips.record import ClipRecord
+
+LIKELY = 0.5
+"""Score from which a suggestion is accepted unasked: likelier than not."""
+MOST_SUGGESTED = 100
+
+Suggestions = tuple[tuple[str, float], ...]
+"""(word, score 0..1), the best first."""
+
+
+def suggest(lib: Library, clip_id: str, limit: int = 10, mode: str = "default") -> Suggestions:
+    """Words that the clip does not carry and that the word model would give it.
+
+    mode: "default", by the kernel regression, or "cca", by where its symbol lies in the
+    correlated space. Raises ClipNotFound, ClipNotReady, ModelNotFitted, BadField, and
+    NotEnoughLabels where mode "cca" could not be fitted.
+    """
+    if not 1 <= limit <= MOST_SUGGESTED:
+        raise fields.bad_field("limit", f"must be from 1 to {MOST_SUGGESTED}")
+    if mode not in WORD_MODES:
+        raise fields.bad_field("mode", f"must be one of {', '.join(WORD_MODES)}")
+    clip = ready_clip(lib, clip_id)
+    model = lib.models.words(lib.store).model
+    scores = (_scores_cca if mode == "cca" else _scores)(lib, model, clip)
+    carried = model.vocabulary.label_matrix([clip.words])[0] > 0
+    order = np.argsort(-np.where(carried, -1.0, scores), kind="stable")
+    found = [(model.vocabulary.words[i], float(scores[i])) for i in order if not carried[i]]
+    return tuple(pair for pair in found[:limit] if pair[1] > 0)
+
+
+def _scores(lib: Library, model: LibraryWords, clip: ClipRecord) -> FloatArray:
+    """(V,) of the vocabulary's words."""
+    with lib.store.read() as tx:
+        statistics = described(tx, clip, (STATISTICS,))[STATISTICS]
+    return np.asarray(model.word_scores(statistics[None])[0])
+
+
+def _scores_cca(lib: Library, model: LibraryWords, clip: ClipRecord) -> FloatArray:
+    with lib.store.read() as tx:
+        stored = described(tx, clip, SYMBOL_ARRAYS)
+    points = model.space.place([symbol_from_arrays(stored)])
+    return np.asarray(model.word_scores_cca(points)[0])
+
+
+def accept(lib: Library, clip_id: str, words: Sequence[str] | None = None) -> ClipRecord:
+    """Give the clip these words besides its own; by default the suggestions that are LIKELY.
+
+    The next fit learns from them. Raises ClipNotFound, BadField; by default also ClipNotReady
+    and ModelNotFitted.
+    """
+    if words is None:
+        words = [word for word, score in suggest(lib, clip_id, MOST_SUGGESTED) if score >= LIKELY]
+    new = fields.words(words) or ()
+    carried = get_clip(lib, clip_id).words
+    return update_clip(lib, clip_id, {"words": (*carried, *new)})
+
+
+def complete(lib: Library, beginning: str, limit: int = 10) -> list[LabelCount]:
+    """The library's words that begin with what was typed, or hold it, in that
+    order, the frequent ones first; where there is none, those that it is a form of."""
+    typed, carried = normalise_word(beginning), labels.words(lib)
+    found = [word for word in carried if typed in word.name]
+    if not found:
+        forms = base_forms(typed)
+        found = [word for word in carried if word.name in forms]
+    found.sort(key=lambda word: (not word.name.startswith(typed), -word.recordings, word.name))
+    return found[:limit]

@@ -1,0 +1,1 @@
+"""Make a motion that was not recorded."""

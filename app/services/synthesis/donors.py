@@ -1,0 +1,133 @@
+"""What a synthesised motion takes from real clips beside its shape: a body, its habits, and
+the quick detail of a take."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from app.analysis.descriptors.motion_sample import SAMPLES
+from app.analysis.descriptors.motion_shape import CHANNELS, moments_of
+from app.errors import ClipNotFound, ClipNotReady, NotEnoughLabels
+from app.models.synthesis.body import Donor, same_body
+from app.models.synthesis.model import Synthesis
+from app.motion.canonical.motion import Motion
+from app.motion.frame.body_frame import ANALYSIS_RATE, body_track
+from app.motion.posing.canonical_body import on_canonical_body
+from app.motion.posing.posed_start import without_posed_start
+from app.motion.roles.joint_roles import JointRole
+from app.motion.skeleton.animation import Animation
+from app.numerics.arrays import FloatArray
+from app.search.index import usable_arrays
+from app.services.library.library import Library
+from app.services.library.ready_clips import ready_clip
+from app.services.library.stored_motion import load_motion
+from app.services.synthesis.plan import Plan
+from app.services.training.synthesis_fit import SHAPE
+from app.services.views.export import own_animation
+from app.store.clips.record import ClipRecord
+
+MOST_DONORS = 5
+"""Clips of the person whose poses are looked at: those most like what is to be made."""
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """donors: of one body; body_length: metres; take: (n, 43) moments of a real take and
+    take_shape (1378,), None where the motion goes round; license, words: what all sources and
+    takes share; roles: joint names by role where a client had to say them."""
+
+    donors: list[Donor]
+    body_length: float
+    take: FloatArray | None
+    take_shape: FloatArray | None
+    license: str | None
+    words: tuple[str, ...]
+    roles: dict[str, str] | None
+
+
+def material_of(lib: Library, model: Synthesis, plan: Plan) -> Material:
+    """What the plan's motion is made of. Raises NotEnoughLabels where the clips are gone."""
+    away = dict(zip(model.ids, model.distances(plan.shape), strict=True))
+    own = _still_there(lib, sorted(plan.own, key=lambda clip: away.get(clip, np.inf)))
+    takes = _still_there(lib, sorted(plan.takes, key=lambda clip: away.get(clip, np.inf)))
+    if not own or not takes:
+        raise NotEnoughLabels("The clips that this would be made of are gone: fit the models.")
+    donors = same_body([_donor(lib, clip) for clip in own[:MOST_DONORS]])
+    take, take_shape = None, None
+    if plan.shape[-1] < 0.5:
+        take, take_shape = _detail(lib, takes, plan.shape)
+    licenses = {clip.license for clip in (*own, *takes)}
+    words = set.intersection(*(set(clip.words) for clip in takes))
+    return Material(
+        donors=donors,
+        body_length=float(np.median([donor.track.body_length for donor in donors])),
+        take=take,
+        take_shape=take_shape,
+        license=licenses.pop() if len(licenses) == 1 else None,
+        words=tuple(sorted(words)),
+        roles=own[0].roles_override,
+    )
+
+
+def _still_there(lib: Library, clip_ids: list[str]) -> list[ClipRecord]:
+    found = []
+    for clip_id in clip_ids:
+        try:
+            found.append(ready_clip(lib, clip_id))
+        except (ClipNotFound, ClipNotReady):
+            continue  # removed, or being analysed again, since the models were fitted
+    return found
+
+
+def _detail(
+    lib: Library, takes: list[ClipRecord], wanted: FloatArray
+) -> tuple[FloatArray | None, FloatArray | None]:
+    """The take nearest to the wanted motion that does not go round, as moments and as shape."""
+    with lib.store.read() as tx:
+        shapes = usable_arrays.get_many(tx, [clip.id for clip in takes], SHAPE)
+    for clip in takes:
+        shape = shapes.get(clip.id)
+        if shape is not None and shape[-1] < 0.5:
+            return detail_of(load_motion(lib, clip), shape, wanted)
+    return None, None
+
+
+def detail_of(
+    motion: Motion, shape: FloatArray, wanted: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """(n, 43) moments of a take and its shape (1378,), to be led to the wanted shape (1378,).
+
+    A take that begins in a pose which is no part of it is followed from its second frame. Its
+    shape has that pose as first moment, and so may the wanted one, learnt of such takes: there
+    the way to lead is that of the second moment.
+    """
+    moving = without_posed_start(motion)
+    led = np.array(shape, dtype=np.float64)
+    if moving is not motion:
+        own, aim = (whole[:-2].reshape(SAMPLES, CHANNELS) for whole in (led, wanted))
+        own[0] = aim[0] - (aim[1] - own[1])
+    return moments_of(body_track(moving)), led
+
+
+def _donor(lib: Library, clip: ClipRecord) -> Donor:
+    motion = load_motion(lib, clip)
+    return donor_of(motion, own_animation(lib, clip, motion, motion.frame_rate))
+
+
+def donor_of(motion: Motion, animation: Animation) -> Donor:
+    """A clip's motion and how its joints turn, over as many frames."""
+    joints = dict(motion.roles)
+    if np.sum(animation.skeleton.parents < 0) != 1:
+        # Markers are no skeleton: the body for all is put in.
+        animation = on_canonical_body(motion)
+        joints = {JointRole(name): i for i, name in enumerate(animation.skeleton.names)}
+    track, turning = body_track(motion), animation.resampled(ANALYSIS_RATE)
+    frames = min(len(turning.rotations), track.frames)
+    cut = replace(
+        turning,
+        rotations=turning.rotations[:frames],
+        translations=turning.translations[:frames],
+    )
+    return Donor(cut, track.part(0, frames), joints)

@@ -1,0 +1,117 @@
+"""How far a synthesised motion can be trusted: what it looks like, and what to expect."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from app.models.synthesis.model import Synthesis
+from app.motion.canonical.motion import Motion
+from app.motion.frame.foot_contact import FEET, skating
+from app.numerics.arrays import FloatArray
+from app.services.library.fitted_models import Fitted
+from app.services.library.library import Library
+from app.services.library.stored_motion import load_motion
+from app.services.synthesis.plan import Plan, SynthesisKind
+from app.store import models
+from app.store.clips import repository as clips
+from app.store.clips.record import ClipRecord, ClipState
+
+MOST_TAKES = 5
+"""Real takes whose feet are looked at."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quality:
+    """kind, given_persons, given_tasks: see Plan.
+
+    nearest: the real clip that is most like the made motion, analysed as any other, None where
+    it is gone; nearest_person, nearest_task: its labels; distance to it; person_is_right,
+    task_is_right: whether the labels are those asked for.
+    follows, agreement: see Plan.
+    expected_hit: share of cells left out when the model was fitted, made of as many takes, whose
+    nearest real clip was right in both; of those that followed one take if this one does, else of
+    those that did not; expected_given, expected_trials: how many persons (or tasks) and cells
+    that was; real_hit: that share of the cells' real takes, beyond which nothing
+    can be expected; all None for what was seen, or where nothing could be left out.
+    skate, real_skate: mean horizontal speed of feet that are low, m/s, of this motion and of
+    real takes of the task.
+    """
+
+    kind: SynthesisKind
+    given_persons: tuple[str, ...]
+    given_tasks: tuple[str, ...]
+    follows: str | None
+    agreement: float | None
+    nearest: ClipRecord | None
+    nearest_person: str
+    nearest_task: str
+    distance: float
+    person_is_right: bool | None
+    task_is_right: bool
+    expected_hit: float | None
+    expected_given: int | None
+    expected_trials: int | None
+    real_hit: float | None
+    skate: float
+    real_skate: float | None
+
+
+def judge(
+    lib: Library, fitted: Fitted[Synthesis], plan: Plan, motion: Motion, shape: FloatArray
+) -> Quality:
+    """The quality of a made motion; shape: (1378,) as it was analysed."""
+    model = fitted.model
+    away = model.distances(shape)
+    first = int(np.argmin(away))
+    person, task = model.labels_of(first)
+    with lib.store.read() as tx:
+        record = models.get(tx, fitted.id)
+        nearest = clips.get_many(tx, [model.ids[first]]).get(model.ids[first])
+        takes = list(clips.get_many(tx, list(plan.takes)).values())
+    expected = expected_of(record.meta.get("figures", {}), plan)
+    return Quality(
+        kind=plan.kind,
+        given_persons=plan.given_persons,
+        given_tasks=plan.given_tasks,
+        follows=plan.follows,
+        agreement=plan.agreement,
+        nearest=nearest,
+        nearest_person=person,
+        nearest_task=task,
+        distance=float(away[first]),
+        person_is_right=None if plan.person is None else person == plan.person,
+        task_is_right=task == plan.task,
+        expected_hit=expected.get("hit"),
+        expected_given=expected.get("given"),
+        expected_trials=expected.get("trials"),
+        real_hit=expected.get("real"),
+        skate=_skate(motion),
+        real_skate=_real_skate(lib, takes),
+    )
+
+
+def expected_of(figures: dict[str, Any], plan: Plan) -> dict[str, Any]:
+    """The hits of motions like this one, that followed one take or did not, in the row of the
+    held-out figures for as many given that has any, or the nearest fewer, or else more; where
+    none has, the hits of all."""
+    rows = figures.get("held_out", {}).get(plan.kind.value, [])
+    like = "averaged" if plan.follows is None else "followed"
+    parted = [{**row, **row[like]} for row in rows if row[like]["trials"]]
+    is_new_task = plan.kind is SynthesisKind.NEW_TASK
+    given = len(plan.given_persons if is_new_task else plan.given_tasks)
+    rows = parted or rows
+    fewer = [row for row in rows if row["given"] <= given]
+    return dict(fewer[-1]) if fewer else dict(rows[0]) if rows else {}
+
+
+def _skate(motion: Motion) -> float:
+    return skating(motion.role_positions()[:, FEET].astype(np.float64), motion.frame_rate)
+
+
+def _real_skate(lib: Library, takes: list[ClipRecord]) -> float | None:
+    ready = [clip for clip in takes if clip.state is ClipState.READY][:MOST_TAKES]
+    found = [_skate(load_motion(lib, clip)) for clip in ready]
+    return float(np.mean(found)) if found else None

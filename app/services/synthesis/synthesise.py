@@ -1,0 +1,167 @@
+"""Motions that nobody recorded: a known person's for another task, or anyone's of whom there
+are some clips (DESIGN 8, "synthesize"; Vasilescu 2002, section 4)."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from app.analysis.descriptors.motion_shape import motion_shape
+from app.errors import ModelNotFitted
+from app.formats.bvh.export import write_animation_bvh
+from app.models.synthesis.body import embody
+from app.models.synthesis.model import Synthesis
+from app.models.synthesis.motion import course_of
+from app.motion.canonical.motion import Motion
+from app.motion.frame.body_frame import body_track
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.skeleton.animation import Animation
+from app.services import fields
+from app.services.clips import catalogue as clips
+from app.services.library.fitted_models import Fitted
+from app.services.library.library import Library
+from app.services.library.synthesized import SYNTHESIZED
+from app.services.synthesis.donors import Material, material_of
+from app.services.synthesis.plan import Plan, plan_of
+from app.services.synthesis.quality import Quality, judge
+from app.services.views.views import MotionView
+from app.store.clips.record import ClipRecord
+from app.store.jobs.record import JobRecord
+
+SECONDS = (0.5, 60.0)
+"""Between which a length may be wished for."""
+
+MOST_CLIPS = 100
+"""Of a new person; more are refused."""
+
+
+@dataclass(frozen=True, slots=True)
+class SynthesisQuery:
+    """Exactly one of `person`, who is known, and `clip_ids`, of one person; task: what they are
+    to do; seconds: how long, by default as long as it usually takes, or some cycles; store:
+    whether to keep the motion as a clip."""
+
+    task: str
+    person: str | None = None
+    clip_ids: tuple[str, ...] | None = None
+    seconds: float | None = None
+    store: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Synthesised:
+    """person, task: of whom, doing what; name: for a file; clip, job: where it was stored;
+    is_new: False where the same motion was stored before; motion; bvh: the file's bytes;
+    cycles: how often it goes round, 0 where it does not; license: of all that it is made of,
+    None where they differ; roles: joint names by role."""
+
+    person: str | None
+    task: str
+    name: str
+    clip: ClipRecord | None
+    job: JobRecord | None
+    is_new: bool
+    motion: Motion
+    bvh: bytes
+    cycles: int
+    license: str | None
+    quality: Quality
+
+    @property
+    def view(self) -> MotionView:
+        """The motion to draw."""
+        parents = tuple(self.motion.parents.tolist())
+        return MotionView(self.motion.frame_rate, self.motion.names, parents, self.motion.positions)
+
+
+def synthesise(lib: Library, query: SynthesisQuery) -> Synthesised:
+    """The motion asked for, and how far it can be trusted.
+
+    Raises BadField, NotFound for a person or task that the model does not know, ClipNotFound,
+    ClipNotReady, NotEnoughLabels where there is nothing to make it of, ModelNotFitted.
+    """
+    query = _tidied(query)
+    fitted = _model(lib)
+    plan = plan_of(lib, fitted.model, query.task, query.person, query.clip_ids)
+    material = material_of(lib, fitted.model, plan)
+    course = course_of(
+        plan.shape,
+        material.body_length,
+        seconds=query.seconds,
+        take=material.take,
+        take_shape=material.take_shape,
+    )
+    animation = embody(course, material.donors)
+    motion = _as_motion(animation, material.donors[0].joints)
+    quality = judge(lib, fitted, plan, motion, motion_shape(body_track(motion)))
+    made = Synthesised(
+        person=plan.person,
+        task=plan.task,
+        # Without the person, whose name must go when they are forgotten.
+        name=f"{plan.task} (synthesized)",
+        clip=None,
+        job=None,
+        is_new=True,
+        motion=motion,
+        bvh=b"".join(write_animation_bvh(animation)),
+        cycles=course.cycles,
+        license=material.license,
+        quality=quality,
+    )
+    return _stored(lib, made, material, plan) if query.store else made
+
+
+def _tidied(query: SynthesisQuery) -> SynthesisQuery:
+    task, person = fields.text("task", query.task), fields.text("person", query.person)
+    if task is None:
+        raise fields.bad_field("task", "must not be empty")
+    query = replace(query, task=task, person=person)
+    if (query.person is None) == (query.clip_ids is None):
+        raise fields.bad_field("person", "send exactly one of person and clip_ids")
+    if query.clip_ids is not None and not 1 <= len(query.clip_ids) <= MOST_CLIPS:
+        raise fields.bad_field("clip_ids", f"must be 1 to {MOST_CLIPS} clips")
+    if query.seconds is not None and not SECONDS[0] <= query.seconds <= SECONDS[1]:
+        raise fields.bad_field("seconds", f"must be from {SECONDS[0]:g} to {SECONDS[1]:g}")
+    return query
+
+
+def _model(lib: Library) -> Fitted[Synthesis]:
+    if not lib.settings.recognize_persons:
+        raise ModelNotFitted(
+            "Persons are not told apart here (KINEDEX_RECOGNIZE_PERSONS is off), and a motion is"
+            " synthesized of what tells them apart."
+        )
+    return lib.models.synthesis(lib.store)
+
+
+def _as_motion(animation: Animation, joints: dict[JointRole, int]) -> Motion:
+    return Motion(
+        format="bvh",
+        names=animation.skeleton.names,
+        parents=animation.skeleton.parents,
+        positions=np.ascontiguousarray(animation.positions(), dtype=np.float32),
+        roles=joints,
+        missing_roles=tuple(role for role in SUN_ROLES if role not in joints),
+        frame_rate=animation.frame_rate,
+        declared_frame_rate=animation.frame_rate,
+        metres_per_unit=0.01,
+    )
+
+
+def _stored(lib: Library, made: Synthesised, material: Material, plan: Plan) -> Synthesised:
+    """The motion as a clip like any other, marked by its source."""
+    given = clips.NewClip(
+        filename=f"{made.name}.bvh",
+        name=made.name,
+        person=plan.person,
+        task=plan.task,
+        words=material.words,
+        license=made.license,
+        source=SYNTHESIZED,
+        unit="cm",
+        roles=material.roles,
+    )
+    created = clips.create_clip(lib, io.BytesIO(made.bvh), given)
+    return replace(made, clip=created.clip, job=created.job, is_new=created.is_new)

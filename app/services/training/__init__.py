@@ -1,0 +1,1 @@
+"""Fit the models, and decide when."""

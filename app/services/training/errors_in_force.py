@@ -1,0 +1,57 @@
+"""How often a recogniser errs on what is new, at the threshold that is in force."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from app.errors import ModelNotFitted
+from app.models.recognition.calibration import Calibration
+from app.models.recognition.perera import TensorRecogniser
+from app.models.recognition.recogniser import Recogniser
+from app.services.library.fitted_models import TELLING_UNKNOWN, Fitted, ModelKind
+from app.services.library.library import Library
+from app.store.models import ModelRecord
+
+
+@dataclass(frozen=True, slots=True)
+class Errors:
+    """Shares of clips that were held out at the fit: of what was new and is called known, and
+    of what was known and is called new; threshold: the novelty above which something is new."""
+
+    threshold: float
+    false_acceptance: float
+    false_rejection: float
+
+
+def errors_in_force(lib: Library, record: ModelRecord) -> Mapping[str, Errors] | None:
+    """The errors by "person" and "task" at the false-accept rate that is set, or at the usual
+    threshold; without a factor of which nothing was held out.
+
+    None of models that call nothing unknown, and of one that has just been replaced.
+    """
+    if record.kind not in TELLING_UNKNOWN:
+        return None
+    try:
+        fitted = _in_force(lib, record.kind)
+    except ModelNotFitted:
+        return None
+    if fitted.id != record.id:
+        return None
+    model = fitted.model
+    calibrations = {"person": model.person_calibration, "task": model.task_calibration}
+    return {factor: _errors(one) for factor, one in calibrations.items() if _is_judged(one)}
+
+
+def _in_force(lib: Library, kind: str) -> Fitted[Recogniser] | Fitted[TensorRecogniser]:
+    if kind == ModelKind.PERERA:
+        return lib.models.perera(lib.store)
+    return lib.models.recogniser(lib.store)
+
+
+def _is_judged(calibration: Calibration) -> bool:
+    return bool(len(calibration.known_novelty) and len(calibration.new_novelty))
+
+
+def _errors(calibration: Calibration) -> Errors:
+    return Errors(calibration.threshold, *calibration.error_rates())

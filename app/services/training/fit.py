@@ -1,0 +1,227 @@
+"""Fit all models of a library, each with its held-out figures, each swapped in whole."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from typing import Any
+
+from app.analysis.descriptors.motion_sample import SAMPLES
+from app.errors import NotEnoughLabels
+from app.models.held_out.metric import held_out_metric
+from app.models.held_out.recognition import (
+    held_out_recognition_figures,
+    signature_figures,
+    unknown_figures,
+)
+from app.models.held_out.words import held_out_word_figures
+from app.models.metric.learned_metric import Factor, LearnedMetric, fit_axes
+from app.models.recognition.multilinear import fit_multilinear
+from app.models.recognition.perera import fit_tensor_recogniser
+from app.models.recognition.recogniser import fit_recogniser
+from app.models.words.language.wordnet import Meanings
+from app.models.words.library import fit_library_words
+from app.services.library.fitted_models import SHAPES_FITTED, ModelKind, holds_persons, input_shapes
+from app.services.library.precomputed_rows import known_arrays
+from app.services.training.annotated import read_annotated
+from app.services.training.keypose_learning import learn_keyposes
+from app.services.training.models import enqueue_fit
+from app.services.training.synthesis_fit import fit_on
+from app.services.training.training_set import TrainingSet, read_training_set
+from app.store import models
+from app.store.clips import labels
+from app.store.database.engine import Tx
+from app.store.store import Store
+
+_log = logging.getLogger(__name__)
+
+Meta = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """A fitted model as it is stored; figures: held out, by method."""
+
+    arrays: dict[str, Any]
+    meta: Meta
+    figures: Meta
+
+
+@dataclass(frozen=True, slots=True)
+class Before:
+    """What a fit may build on: the meta and settings of the model that is to be replaced, empty
+    where there is none, whether new words may be looked up in WordNet (seconds), and where
+    else to read."""
+
+    meta: Meta
+    settings: Meta
+    wordnet: bool
+    store: Store
+
+
+def fit_library(store: Store, *, wordnet: bool = False, persons: bool = True) -> dict[str, Any]:
+    """Fit and save every model that the labels allow; says what came of each.
+
+    The result holds `library_version` and `library_size` of what was fitted on, and for each
+    kind its `outcome`: "fitted" with version and figures, or "skipped" with the reason. A model
+    that fails does not keep the others from being fitted. wordnet: look new words up there
+    (seconds); persons: whether persons may be recognised.
+    """
+    training = replace(read_training_set(store), is_anonymous=not persons)
+    outcomes = {kind.value: _fit_one(store, training, kind, wordnet) for kind in ModelKind}
+    return {
+        "library_version": training.library_version,
+        "library_size": len(training),
+        "models": outcomes,
+    }
+
+
+def _fit_one(store: Store, training: TrainingSet, kind: ModelKind, wordnet: bool) -> dict[str, Any]:
+    before = _before(store, kind, wordnet)
+    try:
+        fit = _FITS[kind](training, before)
+    except NotEnoughLabels as reason:
+        return {"outcome": "skipped", "reason": reason.detail}
+    except Exception as defect:  # noqa: BLE001
+        # A defect in one model must not cost the others; it is told where it is looked for.
+        _log.exception("the %s model could not be fitted", kind.value)
+        return {"outcome": "failed", "reason": f"{type(defect).__name__}: {defect}"}
+    with store.write() as tx:
+        if holds_persons(kind) and _is_someone_gone(tx, training):
+            enqueue_fit(tx)
+            return {"outcome": "skipped", "reason": "A person was removed during the fit."}
+        record = models.save(
+            tx,
+            kind.value,
+            meta={
+                "model": fit.meta,
+                "figures": fit.figures,
+                "settings": before.settings,
+                SHAPES_FITTED: input_shapes(),
+            },
+            arrays=fit.arrays,
+            library_version=training.library_version,
+            library_size=len(training),
+        )
+    return {"outcome": "fitted", "version": record.version, "figures": fit.figures}
+
+
+def _is_someone_gone(tx: Tx, training: TrainingSet) -> bool:
+    """Whether a person of the training set is in the library no more."""
+    return not set(filter(None, training.persons)) <= labels.person_names(tx)
+
+
+def _before(store: Store, kind: ModelKind, wordnet: bool) -> Before:
+    with store.read() as tx:
+        found = next((m for m in models.list_current(tx) if m.kind == kind.value), None)
+    if found is None:
+        return Before({}, {}, wordnet, store)
+    return Before(dict(found.meta.get("model", {})), found.settings, wordnet, store)
+
+
+def _fit_words(training: TrainingSet, before: Before) -> Fit:
+    fitted = fit_library_words(
+        training.symbols, training.statistics, training.label_sets, training.groups
+    )
+    known = Meanings.from_meta(before.meta.get("meanings", {}))
+    meanings = known.of(fitted.words.vocabulary.words, look_up=before.wordnet)
+    model = replace(fitted.words, meanings=meanings)
+    arrays, meta = model.to_arrays()
+    ids = [clip.id for clip in training.clips]
+    arrays |= known_arrays(ids, model.word_scores(training.statistics), fitted.points)
+    return Fit(arrays, meta, word_figures(training))
+
+
+def word_figures(training: TrainingSet) -> Meta:
+    """Held-out figures of the word models beside the prior, or why there are none."""
+    try:
+        found = held_out_word_figures(
+            training.symbols, training.statistics, training.label_sets, training.groups
+        )
+    except NotEnoughLabels as reason:
+        return {"reason": reason.detail}
+    shown = asdict(found)
+    # Curves and words one by one are long; `kinedex evaluate words` shows them.
+    del shown["by_word"]
+    for name in ("figures", "in_sample"):
+        shown[name] = [{k: v for k, v in row.items() if k != "precision"} for row in shown[name]]
+    correlations = {
+        kind: {str(number): value for number, value in enumerate(values, 1)}
+        for kind, values in found.correlations.items()
+    }
+    return shown | {"correlations": correlations}
+
+
+def recognition_figures(training: TrainingSet) -> dict[str, dict[str, float]]:
+    """Held-out shares recognised by method: "default", "multilinear", "perera", "pca" and
+    "prior"."""
+    return held_out_recognition_figures(
+        training.samples, training.persons, training.tasks, training.groups, wide=training.wide
+    )
+
+
+def _fit_recogniser(training: TrainingSet, _: Before) -> Fit:
+    model = fit_recogniser(training.full_samples, training.persons, training.tasks, training.groups)
+    arrays, meta = model.to_arrays()
+    figures: Meta = {"held_out": recognition_figures(training)}
+    return Fit(arrays, meta, figures | {"unknown": unknown_figures(model)})
+
+
+def _fit_multilinear(training: TrainingSet, _: Before) -> Fit:
+    # Its held-out figures stand beside those of the default recogniser.
+    model = fit_multilinear(training.samples, training.persons, training.tasks)
+    arrays, meta = model.to_arrays()
+    return Fit(arrays, meta, {})
+
+
+def _fit_signatures(training: TrainingSet, _: Before) -> Fit:
+    angles, persons, tasks, groups = training.with_angles()
+    model = fit_multilinear(angles, persons, tasks, moments=SAMPLES)
+    arrays, meta = model.to_arrays()
+    return Fit(arrays, meta, {"held_out": signature_figures(angles, persons, tasks, groups)})
+
+
+def _fit_perera(training: TrainingSet, _: Before) -> Fit:
+    model = fit_tensor_recogniser(
+        training.samples, training.persons, training.tasks, training.groups
+    )
+    arrays, meta = model.to_arrays()
+    return Fit(arrays, meta, {"unknown": unknown_figures(model)})
+
+
+def _fit_keyposes(_: TrainingSet, before: Before) -> Fit:
+    model, figures = learn_keyposes(read_annotated(before.store))
+    arrays, meta = model.to_arrays()
+    return Fit(arrays, meta, figures)
+
+
+def _fit_synthesis(training: TrainingSet, before: Before) -> Fit:
+    model, figures = fit_on(before.store, training)
+    arrays, meta = model.to_arrays()
+    return Fit(arrays, meta, figures)
+
+
+def _fit_metric(factor: Factor, training: TrainingSet, _: Before) -> Fit:
+    persons, tasks, described = training.persons, training.tasks, training.described
+    judged = held_out_metric(described, persons, tasks, training.groups, factor)
+    labels = tasks if factor is Factor.TASK else persons
+    model = LearnedMetric(fit_axes(described, labels, factor), judged.calibration)
+    arrays, meta = model.to_arrays()
+    ids = [clip.id for clip in training.clips]
+    arrays |= known_arrays(ids, None, model.axes.project(described))
+    return Fit(arrays, meta, judged.figures)
+
+
+_FITS: dict[ModelKind, Callable[[TrainingSet, Before], Fit]] = {
+    ModelKind.WORDS: _fit_words,
+    ModelKind.RECOGNISER: _fit_recogniser,
+    ModelKind.MULTILINEAR: _fit_multilinear,
+    ModelKind.SIGNATURES: _fit_signatures,
+    ModelKind.PERERA: _fit_perera,
+    ModelKind.METRIC_TASK: partial(_fit_metric, Factor.TASK),
+    ModelKind.METRIC_PERSON: partial(_fit_metric, Factor.PERSON),
+    ModelKind.KEYPOSES: _fit_keyposes,
+    ModelKind.SYNTHESIS: _fit_synthesis,
+}

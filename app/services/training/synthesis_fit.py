@@ -1,0 +1,32 @@
+"""Fitting the synthesis of motions on a library."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from app.analysis.descriptors.motion_shape import SHAPE_LENGTH
+from app.models.held_out.synthesis import held_out_synthesis
+from app.models.synthesis.model import Synthesis, fit_synthesis
+from app.search.index import usable_arrays
+from app.services.training.training_set import TrainingSet
+from app.store.store import Store
+
+SHAPE = "motion_shape"
+
+
+def fit_on(store: Store, training: TrainingSet) -> tuple[Synthesis, dict[str, Any]]:
+    """The model and its held-out figures, on the clips that have a motion shape and both labels.
+
+    Raises NotEnoughLabels.
+    """
+    labels = zip(training.clips, training.persons, training.tasks, strict=True)
+    told = [(clip.id, person, task) for clip, person, task in labels if person and task]
+    with store.read() as tx:
+        found = usable_arrays.get_many(tx, [clip_id for clip_id, _, _ in told], SHAPE)
+    told = [row for row in told if row[0] in found]  # clips of an older analysis have none
+    shapes = np.array([found[clip_id] for clip_id, _, _ in told]).reshape(-1, SHAPE_LENGTH)
+    ids, persons, tasks = ([row[column] for row in told] for column in range(3))
+    model = fit_synthesis(shapes, persons, tasks, ids)
+    return model, {"held_out": held_out_synthesis(model)}

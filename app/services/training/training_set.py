@@ -1,0 +1,138 @@
+"""What the models of a library are fitted on, read from the store at one moment."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
+from app.models.folds import recording_of
+from app.models.metric.learned_metric import INPUTS, Described
+from app.models.recognition.views import full_samples
+from app.numerics.arrays import FloatArray
+from app.numerics.hmm.model import GaussianHMM
+from app.search.index import usable_arrays
+from app.services.library.synthesized import SYNTHESIZED, is_synthesized
+from app.store.clips import listing as clip_listing
+from app.store.clips import repository as clips
+from app.store.clips import versions as library
+from app.store.clips.filter import ClipFilter
+from app.store.clips.record import ClipRecord, ClipState
+from app.store.store import Store
+
+WIDE = "wide_motion_vector"
+NAMES = (*SYMBOL_ARRAYS, *INPUTS, WIDE)
+ANGLES = "angle_sample"
+READY = ClipFilter(state=(ClipState.READY,))
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingSet:
+    """N ready clips, sorted by id, at a library version.
+
+    groups: (N,) clips of one recording share a name; symbols: N; statistics: (N, 131);
+    samples: (N, 1250); vectors: (N, 128); wide: (N, 512); angles: (642,) by clip id, of those that
+    have been analysed since there are joint angles; is_anonymous: persons are not told, since none
+    is to be recognised.
+    """
+
+    library_version: int
+    clips: tuple[ClipRecord, ...]
+    groups: tuple[str, ...]
+    symbols: tuple[GaussianHMM, ...]
+    statistics: FloatArray
+    samples: FloatArray
+    vectors: FloatArray
+    wide: FloatArray
+    angles: Mapping[str, FloatArray] = field(default_factory=dict)
+    is_anonymous: bool = False
+
+    def __len__(self) -> int:
+        return len(self.clips)
+
+    @property
+    def persons(self) -> Sequence[str | None]:
+        """(N,) who moves; None of all where the set is anonymous."""
+        return [None if self.is_anonymous else clip.person for clip in self.clips]
+
+    @property
+    def tasks(self) -> Sequence[str | None]:
+        """(N,) what is done."""
+        return [clip.task for clip in self.clips]
+
+    @property
+    def label_sets(self) -> Sequence[tuple[str, ...]]:
+        """(N,) in which words."""
+        return [clip.words for clip in self.clips]
+
+    def with_angles(self) -> tuple[FloatArray, list[str | None], list[str | None], list[str]]:
+        """Angle samples (M, 642), persons, tasks and groups of the clips that have angles."""
+        has = [i for i, clip in enumerate(self.clips) if clip.id in self.angles]
+        who, what = self.persons, self.tasks
+        return (
+            _stacked([self.angles[self.clips[i].id] for i in has]),
+            [who[i] for i in has],
+            [what[i] for i in has],
+            [self.groups[i] for i in has],
+        )
+
+    @property
+    def full_samples(self) -> FloatArray:
+        """(N, 1762) what the default recogniser looks at."""
+        return full_samples(self.samples, self.wide)
+
+    @property
+    def described(self) -> Described:
+        """What learned metrics look at."""
+        return Described(self.vectors, self.samples, self.statistics)
+
+
+def ready_only(wanted: ClipFilter | None) -> ClipFilter:
+    """A filter that besides lets only ready clips pass, and none that we made ourselves: they
+    would tell of the methods what the methods think."""
+    given = wanted or READY
+    refused = (*given.not_source, SYNTHESIZED)
+    return replace(given, state=READY.state, not_source=refused)
+
+
+def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
+    """All clips that pass a filter, ready ones by default, in one snapshot.
+
+    Synthesised clips are left out: nothing is to be learned from them.
+    """
+    with store.read() as tx:
+        version = library.version(tx)
+        ids = sorted(clip_listing.list_ids(tx, wanted))
+        found = {name: usable_arrays.get_many(tx, ids, name) for name in NAMES}
+        whole = [clip_id for clip_id in ids if all(clip_id in part for part in found.values())]
+        records = clips.get_many(tx, whole)
+        angles = usable_arrays.get_many(tx, whole, ANGLES)
+    whole = [clip_id for clip_id in whole if not is_synthesized(records[clip_id])]
+    return TrainingSet(
+        library_version=version,
+        clips=tuple(records[clip_id] for clip_id in whole),
+        groups=tuple(recording_of_clip(records[clip_id]) for clip_id in whole),
+        symbols=tuple(
+            symbol_from_arrays({name: found[name][clip_id] for name in SYMBOL_ARRAYS})
+            for clip_id in whole
+        ),
+        statistics=_stacked([found["symbol_statistics"][clip_id] for clip_id in whole]),
+        samples=_stacked([found["motion_sample"][clip_id] for clip_id in whole]),
+        vectors=_stacked([found["motion_vector"][clip_id] for clip_id in whole]),
+        wide=_stacked([found[WIDE][clip_id] for clip_id in whole]),
+        angles=angles,
+    )
+
+
+def recording_of_clip(clip: ClipRecord) -> str:
+    """What files of one recording share: their name but for its ending, and their labels.
+
+    The labels are there because libraries call takes of different people by the same name.
+    """
+    return f"{recording_of(clip.file_name)}|{clip.person}|{clip.task}"
+
+
+def _stacked(rows: list[FloatArray]) -> FloatArray:
+    return np.stack(rows).astype(np.float64) if rows else np.zeros((0, 0))

@@ -1,0 +1,1 @@
+"""Look at a clip: motion, keyposes, segments, exports, low-dimensional motion."""

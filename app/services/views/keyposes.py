@@ -1,0 +1,165 @@
+"""The keyposes of ready clips: found, with what they were found from, and named by people."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from app.analysis.energy.energy import EnergyMethod, Weights
+from app.analysis.keyposes.keyposes import Keyposes, find_keyposes
+from app.errors import ModelNotFitted
+from app.models.keyposes.thresholds import USUAL, Thresholds
+from app.motion.frame.body_frame import body_track
+from app.numerics.arrays import FloatArray
+from app.services import fields
+from app.services.library.keypose_frames import store_keyposes, stored_beats
+from app.services.library.library import Library
+from app.services.library.ready_clips import ready_clip
+from app.services.library.stored_motion import load_motion
+from app.store.clips import keypose_annotations
+from app.store.clips import repository as clips
+from app.store.clips.record import ClipRecord, ClipState
+
+METHODS = tuple(method.value for method in EnergyMethod)
+WEIGHTS = tuple(weights.value for weights in Weights)
+
+
+class ThresholdSource(StrEnum):
+    """Whence a threshold is."""
+
+    GIVEN = "given"
+    """The client said it."""
+
+    LEARNED = "learned"
+    """From the clips whose keyposes people named."""
+
+    DEFAULT = "default"
+    """The usual one."""
+
+
+@dataclass(frozen=True, slots=True)
+class UsedThresholds:
+    """T1 and T2, whence each is, and the version of the model where one was asked."""
+
+    values: Thresholds
+    t1_source: ThresholdSource
+    t2_source: ThresholdSource
+    model_version: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class KeyposesView:
+    """Keyposes at the analysis rate (30 Hz), with the pose at each.
+
+    found: frames, times, beats and energy curves; poses: (keyposes, 13, 3) metres; named: the
+    keyposes that a person named, seconds, None where nobody did.
+    """
+
+    found: Keyposes
+    frame_rate: float
+    poses: FloatArray
+    thresholds: UsedThresholds
+    named: tuple[float, ...] | None
+
+
+def view(
+    lib: Library,
+    clip_id: str,
+    method: str = EnergyMethod.RMS,
+    t1: float | None = None,
+    t2: float | None = None,
+    *,
+    weights: str = Weights.UNIFORM,
+) -> KeyposesView:
+    """A clip's keyposes by Perera's thresholds T1 and T2; where None the learned ones, else
+    the usual ones.
+
+    Raises BadField, ClipNotFound, ClipNotReady.
+    """
+    for name, value, known in (("method", method, METHODS), ("weights", weights, WEIGHTS)):
+        if value not in known:
+            raise fields.bad_field(name, f"must be one of {', '.join(known)}")
+    used = thresholds(lib, method, t1, t2)
+    clip = ready_clip(lib, clip_id)
+    track = body_track(load_motion(lib, clip))
+    found = find_keyposes(
+        track,
+        method=method,
+        weights=weights,
+        t1=used.values.t1,
+        t2=used.values.t2,
+        beats=stored_beats(lib, clip_id),
+    )
+    with lib.store.read() as tx:
+        named = keypose_annotations.get(tx, clip_id)
+    return KeyposesView(found, track.rate, track.positions[found.frames], used, named)
+
+
+def thresholds(
+    lib: Library,
+    method: str = EnergyMethod.RMS,
+    t1: float | None = None,
+    t2: float | None = None,
+) -> UsedThresholds:
+    """The thresholds for an energy: what is given, else learned, else usual. Raises BadField."""
+    for name, value in (("t1", t1), ("t2", t2)):
+        if value is not None and not (math.isfinite(value) and value > 0):
+            raise fields.bad_field(name, "must be a number above 0")
+    learned, version = _learned(lib, method)
+    otherwise = ThresholdSource.DEFAULT if learned is None else ThresholdSource.LEARNED
+    usual = learned or USUAL
+    return UsedThresholds(
+        values=Thresholds(t1 or usual.t1, t2 or usual.t2),
+        t1_source=otherwise if t1 is None else ThresholdSource.GIVEN,
+        t2_source=otherwise if t2 is None else ThresholdSource.GIVEN,
+        model_version=version if t1 is None or t2 is None else None,
+    )
+
+
+def _learned(lib: Library, method: str) -> tuple[Thresholds | None, int | None]:
+    try:
+        fitted = lib.models.keyposes(lib.store)
+    except ModelNotFitted:
+        return None, None
+    found = fitted.model.by_method.get(method)
+    return found, None if found is None else fitted.version
+
+
+def name_keyposes(lib: Library, clip_id: str, times: Sequence[float]) -> tuple[float, ...]:
+    """Say where a clip's keyposes are, in seconds; none of them take what was said away.
+
+    What is built on the keyposes of a ready clip follows at once. Raises BadField for a time
+    outside the clip, ClipNotFound.
+    """
+    tidy = fields.keyposes(times, "times") or ()
+    with lib.store.read() as tx:
+        before = clips.get(tx, clip_id)
+    _check_within(before, tidy)
+    # Found before the transaction, so that no other writer waits for it.
+    instead = np.array(tidy) if tidy else _found_anew(lib, before)
+    with lib.store.write() as tx:
+        now = clips.get(tx, clip_id)
+        keypose_annotations.put(tx, clip_id, tidy)
+        is_same = bool(tidy) or now.overrides == before.overrides
+        if now.state is ClipState.READY and is_same and instead is not None:
+            store_keyposes(tx, now, instead)
+    return tidy
+
+
+def _check_within(clip: ClipRecord, times: tuple[float, ...]) -> None:
+    if clip.duration is not None and times and times[-1] > clip.duration:
+        message = f"{times[-1]:g} s lies behind the clip's end at {clip.duration:.3f} s"
+        raise fields.bad_field("times", message)
+
+
+def _found_anew(lib: Library, clip: ClipRecord) -> FloatArray | None:
+    """What is found in a ready clip; None where the analysis is still to come."""
+    if clip.state is not ClipState.READY:
+        return None
+    track = body_track(load_motion(lib, clip))
+    used = thresholds(lib).values
+    return find_keyposes(track, t1=used.t1, t2=used.t2, beats=stored_beats(lib, clip.id)).times

@@ -1,0 +1,267 @@
+"""A ready clip drawn from few dimensions, by a model of its own poses or of other clips'."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.analysis.low_dimensional.eigen_motion import (
+    SHOWN,
+    Basis,
+    EigenModel,
+    eigen_model,
+    low_dimensional,
+    reconstruction_errors,
+    uniform_frames,
+)
+from app.analysis.low_dimensional.plausibility import Plausibility, judge_poses
+from app.deadline import check
+from app.errors import NotEnoughKeyposes, Place
+from app.motion.canonical.motion import Motion
+from app.motion.frame.body_frame import ANALYSIS_RATE, BodyTrack, body_track
+from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES, JointRole
+from app.motion.skeleton.resampling import resample
+from app.numerics.arrays import FloatArray, IntArray
+from app.services import fields
+from app.services.library.keypose_frames import keypose_frames
+from app.services.library.library import Library
+from app.services.library.ready_clips import ready_clip, ready_clips
+from app.services.library.stored_motion import load_motion
+from app.services.views.frame_rates import wanted_rate
+from app.services.views.views import MotionView
+from app.store.clips.record import ClipRecord
+
+FEWEST_POSES = 2
+"""Of a model: one pose spans no dimension."""
+MOST_MODEL_CLIPS = 50
+MOST_POSES = 1000
+"""Uniform poses of one clip that can be asked for."""
+
+Keyposes = dict[str, list[int]]
+"""Frames at 30 Hz by clip id."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reduction:
+    """How a motion is drawn from few dimensions.
+
+    dimensions: K', from 1 to the model's poses (default: 3, or fewer where those are fewer);
+    model_clips: ids of the clips whose poses make the model, default the clip itself; poses:
+    of each clip, with the uniform basis only (default: as many as it has keyposes);
+    keyposes: frames at 30 Hz by clip id, where they are known, in place of model_clips.
+    """
+
+    dimensions: int | None = None
+    basis: Basis | str = Basis.KEYPOSE
+    model_clips: Sequence[str] = ()
+    poses: int | None = None
+    keyposes: Mapping[str, Sequence[int]] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ModelPose:
+    """A pose of the model: the clip and when, in seconds."""
+
+    clip_id: str
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
+class Reduced:
+    """A motion and what few dimensions leave of it.
+
+    model: made of `poses` (K of them); eigen_poses: (K, 3) where those lie along the first
+    axes (figs 7, 8); original, reduced: the motion before and after, at 30 Hz; eigen_motion:
+    (n, 3) its curve (fig. 9); variance_kept, errors: (K,) at K' = 1..K, the errors in metres.
+    """
+
+    basis: Basis
+    dimensions: int
+    model: EigenModel
+    poses: tuple[ModelPose, ...]
+    eigen_poses: FloatArray
+    original: BodyTrack
+    reduced: BodyTrack
+    eigen_motion: FloatArray
+    variance_kept: FloatArray
+    errors: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class ReducedView:
+    """`reduced` as it is shown: motion and eigen_motion at the frame rate that was asked for;
+    faults of the motion and of the original, in frames at 30 Hz."""
+
+    reduced: Reduced
+    motion: MotionView
+    eigen_motion: FloatArray
+    plausibility: Plausibility
+    original_plausibility: Plausibility
+
+
+def view(lib: Library, clip_id: str, wanted: Reduction, fps: float | None = None) -> ReducedView:
+    """A clip drawn from few dimensions, resampled by time to `fps` (default 30 Hz).
+
+    Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes.
+    """
+    clip = ready_clip(lib, clip_id)
+    rate = frame_rate(lib, clip, fps)
+    found = reduce(lib, clip, wanted)
+    track = found.reduced
+    names = tuple(role.value for role in SUN_ROLES)
+    positions = resample(track.positions, track.rate, rate)
+    return ReducedView(
+        found,
+        MotionView(rate, names, SUN_PARENTS, positions.astype(np.float32)),
+        resample(found.eigen_motion, track.rate, rate),
+        judge_poses(track.local),
+        judge_poses(found.original.local),
+    )
+
+
+def reduce(lib: Library, clip: ClipRecord, wanted: Reduction) -> Reduced:
+    """A ready clip's motion drawn from few dimensions.
+
+    Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes.
+    """
+    basis = _checked(wanted)
+    track = body_track(load_motion(lib, clip))
+    poses, local = _model_poses(lib, clip, track, wanted, basis)
+    model = eigen_model(local)
+    dimensions = wanted.dimensions or min(SHOWN, model.poses)
+    if dimensions > model.poses:
+        message = f"must be from 1 to {model.poses}, the poses of the model"
+        raise fields.bad_field("dimensions", message)
+    return Reduced(
+        basis=basis,
+        dimensions=dimensions,
+        model=model,
+        poses=poses,
+        eigen_poses=_shown(model, local),
+        original=track,
+        reduced=low_dimensional(model, track, dimensions),
+        eigen_motion=_shown(model, track.local),
+        variance_kept=model.variance_kept(),
+        errors=reconstruction_errors(model, track),
+    )
+
+
+def keyposes_of(lib: Library, clip: ClipRecord, model_clips: Sequence[str] = ()) -> Keyposes:
+    """The frames, at 30 Hz by clip id, that would make a model of `model_clips`, or of `clip`.
+
+    Raises BadField, ClipNotFound, ClipNotReady.
+    """
+    _check_clips(model_clips)
+    found: Keyposes = {}
+    clips = ready_clips(lib, model_clips, "model_clips") or {clip.id: clip}
+    for clip_id, of_model in clips.items():
+        check()
+        track = body_track(load_motion(lib, of_model))
+        found[clip_id] = keypose_frames(lib, clip_id, track).tolist()
+    return found
+
+
+def frame_rate(lib: Library, clip: ClipRecord, fps: float | None) -> float:
+    """`fps`, or 30 Hz. Raises BadField where that makes no motion, or one that is too long."""
+    return wanted_rate(lib, clip, fps, source=ANALYSIS_RATE, joints=len(SUN_ROLES))
+
+
+def as_motion(found: Reduced, clip: ClipRecord) -> Motion:
+    """The reduced motion on a skeleton of the 13 joint roles, each after its parent, at 30 Hz,
+    in the clip's own size: what files are written from."""
+    order = _parents_first()
+    place = {joint: index for index, joint in enumerate(order)}
+    missing = tuple(JointRole(role) for role in clip.missing_roles)
+    roles = [SUN_ROLES[joint] for joint in order]
+    return Motion(
+        format=clip.format or "",
+        names=tuple(role.value for role in roles),
+        parents=np.array([place.get(SUN_PARENTS[joint], -1) for joint in order]),
+        positions=found.reduced.positions[:, order].astype(np.float32),
+        roles={role: index for index, role in enumerate(roles) if role not in missing},
+        missing_roles=missing,
+        frame_rate=found.reduced.rate,
+        declared_frame_rate=None,
+        metres_per_unit=1.0,
+    )
+
+
+def _parents_first() -> list[int]:
+    """Sun's joints, each after its parent."""
+    order = [joint for joint, parent in enumerate(SUN_PARENTS) if parent < 0]
+    for joint in order:
+        order += [child for child, parent in enumerate(SUN_PARENTS) if parent == joint]
+    return order
+
+
+def _model_poses(
+    lib: Library, clip: ClipRecord, track: BodyTrack, wanted: Reduction, basis: Basis
+) -> tuple[tuple[ModelPose, ...], FloatArray]:
+    """The poses that make the model, and where their joints are: (K, 13, 3) body lengths."""
+    poses: list[ModelPose] = []
+    local: list[FloatArray] = []
+    counts: dict[str, int] = {}
+    asked = tuple(wanted.keyposes or wanted.model_clips)
+    clips = ready_clips(lib, asked, "model_clips") or {clip.id: clip}
+    for clip_id, of_model in clips.items():
+        check()
+        found = track
+        if clip_id != clip.id:
+            found = body_track(load_motion(lib, of_model))
+        if wanted.keyposes is None:
+            frames = keypose_frames(lib, clip_id, found)
+        else:
+            frames = _within(wanted.keyposes[clip_id], found)
+        counts[clip_id] = len(frames)
+        count = wanted.poses or len(frames)
+        if basis is Basis.UNIFORM and count:
+            frames = uniform_frames(found.frames, min(count, found.frames))
+        poses += [ModelPose(clip_id, float(frame / found.rate)) for frame in frames]
+        local.append(found.local[frames])
+    if len(poses) < FEWEST_POSES:
+        raise _too_few(counts, len(poses))
+    return tuple(poses), np.concatenate(local)
+
+
+def _within(frames: Sequence[int], track: BodyTrack) -> IntArray:
+    """Of frames that were kept, those that the clip still has: it may be read anew since."""
+    return np.array([frame for frame in frames if 0 <= frame < track.frames], dtype=np.int64)
+
+
+def _too_few(counts: dict[str, int], poses: int) -> NotEnoughKeyposes:
+    return NotEnoughKeyposes(
+        f"A model needs at least {FEWEST_POSES} poses; found {poses}. Take other model_clips, "
+        "or basis=uniform and say how many poses, or tell which frames are keyposes.",
+        places=[Place("model_clips", f"{clip_id}: keyposes: {n}") for clip_id, n in counts.items()],
+    )
+
+
+def _checked(wanted: Reduction) -> Basis:
+    """The basis, where all else may be asked for too. Raises BadField."""
+    try:
+        basis = Basis(wanted.basis)
+    except ValueError:
+        raise fields.bad_field("basis", f"must be one of {', '.join(Basis)}") from None
+    if wanted.dimensions is not None and wanted.dimensions < 1:
+        raise fields.bad_field("dimensions", "must be at least 1")
+    _check_clips(wanted.model_clips)
+    if wanted.poses is not None and basis is not Basis.UNIFORM:
+        raise fields.bad_field("poses", "goes with basis=uniform; keyposes are as many as they are")
+    if wanted.poses is not None and not 1 <= wanted.poses <= MOST_POSES:
+        raise fields.bad_field("poses", f"must be from 1 to {MOST_POSES}")
+    return basis
+
+
+def _check_clips(model_clips: Sequence[str]) -> None:
+    if len(model_clips) > MOST_MODEL_CLIPS:
+        raise fields.bad_field("model_clips", f"must be at most {MOST_MODEL_CLIPS} clips")
+
+
+def _shown(model: EigenModel, poses: FloatArray) -> FloatArray:
+    """(n, 3) coordinates along the first three axes; 0 along those that the model lacks."""
+    found = np.zeros((len(poses), SHOWN))
+    kept = min(SHOWN, model.poses)
+    found[:, :kept] = model.coordinates(poses, kept)
+    return found

@@ -1,0 +1,231 @@
+"""The study behind Perera's Table 2: which of two low-dimensional motions is nearer to the
+original, as people see it.
+
+A pair shows a clip drawn from as many dimensions of keyposes and of uniform poses, on sides
+that are drawn by lot and told to nobody: not in the pair, nor in what its motions look like
+as answers. Votes are tallied by sequence, which is a clip, a model and its dimensions.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import secrets
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from app.analysis.low_dimensional.eigen_motion import SHOWN, Basis
+from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
+from app.motion.skeleton.resampling import resample
+from app.numerics.binomial import fair_coin_probability, wilson_interval
+from app.services import fields
+from app.services.figures.animated_figure import animated_svg
+from app.services.library.library import Library
+from app.services.library.ready_clips import ready_clip
+from app.services.views.animations import role_figure
+from app.services.views.low_dimensional import Reduced, Reduction, frame_rate, keyposes_of, reduce
+from app.services.views.views import MotionView
+from app.store import studies as stored
+from app.store.clips import repository as stored_clips
+from app.store.database.paging import Page
+from app.store.studies import Choice, PairRecord, VoteCount
+
+MOST_SEQUENCES = 1000
+"""Sequences that a tally tells one by one; those of one clip can be asked for by themselves."""
+MOST_VOTER = 200
+"""Characters of what a page calls a voter."""
+
+
+class Side(StrEnum):
+    """What of a pair is shown."""
+
+    LEFT = "left"
+    """One of the two versions."""
+    ORIGINAL = "original"
+    """The motion itself."""
+    RIGHT = "right"
+    """The other version."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """Votes as in Table 2.
+
+    keypose, uniform, same: how often each was chosen; share: of those who could tell, who
+    preferred keyposes, None where nobody could; interval: of the share, 95 % (Wilson);
+    chance: the probability of a share as far from one half if nobody could tell.
+    """
+
+    keypose: int
+    uniform: int
+    same: int
+    share: float | None
+    interval: tuple[float, float]
+    chance: float
+
+
+@dataclass(frozen=True, slots=True)
+class SequenceTally:
+    """The tally of one sequence."""
+
+    clip_id: str
+    name: str
+    dimensions: int
+    votes: Tally
+
+
+@dataclass(frozen=True, slots=True)
+class StudyTally:
+    """Each sequence, and all together; left_share: how often those who could tell chose the
+    left side, None where nobody could: far from one half says that they did not look."""
+
+    sequences: tuple[SequenceTally, ...]
+    total: Tally
+    left_share: float | None
+
+
+def draw_pair(
+    lib: Library,
+    clip_id: str,
+    dimensions: int = SHOWN,
+    model_clips: Sequence[str] = (),
+) -> PairRecord:
+    """A new pair of a clip's low-dimensional versions, sides by lot.
+
+    The keyposes are those of now: later ones do not change what is voted on. Raises BadField,
+    ClipNotFound, ClipNotReady, NotEnoughKeyposes.
+    """
+    clip = ready_clip(lib, clip_id)
+    keyposes = keyposes_of(lib, clip, model_clips)
+    for basis in Basis:
+        reduce(lib, clip, Reduction(dimensions, basis, keyposes=keyposes))
+    told = json.dumps([clip_id, dimensions, keyposes])
+    sequence = hashlib.sha256(told.encode()).hexdigest()
+    left = secrets.choice(list(Basis))
+    with lib.store.write() as tx:
+        return stored.add_pair(tx, clip_id, dimensions, keyposes, sequence, left.value)
+
+
+def get_pair(lib: Library, pair_id: str) -> PairRecord:
+    """A pair by id; raises NotFound."""
+    with lib.store.read() as tx:
+        return stored.get_pair(tx, pair_id)
+
+
+def list_pairs(lib: Library, limit: int = 50, cursor: str | None = None) -> Page[PairRecord]:
+    """One page of pairs, newest first. Raises BadField for a bad cursor."""
+    with lib.store.read() as tx:
+        return stored.list_pairs(tx, limit=limit, cursor=cursor)
+
+
+def delete_pair(lib: Library, pair_id: str) -> None:
+    """Forgets a pair and its votes; raises NotFound."""
+    with lib.store.write() as tx:
+        stored.delete_pair(tx, pair_id)
+
+
+def motion(lib: Library, pair_id: str, side: Side, fps: float | None = None) -> MotionView:
+    """What stands on a side of a pair, resampled by time to `fps` (default 30 Hz).
+
+    Raises NotFound, BadField, ClipNotReady.
+    """
+    pair = get_pair(lib, pair_id)
+    rate = frame_rate(lib, ready_clip(lib, pair.clip_id), fps)
+    found = _reduced(lib, pair, side)
+    track = found.original if side is Side.ORIGINAL else found.reduced
+    positions = resample(track.positions, track.rate, rate).astype(np.float32)
+    return MotionView(rate, tuple(role.value for role in SUN_ROLES), SUN_PARENTS, positions)
+
+
+def animation(lib: Library, pair_id: str) -> str:
+    """The three of them in one picture that moves, the original in the middle (fig. 12).
+
+    Raises NotFound, ClipNotReady.
+    """
+    pair = get_pair(lib, pair_id)
+    left, right = (_reduced(lib, pair, side) for side in (Side.LEFT, Side.RIGHT))
+    figures = [
+        role_figure(left.reduced.positions, Side.LEFT.value),
+        role_figure(left.original.positions, Side.ORIGINAL.value),
+        role_figure(right.reduced.positions, Side.RIGHT.value),
+    ]
+    return animated_svg(figures, left.original.rate, "Which one is nearer to the original?")
+
+
+def vote(lib: Library, pair_id: str, choice: Choice | str, voter: str | None = None) -> str:
+    """Keeps what a voter found nearer to the original; returns the vote's id.
+
+    voter: anything that tells voters apart, such as a number that their page drew; it is
+    kept as a hash only, and may vote once on each sequence. Raises NotFound, BadField,
+    AlreadyVoted.
+    """
+    try:
+        chosen = Choice(choice)
+    except ValueError:
+        raise fields.bad_field("choice", f"must be one of {', '.join(Choice)}") from None
+    if voter is not None and not 0 < len(voter) <= MOST_VOTER:
+        raise fields.bad_field("voter", f"must have from 1 to {MOST_VOTER} characters")
+    known = None if voter is None else hashlib.sha256(voter.encode()).hexdigest()
+    with lib.store.write() as tx:
+        return stored.add_vote(tx, stored.get_pair(tx, pair_id), chosen, known)
+
+
+def tally(lib: Library, clip_id: str | None = None) -> StudyTally:
+    """The votes on one clip's pairs, or on all. Raises ClipNotFound."""
+    with lib.store.read() as tx:
+        if clip_id is not None:
+            stored_clips.get(tx, clip_id)
+        counts = stored.count_votes(tx, clip_id)
+        names = stored_clips.get_many(tx, sorted({count.clip_id for count in counts}))
+    by_sequence: dict[str, list[VoteCount]] = {}
+    for count in counts:
+        by_sequence.setdefault(count.sequence, []).append(count)
+    sequences = [
+        SequenceTally(
+            found[0].clip_id, names[found[0].clip_id].name, found[0].dimensions, _tally(found)
+        )
+        for found in by_sequence.values()
+    ]
+    sequences.sort(key=lambda one: (one.name, one.clip_id, one.dimensions))
+    left = sum(count.votes for count in counts if count.choice is Choice.LEFT)
+    told = sum(count.votes for count in counts if count.choice is not Choice.SAME)
+    return StudyTally(
+        tuple(sequences[:MOST_SEQUENCES]), _tally(counts), left / told if told else None
+    )
+
+
+def _tally(counts: Iterable[VoteCount]) -> Tally:
+    votes = {Basis.KEYPOSE: 0, Basis.UNIFORM: 0, None: 0}
+    for count in counts:
+        votes[_chosen(count)] += count.votes
+    keypose, told = votes[Basis.KEYPOSE], votes[Basis.KEYPOSE] + votes[Basis.UNIFORM]
+    return Tally(
+        keypose=keypose,
+        uniform=votes[Basis.UNIFORM],
+        same=votes[None],
+        share=keypose / told if told else None,
+        interval=wilson_interval(keypose, told),
+        chance=fair_coin_probability(keypose, told),
+    )
+
+
+def _chosen(count: VoteCount) -> Basis | None:
+    """Which basis a choice means; None for neither."""
+    left = Basis(count.left_basis)
+    if count.choice is Choice.SAME:
+        return None
+    return left if count.choice is Choice.LEFT else _other(left)
+
+
+def _other(basis: Basis) -> Basis:
+    return Basis.UNIFORM if basis is Basis.KEYPOSE else Basis.KEYPOSE
+
+
+def _reduced(lib: Library, pair: PairRecord, side: Side) -> Reduced:
+    left = Basis(pair.left_basis)
+    basis = _other(left) if side is Side.RIGHT else left
+    clip = ready_clip(lib, pair.clip_id)
+    return reduce(lib, clip, Reduction(pair.dimensions, basis, keyposes=pair.keyposes))

@@ -1,0 +1,128 @@
+"""A person who is forgotten is in no label, no model and no byte; a setting keeps all out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.demo import DemoClip
+from app.errors import ModelBeingFitted, ModelNotFitted, NotFound
+from app.services.clips import catalogue as clips
+from app.services.clips import jobs, labels, persons
+from app.services.find.find import MotionQuery, find_motion
+from app.services.library.library import Library
+from app.services.recognition import recognise
+from app.services.recognition.recognise import RecogniseQuery
+from app.services.training import models
+from app.services.training.fit import fit_library
+from app.store.clips.record import ClipState
+from app.store.jobs.record import JobKind, JobState
+from tests.libraries import settings_for, upload, work
+
+NAME = "Zebulon Quatermain"
+
+
+def _library(lib: Library, demo: list[DemoClip]) -> dict[str, str]:
+    """Two persons' clips, one of them under NAME; clip ids by person and task."""
+    ids = {}
+    for clip in demo:
+        if clip.person in ("ada", "bruno"):
+            person = NAME if clip.person == "ada" else clip.person
+            made = upload(lib, clip, name=clip.task, person=person).clip
+            ids[f"{person} {clip.task}"] = made.id
+    models.request_fit(lib)
+    work(lib.settings)
+    return ids
+
+
+def _bytes_of(folder: Path) -> bytes:
+    return b"".join(path.read_bytes() for path in folder.glob("*.sqlite3*"))
+
+
+def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoClip]) -> None:
+    ids = _library(lib, some_demo_clips)
+    theirs = ids[f"{NAME} wave"]
+    before = recognise.recognise(lib, RecogniseQuery(theirs))
+    assert NAME in {candidate.label for candidate in before.person.candidates}
+    assert NAME.encode() in _bytes_of(lib.settings.data_dir)
+
+    persons.forget_person(lib, NAME)
+
+    assert NAME not in {one.name for one in labels.persons(lib)}
+    found = clips.get_clip(lib, theirs)
+    assert (found.person, found.state) == (None, ClipState.READY)
+    with pytest.raises(
+        ModelBeingFitted, match="removed: a person whom it held was removed"
+    ) as refused:
+        recognise.recognise(lib, RecogniseQuery(theirs))
+    (waiting,) = jobs.list_jobs(lib, kind=JobKind.FIT, state=JobState.QUEUED).items
+    assert f"ask again when the job {waiting.id} has ended" in refused.value.detail
+    assert NAME not in refused.value.detail
+    lib.store.erase_traces()
+    assert NAME.encode() not in _bytes_of(lib.settings.data_dir)
+
+    work(lib.settings)
+    after = recognise.recognise(lib, RecogniseQuery(theirs))
+    assert NAME not in {candidate.label for candidate in after.person.candidates}
+    assert after.task.candidates[0].label == "wave"
+    with pytest.raises(NotFound):
+        persons.forget_person(lib, NAME)
+
+
+def test_why_a_model_is_not_there_is_told(lib: Library, some_demo_clips: list[DemoClip]) -> None:
+    one = [clip for clip in some_demo_clips if clip.person == "ada"]
+    ids = [upload(lib, clip, person=NAME, task="all the same").clip.id for clip in one]
+    models.request_fit(lib)
+    work(lib.settings)
+    asked = MotionQuery(ids[0], method="metric-person")
+    with pytest.raises(ModelNotFitted, match="two clips each"):
+        find_motion(lib, asked)
+    models.request_fit(lib)
+    with pytest.raises(ModelBeingFitted, match=r"yet\. The models are being fitted: ask"):
+        find_motion(lib, asked)
+    persons.forget_person(lib, NAME)
+    work(lib.settings)
+    with pytest.raises(ModelNotFitted) as refused:
+        find_motion(lib, asked)
+    assert not isinstance(refused.value, ModelBeingFitted)
+
+
+def test_a_fit_that_began_before_brings_nobody_back(
+    lib: Library, some_demo_clips: list[DemoClip], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _library(lib, some_demo_clips)
+    import app.services.training.fit as fitting
+
+    read = fitting.read_training_set
+
+    def read_then_forget(store: object) -> object:
+        training = read(lib.store)
+        persons.forget_person(lib, NAME)
+        return training
+
+    monkeypatch.setattr(fitting, "read_training_set", read_then_forget)
+    outcome = fit_library(lib.store)["models"]
+    assert outcome["recogniser"]["outcome"] == "skipped"
+    assert outcome["words"]["outcome"] == "fitted"
+    assert {record.kind for record in models.list_models(lib)} == {"words", "metric-task"}
+
+
+def test_switched_off_no_model_holds_a_person(
+    tmp_path: Path, some_demo_clips: list[DemoClip]
+) -> None:
+    with_persons = Library.open(settings_for(tmp_path))
+    ids = _library(with_persons, some_demo_clips)
+    with_persons.close()
+    lib = Library.open(settings_for(tmp_path, recognize_persons=False))
+    try:
+        early = recognise.recognise(lib, RecogniseQuery(ids["bruno bow"]))
+        assert (early.person.label, early.person.candidates) == (None, ())
+        work(lib.settings)
+        found = recognise.recognise(lib, RecogniseQuery(ids["bruno bow"]))
+        assert (found.person.label, found.person.candidates) == (None, ())
+        assert found.task.candidates[0].label == "bow"
+        for record in models.list_models(lib):
+            assert "bruno" not in str(record.meta)
+    finally:
+        lib.close()

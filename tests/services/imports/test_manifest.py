@@ -1,0 +1,150 @@
+"""Manifests: read rightly, or refused with the line."""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.errors import KinedexError, TooLarge, Unreadable
+from app.services.imports.manifest import Manifest
+from app.services.imports.manifest_table import MAX_COLUMNS, MAX_ROW, ManifestLimits
+
+FEW_ROWS = ManifestLimits(rows=5)
+
+TABLE = (
+    "\ufeffpath, Person,task,words,license,source,fps,unit,remark\r\n"
+    'a.bvh,ada,walk,"Walk slow left_leg",CC0,me,60,cm,"x, y"\r\n'
+    "\r\n"
+    "deep\\b.bvh,,,,,,,,\r\n"
+)
+
+
+def _read(content: bytes, folder: str = "", limits: ManifestLimits = FEW_ROWS) -> Manifest:
+    manifest = Manifest(limits)
+    manifest.read(io.BytesIO(content), folder)
+    return manifest
+
+
+def test_a_row_tells_all_that_its_columns_hold() -> None:
+    manifest = _read(TABLE.encode(), "set")
+    row = manifest.row("set/a.bvh")
+    assert (row.person, row.task, row.license, row.source) == ("ada", "walk", "CC0", "me")
+    assert row.words == ("walk", "slow", "left_leg")
+    assert (row.frame_rate, row.metres_per_unit, row.problem) == (60.0, 0.01, None)
+    empty = manifest.row("set/deep/b.bvh")
+    assert (empty.person, empty.words, empty.frame_rate) == (None, None, None)
+
+
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_what_spreadsheets_of_other_countries_write_is_read(separator: str) -> None:
+    table = "path,person,words\na.bvh,ada,walk slow\n".replace(",", separator)
+    row = _read(table.encode()).row("a.bvh")
+    assert (row.person, row.words) == ("ada", ("walk", "slow"))
+
+
+@pytest.mark.parametrize(
+    ("line", "part"),
+    [("a.bvh,fast", "frame_rate"), ("a.bvh,-3", "frame_rate"), ("a.bvh,nan", "frame_rate")],
+)
+def test_a_row_that_cannot_be_used_keeps_its_problem(line: str, part: str) -> None:
+    row = _read(f"path,fps\n{line}\n".encode()).row("a.bvh")
+    assert row.problem is not None
+    assert row.problem.places[0].location == f"manifest.csv line 2: {part}"
+
+
+def test_a_path_named_twice_is_a_problem_of_its_own() -> None:
+    row = _read(b"path,person\na.bvh,ada\n./a.bvh,bruno\n").row("a.bvh")
+    assert row.problem is not None
+    assert "line 3" in row.problem.places[0].location
+
+
+@pytest.mark.parametrize(
+    ("content", "line"),
+    [
+        (b"", 1),
+        (b"file,person\na.bvh,ada\n", 1),
+        (b"path,person\na.bvh,ada\nb.bvh,\xff\n", 3),
+        (b'path,person\n"a.bvh,ada\n', 2),
+    ],
+)
+def test_what_is_no_manifest_is_refused_with_the_line(content: bytes, line: int) -> None:
+    with pytest.raises(Unreadable) as refused:
+        _read(content)
+    assert refused.value.places[0].location == f"manifest.csv line {line}"
+
+
+@given(st.binary(max_size=300))
+def test_no_bytes_make_anything_but_rows_or_a_refusal(content: bytes) -> None:
+    try:
+        _read(b"path,words,fps\n" + content)
+    except KinedexError:
+        return
+
+
+class _Endless:
+    """A manifest that never ends; `given` tells how many bytes of it were read."""
+
+    def __init__(self, head: bytes, again: bytes) -> None:
+        self.given = 0
+        self._head, self._again = head, again
+
+    def read(self, size: int, /) -> bytes:
+        part = (self._head + self._again * (size // len(self._again) + 1))[:size]
+        self._head = self._head[size:]
+        self.given += len(part)
+        return part
+
+
+@pytest.mark.parametrize(
+    ("head", "again", "told"),
+    [
+        (b"path\n", b"a.bvh\n", "more than 5 rows"),
+        (b"path\n", b"\n", "more than 5 rows"),
+        (b"path\n", b"a", f"more than {MAX_ROW} characters"),
+        (b"path\n" + b"a" * 200_000 + b"\n", b"a\n", "field larger than field limit"),
+        (b"path\n", b"a,", f"more than {MAX_ROW} characters"),
+        (b"path\n", b'"\n",', f"more than {MAX_ROW} characters"),
+        (b"", b"path,", f"more than {MAX_ROW} characters"),
+    ],
+)
+def test_a_manifest_without_end_is_refused_with_the_line_before_much_of_it_is_read(
+    head: bytes, again: bytes, told: str
+) -> None:
+    content = _Endless(head, again)
+    manifest = Manifest(FEW_ROWS)
+    with pytest.raises((TooLarge, Unreadable), match=told) as refused:
+        manifest.read(content)
+    assert refused.value.places[0].location.startswith("manifest.csv line ")
+    assert content.given < 2 * MAX_ROW
+
+
+def test_columns_bytes_and_paths_have_limits() -> None:
+    wide = b"path" + b",x" * MAX_COLUMNS
+    with pytest.raises(TooLarge, match=f"more than {MAX_COLUMNS} columns"):
+        _read(wide)
+    with pytest.raises(TooLarge, match="more than 10 bytes"):
+        _read(b"path\na.bvh\n", limits=ManifestLimits(5, bytes=10))
+    with pytest.raises(TooLarge, match="a path of more than 500 characters"):
+        _read(b"path\n" + b"a" * 501)
+
+
+def test_limits_hold_for_all_manifests_of_an_import_together() -> None:
+    manifest = _read(b"path\na.bvh\nb.bvh\nc.bvh\n", "one")
+    with pytest.raises(TooLarge, match="more than 5 rows") as refused:
+        manifest.read(io.BytesIO(b"path\na.bvh\nb.bvh\nc.bvh\n"), "two")
+    assert refused.value.places[0].location == "manifest.csv line 4"
+
+
+def test_of_two_manifests_the_later_counts() -> None:
+    manifest = _read(b"path,person\nset/a.bvh,ada\n")
+    manifest.read(io.BytesIO(b"person,path\nbruno,a.bvh\n"), "set")
+    assert manifest.row("set/a.bvh").person == "bruno"
+
+
+def test_recordings_are_named_with_their_line_and_as_seen_from_the_root() -> None:
+    manifest = _read(b"path,audio\na.bvh,../song.mp3\n", "set/in")
+    assert manifest.recordings() == {"set/song.mp3": 2}
+    assert manifest.row("set/in/a.bvh").audio == "set/song.mp3"

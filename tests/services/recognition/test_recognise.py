@@ -1,0 +1,141 @@
+"""Who does what in which words, by models that a worker has fitted."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.demo import DemoClip
+from app.errors import BadField, ModelNotFitted
+from app.services.library.library import Library
+from app.services.recognition import recognise
+from app.services.recognition.recognise import METHODS, RecogniseQuery
+from app.services.training import models
+from app.services.training.errors_in_force import errors_in_force
+from app.store.jobs.record import JobKind, JobState
+from app.store.jobs.repository import list_jobs
+from tests.libraries import FindClip, settings_for, upload, work
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_stored_clip_is_recognised(
+    ready_library: Library, clip_of: FindClip, method: str
+) -> None:
+    asked = RecogniseQuery(clip_of("ada", "wave").id, method=method)
+    found = recognise.recognise(ready_library, asked)
+    assert found.task.candidates[0].label == "wave"
+    assert found.person.candidates[0].label == "ada"
+    scores = [score for _, score in found.words]
+    assert "wave" in dict(found.words)
+    assert scores == sorted(scores, reverse=True)
+
+
+def test_what_is_known_is_taken_as_given(ready_library: Library, clip_of: FindClip) -> None:
+    asked = RecogniseQuery(clip_of("ada", "wave").id, known_person="ada", known_task=" wave ")
+    found = recognise.recognise(ready_library, asked)
+    assert (found.person.label, found.task.label) == ("ada", "wave")
+
+
+def test_an_upload_is_recognised_as_its_stored_twin(
+    ready_library: Library, some_demo_clips: list[DemoClip], clip_of: FindClip
+) -> None:
+    demo = next(c for c in some_demo_clips if (c.person, c.task) == ("chika", "bow"))
+    theirs = recognise.recognise(ready_library, RecogniseQuery(content=io.BytesIO(demo.content)))
+    ours = recognise.recognise(ready_library, RecogniseQuery(clip_of("chika", "bow").id))
+    assert theirs.task.candidates[0].label == ours.task.candidates[0].label == "bow"
+    assert theirs.words[0] == pytest.approx(ours.words[0])
+
+
+def test_another_method_is_refused(ready_library: Library, clip_of: FindClip) -> None:
+    with pytest.raises(BadField, match="method"):
+        recognise.recognise(ready_library, RecogniseQuery(clip_of("ada", "bow").id, method="x"))
+
+
+def test_models_tell_what_they_were_fitted_on_and_how_good_they_are(
+    ready_library: Library,
+) -> None:
+    fitted = {record.kind: record for record in models.list_models(ready_library)}
+    kinds = {"words", "recogniser", "multilinear", "metric-task", "metric-person", "synthesis"}
+    kinds |= {"signatures", "perera"}
+    assert set(fitted) == kinds
+    assert {record.library_size for record in fitted.values()} == {12}
+    words = {row["method"]: row for row in fitted["words"].meta["figures"]["figures"]}
+    assert words["default"]["top_3_recognition"] >= words["prior"]["top_3_recognition"]
+    assert "default" in fitted["recogniser"].meta["figures"]["held_out"]
+
+
+def test_what_cannot_be_fitted_is_skipped_with_its_reason(
+    lib: Library, some_demo_clips: list[DemoClip]
+) -> None:
+    for demo in some_demo_clips[:3]:
+        upload(lib, demo, person=None, task=None)
+    job = models.request_fit(lib)
+    assert models.request_fit(lib).id == job.id
+    work(lib.settings)
+    with lib.store.read() as tx:
+        (done,) = list_jobs(tx, kind=JobKind.FIT).items
+    assert done.state is JobState.SUCCEEDED
+    assert done.result is not None
+    outcomes = done.result["models"]
+    assert outcomes["words"]["outcome"] == "fitted"
+    assert outcomes["recogniser"]["outcome"] == outcomes["multilinear"]["outcome"] == "skipped"
+    assert outcomes["recogniser"]["reason"]
+    clip = upload(lib, some_demo_clips[0]).clip
+    with pytest.raises(ModelNotFitted):
+        recognise.recognise(lib, RecogniseQuery(clip.id))
+
+
+def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
+    lib: Library, some_demo_clips: list[DemoClip]
+) -> None:
+    for clip in some_demo_clips:
+        upload(lib, clip)
+    models.request_fit(lib)
+    work(lib.settings)
+    (record,) = (r for r in models.list_models(lib) if r.kind == "recogniser")
+    curve = record.meta["figures"]["unknown"]["person"]["curve"]
+    assert {"threshold", "false_acceptance", "false_rejection"} == set(curve[0])
+    threshold = lib.models.recogniser(lib.store).model.person_calibration.threshold
+
+    changed = models.set_false_accept_rate(lib, record.id, 0.001)
+    assert changed.settings == {"false_accept_rate": 0.001}
+    strict = lib.models.recogniser(lib.store).model.person_calibration
+    assert strict.error_rates()[0] == 0.0
+    assert strict.threshold <= threshold
+    told = errors_in_force(lib, changed)
+    assert told is not None
+    person = told["person"]
+    assert (person.threshold, person.false_acceptance) == (strict.threshold, 0.0)
+    assert person.false_rejection == strict.error_rates()[1]
+    usual = changed.meta["figures"]["unknown"]["person"]
+    assert person.false_rejection >= usual["false_rejection"]
+
+    models.request_fit(lib)
+    work(lib.settings)
+    (again,) = (r for r in models.list_models(lib) if r.kind == "recogniser")
+    assert again.settings == changed.settings
+    assert models.set_false_accept_rate(lib, again.id, None).settings == {}
+
+    (perera,) = (r for r in models.list_models(lib) if r.kind == "perera")
+    assert perera.meta["figures"]["unknown"]["task"]["curve"]
+    models.set_false_accept_rate(lib, perera.id, 0.001)
+    assert lib.models.perera(lib.store).model.task_calibration.error_rates()[0] == 0.0
+
+    (words,) = (r for r in models.list_models(lib) if r.kind == "words")
+    for model_id, rate in ((words.id, 0.1), (again.id, 0.0), (again.id, 1.0)):
+        with pytest.raises(BadField, match="false_accept_rate"):
+            models.set_false_accept_rate(lib, model_id, rate)
+
+
+@pytest.mark.parametrize("method", sorted(set(METHODS) - {"default"}))
+def test_methods_that_need_persons_say_so_where_persons_are_not_recognised(
+    ready_library: Library, clip_of: FindClip, method: str
+) -> None:
+    closed = replace(
+        ready_library, settings=settings_for(Path("/nowhere"), recognize_persons=False)
+    )
+    with pytest.raises(ModelNotFitted, match="switched off"):
+        recognise.recognise(closed, RecogniseQuery(clip_of("ada", "wave").id, method=method))

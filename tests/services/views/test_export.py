@@ -1,0 +1,195 @@
+"""Ready clips as files: they read back as the same movement."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.demo import DemoClip
+from app.errors import BadField, ClipNotFound, ClipNotReady
+from app.formats.bvh.reader import read_bvh
+from app.formats.read import read_recording
+from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.motion import Motion
+from app.motion.posing.canonical_body import BODY_ROLES
+from app.numerics.arrays import FloatArray
+from app.services.clips import catalogue as clips
+from app.services.clips.catalogue import NewClip
+from app.services.library.library import Library
+from app.services.library.stored_motion import load_motion
+from app.services.views import export, views
+from app.services.views.export_format import ExportFormat
+from app.store.clips.record import ClipRecord, ClipState
+from tests.formats.gltf.files import Glb
+from tests.formats.npz.files import npz
+from tests.libraries import FindClip, upload, work
+from tests.people import CONVENTIONS, person
+
+TENTH_OF_MM = 1e-4
+
+
+def exported(lib: Library, clip: ClipRecord, format: str, **options: object) -> bytes:
+    return b"".join(export.export(lib, clip.id, format, **options).blocks)  # type: ignore[arg-type]
+
+
+def positions_of(content: bytes, format: str) -> tuple[tuple[str, ...], FloatArray]:
+    """Joint names and (frames, joints, 3) metres of an exported file."""
+    if format == "glb":
+        glb = Glb(content)
+        joints = glb.document["skins"][0]["joints"]
+        names = tuple(glb.document["nodes"][joint]["name"] for joint in joints)
+        return names, glb.world()[:, joints][..., :3, 3]
+    if format == "csv":
+        head, *rows = csv.reader(io.StringIO(content.decode()))
+        numbers = np.array(rows, dtype=float)[:, 1:]
+        return tuple(name[:-2] for name in head[1::3]), numbers.reshape(len(rows), -1, 3)
+    recording = read_recording(content)
+    scale = 0.01 if format == "bvh" else 1.0
+    return recording.skeleton.names, recording.positions * scale
+
+
+def assert_same_places(content: bytes, format: str, motion: Motion, within: float) -> None:
+    names, positions = positions_of(content, format)
+    assert sorted(names) == sorted(motion.names)
+    order = [motion.names.index(name) for name in names]
+    assert np.abs(positions - motion.positions[:, order]).max() < within
+
+
+@pytest.mark.parametrize("format", ExportFormat)
+@pytest.mark.parametrize("task", ["walk", "kick"])
+def test_positions_come_back_within_a_tenth_of_a_millimetre(
+    ready_library: Library, clip_of: FindClip, format: ExportFormat, task: str
+) -> None:
+    clip = clip_of("ada", task)
+    content = exported(ready_library, clip, format)
+    assert content == exported(ready_library, clip, format)
+    assert_same_places(content, format, load_motion(ready_library, clip), TENTH_OF_MM)
+
+
+def test_a_bvh_that_is_imported_again_is_the_same_motion(
+    ready_library: Library, clip_of: FindClip
+) -> None:
+    before = load_motion(ready_library, clip_of("bruno", "kick"))
+    for format in ("bvh", "npz"):
+        content = exported(ready_library, clip_of("bruno", "kick"), format)
+        after = canonicalise(read_recording(content))
+        assert after.roles == before.roles
+        assert after.frame_rate == pytest.approx(before.frame_rate, rel=1e-4)
+        assert np.abs(after.positions - before.positions).max() < TENTH_OF_MM
+
+
+def test_rotations_are_the_files_own(
+    ready_library: Library, clip_of: FindClip, some_demo_clips: list[DemoClip]
+) -> None:
+    clip = clip_of("ada", "wave")
+    (original,) = [c for c in some_demo_clips if (c.person, c.task) == ("ada", "wave")]
+    before = read_bvh(original.content)
+    after = read_bvh(exported(ready_library, clip, "bvh"))
+    assert after.skeleton.names == before.skeleton.names
+    assert after.translations is None
+    assert before.rotations is not None
+    assert after.rotations is not None
+    same = np.abs(np.sum(before.rotations * after.rotations, axis=-1))
+    assert same.min() > 1 - 1e-6
+    assert len(after.skeleton.end_parents) == len(before.skeleton.end_parents)
+
+
+@pytest.mark.parametrize("format", ExportFormat)
+def test_any_rate_is_the_same_movement(
+    ready_library: Library, clip_of: FindClip, format: ExportFormat
+) -> None:
+    clip = clip_of("chika", "bow")
+    names, positions = positions_of(exported(ready_library, clip, format, fps=24.0), format)
+    seen = views.motion(ready_library, clip.id, fps=24.0)
+    order = [seen.joint_names.index(name) for name in names]
+    assert np.abs(positions - seen.positions[:, order]).max() < 0.01
+
+
+@pytest.mark.parametrize("format", ExportFormat)
+def test_clips_of_two_sources_play_on_one_body(
+    ready_library: Library, clip_of: FindClip, format: ExportFormat
+) -> None:
+    bones = []
+    for actor in ("ada", "bruno"):
+        content = exported(ready_library, clip_of(actor, "walk"), format, skeleton="canonical")
+        names, positions = positions_of(content, format)
+        assert set(names) == {role.value for role in BODY_ROLES}
+        order = [names.index(role.value) for role in BODY_ROLES]
+        bones.append(np.linalg.norm(np.diff(positions[:, order[-4:]], axis=1), axis=-1))
+    np.testing.assert_allclose(bones[0].mean(axis=0), bones[1].mean(axis=0), atol=TENTH_OF_MM)
+    np.testing.assert_allclose(bones[0].std(axis=0), 0, atol=TENTH_OF_MM)
+
+
+def test_positions_without_rotations_are_solved(lib: Library) -> None:
+    recording = person(CONVENTIONS["SMPL"], frames=60)
+    content = npz(
+        positions=recording.positions,
+        joint_names=np.array(recording.skeleton.names),
+        parents=recording.skeleton.parents,
+        frame_rate=60.0,
+    )
+    clip = clips.create_clip(lib, io.BytesIO(content), NewClip("=a/../<b>?.npz")).clip
+    work(lib.settings)
+    clip = clips.get_clip(lib, clip.id)
+    assert clip.state is ClipState.READY
+    for format in ExportFormat:
+        told = exported(lib, clip, format)
+        assert_same_places(told, format, load_motion(lib, clip), TENTH_OF_MM)
+
+
+def test_a_file_that_is_now_read_otherwise_is_exported_from_what_is_stored(
+    lib: Library, some_demo_clips: list[DemoClip]
+) -> None:
+    clip = upload(lib, some_demo_clips[0]).clip
+    work(lib.settings)
+    clip = clips.get_clip(lib, clip.id)
+    Path(clips.open_file(lib, clip.id).path).write_bytes(b"HIERARCHY\nno longer")
+    told = exported(lib, clip, "bvh")
+    assert_same_places(told, "bvh", load_motion(lib, clip), TENTH_OF_MM)
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [("walk 1", "walk 1.bvh"), ('../a"b\\c', "a_b_c.bvh"), ("日本", "日本.bvh"), ("...", None)],
+)
+def test_file_names_are_safe(
+    ready_library: Library, clip_of: FindClip, name: str, expected: str | None
+) -> None:
+    clip = clip_of("chika", "wave")
+    before = clips.update_clip(ready_library, clip.id, {"name": name})
+    try:
+        told = export.export(ready_library, clip.id, "bvh").file_name
+    finally:
+        clips.update_clip(ready_library, clip.id, {"name": clip.name})
+    assert before.name == name
+    assert told == (expected or f"{clip.id}.bvh")
+
+
+@pytest.mark.parametrize(
+    ("options", "location"),
+    [
+        ({"format": "fbx"}, "format"),
+        ({"format": "bvh", "skeleton": "mine"}, "skeleton"),
+        ({"format": "csv", "fps": 0.0}, "fps"),
+        ({"format": "csv", "fps": float("nan")}, "fps"),
+        ({"format": "glb", "fps": 1001.0}, "fps"),
+    ],
+)
+def test_a_wrong_field_is_named(
+    ready_library: Library, clip_of: FindClip, options: dict[str, object], location: str
+) -> None:
+    with pytest.raises(BadField) as refused:
+        export.export(ready_library, clip_of("ada", "walk").id, **options)  # type: ignore[arg-type]
+    assert refused.value.places[0].location == location
+
+
+def test_only_ready_clips_are_exported(lib: Library) -> None:
+    queued = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), NewClip("a.bvh")).clip
+    with pytest.raises(ClipNotReady):
+        export.export(lib, queued.id, "bvh")
+    with pytest.raises(ClipNotFound):
+        export.export(lib, "clip_none", "bvh")

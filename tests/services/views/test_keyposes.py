@@ -1,0 +1,221 @@
+"""Keyposes of ready clips: found, named by people, and found better for what people named."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.analysis.energy.energy import EnergyMethod
+from app.demo import DemoClip
+from app.demo.dances import dance
+from app.errors import BadField, ClipNotFound
+from app.models.keyposes.thresholds import KeyposeThresholds, Thresholds
+from app.services.clips import catalogue as clips
+from app.services.clips.catalogue import NewClip
+from app.services.imports.imports import import_path
+from app.services.library.library import Library
+from app.services.training.annotated import read_annotated
+from app.services.training.keypose_learning import examples_of, learn_keyposes
+from app.services.views import keyposes
+from app.services.views.keyposes import ThresholdSource, name_keyposes, view
+from app.store import models
+from app.store.clips import arrays, keypose_annotations
+from app.store.clips.record import ClipState
+from tests.libraries import FindClip, settings_for, work
+
+
+@pytest.fixture(scope="module")
+def dances() -> list[DemoClip]:
+    return [dance(70 + seed, bpm=bpm, seconds=10.0) for seed, bpm in enumerate((80.0, 110.0))]
+
+
+@pytest.fixture(scope="module")
+def danced(tmp_path_factory: pytest.TempPathFactory, dances: list[DemoClip]) -> Iterator[Library]:
+    """Two dances, ready; tests take away again what they name."""
+    opened = Library.open(settings_for(tmp_path_factory.mktemp("danced")))
+    for made in dances:
+        clips.create_clip(opened, io.BytesIO(made.content), NewClip(made.path, task="dance"))
+    work(opened.settings)
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def ids(danced: Library) -> Iterator[list[str]]:
+    found = [clip.id for clip in clips.list_clips(danced, sort="created_at").items]
+    yield found
+    for clip_id in found:
+        name_keyposes(danced, clip_id, ())
+    with danced.store.write() as tx:
+        models.remove(tx, ["keyposes"])
+
+
+def stored(lib: Library, clip_id: str, name: str) -> np.ndarray:
+    with lib.store.read() as tx:
+        return arrays.get_one(tx, clip_id, name)
+
+
+def test_keyposes_come_with_their_poses(ready_library: Library, clip_of: FindClip) -> None:
+    found = view(ready_library, clip_of("ada", "kick").id)
+    assert found.poses.shape == (len(found.found.frames), 13, 3)
+    assert len(found.found.chosen_by) == len(found.found.frames) > 0
+    assert found.named is None
+    strict = view(ready_library, clip_of("ada", "kick").id, "printed", t1=1e-6, t2=99.0)
+    assert len(strict.found.frames) == 0
+
+
+@pytest.mark.parametrize(
+    ("given", "location"),
+    [({"method": "best"}, "method"), ({"weights": "most"}, "weights"), ({"t1": np.nan}, "t1")],
+)
+def test_a_wrong_field_is_named(
+    ready_library: Library, clip_of: FindClip, given: dict[str, object], location: str
+) -> None:
+    with pytest.raises(BadField) as refused:
+        view(ready_library, clip_of("ada", "walk").id, **given)  # type: ignore[arg-type]
+    assert refused.value.places[0].location == location
+
+
+def test_what_is_named_stands_beside_what_is_found_and_is_built_on(
+    danced: Library, ids: list[str]
+) -> None:
+    found = stored(danced, ids[0], "keypose_frames")
+    segments = stored(danced, ids[0], "segment_spans")
+    assert name_keyposes(danced, ids[0], [2.0, 0.5, 2.0, 4.25]) == (0.5, 2.0, 4.25)
+    shown = view(danced, ids[0])
+    assert shown.named == (0.5, 2.0, 4.25)
+    assert shown.found.frames.tolist() == found.tolist()
+    assert stored(danced, ids[0], "keypose_frames").tolist() == [15, 60, 128]
+    assert stored(danced, ids[0], "segment_spans").tolist()[0] == [0.5, 2.0]
+    assert name_keyposes(danced, ids[0], ()) == ()
+    assert view(danced, ids[0]).named is None
+    assert stored(danced, ids[0], "keypose_frames").tolist() == found.tolist()
+    np.testing.assert_array_equal(stored(danced, ids[0], "segment_spans"), segments)
+
+
+def test_what_is_named_outlives_another_analysis(danced: Library, ids: list[str]) -> None:
+    name_keyposes(danced, ids[0], [1.0, 3.0])
+    clips.update_clip(danced, ids[0], {"frame_rate": 50.0})
+    work(danced.settings)
+    assert stored(danced, ids[0], "keypose_frames").tolist() == [30, 90]
+    clips.update_clip(danced, ids[0], {"frame_rate": None})
+    work(danced.settings)
+
+
+@pytest.mark.parametrize("times", [[-0.1], [1e5], [float("nan")], list(range(10_001))])
+def test_times_outside_the_clip_are_refused(
+    danced: Library, ids: list[str], times: list[float]
+) -> None:
+    with pytest.raises(BadField) as refused:
+        name_keyposes(danced, ids[0], times)
+    assert refused.value.places[0].location == "times"
+    with danced.store.read() as tx:
+        assert keypose_annotations.annotated(tx) == ()
+
+
+def test_a_clip_may_be_annotated_before_it_is_analysed(
+    lib: Library, dances: list[DemoClip]
+) -> None:
+    queued = clips.create_clip(lib, io.BytesIO(dances[0].content), NewClip("a.bvh")).clip
+    name_keyposes(lib, queued.id, [1.0])
+    work(lib.settings)
+    assert clips.get_clip(lib, queued.id).state is ClipState.READY
+    assert stored(lib, queued.id, "keypose_frames").tolist() == [30]
+    with pytest.raises(ClipNotFound):
+        name_keyposes(lib, "clip_none", [1.0])
+
+
+def test_thresholds_are_given_or_learned_or_usual_and_say_so(
+    danced: Library, ids: list[str]
+) -> None:
+    usual = view(danced, ids[0]).thresholds
+    assert (usual.t1_source, usual.t2_source) == (ThresholdSource.DEFAULT,) * 2
+    arrays, meta = KeyposeThresholds({"rms": Thresholds(0.4, 1.5)}).to_arrays()
+    with danced.store.write() as tx:
+        models.save(
+            tx, "keyposes", meta={"model": meta}, arrays=arrays, library_version=1, library_size=1
+        )
+    learned = view(danced, ids[0], t2=0.9)
+    assert learned.thresholds.values == Thresholds(0.4, 0.9)
+    assert learned.thresholds.t1_source is ThresholdSource.LEARNED
+    assert learned.thresholds.t2_source is ThresholdSource.GIVEN
+    assert learned.thresholds.model_version == 1
+    assert (learned.found.t1, learned.found.t2) == (0.4, 0.9)
+    assert view(danced, ids[0], "printed").thresholds.t1_source is ThresholdSource.DEFAULT
+    assert view(danced, ids[0], t1=1.0, t2=1.0).thresholds.model_version is None
+
+
+def test_learned_thresholds_count_in_new_analyses(danced: Library, ids: list[str]) -> None:
+    before = stored(danced, ids[1], "keypose_frames")
+    arrays, meta = KeyposeThresholds({"rms": Thresholds(1e-6, 99.0)}).to_arrays()
+    with danced.store.write() as tx:
+        models.save(
+            tx, "keyposes", meta={"model": meta}, arrays=arrays, library_version=1, library_size=1
+        )
+    clips.update_clip(danced, ids[1], {"frame_rate": 50.0})
+    work(danced.settings)
+    assert len(stored(danced, ids[1], "keypose_frames")) == 0
+    with danced.store.write() as tx:
+        models.remove(tx, ["keyposes"])
+    clips.update_clip(danced, ids[1], {"frame_rate": None})
+    work(danced.settings)
+    np.testing.assert_array_equal(stored(danced, ids[1], "keypose_frames"), before)
+
+
+def test_figures_are_held_out_by_recording(
+    danced: Library, ids: list[str], dances: list[DemoClip]
+) -> None:
+    name_keyposes(danced, ids[0], dances[0].keyposes)
+    _, alone = learn_keyposes(read_annotated(danced.store))
+    assert alone["clips"] == 1
+    assert "reason" in alone
+    assert "learned" not in alone["methods"]["rms"]
+    name_keyposes(danced, ids[1], dances[1].keyposes)
+    _, both = learn_keyposes(read_annotated(danced.store))
+    assert both["methods"]["rms"]["learned"]["f"] > 0.85
+    assert both["methods"]["rms"]["learned"]["true"] == sum(len(d.keyposes) for d in dances)
+
+
+def test_known_beats_count_in_what_is_found_learned_and_judged(
+    danced: Library, ids: list[str], dances: list[DemoClip]
+) -> None:
+    name_keyposes(danced, ids[0], dances[0].keyposes)
+    (before,) = read_annotated(danced.store)
+    clips.update_clip(danced, ids[0], {"beats": dances[0].beats})
+    work(danced.settings)
+    (annotated,) = read_annotated(danced.store)
+    assert before.beats is not None
+    assert annotated.beats is not None
+    assert (before.beats.source in ("motion", "none"), annotated.beats.source) == (True, "given")
+    (example,) = examples_of([annotated], EnergyMethod.RMS)
+    found = view(danced, ids[0]).found
+    assert found.beats.source == "given"
+    assert example.candidates.times(found.t1, found.t2).tolist() == found.times.tolist()
+    clips.update_clip(danced, ids[0], {"beats": None})
+    work(danced.settings)
+
+
+def test_a_manifest_names_keyposes(lib: Library, tmp_path: Path, dances: list[DemoClip]) -> None:
+    folder = tmp_path / "set"
+    folder.mkdir()
+    (folder / "a.bvh").write_bytes(dances[0].content)
+    (folder / "b.bvh").write_bytes(dances[1].content)
+    (folder / "manifest.csv").write_text("path,keyposes\na.bvh,2.5 1 1.75\nb.bvh,\n")
+    import_path(lib, folder)
+    by_name = {clip.name: clip.id for clip in clips.list_clips(lib).items}
+    with lib.store.read() as tx:
+        assert keypose_annotations.get(tx, by_name["a"]) == (1.0, 1.75, 2.5)
+        assert keypose_annotations.get(tx, by_name["b"]) is None
+    # The same files again change nothing of what was said since.
+    name_keyposes(lib, by_name["a"], [3.0])
+    import_path(lib, folder)
+    with lib.store.read() as tx:
+        assert keypose_annotations.get(tx, by_name["a"]) == (3.0,)
+
+
+def test_the_service_needs_no_model_for_any_of_it(danced: Library, ids: list[str]) -> None:
+    assert keyposes.thresholds(danced).model_version is None
