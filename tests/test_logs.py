@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.api.access_log import identity_of
+from app.api.guard.access_log import identity_of
 from app.logs import without_keys
 from app.store import keys
 from app.store.database.engine import Database

@@ -11,15 +11,16 @@ from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 from fastapi_offline import FastAPIOffline
 
+from app.api.answers.errors import install_handlers
 from app.api.docs import STATIC, install_docs
-from app.api.door import Door
-from app.api.envelope import Envelope
-from app.api.errors import install_handlers
 from app.api.examples import example_ids
-from app.api.gates import Gates
-from app.api.limits import BodyLimit
+from app.api.guard.door import Door
+from app.api.guard.envelope import Envelope
+from app.api.guard.gates import Gates
+from app.api.guard.limits import BodyLimit
+from app.api.guard.methods import KnownMethods
+from app.api.guard.slow_bodies import SlowBodies
 from app.api.loading import Loading
-from app.api.methods import KnownMethods
 from app.api.metrics import install_metrics
 from app.api.openapi import describe
 from app.api.routes import (
@@ -46,7 +47,6 @@ from app.api.routes import (
 from app.api.schemas.recognition import Recognize
 from app.api.schemas.search import MotionSearch
 from app.api.schemas.synthesis import Synthesize
-from app.api.slow_bodies import SlowBodies
 from app.config import Settings
 from app.errors import KinedexError
 from app.services.library.library import Library

@@ -17,8 +17,8 @@ from pydantic import BaseModel, ValidationError
 from starlette.datastructures import FormData, UploadFile
 from starlette.exceptions import HTTPException
 
-from app.api.media import FORM, is_json, media_type
-from app.api.problems import MalformedBody, UnsupportedMediaType
+from app.api.answers.problems import MalformedBody, UnsupportedMediaType
+from app.api.guard.media import FORM, is_json, media_type
 from app.errors import BadField, DiskFull, Place
 
 MOST_FIELDS = 32

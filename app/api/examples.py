@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.api.callers import is_open
+from app.api.guard.callers import is_open
 from app.services.library.library import Library
 from app.store.clips import listing as clip_listing
 from app.store.clips.filter import ClipFilter

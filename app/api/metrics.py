@@ -7,8 +7,8 @@ from fastapi.responses import PlainTextResponse
 from prometheus_client import CollectorRegistry
 from prometheus_fastapi_instrumentator import Instrumentator
 
-from app.api.admission import quick
 from app.api.deps import reads
+from app.api.guard.admission import quick
 from app.api.openapi import refusals
 
 

@@ -12,8 +12,8 @@ import uvicorn
 from fastapi import FastAPI
 
 from app.api.app import create_app
-from app.api.connections import Connections, room_for_connections
-from app.api.protocol import GuardedProtocol
+from app.api.guard.connections import Connections, room_for_connections
+from app.api.guard.protocol import GuardedProtocol
 from app.config import Settings, load_settings
 from app.json_stderr import json_stderr
 from app.logs import set_level

@@ -10,9 +10,9 @@ from fastapi.responses import FileResponse
 from starlette.background import BackgroundTask
 from starlette.datastructures import UploadFile
 
-from app.api.admission import changes, quick
 from app.api.bodies import read_form, require_json, required
 from app.api.deps import Lib, reads, writes
+from app.api.guard.admission import changes, quick
 from app.api.openapi import ClipId, body, refusals
 from app.api.queries import file_of
 from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch, ClipQuery

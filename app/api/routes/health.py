@@ -5,10 +5,10 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 from fastapi.responses import RedirectResponse
 
-from app.api.admission import OwnThreads, at_once
+from app.api.answers.problems import NotReadyYet, Unhealthy
 from app.api.deps import Lib
+from app.api.guard.admission import OwnThreads, at_once
 from app.api.openapi import refusals
-from app.api.problems import NotReadyYet, Unhealthy
 from app.api.schemas.health import Alive, Ready
 from app.services.library.library import Library
 

@@ -7,9 +7,9 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Request
 from starlette.datastructures import UploadFile
 
-from app.api.admission import changes
 from app.api.bodies import read_form, required
 from app.api.deps import Lib, writes
+from app.api.guard.admission import changes
 from app.api.openapi import body, refusals
 from app.api.schemas.imports import ImportForm
 from app.api.schemas.jobs import Job, JobStarted

@@ -10,8 +10,8 @@ from fastapi import APIRouter, Depends, Query, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
-from app.api.admission import changes, follow, quick
 from app.api.deps import Lib, reads, writes
+from app.api.guard.admission import changes, follow, quick
 from app.api.openapi import JobId, refusals
 from app.api.schemas.jobs import Job, JobFile, JobFileList, JobFileQuery, JobList, JobQuery
 from app.errors import JobNotFound

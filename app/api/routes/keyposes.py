@@ -6,9 +6,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query
 
-from app.api.admission import heavy
 from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
+from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.keyposes import KeyposeQuery, Keyposes, KeyposesNamed, NamedKeyposes
 from app.services.views import keyposes

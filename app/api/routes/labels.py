@@ -7,8 +7,8 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query
 from starlette.convertors import PathConvertor, register_url_convertor
 
-from app.api.admission import changes, quick
 from app.api.deps import Lib, reads, writes
+from app.api.guard.admission import changes, quick
 from app.api.openapi import refusals
 from app.api.schemas.labels import LabelPage, NamedCounts, WordBeginning
 from app.services.clips import labels, persons

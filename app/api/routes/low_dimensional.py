@@ -6,8 +6,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
-from app.api.admission import heavy
+from app.api.answers.streams import as_json, as_octets, wants_octets
 from app.api.deps import Lib, reads
+from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.schemas.low_dimensional import (
@@ -16,7 +17,6 @@ from app.api.schemas.low_dimensional import (
     LowDimensionalFigures,
     LowDimensionalQuery,
 )
-from app.api.streams import as_json, as_octets, wants_octets
 from app.services.views import low_dimensional
 from app.services.views.animations import animation_svg
 

@@ -6,9 +6,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path
 
-from app.api.admission import changes, quick
 from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
+from app.api.guard.admission import changes, quick
 from app.api.openapi import refusals
 from app.api.schemas.jobs import Job, JobStarted
 from app.api.schemas.models import Model, ModelList, ModelPatch, UnfittedModel

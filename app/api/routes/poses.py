@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Depends
 
-from app.api.admission import heavy
 from app.api.bodies import require_json
 from app.api.deps import Lib, reads
+from app.api.guard.admission import heavy
 from app.api.openapi import refusals
 from app.api.schemas.pose import PoseHits, PoseSearch
 from app.services.find import by_pose as find_pose

@@ -6,9 +6,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Request
 
-from app.api.admission import heavy
 from app.api.bodies import is_multipart, read_form, read_json, require_json
 from app.api.deps import Lib, reads
+from app.api.guard.admission import heavy
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, exactly_one, file_of
 from app.api.schemas.search import MotionHits, MotionSearch, MotionSearchForm, WordHits, WordSearch

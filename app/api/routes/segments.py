@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
-from app.api.admission import heavy
 from app.api.deps import Lib, reads
+from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.segments import SegmentList
 from app.services.views.segments import list_segments

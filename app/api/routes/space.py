@@ -6,8 +6,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from app.api.admission import heavy
 from app.api.deps import Lib, reads
+from app.api.guard.admission import heavy
 from app.api.openapi import refusals
 from app.api.schemas.space import SpaceMap, SpaceQuery
 from app.services.find import map as space

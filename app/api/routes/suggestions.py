@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Query
 
-from app.api.admission import heavy
 from app.api.bodies import require_json_if_any
 from app.api.deps import Lib, reads, writes
+from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.clips import Clip
 from app.api.schemas.labels import AcceptedWords, WordSuggestions

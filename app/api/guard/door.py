@@ -12,11 +12,11 @@ from fastapi import Request
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.api.callers import Caller, who_calls
-from app.api.errors import answer_failure
-from app.api.own_address import refuse_other_sites
-from app.api.paths import path_of
-from app.api.problems import NotReadyYet
+from app.api.answers.errors import answer_failure
+from app.api.answers.problems import NotReadyYet
+from app.api.guard.callers import Caller, who_calls
+from app.api.guard.own_address import refuse_other_sites
+from app.api.guard.paths import path_of
 from app.errors import KinedexError
 from app.services.library.library import Library
 

@@ -9,7 +9,7 @@ import uuid
 from starlette.datastructures import Headers
 from starlette.types import Scope
 
-from app.api.methods import METHODS
+from app.api.guard.methods import METHODS
 from app.logs import without_keys
 
 log = logging.getLogger("app.api.access")

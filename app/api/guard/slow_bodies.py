@@ -16,11 +16,11 @@ from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.arrival import Arrival, TooSlow
-from app.api.media import FORM, media_type
-from app.api.paths import path_of
-from app.api.problems import RETRY_AFTER_SECONDS, TooBusy
-from app.api.slots import Slots
+from app.api.answers.problems import RETRY_AFTER_SECONDS, TooBusy
+from app.api.guard.arrival import Arrival, TooSlow
+from app.api.guard.media import FORM, media_type
+from app.api.guard.paths import path_of
+from app.api.guard.slots import Slots
 from app.config import Settings
 
 STORED = frozenset({"/v1/clips", "/v1/imports"})

@@ -10,8 +10,8 @@ from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 
-from app.api.problem_response import respond
-from app.api.problems import (
+from app.api.answers.problem_response import respond
+from app.api.answers.problems import (
     RETRY_AFTER_SECONDS,
     NotReadyYet,
     TooBusy,

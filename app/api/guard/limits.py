@@ -6,10 +6,10 @@ from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.media import FORM, media_type
-from app.api.paths import path_of
-from app.api.problem_response import respond
-from app.api.problems import problem_of
+from app.api.answers.problem_response import respond
+from app.api.answers.problems import problem_of
+from app.api.guard.media import FORM, media_type
+from app.api.guard.paths import path_of
 from app.config import Settings
 from app.errors import TooLarge
 

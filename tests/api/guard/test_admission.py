@@ -8,9 +8,9 @@ import pytest
 from fastapi import FastAPI
 from fastapi.routing import APIRoute
 
-from app.api.admission import Admission, Kind
 from app.api.app import ROUTES, create_app
 from app.api.deps import get_library
+from app.api.guard.admission import Admission, Kind
 from app.config import Settings
 
 HEAVY = {

@@ -13,16 +13,16 @@ from typing import Any
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from app.api.connections import Connections
-from app.api.envelope import SECURITY_HEADERS
-from app.api.problem_response import respond
-from app.api.problems import (
+from app.api.answers.problem_response import respond
+from app.api.answers.problems import (
     RETRY_AFTER_SECONDS,
     RequestTimeout,
     TooManyConnections,
     problem,
     problem_of,
 )
+from app.api.guard.connections import Connections
+from app.api.guard.envelope import SECURITY_HEADERS
 
 HEADER_SECONDS = 10.0
 """For a request's headers to arrive, from the connection's start or the request's first byte."""

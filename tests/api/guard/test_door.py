@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from starlette.types import Scope
 
-from app.api.own_address import refuse_other_sites
+from app.api.guard.own_address import refuse_other_sites
 from app.errors import Forbidden
 from app.store.keys import KeyRole
 from tests.api.conftest import assert_problem

@@ -18,11 +18,11 @@ import uvicorn
 from starlette.types import Receive, Scope, Send
 from uvicorn.server import ServerState
 
-from app.api import arrival, protocol
-from app.api.connections import Connections
-from app.api.problems import TooBusy
-from app.api.protocol import GuardedProtocol
-from app.api.slots import Slots
+from app.api.answers.problems import TooBusy
+from app.api.guard import arrival, protocol
+from app.api.guard.connections import Connections
+from app.api.guard.protocol import GuardedProtocol
+from app.api.guard.slots import Slots
 from tests.api.conftest import assert_problem
 from tests.live import Live, serve, wait_until
 

@@ -8,10 +8,10 @@ from starlette.datastructures import MutableHeaders
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.access_log import identity_of, log_request
-from app.api.errors import answer_unexpected
-from app.api.pieces import CutOff
-from app.api.problems import CLIENT_LEFT
+from app.api.answers.errors import answer_unexpected
+from app.api.answers.pieces import CutOff
+from app.api.answers.problems import CLIENT_LEFT
+from app.api.guard.access_log import identity_of, log_request
 from app.logs import request_id
 
 SECURITY_HEADERS = {

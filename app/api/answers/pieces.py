@@ -16,8 +16,8 @@ from fastapi import Response
 from fastapi.concurrency import run_in_threadpool
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api.gates import Gates, Slot, listening
-from app.api.problems import ReaderTooSlow, status_of
+from app.api.answers.problems import ReaderTooSlow, status_of
+from app.api.guard.gates import Gates, Slot, listening
 from app.deadline import Deadline, within
 from app.errors import ClientLeft, KinedexError
 

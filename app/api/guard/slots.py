@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from app.api.arrival import Arrival
-from app.api.problems import TooBusy
+from app.api.answers.problems import TooBusy
+from app.api.guard.arrival import Arrival
 
 
 class Slots:

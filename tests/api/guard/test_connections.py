@@ -10,7 +10,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
-from app.api.connections import Connections, room_for_connections
+from app.api.guard.connections import Connections, room_for_connections
 
 MOST, MOST_OF_ONE = 5, 3
 ADDRESSES = ["10.0.0.1", "10.0.0.2", "10.0.0.3"]

@@ -18,7 +18,7 @@ import re
 from starlette.datastructures import Headers
 from starlette.types import Scope
 
-from app.api.paths import path_of
+from app.api.guard.paths import path_of
 from app.errors import Forbidden
 
 _HOST = re.compile(

@@ -12,10 +12,10 @@ import pytest
 from starlette.requests import ClientDisconnect
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api.arrival import Arrival
-from app.api.envelope import Envelope
-from app.api.problems import TooBusy
-from app.api.slots import Slots
+from app.api.answers.problems import TooBusy
+from app.api.guard.arrival import Arrival
+from app.api.guard.envelope import Envelope
+from app.api.guard.slots import Slots
 from app.logs import JsonFormatter, request_id
 
 

@@ -1,0 +1,1 @@
+"""How answers are made: problems, and motions written piece by piece."""
