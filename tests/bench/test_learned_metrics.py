@@ -2,8 +2,8 @@
 
 Run: pytest -m bench -s tests/bench/test_learned_metrics.py
 The constants of app.models.metric.learned_metric were chosen on dataset 1, on CMU's clips and on
-takes 1 and 2 of dataset 2. Takes 3 to 5 ask here, all of dataset 2 answers; DESIGN 5's floors (.98 with
-all labels, .94 with two a cell, .80 for styles and .81 for tasks never seen) are of 840 clips,
+takes 1 and 2 of dataset 2. Takes 3 to 5 ask here, all of dataset 2 answers; DESIGN 5's floors (.98
+with all labels, .94 with two a cell, .80 for styles and .81 for tasks never seen) are of 840 clips,
 which are not these.
 """
 

@@ -2,9 +2,9 @@
 
 Clips are looked at in two ways (app.models.recognition.views), each brought to PCA coordinates
 and held against all hypotheses (app.models.recognition.hypotheses). Evidence of a label is the sum
-over the hypotheses that name it; novelty weighs those that say "new" against those that do not (DESIGN 6,
-Unknown; it parted new from known better than the distance to the nearest cell over that cell's
-radius). Both are calibrated on clips, persons and tasks held out at fit.
+over the hypotheses that name it. Novelty weighs those that say "new" against those that do not; it
+separates new from known better than the distance to the nearest cell over the radius of that cell.
+Both are calibrated on clips, persons and tasks held out at fit.
 """
 
 from __future__ import annotations
@@ -184,7 +184,7 @@ def _answers(
 
 
 _HeldOut = tuple[FloatArray, FloatArray, IntArray, BoolArray]
-"""evidence (n, labels), novelty (n,), truth (n,), seen (n,); see app.models.recognition.calibration."""
+"""evidence (n, labels), novelty (n,), truth (n,), seen (n,), as `calibration` has them."""
 
 
 def _calibrations(

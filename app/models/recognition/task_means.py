@@ -1,8 +1,8 @@
 """The mean motion of each task, onto which takes of the task are warped for recognition.
 
 Gait cycles are aligned where they are cut (app.motion.frame.gait). Takes of other tasks are warped
-onto the mean of their task; see app.numerics.alignment.group_warping. The task of a probe is not known:
-it is warped onto the mean of each task with which it is compared.
+onto the mean of their task; see app.numerics.alignment.group_warping. The task of a probe is not
+known: it is warped onto the mean of each task with which it is compared.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The cheapest path of dynamic time warping through each of many tables of equal size.
 
-`app.numerics.alignment.dtw` says what the cheapest path costs. This module says which cells it takes
+`app.numerics.alignment.dtw` says what the cheapest path costs. This module says which cells it has
 (Sakoe and Chiba 1978, "Dynamic programming algorithm optimization for spoken word recognition",
 symmetric steps, with their band). The tables are small and many, so that all cells of an
 anti-diagonal of all tables are computed together, and all paths are followed back together.

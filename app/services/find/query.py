@@ -14,7 +14,7 @@ from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.library.analysis_pool import Order
 from app.services.library.library import Library
-from app.services.library.ready_clips import find_ready
+from app.services.library.ready_clips import descriptors_of, find_ready
 from app.services.library.stored_motion import load_motion
 from app.store.clips.record import ClipRecord
 from app.store.files.files import Readable
@@ -71,7 +71,7 @@ def _of_clip(lib: Library, question: Question, clip_id: str, names: tuple[str, .
     with lib.store.read() as tx:
         clip = find_ready(tx, clip_id)
         if question.start is None and question.end is None:
-            return Answered(described(tx, clip, names), clip)
+            return Answered(descriptors_of(tx, clip, names), clip)
     motion = cut(load_motion(lib, clip), question.start, question.end)
     return Answered(_described(motion, names), clip)
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from app.errors import ClipNotFound, ClipNotReady, Place
+from app.numerics.arrays import FloatArray
+from app.search.index import usable_arrays
 from app.services.library.library import Library
 from app.store.clips import repository as stored
 from app.store.clips.record import ClipRecord, ClipState
@@ -50,7 +52,7 @@ def find_ready(tx: Tx, clip_id: str) -> ClipRecord:
     return clip
 
 
-def described(tx: Tx, clip: ClipRecord, names: Sequence[str]) -> dict[str, FloatArray]:
+def descriptors_of(tx: Tx, clip: ClipRecord, names: Sequence[str]) -> dict[str, FloatArray]:
     """Stored arrays of a clip by name. Raises ClipNotReady where this version of Kinedex cannot
     use them, since the clip waits to be analysed again."""
     found = usable_arrays.get_some(tx, clip.id, names)

@@ -16,9 +16,8 @@ from app.services.clips import labels
 from app.services.clips.catalogue import get_clip, update_clip
 from app.services.clips.labels import LabelCount
 from app.services.find.by_words import STATISTICS, WORD_MODES
-from app.services.find.query import described
 from app.services.library.library import Library
-from app.services.library.ready_clips import ready_clip
+from app.services.library.ready_clips import descriptors_of, ready_clip
 from app.store.clips.record import ClipRecord
 
 LIKELY = 0.5
@@ -52,13 +51,13 @@ def suggest(lib: Library, clip_id: str, limit: int = 10, mode: str = "default") 
 def _scores(lib: Library, model: LibraryWords, clip: ClipRecord) -> FloatArray:
     """(V,) of the vocabulary's words."""
     with lib.store.read() as tx:
-        statistics = described(tx, clip, (STATISTICS,))[STATISTICS]
+        statistics = descriptors_of(tx, clip, (STATISTICS,))[STATISTICS]
     return np.asarray(model.word_scores(statistics[None])[0])
 
 
 def _scores_cca(lib: Library, model: LibraryWords, clip: ClipRecord) -> FloatArray:
     with lib.store.read() as tx:
-        stored = described(tx, clip, SYMBOL_ARRAYS)
+        stored = descriptors_of(tx, clip, SYMBOL_ARRAYS)
     points = model.space.place([symbol_from_arrays(stored)])
     return np.asarray(model.word_scores_cca(points)[0])
 
