@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion.canonical.motion import Motion
+from app.motion.motion import Motion
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
 

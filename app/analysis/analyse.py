@@ -38,9 +38,9 @@ from app.analysis.rhythm.rhythm import NOTHING, Told, find_rhythm, rhythm_arrays
 from app.analysis.segments.keypose_arrays import keypose_arrays
 from app.analysis.symbols.channels import symbol_features, symbol_statistics
 from app.analysis.symbols.symbol import describe_symbol
-from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import BodyTrack, body_track
 from app.motion.frame.gait import exact_gait_cycles
+from app.motion.motion import Motion
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1

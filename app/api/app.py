@@ -11,9 +11,9 @@ from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 from fastapi_offline import FastAPIOffline
 
-from app.api.answers.errors import install_handlers
 from app.api.docs import STATIC, install_docs
 from app.api.examples import example_ids
+from app.api.failures.handlers import install_handlers
 from app.api.guard.door import Door
 from app.api.guard.envelope import Envelope
 from app.api.guard.gates import Gates

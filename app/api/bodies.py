@@ -17,7 +17,7 @@ from pydantic import BaseModel, ValidationError
 from starlette.datastructures import FormData, UploadFile
 from starlette.exceptions import HTTPException
 
-from app.api.answers.problems import MalformedBody, UnsupportedMediaType
+from app.api.failures.problems import MalformedBody, UnsupportedMediaType
 from app.api.guard.media import FORM, is_json, media_type
 from app.errors import BadField, DiskFull, Place
 

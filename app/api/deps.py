@@ -13,7 +13,7 @@ from typing import Annotated
 from fastapi import Depends, Request
 from fastapi.security import APIKeyHeader, HTTPAuthorizationCredentials, HTTPBearer
 
-from app.api.answers.problems import NotReadyYet
+from app.api.failures.problems import NotReadyYet
 from app.api.guard.callers import Caller
 from app.services.library.library import Library
 from app.store.key_role import KeyRole

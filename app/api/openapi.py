@@ -11,7 +11,7 @@ from fastapi.openapi.utils import get_openapi
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
-from app.api.answers import problems
+from app.api.failures import problems
 from app.api.schemas.problem import Problem
 
 _REF = "#/components/schemas/{model}"

@@ -14,7 +14,7 @@ def upgrade(context: typer.Context) -> None:
     """Bring the database to this version's schema, making it where there is none."""
     from app.store import identity
     from app.store.database import schema
-    from app.store.files.folders import make_private
+    from app.store.folders import make_private
 
     settings = settings_of(context)
     make_private(settings.data_dir)

@@ -13,9 +13,9 @@ from app.errors import LibraryMismatch, StorageError
 from app.store.clips import versions as library
 from app.store.database import schema
 from app.store.database.engine import Database, Tx, database_file
-from app.store.files import references
 from app.store.files.files import FileStore
 from app.store.files.id_file import read_id, write_id
+from app.store.jobs import references
 
 WHAT_TO_DO = (
     "Put back what was moved, or set KINEDEX_DATABASE_URL and KINEDEX_DATA_DIR right. If you are "

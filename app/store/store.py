@@ -11,9 +11,9 @@ from typing import Self, TypeVar
 
 from app.errors import DiskFull, StorageError
 from app.store.database.engine import Database, Tx
-from app.store.files import removals
 from app.store.files.files import FileStore
 from app.store.files.reserve import Reserve
+from app.store.jobs import removals
 
 _log = logging.getLogger(__name__)
 _Result = TypeVar("_Result")

@@ -24,7 +24,7 @@ from app.errors import KinedexError
 from app.formats.read import read_recording
 from app.formats.sniff import sniff
 from app.motion.canonical.canonical import canonicalise
-from app.motion.canonical.motion import Motion
+from app.motion.motion import Motion
 from tests.bench.page import Section
 from tests.real_clips import manifest, real_clips
 

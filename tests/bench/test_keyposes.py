@@ -27,8 +27,8 @@ from app.formats.read import read_recording
 from app.models.keyposes.matching import Counts, match, total
 from app.models.keyposes.thresholds import Example, Selectable, Thresholds, lesson
 from app.motion.canonical.canonical import canonicalise
-from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import BodyTrack, body_track
+from app.motion.motion import Motion
 from tests.bench.page import Section
 from tests.bodies import motion_of
 from tests.dances import dance as simple_dance

@@ -33,9 +33,9 @@ from app.models.synthesis.body import Donor, embody, same_body
 from app.models.synthesis.model import Synthesis, fit_synthesis
 from app.models.synthesis.motion import course_of
 from app.motion.canonical.canonical import canonicalise
-from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import ANALYSIS_RATE, BodyTrack, body_track
 from app.motion.frame.foot_contact import FEET, skating
+from app.motion.motion import Motion
 from app.motion.posing.file_rotations import animation_of_recording
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.motion.skeleton.animation import Animation

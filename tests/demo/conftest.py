@@ -7,7 +7,7 @@ import pytest
 from app.demo import DemoClip, demo_clips
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
-from app.motion.canonical.motion import Motion
+from app.motion.motion import Motion
 
 
 @pytest.fixture(scope="session")

@@ -12,8 +12,8 @@ from app.demo import DemoClip
 from app.demo.dances import dance
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
-from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import body_track
+from app.motion.motion import Motion
 
 SEEDS = {0: 60.0, 1: 85.0, 2: 110.0, 3: 140.0}
 """Tempo by seed."""

@@ -13,7 +13,7 @@ from app.demo import DemoClip, demo_clips, write_demo
 from app.demo.actors import ACTORS
 from app.demo.tasks import TASKS
 from app.errors import NotFound
-from app.motion.canonical.motion import Motion
+from app.motion.motion import Motion
 from app.motion.roles.joint_roles import JointRole
 
 Clips = dict[tuple[str, str], DemoClip]

@@ -9,7 +9,7 @@ import pytest
 
 from app.demo import DemoClip
 from app.demo.actors import ACTORS
-from app.motion.canonical.motion import Motion
+from app.motion.motion import Motion
 from app.motion.roles.joint_roles import JointRole as Role
 
 LEFT_HANDED = {actor.name for actor in ACTORS if actor.left_handed}

@@ -9,7 +9,7 @@ import numpy as np
 
 from app.analysis.analyse import describe_for_search
 from app.models.metric.learned_metric import INPUTS, Described, Factor, MetricAxes, fit_axes
-from app.motion.canonical.motion import Motion
+from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
 from app.search.example.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to
 from app.search.example.methods import Method

@@ -16,7 +16,7 @@ from app.analysis.analyse import describe_for_search
 from app.demo import demo_clips
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
-from app.motion.canonical.motion import Motion
+from app.motion.motion import Motion
 from app.motion.skeleton.recording import Recording
 from app.motion.skeleton.resampling import resample
 from app.search.example.methods import Method

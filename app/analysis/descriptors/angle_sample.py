@@ -10,9 +10,9 @@ import numpy as np
 
 from app.analysis.descriptors.joint_angles import filtered, joint_angles
 from app.analysis.descriptors.motion_sample import SAMPLES, turn_and_speed
-from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import BodyTrack
 from app.motion.frame.gait import exact_gait_cycles
+from app.motion.motion import Motion
 from app.motion.skeleton.resampling import resample_to, sample_at
 from app.numerics.arrays import FloatArray
 

@@ -3,7 +3,7 @@
 It decides which gate (`app.api.guard.gates`) the call passes before its thread starts. It comes
 last among a route's dependencies: a key is checked, and a body received, before a slot is
 taken. The slot is given back before the answer is sent, so that nobody who reads slowly holds
-one; answers in pieces take it again (`app.api.answers.pieces`).
+one; answers in pieces take it again (`app.api.pieces`).
 
 heavy: may compute for over 50 ms on a long clip (measured on one of ten minutes at 120 Hz).
 quick: reads a few rows. changes: writes, or keeps what was uploaded. follow: is answered for

@@ -12,8 +12,8 @@ from fastapi import Request
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.api.answers.errors import answer_failure
-from app.api.answers.problems import NotReadyYet
+from app.api.failures.handlers import answer_failure
+from app.api.failures.problems import NotReadyYet
 from app.api.guard.callers import Caller, who_calls
 from app.api.guard.own_address import refuse_other_sites
 from app.api.guard.paths import path_of

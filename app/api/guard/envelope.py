@@ -8,9 +8,8 @@ from starlette.datastructures import MutableHeaders
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.answers.errors import answer_unexpected
-from app.api.answers.pieces import CutOff
-from app.api.answers.problems import CLIENT_LEFT
+from app.api.failures.handlers import answer_unexpected
+from app.api.failures.problems import CLIENT_LEFT
 from app.api.guard.access_log import identity_of, log_request
 from app.logs import request_id
 
@@ -22,6 +21,13 @@ SECURITY_HEADERS = {
     "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'; base-uri 'none'",
 }
 """Sent with every answer; an answer that needs another policy sets its own."""
+
+
+class CutOff(Exception):
+    """An answer ended before it was whole; status: what is logged. The connection is closed."""
+
+    def __init__(self, status: int) -> None:
+        self.status = status
 
 
 class Envelope:

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from starlette.exceptions import HTTPException
 from starlette.types import Receive
 
-from app.api.answers.problems import TooBusy
+from app.api.failures.problems import TooBusy
 from app.deadline import Deadline, within
 from app.errors import ClientLeft, DeadlineExceeded
 

@@ -6,8 +6,8 @@ from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.answers.problem_response import respond
-from app.api.answers.problems import problem_of
+from app.api.failures.problems import problem_of
+from app.api.failures.response import respond
 from app.api.guard.media import FORM, media_type
 from app.api.guard.paths import path_of
 from app.config import Settings

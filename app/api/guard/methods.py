@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.api.answers.problem_response import respond
-from app.api.answers.problems import UnknownMethod, problem_of
+from app.api.failures.problems import UnknownMethod, problem_of
+from app.api.failures.response import respond
 
 METHODS = frozenset(
     {"CONNECT", "DELETE", "GET", "HEAD", "OPTIONS", "PATCH", "POST", "PUT", "TRACE"}

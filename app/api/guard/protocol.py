@@ -13,14 +13,14 @@ from typing import Any
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from app.api.answers.problem_response import respond
-from app.api.answers.problems import (
+from app.api.failures.problems import (
     RETRY_AFTER_SECONDS,
     RequestTimeout,
     TooManyConnections,
     problem,
     problem_of,
 )
+from app.api.failures.response import respond
 from app.api.guard.connections import Connections
 from app.api.guard.envelope import SECURITY_HEADERS
 

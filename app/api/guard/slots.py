@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from app.api.answers.problems import TooBusy
+from app.api.failures.problems import TooBusy
 from app.api.guard.arrival import Arrival
 
 

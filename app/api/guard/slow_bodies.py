@@ -16,7 +16,7 @@ from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.answers.problems import RETRY_AFTER_SECONDS, TooBusy
+from app.api.failures.problems import RETRY_AFTER_SECONDS, TooBusy
 from app.api.guard.arrival import Arrival, TooSlow
 from app.api.guard.media import FORM, media_type
 from app.api.guard.paths import path_of

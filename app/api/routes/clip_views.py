@@ -6,11 +6,11 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
-from app.api.answers.streams import OCTETS, as_json, as_octets, wants_octets
 from app.api.deps import Lib, reads
 from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.views import Descriptor, Motion, MotionQueryParameters
+from app.api.streams import OCTETS, as_json, as_octets, wants_octets
 from app.services.views import views
 
 router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])

@@ -8,10 +8,10 @@ from urllib.parse import quote
 from fastapi import APIRouter, Query, Response
 from fastapi.responses import StreamingResponse
 
-from app.api.answers.pieces import Pieces
 from app.api.deps import Lib, reads
 from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
+from app.api.pieces import Pieces
 from app.api.schemas.export import ExportQuery
 from app.services.views.export import export
 from app.services.views.export_format import ExportFormat

@@ -5,8 +5,8 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 from fastapi.responses import RedirectResponse
 
-from app.api.answers.problems import NotReadyYet, Unhealthy
 from app.api.deps import Lib
+from app.api.failures.problems import NotReadyYet, Unhealthy
 from app.api.guard.admission import OwnThreads, at_once
 from app.api.openapi import refusals
 from app.api.schemas.health import Alive, Ready

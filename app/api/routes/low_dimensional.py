@@ -6,7 +6,6 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
-from app.api.answers.streams import as_json, as_octets, wants_octets
 from app.api.deps import Lib, reads
 from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
@@ -17,6 +16,7 @@ from app.api.schemas.low_dimensional import (
     LowDimensionalFigures,
     LowDimensionalQuery,
 )
+from app.api.streams import as_json, as_octets, wants_octets
 from app.services.views import low_dimensional
 from app.services.views.animations import animation_svg
 

@@ -6,7 +6,6 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 
-from app.api.answers.streams import as_json, as_octets, wants_octets
 from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, heavy, quick
@@ -26,6 +25,7 @@ from app.api.schemas.studies import (
     Vote,
 )
 from app.api.schemas.views import Motion
+from app.api.streams import as_json, as_octets, wants_octets
 from app.services.views import studies
 from app.services.views.studies import Side
 

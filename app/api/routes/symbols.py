@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request, Response
 
-from app.api.answers.streams import as_json, as_octets, wants_octets
 from app.api.deps import Lib, reads
 from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.schemas.symbols import SymbolMotion, channels_json
+from app.api.streams import as_json, as_octets, wants_octets
 from app.services.views import symbol_motion
 
 router = APIRouter(tags=["clips"], dependencies=[reads])

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from app.api.answers.streams import as_octets, wants_octets
 from app.api.bodies import require_json
 from app.api.deps import Lib, writes
 from app.api.guard.admission import heavy
 from app.api.openapi import refusals
 from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.schemas.synthesis import Synthesis, Synthesize
+from app.api.streams import as_octets, wants_octets
 from app.services.synthesis import synthesise
 from app.services.synthesis.synthesise import SynthesisQuery
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import Field
 
-from app.api.answers.problems import stored_problem
+from app.api.failures.problems import stored_problem
 from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing
 from app.api.schemas.problem import Problem
 from app.store.jobs.import_files import FileOutcome, ImportedFile

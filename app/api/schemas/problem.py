@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import ConfigDict, Field
 
-from app.api.answers.problems import stored_problem
+from app.api.failures.problems import stored_problem
 from app.api.schemas.base import Outgoing
 
 

@@ -11,9 +11,9 @@ import numpy as np
 from app.errors import BadField, NotHuman, Place, Unreadable
 from app.motion.canonical.extent import check_extent
 from app.motion.canonical.frame_rate import judge_frame_rate
-from app.motion.canonical.motion import Motion
 from app.motion.canonical.units import SCALES, Unit, confirm_unit, judge_unit
 from app.motion.canonical.up_axis import judge_up_axis, to_y_up
+from app.motion.motion import Motion
 from app.motion.roles.bodies import roles_of_one_body
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
 from app.motion.roles.roles import given_roles

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.errors import BadContent, NotHuman, Place
-from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import ANALYSIS_RATE, body_length
+from app.motion.motion import Motion
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion.canonical.motion import Motion
+from app.motion.motion import Motion
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.animation import Animation, solve_rotations
 from app.motion.skeleton.kinematics import forward_kinematics, local_translations

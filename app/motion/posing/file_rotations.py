@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion.canonical.motion import Motion
 from app.motion.canonical.up_axis import to_y_up
+from app.motion.motion import Motion
 from app.motion.skeleton.animation import Animation, animation_of_rotations
 from app.motion.skeleton.kinematics import forward_kinematics, local_translations
 from app.motion.skeleton.recording import Recording

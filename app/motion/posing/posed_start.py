@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.motion.canonical.motion import Motion
+from app.motion.motion import Motion
 
 THROWN = 2.0
 """Times the longest step of a joint role between any other two frames. Of 42 real clips by CMU

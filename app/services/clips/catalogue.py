@@ -22,9 +22,8 @@ from app.store.clips.record import Added, ClipChanges, ClipRecord
 from app.store.clips.record import NewClip as NewRow
 from app.store.database.engine import Tx
 from app.store.database.paging import Page
-from app.store.files import removals
 from app.store.files.files import Readable, StagedFile
-from app.store.jobs import outcomes
+from app.store.jobs import outcomes, removals
 from app.store.jobs import repository as jobs
 from app.store.jobs.record import JobKind, JobRecord, NewJob
 

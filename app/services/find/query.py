@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.errors import BadField, EmptyFile, Place, TooLarge
-from app.motion.canonical.motion import Motion
+from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.library.analysis_pool import Order

@@ -18,7 +18,7 @@ from app.search.pose.by_pose import POSES
 from app.services.library.analysis_pool import AnalysisPool, Limits
 from app.services.library.fitted_models import METRICS, ModelKind, ModelShelf
 from app.store import identity
-from app.store.files.folders import warn_if_open
+from app.store.folders import warn_if_open
 from app.store.store import Store
 from app.store.upkeep.health import Health
 

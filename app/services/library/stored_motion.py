@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.deadline import check
-from app.motion.canonical.motion import Motion
+from app.motion.motion import Motion
 from app.motion.roles.joint_roles import JointRole
 from app.services.library.library import Library
 from app.store.clips import arrays

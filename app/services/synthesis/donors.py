@@ -12,8 +12,8 @@ from app.analysis.descriptors.motion_shape import CHANNELS, moments_of
 from app.errors import ClipNotFound, ClipNotReady, NotEnoughLabels
 from app.models.synthesis.body import Donor, same_body
 from app.models.synthesis.model import Synthesis
-from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import ANALYSIS_RATE, body_track
+from app.motion.motion import Motion
 from app.motion.posing.canonical_body import on_canonical_body
 from app.motion.posing.posed_start import without_posed_start
 from app.motion.roles.joint_roles import JointRole

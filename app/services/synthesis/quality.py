@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from app.models.synthesis.model import Synthesis
-from app.motion.canonical.motion import Motion
 from app.motion.frame.foot_contact import FEET, skating
+from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
 from app.services.library.fitted_models import Fitted
 from app.services.library.library import Library

@@ -14,8 +14,8 @@ from app.formats.bvh.export import write_animation_bvh
 from app.models.synthesis.body import embody
 from app.models.synthesis.model import Synthesis
 from app.models.synthesis.motion import course_of
-from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import body_track
+from app.motion.motion import Motion
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.animation import Animation
 from app.services import fields

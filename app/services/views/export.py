@@ -23,8 +23,8 @@ from app.formats.bvh.export import write_animation_bvh
 from app.formats.csv_writer import write_csv
 from app.formats.gltf.writer import write_glb
 from app.formats.npz.writer import write_npz
-from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import ANALYSIS_RATE
+from app.motion.motion import Motion
 from app.motion.posing.canonical_body import on_canonical_body
 from app.motion.posing.file_rotations import animation_of_recording
 from app.motion.roles.joint_roles import SUN_ROLES

@@ -23,7 +23,7 @@ from sqlalchemy.exc import ArgumentError, DBAPIError
 from app.errors import ConfigurationError, DatabaseDamaged, DatabaseGone, DiskFull, StorageError
 from app.store.database import integrity
 from app.store.database.database_file import DatabaseFile
-from app.store.files.folders import make_private
+from app.store.folders import make_private
 
 BUSY_TIMEOUT_S = 30.0
 POOL_SIZE = 8

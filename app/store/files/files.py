@@ -18,10 +18,10 @@ from typing import BinaryIO, Protocol
 
 from app.errors import BadField, DiskFull, NotFound, Place, StorageError, TooLarge
 from app.store.files.checked import SHA256, Checked
-from app.store.files.folders import make_private_synced, sync_folder
 from app.store.files.id_file import read_id
 from app.store.files.locked_file import create_locked, remove_if_abandoned
 from app.store.files.quarantine import FOLDER, Quarantine
+from app.store.folders import make_private_synced, sync_folder
 
 CHUNK_BYTES = 1024 * 1024
 NO_SPACE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})

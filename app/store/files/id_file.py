@@ -6,8 +6,8 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
-from app.store.files.folders import make_private, make_private_synced, sync_folder
 from app.store.files.locked_file import create_locked
+from app.store.folders import make_private, make_private_synced, sync_folder
 
 NAME = "library-id"
 

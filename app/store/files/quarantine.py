@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.store.files.folders import make_private_synced
+from app.store.folders import make_private_synced
 
 FOLDER = "quarantine"
 NAME_LENGTH = 64

@@ -23,8 +23,7 @@ from app.store.clips.record import ClipFacts, ClipRecord, ClipState, ClipWarning
 from app.store.database import tables as t
 from app.store.database.engine import Tx
 from app.store.database.ids import utc_now
-from app.store.files import removals
-from app.store.jobs import imports, leases, owners
+from app.store.jobs import imports, leases, owners, removals
 from app.store.jobs import repository as jobs
 from app.store.jobs.record import ClaimedJob, JobKind, JobRecord, JobState, Lease
 

@@ -31,12 +31,12 @@ from app.errors import (
 )
 from app.store.clips import versions as library
 from app.store.database.engine import Database
-from app.store.files import references, removals
 from app.store.files.checked import refuse_damage
 from app.store.files.files import NO_SPACE, FileStore
-from app.store.files.folders import sync_folder
 from app.store.files.id_file import write_id
 from app.store.files.locked_file import locked_folder, remove_if_abandoned
+from app.store.folders import sync_folder
+from app.store.jobs import references, removals
 from app.store.store import Store
 
 DATABASE, FILES = "kinedex.sqlite3", "files"

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 from app.errors import StorageError
 from app.store.clips.repository import in_batches
-from app.store.files import references
 from app.store.files.quarantine import DAY_S
+from app.store.jobs import references
 from app.store.store import Store
 
 _log = logging.getLogger(__name__)

@@ -10,9 +10,9 @@ from sqlalchemy import select
 from app.errors import DatabaseDamaged, FileDamaged, NotFound
 from app.store.database.blobs import from_blob
 from app.store.database.tables import clip_arrays, model_arrays
-from app.store.files import references
 from app.store.files.checked import Checked
 from app.store.files.quarantine import Held
+from app.store.jobs import references
 from app.store.store import Store
 
 ROWS_AT_ONCE = 50

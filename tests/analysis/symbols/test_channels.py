@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from app.analysis.symbols.channels import CHANNELS, symbol_features, symbol_statistics
-from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import body_track
+from app.motion.motion import Motion
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from tests.bodies import motion_of, place, standing, turned_about_y, walking, waving
 

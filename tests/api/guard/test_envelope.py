@@ -12,7 +12,7 @@ import pytest
 from starlette.requests import ClientDisconnect
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api.answers.problems import TooBusy
+from app.api.failures.problems import TooBusy
 from app.api.guard.arrival import Arrival
 from app.api.guard.envelope import Envelope
 from app.api.guard.slots import Slots

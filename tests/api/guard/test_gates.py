@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from app.api.answers.problems import TooBusy
+from app.api.failures.problems import TooBusy
 from app.api.guard.gates import Counter, Gate, Gates, Slot, listening
 from app.deadline import Deadline, check, current
 from app.errors import ClientLeft, DeadlineExceeded

@@ -13,8 +13,8 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.api.answers.streams import OCTETS
 from app.api.guard.gates import MOST_STREAMS, Gates
+from app.api.streams import OCTETS
 from tests.api.conftest import assert_problem
 from tests.bench.processes import processes_over
 from tests.live import Live, serve, wait_until

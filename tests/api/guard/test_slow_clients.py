@@ -18,7 +18,7 @@ import uvicorn
 from starlette.types import Receive, Scope, Send
 from uvicorn.server import ServerState
 
-from app.api.answers.problems import TooBusy
+from app.api.failures.problems import TooBusy
 from app.api.guard import arrival, protocol
 from app.api.guard.connections import Connections
 from app.api.guard.protocol import GuardedProtocol

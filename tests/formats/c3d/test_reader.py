@@ -11,7 +11,7 @@ from app.errors import NotHuman, TooLarge, Unreadable
 from app.formats.c3d.reader import read_c3d
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
-from app.motion.canonical.motion import Motion
+from app.motion.motion import Motion
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.recording import Recording
 from app.numerics.arrays import FloatArray

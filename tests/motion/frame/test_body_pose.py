@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import body_track
 from app.motion.frame.body_pose import body_poses
+from app.motion.motion import Motion
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from tests.bodies import motion_of, standing, turned_about_y, walking, waving
 

@@ -10,7 +10,7 @@ import pytest
 from app.demo import demo_clips
 from app.formats.bvh.reader import read_bvh
 from app.motion.canonical.canonical import canonicalise
-from app.motion.canonical.motion import Motion
+from app.motion.motion import Motion
 from app.motion.posing.canonical_body import (
     ANKLE_HEIGHT,
     BODY_ROLES,

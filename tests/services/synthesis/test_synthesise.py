@@ -18,9 +18,9 @@ from app.models.synthesis.agreement import AGREED
 from app.models.synthesis.body import embody
 from app.models.synthesis.motion import course_of
 from app.motion.canonical.canonical import canonicalise
-from app.motion.canonical.motion import Motion
 from app.motion.frame.body_frame import ANALYSIS_RATE, body_track
 from app.motion.frame.foot_contact import FEET, skating
+from app.motion.motion import Motion
 from app.motion.posing.canonical_body import canonical_body
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.animation import animation_of_positions

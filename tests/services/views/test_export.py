@@ -14,7 +14,7 @@ from app.errors import BadField, ClipNotFound, ClipNotReady
 from app.formats.bvh.reader import read_bvh
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
-from app.motion.canonical.motion import Motion
+from app.motion.motion import Motion
 from app.motion.posing.canonical_body import BODY_ROLES
 from app.numerics.arrays import FloatArray
 from app.services.clips import catalogue as clips

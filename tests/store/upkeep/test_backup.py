@@ -26,9 +26,8 @@ from app.store.clips import versions as library
 from app.store.clips.record import ClipRecord, NewClip
 from app.store.database.engine import Database, sqlite_url
 from app.store.database.tables import file_removals
-from app.store.files import references
 from app.store.files.files import FileStore
-from app.store.jobs import outcomes
+from app.store.jobs import outcomes, references
 from app.store.jobs import repository as jobs
 from app.store.jobs.record import JobKind, NewJob
 from app.store.store import Store

@@ -17,10 +17,9 @@ from app.store.clips import repository as clips
 from app.store.clips.record import ClipRecord, NewClip
 from app.store.database.engine import Tx
 from app.store.database.tables import file_removals
-from app.store.files import references
 from app.store.files.files import FileStore
 from app.store.files.quarantine import DAY_S, Quarantine
-from app.store.jobs import imports, leases, outcomes
+from app.store.jobs import imports, leases, outcomes, references
 from app.store.jobs import repository as jobs
 from app.store.jobs.imports import ImportOutcome, NewEntry
 from app.store.jobs.record import JobKind, JobRecord, NewJob

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app import errors
-from app.api.answers.problems import problem_of, problem_of_validation, status_of, stored_problem
+from app.api.failures.problems import problem_of, problem_of_validation, status_of, stored_problem
 from app.errors import KinedexError, Place
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from fastapi import Request
 from fastapi.responses import Response
 
-from app.api.answers.pieces import Pieces
+from app.api.pieces import Pieces
 from app.numerics.arrays import FloatArray
 from app.services.views.views import MotionView
 

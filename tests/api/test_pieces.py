@@ -10,10 +10,11 @@ from typing import Any
 
 import pytest
 
-from app.api.answers import pieces
-from app.api.answers.pieces import CutOff, Pieces
-from app.api.answers.problems import CLIENT_LEFT, TooBusy
+from app.api import pieces
+from app.api.failures.problems import CLIENT_LEFT, TooBusy
+from app.api.guard.envelope import CutOff
 from app.api.guard.gates import Counter, Gate, Gates
+from app.api.pieces import Pieces
 from app.deadline import current
 from app.errors import BadField
 

@@ -16,7 +16,8 @@ from fastapi import Response
 from fastapi.concurrency import run_in_threadpool
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api.answers.problems import ReaderTooSlow, status_of
+from app.api.failures.problems import ReaderTooSlow, status_of
+from app.api.guard.envelope import CutOff
 from app.api.guard.gates import Gates, Slot, listening
 from app.deadline import Deadline, within
 from app.errors import ClientLeft, KinedexError
@@ -33,13 +34,6 @@ TURN_SECONDS = 0.25
 """How long pieces are made before others that wait are let in first."""
 MOST_BYTES = 256 * 1024
 """Sent at once: what is larger is cut, so that a slow reader is noticed."""
-
-
-class CutOff(Exception):
-    """An answer ended before it was whole; status: what is logged. The connection is closed."""
-
-    def __init__(self, status: int) -> None:
-        self.status = status
 
 
 class Pieces(Response):

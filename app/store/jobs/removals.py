@@ -15,8 +15,8 @@ from sqlalchemy import and_, delete, exists, insert, or_, select, update
 from app.errors import StorageError
 from app.store.database.engine import Tx
 from app.store.database.tables import file_removals, jobs
-from app.store.files import references
 from app.store.files.files import FileStore
+from app.store.jobs import references
 from app.store.jobs.record import JobState
 
 _log = logging.getLogger(__name__)

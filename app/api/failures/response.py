@@ -7,7 +7,7 @@ from typing import Any
 
 from fastapi.responses import JSONResponse
 
-from app.api.answers.problems import MEDIA_TYPE
+from app.api.failures.problems import MEDIA_TYPE
 
 
 def respond(problem: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> JSONResponse:

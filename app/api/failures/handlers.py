@@ -10,8 +10,7 @@ from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 
-from app.api.answers.problem_response import respond
-from app.api.answers.problems import (
+from app.api.failures.problems import (
     RETRY_AFTER_SECONDS,
     NotReadyYet,
     TooBusy,
@@ -21,6 +20,7 @@ from app.api.answers.problems import (
     problem_of_validation,
     status_of,
 )
+from app.api.failures.response import respond
 from app.errors import (
     AnalysisInterrupted,
     BadField,

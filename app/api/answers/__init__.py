@@ -1,1 +1,0 @@
-"""How answers are made: problems, and motions written piece by piece."""

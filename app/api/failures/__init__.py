@@ -1,0 +1,1 @@
+"""How failures are answered: problems of RFC 9457."""
