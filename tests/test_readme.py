@@ -69,7 +69,6 @@ def test_every_file_that_is_linked_is_there() -> None:
     assert [link for link in local if not (ROOT / link).is_file()] == []
 
 
-@pytest.mark.skipif(not (ROOT / "app/search/index").is_dir(), reason="modules are not moved yet")
 def test_every_path_of_the_architecture_page_is_there() -> None:
     page = (ROOT / "app" / "README.md").read_text()
     paths = re.findall(r"`((?:\.\./)?[a-z_]+/[\w/]*(?:\.py)?|[a-z]+\.py)`", page)
