@@ -29,9 +29,9 @@ from app.store.database.engine import Tx
 from app.store.jobs import leases, outcomes, owners, queue
 from app.store.jobs.abandoned import Watch
 from app.store.jobs.record import ClaimedJob, JobKind
+from app.worker.executors import JobExecutors
 from app.worker.expiry import Expiry
 from app.worker.running import Running
-from app.worker.starting import Bench
 from app.worker.sweeps import Sweeps
 
 _log = logging.getLogger(__name__)
@@ -80,7 +80,7 @@ class Worker:
         self.lib = lib
         settings = lib.settings
         self.owner = owners.new_owner("worker")
-        self._bench = Bench(lib)
+        self.executors = JobExecutors(lib)
         self._running: list[Running] = []
         self._last_beat = time.monotonic()
         self._watch = Watch(self.owner, settings.job_lease_s)
@@ -96,7 +96,7 @@ class Worker:
                 self._beat_if_due()
                 self._expiry.remove_if_due()
                 self._recover_if_due()
-                is_idle = not self._take_a_turn()
+                is_idle = not self.turn()
                 if is_idle and not self._running:
                     if until is not None and until(self.lib):
                         return
@@ -116,12 +116,17 @@ class Worker:
             with suppress(LeaseLost, NotFound, StorageError), self.lib.store.write() as tx:
                 outcomes.give_back(tx, running.claimed)
         self._running = []
-        self._bench.close()
+        self.executors.close()
 
-    def _take_a_turn(self) -> bool:
-        """Settle what is finished and claim what there is room for, in one transaction.
+    @property
+    def held(self) -> tuple[Running, ...]:
+        """The jobs in hand."""
+        return tuple(self._running)
 
-        One transaction, since each waits for the disk. Returns whether there was any work.
+    def turn(self) -> bool:
+        """Settle what is finished and claim what there is room for; whether there was any work.
+
+        All in one transaction, because each transaction waits for the disk.
         """
         finished = [running for running in self._running if running.future.done()]
         if not finished and not self._is_work_waiting():
@@ -218,18 +223,18 @@ class Worker:
         kinds_held = [claimed.job.kind for claimed in held]
         busy = kinds_held.count(JobKind.INGEST) + kinds_held.count(JobKind.FIT)
         kinds = []
-        if busy < READ_AHEAD * self._bench.slots:
+        if busy < READ_AHEAD * self.executors.slots:
             kinds.append(JobKind.INGEST)
         if JobKind.IMPORT not in kinds_held:
             kinds.append(JobKind.IMPORT)
-        if busy < self._bench.slots and JobKind.FIT not in kinds_held:
+        if busy < self.executors.slots and JobKind.FIT not in kinds_held:
             kinds.append(JobKind.FIT)
         return kinds
 
     def _begin(self, claimed: ClaimedJob, clip: ClipRecord | None) -> None:
         if claimed.job.kind is JobKind.FIT and not self._running:
-            self._bench.rest()
-        self._running.append(self._bench.begin(claimed, clip))
+            self.executors.rest()
+        self._running.append(self.executors.begin(claimed, clip))
 
     def _request_fit_if_due(self) -> None:
         if time.monotonic() - self._last_fit_check < FIT_CHECK_S:

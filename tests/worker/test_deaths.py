@@ -230,8 +230,8 @@ def test_what_a_worker_held_whose_clock_was_ahead_is_free_within_a_lease(
         # Its name tells nothing, as that of a worker on another machine.
         ahead.setattr("app.store.jobs.owners.new_owner", lambda prefix: f"{prefix}@elsewhere")
         held = Worker(lib)
-        held._take_a_turn()
-        held._bench.close()  # dead, as far as the store knows
+        held.turn()
+        held.executors.close()  # dead, as far as the store knows
     if is_canceled:
         jobs.cancel_or_remove(lib, job_id)
     with _worker(lib.settings):

@@ -12,6 +12,7 @@ import time
 import zipfile
 from collections import Counter
 from collections.abc import Iterator
+from concurrent.futures import wait
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -153,8 +154,8 @@ def test_a_stopped_worker_gives_back_what_it_had(lib: Library, kicks: list[DemoC
     for clip in kicks[:4]:
         upload(lib, clip)
     worker = Worker(lib)
-    assert worker._take_a_turn()
-    held = [r.claimed for r in worker._running]
+    assert worker.turn()
+    held = [running.claimed for running in worker.held]
     worker.close()
     assert held
     states = {jobs.get_job(lib, claimed.job.id).state for claimed in held}
@@ -180,7 +181,7 @@ def test_a_clip_deleted_while_it_is_analysed_stays_deleted(
 ) -> None:
     clip = upload(lib, kicks[0]).clip
     worker = Worker(lib)
-    worker._take_a_turn()
+    worker.turn()
     clips.delete_clip(lib, clip.id)
     _until_settled(worker)
     worker.close()
@@ -190,7 +191,7 @@ def test_a_clip_deleted_while_it_is_analysed_stays_deleted(
 def test_a_frame_rate_changed_during_the_analysis_wins(lib: Library, kicks: list[DemoClip]) -> None:
     clip = upload(lib, kicks[0]).clip
     worker = Worker(lib)
-    worker._take_a_turn()
+    worker.turn()
     clips.update_clip(lib, clip.id, {"frame_rate": 21.0})
     _until_settled(worker)
     worker.close()
@@ -216,14 +217,14 @@ def test_a_cancelled_analysis_fails_its_clip_and_says_so(
 def test_a_worker_that_lost_its_lease_changes_nothing(lib: Library, kicks: list[DemoClip]) -> None:
     upload(lib, kicks[0])
     slow = Worker(lib)
-    slow._take_a_turn()
-    (running,) = slow._running
+    slow.turn()
+    (running,) = slow.held
     running.future.result()
     _work_to_the_end(lib)  # another worker, to which this one seems dead
     with pytest.raises(LeaseLost), lib.store.write() as tx:
         running.settle(tx)
-    slow._take_a_turn()
-    assert slow._running == []
+    slow.turn()
+    assert slow.held == ()
     slow.close()
     assert [clip.state for clip in _all_clips(lib)] == [ClipState.READY]
 
@@ -253,8 +254,5 @@ def test_a_library_that_has_grown_is_fitted_unasked_and_only_then(
 
 
 def _until_settled(worker: Worker) -> None:
-    while not all(running.future.done() for running in worker._running):
-        time.sleep(0.02)
-    with worker.lib.store.write() as tx:
-        worker._settle_all(tx, worker._running)
-    worker._running = []
+    wait([running.future for running in worker.held])
+    assert worker.turn()

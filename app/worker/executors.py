@@ -1,4 +1,4 @@
-"""How each kind of claimed job is begun."""
+"""The processes and threads that a worker works with: each kind of claimed job begins here."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from app.store.jobs.record import ClaimedJob, JobKind
 from app.worker.running import Running, RunningFit, RunningIngest, RunningThread
 
 
-class Bench:
+class JobExecutors:
     """The processes and threads that a worker works with."""
 
     def __init__(self, lib: Library) -> None:
