@@ -37,7 +37,7 @@ _REQUEST_ID = {
     "name": "X-Request-Id",
     "in": "header",
     "required": False,
-    "schema": {"type": "string"},
+    "schema": {"type": "string", "maxLength": 64},
     "description": "Your own id of this request: the answer and the log repeat it.",
 }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import isotonic_regression
+import scipy
 
 from app.numerics.arrays import FloatArray
 
@@ -16,7 +16,7 @@ def rising_means(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     values, member, counts = np.unique(x, return_inverse=True, return_counts=True)
     weights = counts.astype(np.float64)
     means = np.bincount(member, weights=np.asarray(y, dtype=np.float64)) / weights
-    pools = isotonic_regression(means, weights=weights)
+    pools = scipy.optimize.isotonic_regression(means, weights=weights)
     starts = pools.blocks[:-1]
     centers = np.add.reduceat(values * weights, starts) / np.add.reduceat(weights, starts)
     return centers, np.asarray(pools.x[starts])

@@ -14,7 +14,14 @@ from app.analysis.analyse import analyse
 from app.errors import BadContent
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
+from tests.bench.page import Section
 from tests.real_clips import manifest, real_clips
+
+FIGURES = Section(
+    "analysis_speed",
+    "What one CPU second analyzes",
+    trials="every third real clip, in rounds that take turns; the best round counts",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -30,8 +37,8 @@ def test_seconds_of_motion_per_cpu_second() -> None:
     _speed(files[:1], stored=True)  # loads hmmlearn
     speeds = [_speed(files, stored=True) for _ in range(ROUNDS)]
     reading = [_speed(files, stored=False) for _ in range(ROUNDS)]
-    print(f"\n{len(files)} files, best of {ROUNDS} rounds, seconds of motion a CPU second:")
-    print(f"  read and analyzed {max(speeds):.0f}, read only {max(reading):.0f}")
+    FIGURES.print(f"\n{len(files)} files, best of {ROUNDS} rounds, seconds of motion a CPU second:")
+    FIGURES.print(f"  read and analyzed {max(speeds):.0f}, read only {max(reading):.0f}")
     assert max(speeds) >= LEAST_SPEED
 
 

@@ -25,10 +25,18 @@ import psutil
 import pytest
 
 from app.demo import DemoClip, demo_clips
+from tests.bench.page import Section
 from tests.bench.processes import child_running
 from tests.bench.product import API, WORKER, Product, serving
 from tests.busy_processes import busy_children, repeated, server_of
 from tests.live import wait_until
+
+FIGURES = Section(
+    "kill_everything",
+    "Thirty kills of everything that `kinedex serve` runs",
+    trials="30 SIGKILLs of analysis processes, fork servers, worker and API, under uploads, an "
+    "import and searches",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -214,11 +222,15 @@ def _tell(
     found = {clip["id"] for clip in clips}
     states = Counter(clip["state"] for clip in clips)
     why = Counter(clip["error"]["code"] for clip in clips if clip["error"])
-    print(f"\n{sum(tally.killed.values())} kills in {seconds:.0f} s, load {os.getloadavg()[0]:.1f}")
-    print(f"  killed: {dict(tally.killed)}")
-    print(f"  serve lives: {survived}; all settled: {has_settled}; import: {end.get('state')}")
-    print(
+    FIGURES.print(
+        f"\n{sum(tally.killed.values())} kills in {seconds:.0f} s, load {os.getloadavg()[0]:.1f}"
+    )
+    FIGURES.print(f"  killed: {dict(tally.killed)}")
+    FIGURES.print(
+        f"  serve lives: {survived}; all settled: {has_settled}; import: {end.get('state')}"
+    )
+    FIGURES.print(
         f"  uploads acknowledged {len(tally.acknowledged)}, lost "
         f"{len(tally.acknowledged.keys() - found)}; clips {dict(states)}, failed for {dict(why)}"
     )
-    print(f"  refused uploads {dict(tally.refused)}; searches {dict(tally.searches)}")
+    FIGURES.print(f"  refused uploads {dict(tally.refused)}; searches {dict(tally.searches)}")

@@ -33,7 +33,14 @@ from app.numerics.mds import classical_mds, metric_mds, stress
 from app.numerics.nearest import Block, nearest
 from app.numerics.principal_axes import principal_axes
 from app.numerics.smacof import smacof
+from tests.bench.page import Section
 from tests.numerics.hmm_reference import wavy
+
+FIGURES = Section(
+    "libraries",
+    "What stays ours, beside the library that has it",
+    trials="the best of several rounds of CPU time, on random arrays of the sizes that are printed",
+)
 
 pytestmark = pytest.mark.bench
 
@@ -49,9 +56,9 @@ def compare(name: str, ways: dict[str, Callable[[], Any]]) -> dict[str, Any]:
             given[way] = work()
             best[way] = min(best[way], time.process_time() - began)
     ours = next(iter(best.values()))
-    print(f"\n{name}:", end="")
+    FIGURES.print(f"\n{name}:", end="")
     for way, seconds in best.items():
-        print(f"  {way} {1e3 * seconds:.3g} ms ({seconds / ours:.1f} x)", end="")
+        FIGURES.print(f"  {way} {1e3 * seconds:.3g} ms ({seconds / ours:.1f} x)", end="")
     return given
 
 
@@ -144,7 +151,9 @@ def test_the_paper_s_error_is_lower_where_it_is_minimized() -> None:
             "SMACOF of scikit-learn": lambda: smacof(wanted, 10),
         },
     )
-    print("\n  eq. 3:", {name: round(stress(points, wanted), 1) for name, points in given.items()})
+    FIGURES.print(
+        "\n  eq. 3:", {name: round(stress(points, wanted), 1) for name, points in given.items()}
+    )
 
 
 @pytest.mark.parametrize("frames", [150, 3000])

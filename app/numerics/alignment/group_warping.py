@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+import scipy
 
 from app.numerics.alignment.dtw_path import cheapest_paths
 from app.numerics.arrays import FloatArray, IntArray
@@ -96,7 +96,7 @@ def smooth_times(times: FloatArray, deviation: float) -> FloatArray:
     """(n, m) rising times like `times` (n, m), of which the difference from steady time is
     smoothed by a Gaussian with the standard `deviation`, in moments."""
     steady = np.arange(times.shape[1], dtype=np.float64)
-    moved = gaussian_filter1d(times - steady, deviation, axis=1, mode="nearest")
+    moved = scipy.ndimage.gaussian_filter1d(times - steady, deviation, axis=1, mode="nearest")
     return rising(moved + steady)
 
 

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.config import sqlite_url
 from app.errors import DiskFull
 from app.store import identity
 from app.store.clips import arrays
 from app.store.clips import repository as clips
 from app.store.clips.record import ClipRecord, NewClip
-from app.store.database.engine import sqlite_url
 from app.store.files.reserve import LEAST
 from app.store.jobs import outcomes
 from app.store.store import Store

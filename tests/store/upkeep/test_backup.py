@@ -19,12 +19,13 @@ from pathlib import Path
 import pytest
 from sqlalchemy import insert, select
 
+from app.config import sqlite_url
 from app.errors import BadField, ConfigurationError, DatabaseDamaged, StorageError
 from app.store import identity
 from app.store.clips import repository as clips
 from app.store.clips import versions as library
 from app.store.clips.record import ClipRecord, NewClip
-from app.store.database.engine import Database, sqlite_url
+from app.store.database.engine import Database
 from app.store.database.tables import file_removals
 from app.store.files.files import FileStore
 from app.store.jobs import outcomes, references
@@ -205,7 +206,8 @@ def killed_backup(folder: Path, name: str) -> Iterator[Path]:
     """What a process left that was killed while it copied to `folder / name`."""
     code = (
         "import os, sys, pathlib, functools\n"
-        "from app.store import backup, locked_file\n"
+        "from app.store.files import locked_file\n"
+        "from app.store.upkeep import backup\n"
         "path = pathlib.Path(sys.argv[1])\n"
         "with locked_file.locked_folder(functools.partial(backup._make_part, path)) as part:\n"
         "    (part / 'files').mkdir()\n"
