@@ -3,8 +3,12 @@
 Only the time in which we wait for the client counts. Three rules:
 
 - a client may pause for PAUSE_SECONDS at most;
-- after GRACE_SECONDS, its body must have come with LEAST_RATE on average;
-- while others wait for a place, one below BRISK_RATE may have to leave after FAIR_SECONDS.
+- its body must come with LEAST_RATE, and may fall behind that by GRACE_SECONDS;
+- while others wait for a place, one that falls behind BRISK_RATE by FAIR_SECONDS may have to
+  leave.
+
+Nobody gets ahead of a rate: a client that has sent much in a moment must go on at that rate too.
+Else it could hold its place for hours with what it sent at first.
 """
 
 from __future__ import annotations
@@ -28,11 +32,11 @@ class TooSlow(Exception):
 
 
 class Arrival:
-    """One body on its way; `receive` gives its next piece."""
+    """One body on its way; `next` gives its next piece."""
 
     def __init__(self) -> None:
-        self.received = 0
-        self._waited = 0.0
+        # Seconds behind each rate.
+        self._late = self._unfair = 0.0
         self._began: float | None = None
         self._limit: asyncio.Timeout | None = None
         self._is_over = False
@@ -49,27 +53,33 @@ class Arrival:
             self._is_over = True
             raise TooSlow from None
         finally:
-            self._waited, self._began, self._limit = self._seconds(), None, None
-        self.received += len(message.get("body", b""))
+            waits = self._waits()
+            self._late, self._unfair = self._late + waits, self._unfair + waits
+            self._began, self._limit = None, None
+        self.came(len(message.get("body", b"")))
         return message
 
-    def rate(self) -> float:
-        """Bytes for each second of waiting so far."""
-        return self.received / max(self._seconds(), 1e-9)
+    def came(self, count: int) -> None:
+        """So many bytes have come."""
+        self._late = max(0.0, self._late - count / LEAST_RATE)
+        self._unfair = max(0.0, self._unfair - count / BRISK_RATE)
+
+    def behind(self) -> float:
+        """Seconds that it is behind BRISK_RATE now."""
+        return self._unfair + self._waits()
 
     def is_slow(self) -> bool:
         """Whether it may be asked to leave for another body."""
-        return self._seconds() >= FAIR_SECONDS and self.rate() < BRISK_RATE
+        return self.behind() >= FAIR_SECONDS
 
     def give_up(self) -> None:
         """Make `next` raise TooSlow, now or when it is called."""
         self._is_over = True
-        if self._limit is not None:
+        if self._limit is not None and not self._limit.expired():
             self._limit.reschedule(asyncio.get_running_loop().time())
 
     def _patience(self) -> float:
-        allowed = GRACE_SECONDS + self.received / LEAST_RATE
-        return max(0.0, min(PAUSE_SECONDS, allowed - self._waited))
+        return max(0.0, min(PAUSE_SECONDS, GRACE_SECONDS - self._late))
 
-    def _seconds(self) -> float:
-        return self._waited + (0.0 if self._began is None else time.monotonic() - self._began)
+    def _waits(self) -> float:
+        return 0.0 if self._began is None else time.monotonic() - self._began

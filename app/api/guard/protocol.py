@@ -1,7 +1,8 @@
 """HTTP/1.1 on a connection whose client may be slow, or send what is no HTTP.
 
-uvicorn bounds the size of a request's headers, but not the time that they take, and not the
-number of connections. This adds both, and answers what is wrong with a problem (RFC 9457).
+uvicorn bounds the size of a request's headers, but not the time that they take, nor the number
+of connections, nor the time in which an answer is read. This adds all three, and answers what is
+wrong with a problem (RFC 9457).
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from app.api.failures.problems import (
 from app.api.failures.response import respond
 from app.api.guard.connections import Connections
 from app.api.guard.envelope import SECURITY_HEADERS
+from app.api.guard.reader import Reader
 
 HEADER_SECONDS = 10.0
 """For a request's headers to arrive, from the connection's start or the request's first byte."""
@@ -43,6 +45,9 @@ class GuardedProtocol(H11Protocol):
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Count the connection and wait for its first request, or refuse it."""
         super().connection_made(transport)
+        self._reader = Reader(
+            transport, stalls=self._stalls, resumes=self._resumes, is_gone=self.give_up
+        )
         address = self.client[0] if self.client else ""
         if not self._counted.enter(self, address):
             self._answer(problem_of(TooManyConnections()), {"Retry-After": RETRY_AFTER_SECONDS})
@@ -53,7 +58,18 @@ class GuardedProtocol(H11Protocol):
         """Count the connection no more."""
         self._counted.leave(self)
         self._stop_timer()
+        self._reader.stop()
         super().connection_lost(exc)
+
+    def pause_writing(self) -> None:
+        """More waits than the client takes: see whether it takes anything."""
+        super().pause_writing()
+        self._reader.watch()
+
+    def resume_writing(self) -> None:
+        """The client has taken most of what waited."""
+        self._reader.moves()
+        super().resume_writing()
 
     def data_received(self, data: bytes) -> None:
         """The first byte of a request starts the time for its headers."""
@@ -74,12 +90,18 @@ class GuardedProtocol(H11Protocol):
         """Wait for the next request, which may have arrived already."""
         self._waits, self._has_begun = True, False
         self._counted.waits(self)
+        self._reader.watch()
         super().on_response_complete()
 
     def timeout_keep_alive_handler(self) -> None:
-        """Close an idle connection, even if its client does not take what was sent."""
-        super().timeout_keep_alive_handler()
-        self._close()
+        """Close an idle connection; one whose client still reads is not idle."""
+        if self._reader.has_all:
+            super().timeout_keep_alive_handler()
+            self._close()
+        else:
+            self.timeout_keep_alive_task = self.loop.call_later(
+                self.timeout_keep_alive, self.timeout_keep_alive_handler
+            )
 
     def give_up(self) -> None:
         """Close at once: another client needs the place."""
@@ -91,6 +113,13 @@ class GuardedProtocol(H11Protocol):
             self.cycle.disconnected = True
             self.cycle.message_event.set()
         self._answer(problem(400, "bad_request", msg))
+
+    def _stalls(self) -> None:
+        self._counted.waits(self)
+
+    def _resumes(self) -> None:
+        if not self._waits:
+            self._counted.works(self)
 
     def _time_headers(self) -> None:
         self._header_timer = self.loop.call_later(HEADER_SECONDS, self._headers_are_late)

@@ -35,6 +35,6 @@ class Slots:
         slow = [arrival for arrival in self._held if arrival.is_slow()]
         if not slow:
             raise TooBusy
-        slowest = min(slow, key=lambda arrival: arrival.rate())
+        slowest = max(slow, key=lambda arrival: arrival.behind())
         self._held.discard(slowest)
         slowest.give_up()

@@ -92,7 +92,7 @@ class _Body:
         self._take_slot()
         if message is None:
             return await self._arrival.next(self._receive)
-        self._arrival.received += len(message["body"])
+        self._arrival.came(len(message["body"]))
         return message
 
     async def _at_once(self) -> Message | None:

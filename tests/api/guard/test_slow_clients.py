@@ -152,14 +152,14 @@ def _begin_another(live: Live) -> bool:
 
 
 class Slow(arrival.Arrival):
-    """A body of a known pace."""
+    """A body that is so many seconds behind."""
 
-    def __init__(self, pace: float, is_slow: bool) -> None:
+    def __init__(self, seconds: float, is_slow: bool) -> None:
         super().__init__()
-        self.pace, self._is_slow, self.has_left = pace, is_slow, False
+        self.seconds, self._is_slow, self.has_left = seconds, is_slow, False
 
-    def rate(self) -> float:
-        return self.pace
+    def behind(self) -> float:
+        return self.seconds
 
     def is_slow(self) -> bool:
         return self._is_slow
@@ -170,15 +170,15 @@ class Slow(arrival.Arrival):
 
 def test_the_slowest_body_makes_room() -> None:
     slots = Slots(3)
-    slow, slower, quick = Slow(5.0, True), Slow(3.0, True), Slow(1.0, False)
+    slow, slower, quick = Slow(3.0, True), Slow(5.0, True), Slow(9.0, False)
     with ExitStack() as held:
         for body in (slow, slower, quick):
             held.enter_context(slots.one(body))
-        held.enter_context(slots.one(Slow(9.0, False)))
+        held.enter_context(slots.one(Slow(1.0, False)))
         assert [body.has_left for body in (slow, slower, quick)] == [False, True, False]
-        held.enter_context(slots.one(Slow(9.0, False)))
+        held.enter_context(slots.one(Slow(1.0, False)))
         assert slow.has_left
-        with pytest.raises(TooBusy), slots.one(Slow(9.0, False)):
+        with pytest.raises(TooBusy), slots.one(Slow(1.0, False)):
             pass
 
 
@@ -288,9 +288,40 @@ def test_a_body_must_arrive_at_a_least_rate(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(arrival, "GRACE_SECONDS", 0.2)
     monkeypatch.setattr(arrival, "PAUSE_SECONDS", 10.0)
     monkeypatch.setattr(arrival, "LEAST_RATE", 1_000.0)
-    assert _arrive([(0.05, 10_000)] * 10).received == 100_000
+    _arrive([(0.05, 10_000)] * 10)
     with pytest.raises(arrival.TooSlow):
         _arrive([(0.05, 1)] * 10)
+
+
+def test_what_came_at_first_buys_no_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(arrival, "GRACE_SECONDS", 0.2)
+    monkeypatch.setattr(arrival, "FAIR_SECONDS", 0.1)
+    assert not _arrive([(0.0, 10**8)]).is_slow()
+    assert _arrive([(0.0, 10**8), (0.15, 1)]).is_slow()
+    with pytest.raises(arrival.TooSlow):
+        _arrive([(0.0, 10**8), *[(0.05, 1)] * 10])
+    assert not _arrive([(0.15, 1), (0.0, 10**8)]).is_slow()
+
+
+def test_a_body_that_is_late_already_can_be_asked_to_leave(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(arrival, "PAUSE_SECONDS", 0.1)
+
+    async def leave_late() -> None:
+        body = arrival.Arrival()
+
+        async def receive() -> dict[str, Any]:
+            try:
+                await asyncio.sleep(5)
+            finally:
+                body.give_up()
+            return {}
+
+        with pytest.raises(arrival.TooSlow):
+            await body.next(receive)
+
+    asyncio.run(leave_late())
 
 
 def test_a_body_may_not_pause_for_long(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -302,4 +333,4 @@ def test_a_body_may_not_pause_for_long(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_time_in_which_nobody_waits_for_the_client_does_not_count() -> None:
     body = _arrive([(0.0, 1)] * 3)
     time.sleep(0.05)
-    assert body.rate() > 3 / 0.05
+    assert body.behind() < 0.05
