@@ -11,7 +11,7 @@ from typing import Self, TypeVar
 
 from app.errors import DiskFull, StorageError
 from app.store import removals
-from app.store.engine import Database, Tx
+from app.store.engine import ERASE_WAIT_S, Database, Tx
 from app.store.files import FileStore
 from app.store.reserve import Reserve
 
@@ -89,9 +89,12 @@ class Store:
         if self._reserve is not None:
             self._reserve.make()
 
-    def erase_traces(self) -> None:
-        """Writes what was removed over, also where the database keeps its latest changes."""
-        self.database.erase_traces()
+    def erase_traces(self, wait_s: float = ERASE_WAIT_S) -> bool:
+        """Writes what was removed over, also where the database keeps its latest changes.
+
+        Waits so long for those who use it; whether nobody was in the way.
+        """
+        return self.database.erase_traces(wait_s)
 
     def close(self) -> None:
         """Gives back all connections."""
