@@ -56,19 +56,23 @@ class Store:
     def write_even_when_full(self, work: Callable[[Tx], _Result]) -> _Result:
         """What `work` returns, of a write transaction that frees space.
 
-        On a full disk it is tried again with the space that is kept in reserve for this.
-        Raises DiskFull where even that is not enough.
+        On a full disk it is tried again with the space that is kept in reserve for this, and
+        that of the database's log. Raises DiskFull where even that is not enough.
         """
         try:
             with self.write() as tx:
                 return work(tx)
         except DiskFull:
-            if self._reserve is None or not self._reserve.give_up():
+            if self._reserve is None:
                 raise
+            self._reserve.give_up()
             with suppress(StorageError):  # it may help, by what the log gives back
                 self.erase_traces()
-            with self.write() as tx:
-                return work(tx)
+            try:
+                with self.write() as tx:
+                    return work(tx)
+            finally:
+                self._reserve.take_back()
         finally:
             self.make_reserve()
 
