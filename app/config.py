@@ -33,6 +33,9 @@ HEARTBEATS_IN_LEASE = 2.0
 LOOPBACK_HOSTS = frozenset({"127.0.0.1", "::1", "localhost"})
 MIB = 1024 * 1024
 _ESCAPED_IN_URLS = str.maketrans({"%": "%25", "?": "%3F"})
+DAY_S = 24 * 3600.0
+LONGEST_DAYS = 36_500
+"""A century; beyond it a date cannot be reckoned with."""
 
 
 class Settings(BaseSettings):
@@ -91,14 +94,18 @@ class Settings(BaseSettings):
     request_timeout_s: float = Field(
         30.0,
         gt=0,
+        le=DAY_S,
         description="Seconds a call may wait and work before it ends as 503 `deadline_exceeded`.",
     )
     query_timeout_s: float = Field(
-        30.0, gt=0, description="Seconds that analysing an uploaded query may take."
+        30.0, gt=0, le=DAY_S, description="Seconds that analysing an uploaded query may take."
     )
 
     analysis_timeout_s: float = Field(
-        300.0, gt=0, description="Seconds that analysing one file may take before it is stopped."
+        300.0,
+        gt=0,
+        le=DAY_S,
+        description="Seconds that analysing one file may take before it is stopped.",
     )
     analysis_memory_mb: int = Field(
         2048, ge=256, description="Address space of an analysis process, MiB."
@@ -107,7 +114,10 @@ class Settings(BaseSettings):
         0, ge=0, description="Analysis processes of a worker; 0 takes one for each core."
     )
     job_lease_s: float = Field(
-        30.0, gt=0, description="Seconds without a heartbeat after which a job is given again."
+        30.0,
+        gt=0,
+        le=DAY_S,
+        description="Seconds without a heartbeat after which a job is given again.",
     )
     job_heartbeat_s: float = Field(
         5.0,
@@ -120,16 +130,21 @@ class Settings(BaseSettings):
         description="Times a file is tried whose analysis process dies by its own work.",
     )
     job_poll_s: float = Field(
-        0.25, gt=0, description="Seconds an idle worker waits before it looks for work again."
+        0.25,
+        gt=0,
+        le=DAY_S,
+        description="Seconds an idle worker waits before it looks for work again.",
     )
     job_retention_days: int = Field(
         30,
         ge=0,
+        le=LONGEST_DAYS,
         description="Days after which a job that has ended is removed; 0 keeps all jobs.",
     )
     quarantine_days: float = Field(
         30.0,
         gt=0,
+        le=LONGEST_DAYS,
         description="Days that files which the database does not name are kept in the quarantine.",
     )
     refit_growth: float = Field(
@@ -141,6 +156,13 @@ class Settings(BaseSettings):
     wordnet: bool = Field(
         True, description="Look words' neighbours up in WordNet at a fit, where it is installed."
     )
+
+    @field_validator("data_dir", mode="before")
+    @classmethod
+    def _names_a_folder(cls, value: Any) -> Any:
+        if value == "":  # would be the folder that the program was started in
+            raise ValueError("is empty: name a folder, or leave it unset")
+        return value
 
     @field_validator("job_heartbeat_s")
     @classmethod

@@ -116,6 +116,26 @@ def test_a_short_lease_alone_is_refused_too(monkeypatch: pytest.MonkeyPatch) -> 
     assert load_settings().job_lease_s == 4
 
 
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("KINEDEX_JOB_LEASE_S", "inf"),
+        ("KINEDEX_JOB_LEASE_S", "1e300"),
+        ("KINEDEX_JOB_POLL_S", "inf"),
+        ("KINEDEX_REQUEST_TIMEOUT_S", "inf"),
+        ("KINEDEX_JOB_RETENTION_DAYS", "100000000000"),
+        ("KINEDEX_QUARANTINE_DAYS", "inf"),
+        ("KINEDEX_DATA_DIR", ""),
+    ],
+)
+def test_what_no_clock_and_no_folder_can_follow_is_refused(
+    monkeypatch: pytest.MonkeyPatch, name: str, value: str
+) -> None:
+    monkeypatch.setenv(name, value)
+    with pytest.raises(ConfigurationError, match=name):
+        load_settings()
+
+
 def test_the_password_of_the_database_is_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("KINEDEX_DATABASE_URL", "postgresql://me:hunter2@db/kinedex")
     settings = load_settings()

@@ -113,6 +113,12 @@ def list_current(tx: Tx) -> tuple[ModelRecord, ...]:
     return tuple(_to_record(row) for row in tx.execute(query).mappings())
 
 
+def person_names(tx: Tx) -> frozenset[str]:
+    """Everybody whom a stored model knows by name, in any version of it."""
+    found = tx.execute(select(models.c.meta["model"]["persons"])).scalars()
+    return frozenset(name for names in found for name in names or ())
+
+
 def remove(tx: Tx, kinds: Collection[str]) -> int:
     """Removes every version of the models of these kinds; how many there were."""
     return tx.execute(delete(models).where(models.c.kind.in_(kinds))).rowcount

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Self, TypeVar
 
 from app.errors import DiskFull, StorageError
-from app.store.database.engine import Database, Tx
+from app.store.database.engine import ERASE_WAIT_S, Database, Tx
 from app.store.files.files import FileStore
 from app.store.files.reserve import Reserve
 from app.store.jobs import removals
@@ -56,19 +56,23 @@ class Store:
     def write_even_when_full(self, work: Callable[[Tx], _Result]) -> _Result:
         """What `work` returns, of a write transaction that frees space.
 
-        On a full disk it is tried again with the space that is kept in reserve for this.
-        Raises DiskFull where even that is not enough.
+        On a full disk it is tried again with the space that is kept in reserve for this, and
+        that of the database's log. Raises DiskFull where even that is not enough.
         """
         try:
             with self.write() as tx:
                 return work(tx)
         except DiskFull:
-            if self._reserve is None or not self._reserve.give_up():
+            if self._reserve is None:
                 raise
+            self._reserve.give_up()
             with suppress(StorageError):  # it may help, by what the log gives back
                 self.erase_traces()
-            with self.write() as tx:
-                return work(tx)
+            try:
+                with self.write() as tx:
+                    return work(tx)
+            finally:
+                self._reserve.take_back()
         finally:
             self.make_reserve()
 
@@ -89,9 +93,12 @@ class Store:
         if self._reserve is not None:
             self._reserve.make()
 
-    def erase_traces(self) -> None:
-        """Writes what was removed over, also where the database keeps its latest changes."""
-        self.database.erase_traces()
+    def erase_traces(self, wait_s: float = ERASE_WAIT_S) -> bool:
+        """Writes what was removed over, also where the database keeps its latest changes.
+
+        Waits so long for those who use it; whether nobody was in the way.
+        """
+        return self.database.erase_traces(wait_s)
 
     def close(self) -> None:
         """Gives back all connections."""

@@ -60,3 +60,17 @@ def test_no_job_is_removed_where_the_settings_keep_them(tmp_path: Path) -> None:
     Expiry(lib).remove_if_due()
     assert [one.id for one in jobs.list_jobs(lib).items] == [job_id]
     lib.close()
+
+
+def test_what_was_deleted_leaves_the_log_even_if_somebody_read_meanwhile(tmp_path: Path) -> None:
+    lib, job_id = _library(tmp_path)
+    log = lib.settings.data_dir / "kinedex.sqlite3-wal"
+    with lib.store.read() as tx:
+        tx.execute(table.select()).all()
+        jobs.cancel_or_remove(lib, job_id)
+        assert not lib.store.erase_traces(wait_s=0.0)
+        Expiry(lib).remove_if_due()  # does not wait for the reader
+        assert job_id.encode() in log.read_bytes()
+    Expiry(lib).remove_if_due()
+    assert log.stat().st_size == 0
+    assert job_id.encode() not in (lib.settings.data_dir / "kinedex.sqlite3").read_bytes()

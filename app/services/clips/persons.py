@@ -27,7 +27,8 @@ _log = logging.getLogger(__name__)
 def forget_person(lib: Library, name: str) -> JobRecord:
     """Remove a person's labels and every model that holds them; the job fits the models anew.
 
-    Raises NotFound where no clip carries the person, BadField.
+    A person whose clips were all deleted may still be held by a model; they can be forgotten too.
+    Raises NotFound where no clip carries the person and no model holds them, BadField.
     """
     person = fields.text("name", name) or ""
     job = lib.store.write_even_when_full(lambda tx: _forget(tx, person))
@@ -36,7 +37,7 @@ def forget_person(lib: Library, name: str) -> JobRecord:
 
 
 def _forget(tx: Tx, person: str) -> JobRecord:
-    if person not in labels.person_names(tx):
+    if person not in labels.person_names(tx) | models.person_names(tx):
         raise NotFound(
             "No clip carries this person.", places=[Place("name", "is not in the library")]
         )

@@ -28,6 +28,8 @@ from app.store.folders import make_private
 BUSY_TIMEOUT_S = 30.0
 POOL_SIZE = 8
 POOL_OVERFLOW = 56  # above the 58 threads that the API runs, so that a reader never waits
+ERASE_WAIT_S = 2.0
+"""A forgetting waits so long for readers; the worker tries again each minute."""
 WRITES_OPTION = "kinedex_writes"
 MIGRATION_LOCK = 0x6B696E65  # "kine": any number that no one else locks
 
@@ -101,19 +103,23 @@ class Database:
             except OSError as error:
                 raise DatabaseGone() from error
 
-    def erase_traces(self) -> None:
-        """Writes the log of changes into the database and empties it, as far as no one reads it.
+    def erase_traces(self, wait_s: float = ERASE_WAIT_S) -> bool:
+        """Writes the log of changes into the database and empties it; whether nobody was in the
+        way. It waits so long for those who read or write.
 
         SQLite's; what is deleted is overwritten there (secure_delete). Elsewhere the
         database's own vacuuming does it. It also gives back the disk space of that log.
         """
         if not self._is_sqlite:
-            return
+            return True
         with self._storage_failures():
             connection = self.engine.raw_connection()
             try:
-                connection.cursor().execute("PRAGMA wal_checkpoint(TRUNCATE)")
+                cursor = connection.cursor()
+                cursor.execute(f"PRAGMA busy_timeout = {round(1000 * wait_s)}")
+                return not cursor.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]
             finally:
+                connection.cursor().execute(f"PRAGMA busy_timeout = {round(1000 * BUSY_TIMEOUT_S)}")
                 connection.close()
 
     def find_damage(self, *, quick: bool = False) -> tuple[str, ...]:

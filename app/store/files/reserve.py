@@ -19,6 +19,8 @@ LEAST, MOST = 2**20, 64 * 2**20
 tens of MiB there, but for one of an hour."""
 ROOM = 4
 """The reserve is made while so many times its size are free."""
+SHARE_TAKEN_BACK = 0.75
+"""Of what is free after it was given up."""
 
 
 class Reserve:
@@ -31,15 +33,18 @@ class Reserve:
     def make(self) -> None:
         """Makes the file, or lets it grow with the database, unless the disk has little room."""
         with suppress(OSError):
-            size = min(max(self._database.stat().st_size, LEAST), MOST)
+            size = self._wanted()
             is_enough = self.path.exists() and 2 * self.path.stat().st_size > size
-            if is_enough or shutil.disk_usage(self.path.parent).free < ROOM * size:
-                return
-            descriptor = os.open(self.path, os.O_WRONLY | os.O_CREAT, 0o600)
-            try:
-                os.posix_fallocate(descriptor, 0, size)
-            finally:
-                os.close(descriptor)
+            if not is_enough and self._free() >= ROOM * size:
+                self._allocate(size)
+
+    def take_back(self) -> None:
+        """Makes the file again after it was given up, of most of what is free: whoever filled the
+        disk would fill that too, and the next deletion needs it."""
+        with suppress(OSError):
+            size = min(self._wanted(), int(SHARE_TAKEN_BACK * self._free()))
+            if size >= LEAST and not self.path.exists():
+                self._allocate(size)
 
     def give_up(self) -> bool:
         """Removes the file; whether there was one."""
@@ -49,3 +54,16 @@ class Reserve:
             return False
         _log.warning("the disk is full: the space in reserve was given up for a deletion")
         return True
+
+    def _wanted(self) -> int:
+        return min(max(self._database.stat().st_size, LEAST), MOST)
+
+    def _free(self) -> int:
+        return shutil.disk_usage(self.path.parent).free
+
+    def _allocate(self, size: int) -> None:
+        descriptor = os.open(self.path, os.O_WRONLY | os.O_CREAT, 0o600)
+        try:
+            os.posix_fallocate(descriptor, 0, size)
+        finally:
+            os.close(descriptor)

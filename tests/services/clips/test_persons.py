@@ -70,6 +70,26 @@ def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoCl
         persons.forget_person(lib, NAME)
 
 
+def test_a_person_whose_clips_are_deleted_can_be_forgotten(
+    lib: Library, some_demo_clips: list[DemoClip]
+) -> None:
+    ids = _library(lib, some_demo_clips)
+    for label, clip_id in ids.items():
+        if label.startswith(NAME):
+            clips.delete_clip(lib, clip_id)
+    asked = RecogniseQuery(ids["bruno bow"])
+    held = recognise.recognise(lib, asked)
+    assert NAME in {candidate.label for candidate in held.person.candidates}
+
+    persons.forget_person(lib, NAME)
+    with pytest.raises(ModelBeingFitted):
+        recognise.recognise(lib, asked)
+    lib.store.erase_traces()
+    assert NAME.encode() not in _bytes_of(lib.settings.data_dir)
+    with pytest.raises(NotFound):
+        persons.forget_person(lib, NAME)
+
+
 def test_why_a_model_is_not_there_is_told(lib: Library, some_demo_clips: list[DemoClip]) -> None:
     one = [clip for clip in some_demo_clips if clip.person == "ada"]
     ids = [upload(lib, clip, person=NAME, task="all the same").clip.id for clip in one]

@@ -61,7 +61,12 @@ def test_a_clip_can_be_deleted_when_the_disk_is_full(disk: Path) -> None:
         assert list(clips.get_many(tx, [each.id for each in doomed])) == [doomed[1].id]
     assert set(store.files) == {doomed[1].sha256}
     reserve = disk / "kinedex.sqlite3.reserve"
-    assert not reserve.exists()
+    again = disk / "again"
+    filler.rename(again)  # and the disk fills up a second time
+    filler = fill(disk)
+    store.write_even_when_full(lambda tx: outcomes.remove_clip(tx, doomed[1].id))
+    assert set(store.files) == set()
+    again.unlink()
     filler.unlink()
     store.make_reserve()
     assert reserve.stat().st_size >= ARRAY_BYTES  # as large as the database
