@@ -10,13 +10,14 @@ from pathlib import Path
 import pytest
 from alembic import command
 
+from app.config import sqlite_url
 from app.errors import LibraryMismatch, StorageError
 from app.store import identity
 from app.store.clips import repository as clips
 from app.store.clips import versions as library
-from app.store.clips.record import NewClip
+from app.store.clips.record import ClipLabels, NewClip
 from app.store.database import schema
-from app.store.database.engine import Database, sqlite_url
+from app.store.database.engine import Database
 from app.store.files.id_file import NAME, read_id, write_id
 from app.store.store import Store
 from app.store.upkeep.sweep import sweep
@@ -36,7 +37,7 @@ def add(store: Store, *names: str) -> list[str]:
     for name in names:
         with store.files.stage(io.BytesIO(name.encode())) as staged, store.write() as tx:
             staged.keep()
-            new = NewClip(staged.sha256, f"{name}.bvh", staged.size, name)
+            new = NewClip(staged.sha256, f"{name}.bvh", staged.size, ClipLabels(name))
             made.append(clips.add_or_get(tx, new).clip.sha256)
     return made
 

@@ -19,7 +19,7 @@ from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPat
 from app.api.schemas.jobs import Job
 from app.errors import ClipNotFound
 from app.services.clips import catalogue as clips
-from app.services.clips.catalogue import NewClip, StoredFile
+from app.services.clips.catalogue import StoredFile
 from app.services.clips.recordings import NewRecording
 
 router = APIRouter(prefix="/v1/clips", tags=["clips"])
@@ -56,33 +56,15 @@ def create_clip(
     created = clips.create_clip(
         lib,
         upload.file,
-        _new_clip(form, upload.filename),
-        file_of(uploads, "skeleton"),
-        _recording(uploads),
+        upload.filename or "clip",
+        form.model_dump(exclude_none=True),
+        skeleton=file_of(uploads, "skeleton"),
+        recording=_recording(uploads),
     )
     if created.job is None:
         response.status_code = 200
     job = None if created.job is None else Job.of(created.job)
     return ClipCreated(clip=Clip.of(created.clip), job=job)
-
-
-def _new_clip(form: ClipForm, filename: str | None) -> NewClip:
-    return NewClip(
-        filename=filename or "clip",
-        name=form.name,
-        person=form.person,
-        task=form.task,
-        words=None if form.words is None else tuple(form.words),
-        license=form.license,
-        source=form.source,
-        frame_rate=form.frame_rate,
-        unit=form.unit,
-        roles=form.roles,
-        stack=form.stack,
-        audio_offset=form.audio_offset,
-        tempo=form.tempo,
-        beats=form.beats,
-    )
 
 
 def _recording(uploads: dict[str, UploadFile]) -> NewRecording | None:

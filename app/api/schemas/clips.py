@@ -131,19 +131,11 @@ class Clip(Outgoing):
                 for doubt in record.warnings
             ],
             created_at=record.created_at,
-            has_audio=record.audio_sha256 is not None,
-            audio_offset=_offset(record),
+            has_audio=record.has_audio,
+            audio_offset=record.audio_begins_at,
             error=Problem.of(record.error),
             reanalysis=record.reanalysis,
         )
-
-
-def _offset(record: ClipRecord) -> float | None:
-    """What was told, at once; what was estimated, once it was."""
-    if record.audio_sha256 is None:
-        return None
-    told = record.audio_offset_override
-    return record.audio_offset if told is None else told
 
 
 class ClipCreated(Outgoing):

@@ -41,19 +41,19 @@ RETRY_DELAY_S = 5.0
 
 def order_for(lib: Library, clip: ClipRecord) -> Order:
     """What to analyse for a clip. Raises StoredFileMissing where one of its files is gone."""
-    skeleton, audio = clip.skeleton_sha256, clip.audio_sha256
+    skeleton, audio, hints = clip.skeleton_sha256, clip.audio_sha256, clip.hints
     return Order(
         path=_place(lib, clip.sha256, "motion file"),
         skeleton_path=None if skeleton is None else _place(lib, skeleton, "skeleton file"),
-        stack=clip.stack_override,
-        frame_rate=clip.frame_rate_override,
-        metres_per_unit=clip.metres_per_unit_override,
-        roles=clip.roles_override,
+        stack=hints.stack,
+        frame_rate=hints.frame_rate,
+        metres_per_unit=hints.metres_per_unit,
+        roles=hints.roles,
         thresholds=_thresholds(lib),
         audio_path=None if audio is None else _place(lib, audio, "recording"),
-        beats=clip.beats_override,
-        tempo=clip.tempo_override,
-        audio_offset=clip.audio_offset_override,
+        beats=hints.beats,
+        tempo=hints.tempo,
+        audio_offset=hints.audio_offset,
     )
 
 
@@ -145,7 +145,7 @@ def facts(found: Analysis) -> ClipFacts:
 
 def _is_superseded(tx: Tx, clip: ClipRecord) -> bool:
     """Whether what the client says of the file has changed since the analysis began."""
-    return stored.overrides(tx, clip.id) != clip.overrides
+    return stored.analysis_input(tx, clip.id) != clip.analysis_input
 
 
 def _leave(tx: Tx, claimed: ClaimedJob, clip: ClipRecord) -> None:

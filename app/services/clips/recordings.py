@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import Any
 
 from app.errors import BadContent
 from app.formats.audio.reader import HEAD_BYTES, sniff_audio
 from app.services import fields
 from app.services.library.library import Library
+from app.store.clips.record import AttachedAudio
 from app.store.files.files import Readable, StagedFile
 
 
@@ -31,15 +31,12 @@ def stage(lib: Library, recording: NewRecording) -> AbstractContextManager[Stage
     return lib.store.files.stage(recording.content, max_bytes=lib.settings.max_upload_bytes)
 
 
-def described(staged: StagedFile, filename: str) -> dict[str, Any]:
-    """The fields of a clip's row. Raises BadField for what is no recording by its first bytes."""
+def attached(staged: StagedFile, filename: str) -> AttachedAudio:
+    """The recording as a part of its clip. Raises BadField where its first bytes are not those of
+    a recording."""
     with staged.open() as file:
         try:
             sniff_audio(file.read(HEAD_BYTES))
         except BadContent as problem:
             raise fields.bad_field("audio", problem.detail) from problem
-    return {
-        "audio_sha256": staged.sha256,
-        "audio_name": fields.file_name(filename),
-        "audio_size": staged.size,
-    }
+    return AttachedAudio(staged.sha256, fields.file_name(filename), staged.size)

@@ -9,20 +9,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import replace
 
 from app.errors import Canceled, KinedexError, LeaseLost, StorageError
 from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
 from app.services import fields
 from app.services.clips.catalogue import BULK_PRIORITY, add, check_content, keep
-from app.services.clips.recordings import described
-from app.services.imports.manifest import ManifestRow
+from app.services.clips.recordings import attached
 from app.services.imports.plan import Item, Plan
 from app.services.imports.sources import SourceFile
 from app.services.library.library import Library
 from app.store.clips import keypose_annotations
-from app.store.clips.record import ClipState
-from app.store.clips.record import NewClip as NewRow
+from app.store.clips.record import ClipState, NewClip
 from app.store.database.engine import Tx
 from app.store.files.files import Readable, StagedFile
 from app.store.jobs import imports as stored
@@ -138,8 +135,15 @@ class Registering:
             is_amc = check_content(staged) == "amc"
             companion = _staged(lib, files, item.skeleton if is_amc else None)
             recording = _staged(lib, files, item.sound)
-            heard = {} if recording is None else described(recording, row.audio or "")
-            new = replace(_new_row(path, row, staged, companion), **heard)
+            new = NewClip(
+                sha256=staged.sha256,
+                file_name=fields.file_name(path),
+                file_size=staged.size,
+                labels=row.labels,
+                hints=row.hints,
+                skeleton_sha256=None if companion is None else companion.sha256,
+                audio=None if recording is None else attached(recording, row.audio or ""),
+            )
             with lib.store.write() as tx:
                 keep(staged, companion, recording)
                 created = add(tx, new, self._priority())
@@ -196,26 +200,3 @@ def _staged(lib: Library, files: ExitStack, source: SourceFile | None) -> Staged
 def _stage(lib: Library, files: ExitStack, content: Readable) -> StagedFile:
     limit = lib.settings.max_upload_bytes
     return files.enter_context(lib.store.files.stage(content, max_bytes=limit))
-
-
-def _new_row(
-    path: str, row: ManifestRow, staged: StagedFile, skeleton: StagedFile | None
-) -> NewRow:
-    file_name = fields.file_name(path)
-    return NewRow(
-        sha256=staged.sha256,
-        file_name=file_name,
-        file_size=staged.size,
-        name=row.name or fields.stem(file_name),
-        person=row.person,
-        task=row.task,
-        words=row.words or (),
-        license=row.license,
-        source=row.source,
-        skeleton_sha256=None if skeleton is None else skeleton.sha256,
-        frame_rate_override=row.frame_rate,
-        metres_per_unit_override=row.metres_per_unit,
-        audio_offset_override=row.audio_offset,
-        tempo_override=row.tempo,
-        beats_override=row.beats,
-    )

@@ -11,6 +11,7 @@ from app.errors import BadField, Place
 from app.store.clips import repository as clip_repository
 from app.store.clips.filter import ClipFilter, condition
 from app.store.clips.record import REANALYSIS_OPEN, ClipRecord, ClipState, Reanalysis
+from app.store.clips.rows import to_record
 from app.store.database.engine import Tx
 from app.store.database.paging import Page, Position, Value, after, read_cursor, write_cursor
 from app.store.database.tables import clips
@@ -123,7 +124,7 @@ def _page(tx: Tx, query: Select[tuple[object, ...]], sort: str, limit: int) -> P
     rows = tx.execute(query).mappings().all()
     shown = rows[:limit]
     words = clip_repository.words_of(tx, [row["id"] for row in shown])
-    items = tuple(clip_repository.to_record(row, words.get(row["id"], ())) for row in shown)
+    items = tuple(to_record(row, words.get(row["id"], ())) for row in shown)
     if len(rows) <= limit or not shown:
         return Page(items, None)
     return Page(items, write_cursor(sort, Position(shown[-1]["sorted_by"], shown[-1]["id"])))

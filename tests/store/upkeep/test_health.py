@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from app.config import sqlite_url
 from app.errors import DatabaseDamaged, DatabaseGone
 from app.store import identity
 from app.store.clips import versions as library
-from app.store.database.engine import sqlite_url
 from app.store.files.id_file import write_id
 from app.store.store import Store
 from app.store.upkeep import health
