@@ -1,4 +1,4 @@
-"""Clips: what is sent with one, what is told of one."""
+"""Clips: what clients send with a clip, and what the API shows of it."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from app.api.schemas.base import (
 )
 from app.api.schemas.filters import Filter
 from app.api.schemas.jobs import Job
-from app.api.schemas.problem import Problem
+from app.api.schemas.problem import KeptProblem
 from app.motion.skeleton.recording import FRAME_RATES
 from app.search.index.filters import parse_filter
 from app.services.fields import MAX_KEYPOSES, MAX_OFFSET, TEMPI
 from app.store.clips.filter import ClipFilter
-from app.store.clips.record import ClipRecord, ClipState, Reanalysis
+from app.store.clips.record import ClipState, Reanalysis
 
 Sort = Literal[
     "created_at",
@@ -94,48 +94,17 @@ class Clip(Outgoing):
     created_at: datetime
     has_audio: bool = Field(description="Whether a recording goes with it: GET .../audio.")
     audio_offset: float | None = Field(
+        validation_alias="audio_begins_at",
         description="Seconds of the motion at which the recording begins, as told or estimated."
         " An estimate may be wrong by whole beats: the warning `audio_offset_estimated` tells how"
-        " long a beat is, and with what probability it is right."
+        " long a beat is, and with what probability it is right.",
     )
-    error: Problem | None = Field(description="Why the clip is `failed`, else null.")
+    error: KeptProblem = Field(description="Why the clip is `failed`, else null.")
     reanalysis: Reanalysis | None = Field(
         description="Where another analysis of a ready clip stands, after a change of the clip or"
         " of Kinedex: null once it is done. Until then the clip is searched by its earlier"
         " analysis. After `failed` it keeps that, and a warning says why."
     )
-
-    @classmethod
-    def of(cls, record: ClipRecord) -> Clip:
-        """A clip as it goes over the wire."""
-        return cls(
-            id=record.id,
-            name=record.name,
-            state=record.state,
-            format=record.format,
-            sha256=record.sha256,
-            person=record.person,
-            task=record.task,
-            words=list(record.words),
-            license=record.license,
-            source=record.source,
-            frames=record.frames,
-            frame_rate=record.frame_rate,
-            declared_frame_rate=record.declared_frame_rate,
-            duration=record.duration,
-            joints=record.joints,
-            roles=dict(record.roles),
-            missing_roles=list(record.missing_roles),
-            warnings=[
-                ClipWarning(code=doubt.code, detail=doubt.detail, likely=doubt.likely)
-                for doubt in record.warnings
-            ],
-            created_at=record.created_at,
-            has_audio=record.has_audio,
-            audio_offset=record.audio_begins_at,
-            error=Problem.of(record.error),
-            reanalysis=record.reanalysis,
-        )
 
 
 class ClipCreated(Outgoing):

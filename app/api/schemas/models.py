@@ -10,7 +10,6 @@ from pydantic import Field
 
 from app.api.schemas.base import Incoming, Outgoing
 from app.services.library.fitted_models import FALSE_ACCEPT_RATE
-from app.services.training import models as services
 from app.services.training.errors_in_force import Errors
 from app.store.models import ModelRecord
 
@@ -28,15 +27,6 @@ class ErrorsInForce(Outgoing):
         description="Of what is known, called new; where takes were hardly repeated, of further"
         " takes as the recogniser imagines them.",
     )
-
-    @classmethod
-    def of(cls, errors: Errors) -> ErrorsInForce:
-        """Errors as they go over the wire."""
-        return cls(
-            threshold=errors.threshold,
-            false_acceptance=errors.false_acceptance,
-            false_rejection=errors.false_rejection,
-        )
 
 
 class Model(Outgoing):
@@ -64,7 +54,11 @@ class Model(Outgoing):
     @classmethod
     def of(cls, record: ModelRecord, errors: Mapping[str, Errors] | None) -> Model:
         """A model as it goes over the wire, with its errors in force."""
-        told = None if errors is None else {n: ErrorsInForce.of(e) for n, e in errors.items()}
+        shown = (
+            None
+            if errors is None
+            else {factor: ErrorsInForce.model_validate(found) for factor, found in errors.items()}
+        )
         return cls(
             id=record.id,
             kind=record.kind,
@@ -73,7 +67,7 @@ class Model(Outgoing):
             library_size=record.library_size,
             figures=dict(record.meta.get("figures", {})),
             false_accept_rate=record.settings.get(FALSE_ACCEPT_RATE),
-            errors_in_force=told,
+            errors_in_force=shown,
             created_at=record.created_at,
         )
 
@@ -99,11 +93,6 @@ class UnfittedModel(Outgoing):
     kind: str
     outcome: str = Field(description="skipped, or failed by a defect.")
     reason: str = Field(description="As: too few clips carry a label.")
-
-    @classmethod
-    def of(cls, unfitted: services.Unfitted) -> UnfittedModel:
-        """An unfitted kind as it goes over the wire."""
-        return cls(kind=unfitted.kind, outcome=unfitted.outcome, reason=unfitted.reason)
 
 
 class ModelList(Outgoing):

@@ -139,18 +139,6 @@ class Tally(Outgoing):
         "binomial test; takes votes for independent).",
     )
 
-    @classmethod
-    def of(cls, tally: studies.Tally) -> Tally:
-        """A tally as it goes over the wire."""
-        return cls(
-            keypose=tally.keypose,
-            uniform=tally.uniform,
-            same=tally.same,
-            share=tally.share,
-            interval=list(tally.interval),
-            chance=tally.chance,
-        )
-
 
 class SequenceTally(Tally):
     """The votes on one clip with one model and so many dimensions."""
@@ -163,7 +151,7 @@ class SequenceTally(Tally):
     def of_sequence(cls, found: studies.SequenceTally) -> SequenceTally:
         """A row of Table 2 as it goes over the wire."""
         return cls(
-            **dict(Tally.of(found.votes)),
+            **dict(Tally.model_validate(found.votes)),
             clip_id=found.clip_id,
             name=found.name,
             dimensions=found.dimensions,
@@ -187,6 +175,6 @@ class StudyTally(Outgoing):
         """The table as it goes over the wire."""
         return cls(
             sequences=[SequenceTally.of_sequence(row) for row in found.sequences],
-            total=Tally.of(found.total),
+            total=Tally.model_validate(found.total),
             left_share=found.left_share,
         )

@@ -206,7 +206,8 @@ def killed_backup(folder: Path, name: str) -> Iterator[Path]:
     """What a process left that was killed while it copied to `folder / name`."""
     code = (
         "import os, sys, pathlib, functools\n"
-        "from app.store import backup, locked_file\n"
+        "from app.store.files import locked_file\n"
+        "from app.store.upkeep import backup\n"
         "path = pathlib.Path(sys.argv[1])\n"
         "with locked_file.locked_folder(functools.partial(backup._make_part, path)) as part:\n"
         "    (part / 'files').mkdir()\n"
