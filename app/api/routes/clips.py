@@ -132,7 +132,7 @@ def get_audio(lib: Lib, clip_id: ClipId) -> FileResponse:
 
 @router.delete("/{clip_id}/audio", dependencies=[writes, changes], responses=refusals(404))
 def delete_audio(lib: Lib, clip_id: ClipId) -> Clip:
-    """Forget the recording that goes with a clip; the clip is analysed again."""
+    """Forget the recording that goes with a clip; the clip is analyzed again."""
     return Clip.model_validate(clips.remove_recording(lib, clip_id))
 
 

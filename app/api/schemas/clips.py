@@ -95,9 +95,9 @@ class Clip(Outgoing):
     has_audio: bool = Field(description="Whether a recording goes with it: GET .../audio.")
     audio_offset: float | None = Field(
         validation_alias="audio_begins_at",
-        description="Seconds of the motion at which the recording begins, as told or estimated."
-        " An estimate may be wrong by whole beats: the warning `audio_offset_estimated` tells how"
-        " long a beat is, and with what probability it is right.",
+        description="Seconds of the motion at which the recording begins, as given or estimated."
+        " An estimate may be wrong by whole beats: the warning `audio_offset_estimated` says how"
+        " long a beat is, and with what probability the estimate is right.",
     )
     error: KeptProblem = Field(description="Why the clip is `failed`, else null.")
     reanalysis: Reanalysis | None = Field(
@@ -147,7 +147,9 @@ class ClipForm(Incoming):
     beats: Annotated[list[Seconds], BeforeValidator(_split), Field(max_length=MAX_KEYPOSES)] | (
         None
     ) = Field(
-        None, description="Seconds, separated by spaces; they go before all.", examples=["0.5 1.1"]
+        None,
+        description="Seconds, separated by spaces; they replace all other beats.",
+        examples=["0.5 1.1"],
     )
 
 
@@ -161,24 +163,24 @@ class ClipPatch(Incoming):
     license: Label | None = None
     source: Label | None = None
     frame_rate: FrameRate | None = Field(
-        None, description="The clip is analysed again; null returns to the declared one."
+        None, description="The clip is analyzed again; null returns to the declared one."
     )
     stack: Label | None = Field(
         None,
-        description="Of an FBX file, the animation stack: the clip is analysed again; null"
+        description="Of an FBX file, the animation stack: the clip is analyzed again; null"
         " returns to the longest.",
     )
     audio_offset: Offset | None = Field(
-        None, description=f"{_OFFSET} The clip is analysed again; null has it estimated."
+        None, description=f"{_OFFSET} The clip is analyzed again; null has it estimated."
     )
     tempo: Tempo | None = Field(
-        None, description="Beats a minute: the clip is analysed again; null forgets it."
+        None, description="Beats a minute: the clip is analyzed again; null forgets it."
     )
     beats: list[Seconds] | None = Field(
         None,
         max_length=MAX_KEYPOSES,
-        description="Seconds, before all other beats: the clip is analysed again; null or none"
-        " forgets them.",
+        description="Seconds; they replace all other beats: the clip is analyzed again; null or"
+        " none forgets them.",
     )
 
     model_config = ConfigDict(
@@ -191,7 +193,7 @@ class ClipQuery(Filter):
 
     state: ClipState | None = None
     q: PartOfName | None = Field(None, description="Part of the name.")
-    sort: Sort = Field("-created_at", description="A leading - turns the order round.")
+    sort: Sort = Field("-created_at", description="A leading - reverses the order.")
     limit: Limit = 10
     cursor: Cursor | None = None
 

@@ -15,7 +15,7 @@ from app.store.jobs.record import JobKind, JobState
 
 
 def _result(kept: dict[str, Any] | None) -> dict[str, Any] | None:
-    """The result with each file's failure as a whole problem."""
+    """The result, with the failure of each file completed to a whole problem."""
     if kept is None or "files" not in kept:
         return kept
     files = [{**line, "error": _problem(line["error"])} for line in kept["files"]]
@@ -52,7 +52,7 @@ class JobFile(Outgoing):
     path: str = Field(description="Where it is in the archive or folder.")
     outcome: FileOutcome = Field(
         description="queued, processing or ready: the clip's state; failed: no clip, or one that"
-        " cannot be analysed; exists: the library held the content before; deleted: the clip was"
+        " cannot be analyzed; exists: the library held the content before; deleted: the clip was"
         " deleted since; absent: a manifest names it, and it is not there."
     )
     clip_id: str | None

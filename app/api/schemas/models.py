@@ -15,9 +15,9 @@ from app.store.models import ModelRecord
 
 
 class ErrorsInForce(Outgoing):
-    """How often a recogniser errs on what is new, at the threshold that is in force: shares of
-    clips that were held out at the fit. The threshold was chosen on them: other clips may fare a
-    little worse."""
+    """How often a recognizer errs on what is new, at the active threshold: shares of clips that
+    were held out at the fit. The threshold was chosen on these clips: for others the errors may be
+    a little higher."""
 
     threshold: float = Field(description="Novelty above which something is called new.")
     false_acceptance: float = Field(ge=0, le=1, description="Of what is new, called known.")
@@ -53,7 +53,7 @@ class Model(Outgoing):
 
     @classmethod
     def of(cls, record: ModelRecord, errors: Mapping[str, Errors] | None) -> Model:
-        """A model as it goes over the wire, with its errors in force."""
+        """The model as the API shows it; errors: at the active threshold, by factor."""
         shown = (
             None
             if errors is None

@@ -39,7 +39,7 @@ class SegmentList(Outgoing):
 
     @classmethod
     def of(cls, found: segments.Segments) -> SegmentList:
-        """Segments as they go over the wire."""
+        """The segments as the API shows them."""
         return cls(
             items=[
                 Segment(

@@ -1,4 +1,4 @@
-"""Motions that nobody recorded: what is asked for, and what is told of them."""
+"""Motions that nobody recorded: the request for one, and the answer."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Synthesize(Incoming):
         " it. Default: some cycles, or as long as the task takes.",
     )
     store: bool = Field(False, description="Keep the motion as a clip.")
-    bvh: bool = Field(False, description="Tell the BVH file in the answer, too.")
+    bvh: bool = Field(False, description="Include the BVH file in the answer.")
 
     model_config = ConfigDict(
         json_schema_extra={
@@ -92,7 +92,7 @@ class Quality(Outgoing):
     )
     nearest_clip: Clip | None = Field(
         validation_alias="nearest",
-        description="The real clip most like the motion, analysed as any other.",
+        description="The real clip most like the motion, analyzed like any other.",
     )
     nearest_person: str
     nearest_task: str
@@ -136,7 +136,7 @@ class Synthesis(Outgoing):
 
     @classmethod
     def of(cls, made: Synthesised, *, with_bvh: bool) -> Synthesis:
-        """A synthesis as it goes over the wire."""
+        """The synthesis as the API shows it."""
         view = made.view
         return cls(
             clip=_draft(made) if made.clip is None else Clip.model_validate(made.clip),

@@ -1,4 +1,4 @@
-"""Clips: take in, list, look up, change, remove."""
+"""Clips: add, list, get, change and delete them."""
 
 from __future__ import annotations
 
@@ -28,10 +28,11 @@ from app.store.jobs.record import JobKind, JobRecord, NewJob
 
 UPLOAD_PRIORITY = 10
 BULK_PRIORITY = 20
-"""Clips of an import, and clips to be analysed again: lower goes first."""
+"""For clips of an import and for repeated analyses. The lowest number goes first."""
 WORKER_DEATHS = 30
-"""A job whose worker dies is tried again so often, without progress in between. It is seldom the
-clip's doing: content is parsed in a child process, whose own deaths `job_max_attempts` limits."""
+"""How often a job is tried again after the death of its worker, without progress in between. The
+clip is seldom the cause: a child process parses its content, and `job_max_attempts` limits the
+deaths of that."""
 FIXED_HINTS = (fields.UNIT, "roles")
 """A client says these only when it hands in the file."""
 PATCHABLE = (*fields.LABELS, *(hint for hint in fields.HINTS if hint not in FIXED_HINTS))
@@ -39,7 +40,7 @@ PATCHABLE = (*fields.LABELS, *(hint for hint in fields.HINTS if hint not in FIXE
 
 @dataclass(frozen=True, slots=True)
 class Created:
-    """What became of content: its clip, the job that analyses it, None where none is needed."""
+    """The clip of some content, and the job that analyzes it; None if it needs no analysis."""
 
     clip: ClipRecord
     job: JobRecord | None
@@ -48,7 +49,7 @@ class Created:
 
 @dataclass(frozen=True, slots=True)
 class StoredFile:
-    """A clip's original bytes: where they are, the name they came with, how many."""
+    """A stored file: its path, the name that it came with, its size in bytes."""
 
     path: Path
     name: str
@@ -105,7 +106,7 @@ def create_clip(
 
 
 def keep(*files: StagedFile | None) -> None:
-    """Keep those that there are, in the transaction that refers to them."""
+    """Keep the files that are not None, in the transaction that refers to them."""
     for file in files:
         if file is not None:
             file.keep()
@@ -125,8 +126,8 @@ def add(tx: Tx, new: NewClip, priority: int = UPLOAD_PRIORITY) -> Created:
 
 
 def check_content(staged: StagedFile) -> str:
-    """The name of the content's format; raises EmptyFile or UnknownFormat where no reader
-    would take it."""
+    """The name of the content's format. Raises EmptyFile, and UnknownFormat if no reader knows
+    it."""
     if staged.size == 0:
         raise EmptyFile()
     with staged.open() as file:
@@ -134,7 +135,7 @@ def check_content(staged: StagedFile) -> str:
 
 
 def _format_of(file: BinaryIO) -> str:
-    """By the file's beginning and, where it is long, its end; raises EmptyFile, UnknownFormat."""
+    """As `check_content`, from the beginning of the file and the end of a long one."""
     content = file.read(HEAD_BYTES + TAIL_BYTES)
     if file.seek(0, os.SEEK_END) > len(content):
         file.seek(-TAIL_BYTES, os.SEEK_END)
@@ -169,7 +170,7 @@ def enqueue_ingest(tx: Tx, clip_id: str, priority: int) -> JobRecord:
 
 def list_clips(
     lib: Library,
-    wanted: ClipFilter | None = None,
+    filter: ClipFilter | None = None,
     sort: str = "-created_at",
     limit: int = 50,
     cursor: str | None = None,
@@ -177,7 +178,7 @@ def list_clips(
     """One page of the clips that pass a filter. Raises BadField for a bad sort or cursor."""
     with lib.store.read() as tx:
         return clip_listing.list_clips(
-            tx, wanted or ClipFilter(), sort=sort, limit=limit, cursor=cursor
+            tx, filter or ClipFilter(), sort=sort, limit=limit, cursor=cursor
         )
 
 

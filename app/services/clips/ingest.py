@@ -1,7 +1,7 @@
-"""From a stored file to a ready clip: what the analysis needs, and what becomes of it.
+"""From a stored file to a ready clip: what an analysis needs, and how its result is stored.
 
-Everything that an analysis finds enters in one transaction with the clip's state, the
-library's version, the job and the imports that wait: a clip is ready wholly or not at all.
+One transaction stores everything that an analysis finds, the clip's state, the library's version,
+the job and the imports that wait: a clip is never ready in part.
 """
 
 from __future__ import annotations
@@ -61,8 +61,8 @@ def _place(lib: Library, sha256: str, what: str) -> str:
     try:
         return str(lib.store.files.path(sha256))
     except NotFound as missing:
-        told = f"The stored {what} of this clip is missing ({sha256})"
-        raise StoredFileMissing(told) from missing
+        message = f"The stored {what} of this clip is missing ({sha256})"
+        raise StoredFileMissing(message) from missing
 
 
 def _thresholds(lib: Library) -> tuple[float, float] | None:
@@ -121,7 +121,7 @@ def _is_verdict(problem: KinedexError) -> bool:
 
 
 def facts(found: Analysis) -> ClipFacts:
-    """What a clip's row tells of its motion."""
+    """What the analysis found out, for the clip's row."""
     motion = found.motion
     doubts = (*motion.cautions, *found.cautions)
     return ClipFacts(
@@ -149,5 +149,5 @@ def _is_superseded(tx: Tx, clip: ClipRecord) -> bool:
 
 
 def _leave(tx: Tx, claimed: ClaimedJob, clip: ClipRecord) -> None:
-    """Leave the clip to the job that was queued when it was changed."""
+    """Drop this analysis: the change of the clip has queued another job."""
     leases.succeed(tx, claimed.lease, {"clip_id": clip.id, "superseded": True})

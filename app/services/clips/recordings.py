@@ -1,8 +1,8 @@
-"""The recordings that go with motions: what is asked of one that is handed in.
+"""The recordings that go with motions.
 
-A recording is kept as a clip's own file is, by its SHA-256, and is gone with the last clip
-that refers to it. Whether it can be decoded is seen by the analysis: a clip whose recording
-cannot be read becomes ready all the same, with a warning.
+A recording is stored like a clip's own file, by its SHA-256, and is removed with the last clip
+that refers to it. Only the analysis decodes it: a clip whose recording cannot be read becomes
+ready with a warning.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from app.store.files.files import Readable, StagedFile
 
 @dataclass(frozen=True, slots=True)
 class NewRecording:
-    """A recording that a client hands in, and the name it came with."""
+    """A recording that a client sends, and its file name."""
 
     content: Readable
     filename: str
 
 
 def stage(lib: Library, recording: NewRecording) -> AbstractContextManager[StagedFile]:
-    """Its bytes on disk, not kept yet. Raises TooLarge, DiskFull."""
+    """Write the recording to disk without keeping it yet. Raises TooLarge, DiskFull."""
     return lib.store.files.stage(recording.content, max_bytes=lib.settings.max_upload_bytes)
 
 

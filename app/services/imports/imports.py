@@ -99,7 +99,7 @@ def unpack(
 def import_path(lib: Library, path: Path, progress: Progress | None = None) -> JobRecord:
     """Import a folder, a ZIP or a single file from this machine's disk.
 
-    Returns the import's job once every file is registered; it ends when a worker has analysed
+    Returns the import's job once every file is registered; it ends when a worker has analyzed
     the clips. Raises NotFound where there is no such path, and as `unpack` does.
     """
     with _sources(lib, path) as files:

@@ -29,7 +29,7 @@ from app.store.jobs.imports import NewEntry
 from app.store.jobs.record import JobRecord, Lease
 
 Progress = Callable[[int, int, str], None]
-"""Told after each file: files done, files in all, the file's path."""
+"""Called after each file with the number of files done, the number of all, the file's path."""
 Over = Callable[[], bool]
 """Whether an import is to let others go on."""
 

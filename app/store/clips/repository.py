@@ -115,7 +115,7 @@ def forget_person(tx: Tx, person: str) -> tuple[str, ...]:
 
 
 def requeue(tx: Tx, clip_id: str) -> ClipRecord:
-    """To be analysed, again or at last. A ready clip stays ready, with the analysis that it has,
+    """Let the clip wait for an analysis. A ready clip stays ready with the analysis that it has,
     until the new one replaces it."""
     if _state_of(tx, clip_id) is ClipState.READY:
         _set(tx, clip_id, reanalysis=Reanalysis.QUEUED.value)
@@ -125,7 +125,7 @@ def requeue(tx: Tx, clip_id: str) -> ClipRecord:
 
 
 def wait_again(tx: Tx, clip_id: str) -> None:
-    """Nobody works on it any more, and its job waits. A clip that is gone needs nothing."""
+    """The clip's worker is gone and its job waits again. A clip that was deleted needs nothing."""
     clip = get_many(tx, [clip_id]).get(clip_id)
     if clip is None:
         return
@@ -134,7 +134,7 @@ def wait_again(tx: Tx, clip_id: str) -> None:
 
 
 def set_processing(tx: Tx, clip_id: str) -> None:
-    """A worker has begun."""
+    """A worker has begun its analysis."""
     begun = update(clips).where(clips.c.id == clip_id, clips.c.state == ClipState.QUEUED.value)
     if tx.execute(begun.values(state=ClipState.PROCESSING.value)).rowcount:
         return
@@ -145,18 +145,18 @@ def set_processing(tx: Tx, clip_id: str) -> None:
 
 
 def set_ready(tx: Tx, clip_id: str, facts: ClipFacts) -> None:
-    """Analysed: searchable from this transaction's commit on."""
+    """The clip is analyzed: searches find it as soon as this transaction is committed."""
     done: dict[str, Any] = {"error": None, "reanalysis": None, "is_changed": False}
     _enter(tx, clip_id, ClipState.READY, **done, **asdict(facts))
 
 
 def set_failed(tx: Tx, clip_id: str, problem: dict[str, Any]) -> None:
-    """Cannot be analysed, for the reason given as an RFC 9457 problem."""
+    """The clip cannot be analyzed; problem: why (RFC 9457)."""
     _enter(tx, clip_id, ClipState.FAILED, error=problem, reanalysis=None)
 
 
 def keep_analysis(tx: Tx, clip_id: str, why: ClipWarning) -> None:
-    """A ready clip could not be analysed again: it keeps what it has, and says why."""
+    """Another analysis of a ready clip failed: the clip keeps the one it has, and says why."""
     others = [warning for warning in get(tx, clip_id).warnings if warning.code != why.code]
     warnings = [asdict(warning) for warning in (*others, why)]
     _set(tx, clip_id, reanalysis=Reanalysis.FAILED.value, warnings=warnings)
