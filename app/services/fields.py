@@ -32,7 +32,7 @@ MAX_WORDS = 100
 MAX_LIMIT = 1000
 """Hits of one page."""
 MAX_KEYPOSES = 10_000
-"""Keyposes that a person names in one clip: three hours of dancing."""
+"""The most keyposes that a person may name in one clip: three hours of dancing."""
 TEMPI = (20.0, 400.0)
 """Beats a minute."""
 MAX_OFFSET = 36_000.0
@@ -186,7 +186,7 @@ def stem(name: str) -> str:
 
 
 def limit(value: int) -> int:
-    """How many hits are wanted."""
+    """The number of hits on one page, from 1 to MAX_LIMIT."""
     if not 1 <= value <= MAX_LIMIT:
         raise bad_field("limit", f"must be from 1 to {MAX_LIMIT}")
     return value

@@ -34,9 +34,9 @@ from app.store.jobs import leases, outcomes
 from app.store.jobs.record import ClaimedJob
 
 MOST_WARNINGS = 50
-"""Of one clip."""
+"""The most warnings that one clip keeps."""
 RETRY_DELAY_S = 5.0
-"""Before a failure that may pass is tried again."""
+"""How long to wait before a temporary failure is tried again."""
 
 
 def order_for(lib: Library, clip: ClipRecord) -> Order:

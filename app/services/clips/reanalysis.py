@@ -24,22 +24,22 @@ BATCH = 200
 
 
 def requeue_outdated(lib: Library) -> int:
-    """Queue the ready clips whose analysis is of another version, or older than a change of what
-    it depends on; how many."""
+    """Queue the ready clips whose analysis is of another version, or older than a change of the
+    hints or the recording; return how many."""
     with lib.store.read() as tx:
         ids = clip_listing.list_outdated_ids(tx, ANALYSIS_VERSION)
     return _requeue(lib, ids)
 
 
 def requeue_ready(lib: Library) -> int:
-    """Queue every ready clip; how many."""
+    """Queue every ready clip; return how many."""
     with lib.store.read() as tx:
         ids = clip_listing.list_ids(tx, ClipFilter(state=(ClipState.READY,)))
     return _requeue(lib, ids)
 
 
 def requeue_failed(lib: Library) -> int:
-    """Queue every clip whose last analysis failed; how many."""
+    """Queue every clip whose last analysis failed; return how many."""
     with lib.store.read() as tx:
         ids = clip_listing.list_unfit_ids(tx)
     return _requeue(lib, ids)

@@ -32,10 +32,10 @@ class Item:
 
 
 class Plan:
-    """What is to be done with the files of an import.
+    """What an import does with its files.
 
-    motions: the files that may become a clip each; absent: the problem of each path that a
-    manifest names and that is not there, of the first MOST_ABSENT; absent_count: of all.
+    motions: the files that may become clips; absent: the problems of the first MOST_ABSENT paths
+    that a manifest names and that are missing; absent_count: how many paths are missing.
     """
 
     def __init__(self, files: Iterable[SourceFile], limits: ManifestLimits) -> None:

@@ -31,22 +31,22 @@ from app.store.jobs.record import JobRecord, Lease
 Progress = Callable[[int, int, str], None]
 """Called after each file with the number of files done, the number of all, the file's path."""
 Over = Callable[[], bool]
-"""Whether an import is to let others go on."""
+"""Returns whether the import must stop now to let other imports run."""
 
 MOST_TOGETHER = 500
 """Files without a clip that are recorded in one transaction."""
 RECORD_AFTER_S = 1.0
-"""They wait no longer, so that a cancellation is noticed."""
+"""Such files wait at most this long, so that a cancellation is noticed."""
 FIRST_CLIPS = 64
 LOWEST_STEPS = 9
-"""How far the clips of a large import stand back behind those of a small one: those after the
-first 64 by one step of priority, after 128 by two, after 256 by three."""
+"""The clips of a large import wait for those of a small one: those after the first 64 have a
+priority lower by one step, after 128 by two, after 256 by three, up to LOWEST_STEPS."""
 JUDGED_AT_ONCE = HEAD_BYTES + TAIL_BYTES
-"""A file of so many bytes at most is judged before it is written anywhere."""
+"""A file of at most this many bytes is checked before it is written anywhere."""
 
 
 class Registering:
-    """An import in hand: its plan, and the right to its job."""
+    """A running import: its plan, and the lease of its job."""
 
     def __init__(self, lib: Library, lease: Lease, plan: Plan) -> None:
         self.lib, self.lease, self.plan = lib, lease, plan
@@ -62,7 +62,7 @@ class Registering:
         return len(self.plan.motions)
 
     def run(self, progress: Progress, should_stop: Callable[[], bool], is_over: Over) -> bool:
-        """Register file after file until none is left; whether that is so.
+        """Register file after file; return whether all are registered.
 
         `should_stop` is asked before each file, and then Canceled is raised; `is_over` after
         each, and then False is returned. Raises LeaseLost and StorageError, too.
@@ -82,7 +82,7 @@ class Registering:
         return True
 
     def finish(self, detail: str) -> JobRecord:
-        """Record what the manifests name in vain; the job waits for its clips from here on."""
+        """Record the missing files that manifests name; then the job waits for its clips."""
         with self.lib.store.write() as tx:
             absent = [
                 NewEntry(path, ImportOutcome.ABSENT, problem=problem.as_problem())
@@ -155,7 +155,7 @@ class Registering:
         self._problems = []
 
     def _priority(self) -> int:
-        """Of the analysis of the file in hand: a large import must not hold up a small one."""
+        """The priority of the next analysis: a large import must not delay a small one."""
         return BULK_PRIORITY + min((self.done // FIRST_CLIPS).bit_length(), LOWEST_STEPS)
 
 
@@ -175,7 +175,7 @@ def judged(content: Readable) -> Readable:
 
 
 class _Rejoined:
-    """What was read of a file, and then the rest of it."""
+    """A file whose beginning was read already: gives the beginning, then the rest."""
 
     def __init__(self, head: bytes, rest: Readable) -> None:
         self._head, self._rest = memoryview(head), rest
@@ -189,7 +189,7 @@ class _Rejoined:
 
 
 def _staged(lib: Library, files: ExitStack, source: SourceFile | None) -> StagedFile | None:
-    """A file that goes with a motion, if there is one, for as long as `files` are open."""
+    """Stage a file that goes with a motion, if there is one, until `files` is closed."""
     if source is None:
         return None
     if source.problem is not None:

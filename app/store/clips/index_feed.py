@@ -22,7 +22,7 @@ from app.store.database.engine import Tx
 from app.store.database.tables import clip_arrays, clip_words, clips
 
 BATCH = 5000
-"""Clips of one batch."""
+"""How many clips are in one batch."""
 
 _WORDS = (
     select(func.aggregate_strings(clip_words.c.word, " "))

@@ -11,7 +11,7 @@ from typing import Any
 
 
 class ClipState(StrEnum):
-    """Where a clip stands."""
+    """The state of a clip."""
 
     QUEUED = "queued"
     """Stored durably; waits for a worker."""
@@ -24,14 +24,14 @@ class ClipState(StrEnum):
 
 
 class Reanalysis(StrEnum):
-    """Where another analysis of a ready clip stands."""
+    """The state of another analysis of a ready clip."""
 
     QUEUED = "queued"
     """It waits for a worker."""
     PROCESSING = "processing"
-    """A worker does it."""
+    """A worker is at it."""
     FAILED = "failed"
-    """It could not be done: a warning says why."""
+    """It failed: a warning says why."""
 
 
 REANALYSIS_OPEN = (Reanalysis.QUEUED, Reanalysis.PROCESSING)
@@ -39,7 +39,7 @@ REANALYSIS_OPEN = (Reanalysis.QUEUED, Reanalysis.PROCESSING)
 
 @dataclass(frozen=True, slots=True)
 class ClipWarning:
-    """A doubt about a clip: `code` for machines, `detail` for people, `likely` a better value."""
+    """A doubt about a clip: `code` for machines, `detail` for people, `likely`: a better value."""
 
     code: str
     detail: str
@@ -82,12 +82,12 @@ class AnalysisHints:
 
 
 AUDIO_HINTS = ("audio_offset", "tempo", "beats")
-"""The hints that belong to a recording: another recording takes new ones along."""
+"""The hints about a recording. They are replaced together with it."""
 
 
 @dataclass(frozen=True, slots=True)
 class AttachedAudio:
-    """The recording that goes with a motion: its bytes, the name they came with, how many.
+    """The recording that goes with a motion: SHA-256 of its bytes, file name, size in bytes.
 
     The columns in the table `clips` begin with `audio_`.
     """
@@ -162,12 +162,12 @@ class ClipRecord(ClipLabels):
 
     @property
     def analysis_input(self) -> AnalysisInput:
-        """What clients say and an analysis depends on."""
+        """The hints and the recording, on which the analysis depends."""
         return self.hints, self.audio_sha256
 
     @property
     def is_settled(self) -> bool:
-        """Whether no analysis of it is to come."""
+        """Whether no analysis of the clip is waiting or running."""
         is_done = self.state in (ClipState.READY, ClipState.FAILED)
         return is_done and self.reanalysis not in REANALYSIS_OPEN
 
@@ -216,7 +216,7 @@ None), by their names; a field that is absent keeps its value."""
 
 
 class AddOutcome(StrEnum):
-    """What became of content that was handed in."""
+    """What `add_or_get` did with new content."""
 
     ADDED = "added"
     """A new clip: it needs an ingest job."""

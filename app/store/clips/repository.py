@@ -45,7 +45,7 @@ _WORDS = (
 
 
 def add_or_get(tx: Tx, new: NewClip) -> Added:
-    """Adds a clip in state queued, or finds the one with the same content.
+    """Adds a clip in the state queued, or finds the clip with the same content.
 
     A failed one is queued again, with the labels and hints that are given now; any other is queued
     again only if it comes with another recording, with that and the hints about it. Safe between
@@ -102,7 +102,7 @@ def patch(tx: Tx, clip_id: str, changes: ClipChanges) -> ClipRecord:
 
 
 def forget_person(tx: Tx, person: str) -> tuple[str, ...]:
-    """Takes a person's label from all their clips; their ids."""
+    """Removes a person's label from all their clips; returns the ids of these."""
     theirs = clips.c.person == person
     ids = tuple(tx.execute(select(clips.c.id).where(theirs).order_by(clips.c.id)).scalars())
     tx.execute(
@@ -247,7 +247,7 @@ def _enter(tx: Tx, clip_id: str, state: ClipState, **values: Any) -> None:
 
 
 def _set(tx: Tx, clip_id: str, **values: Any) -> None:
-    """Change what no search looks at."""
+    """Change columns that no search reads."""
     tx.execute(_CHANGE, {"the_id": clip_id, **values})
 
 
