@@ -13,7 +13,7 @@ import pytest
 from app.config import Settings
 from app.demo import DemoClip, demo_clips
 from app.services.clips import catalogue as clips
-from app.services.clips.catalogue import Created, NewClip
+from app.services.clips.catalogue import Created
 from app.services.library.library import Library
 from app.services.training import models
 from app.store.clips.record import ClipRecord
@@ -34,7 +34,7 @@ def work(settings: Settings) -> None:
 
 def upload(lib: Library, clip: DemoClip, **fields: Any) -> Created:
     said = {"person": clip.person, "task": clip.task, "words": clip.words} | fields
-    return clips.create_clip(lib, io.BytesIO(clip.content), NewClip(clip.path, **said))
+    return clips.create_clip(lib, io.BytesIO(clip.content), clip.path, said)
 
 
 @pytest.fixture

@@ -29,7 +29,7 @@ def fit(context: typer.Context, as_json: AsJson = False) -> None:
             job = follow(lib, asked.id, "fitting models")
         fitted = models.list_models(lib)
     if as_json:
-        print_json(Job.of(job).model_dump(mode="json"))
+        print_json(Job.model_validate(job).model_dump(mode="json"))
     else:
         rows = [
             (model.kind, model.version, model.library_size, name, value)

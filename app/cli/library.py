@@ -124,9 +124,12 @@ def _document(lib: Library, job: JobRecord) -> dict[str, Any]:
     from app.api.schemas.jobs import Job, JobFile
     from app.services.clips import jobs
 
-    document: dict[str, Any] = Job.of(job).model_dump(mode="json")
+    document: dict[str, Any] = Job.model_validate(job).model_dump(mode="json")
     if document["result"] is not None:
-        files = [JobFile.of(file).model_dump(mode="json") for file in jobs.all_files(lib, job.id)]
+        files = [
+            JobFile.model_validate(file).model_dump(mode="json")
+            for file in jobs.all_files(lib, job.id)
+        ]
         left_out = max(document["result"]["total"] - len(files), 0)
         document["result"] |= {"files": files, "files_left_out": left_out}
     return document

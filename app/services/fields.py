@@ -1,4 +1,4 @@
-"""What clients say about a clip: read, tidied and checked in one place.
+"""What clients say about a clip: this module alone reads, tidies and checks it.
 
 The same rules hold for a form, a JSON body, a manifest and the command line. Every
 function raises BadField naming the field.
@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import math
 import unicodedata
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
+from typing import Any
 
 from app.errors import BadField, Place
 from app.formats.common.names import MAX_NAME_LENGTH
@@ -16,6 +18,7 @@ from app.models.words.language.normalise import normalise_word, normalise_words
 from app.motion.canonical.units import METRES_PER_UNIT, SCALES
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.recording import FRAME_RATES
+from app.store.clips.record import AnalysisHints, ClipChanges, ClipLabels
 
 MAX_TEXT = 300
 """Characters in a name or label."""
@@ -29,7 +32,7 @@ MAX_WORDS = 100
 MAX_LIMIT = 1000
 """Hits of one page."""
 MAX_KEYPOSES = 10_000
-"""Keyposes that a person names in one clip: three hours of dancing."""
+"""The most keyposes that a person may name in one clip: three hours of dancing."""
 TEMPI = (20.0, 400.0)
 """Beats a minute."""
 MAX_OFFSET = 36_000.0
@@ -183,7 +186,60 @@ def stem(name: str) -> str:
 
 
 def limit(value: int) -> int:
-    """How many hits are wanted."""
+    """The number of hits on one page, from 1 to MAX_LIMIT."""
     if not 1 <= value <= MAX_LIMIT:
         raise bad_field("limit", f"must be from 1 to {MAX_LIMIT}")
     return value
+
+
+Check = Callable[[Any], Any]
+
+LABELS: Mapping[str, Check] = {
+    "name": partial(text, "name"),
+    "person": partial(text, "person"),
+    "task": partial(text, "task"),
+    "words": lambda value: words(value) or (),
+    "license": partial(text, "license"),
+    "source": partial(text, "source"),
+}
+"""The check of each field of `ClipLabels`. Clients use the same names."""
+
+UNIT = "unit"
+HINTS: Mapping[str, Check] = {
+    "frame_rate": frame_rate,
+    UNIT: metres_per_unit,
+    "roles": roles,
+    "stack": partial(text, "stack"),
+    "audio_offset": audio_offset,
+    "tempo": tempo,
+    "beats": beats,
+}
+"""The check of each hint, by the name that clients use."""
+
+_STORED_NAMES = {UNIT: "metres_per_unit"}
+"""The fields of `AnalysisHints` for which clients use another name."""
+
+
+def checked(said: Mapping[str, Any]) -> ClipChanges:
+    """What a client says of a clip, tidied, by the names of the store; None: nothing said.
+
+    said: labels and hints by the names of LABELS and HINTS; empty strings count as None. Raises
+    BadField for a bad value or an unknown name.
+    """
+    tidy: dict[str, Any] = {}
+    for field, value in said.items():
+        check = LABELS.get(field) or HINTS.get(field)
+        if check is None:
+            raise bad_field(field, "is no label or hint of a clip")
+        tidy[_STORED_NAMES.get(field, field)] = check(value)
+    return tidy
+
+
+def labels_and_hints(
+    said: Mapping[str, Any], default_name: str
+) -> tuple[ClipLabels, AnalysisHints]:
+    """As `checked`, of a clip that is new; default_name: where no name is said."""
+    labels = checked({name: value for name, value in said.items() if name not in HINTS})
+    hints = checked({name: value for name, value in said.items() if name in HINTS})
+    named = {"name": labels.get("name") or default_name}
+    return ClipLabels(**{**labels, **named}), AnalysisHints(**hints)

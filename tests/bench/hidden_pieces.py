@@ -16,7 +16,6 @@ from app.errors import BadContent
 from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from app.services.clips import catalogue as clips
-from app.services.clips.catalogue import NewClip
 from app.services.library.library import Library
 from tests.bodies import motion_of, turned_about_y
 from tests.libraries import work
@@ -129,5 +128,5 @@ def _store(
     body = at_rate(of_size(stream.body, rng.uniform(0.9, 1.3)), RATE, rate)
     noisy = body + rng.normal(scale=NOISE, size=body.shape)
     content = io.BytesIO(npz_of(noisy, rate))
-    clip = clips.create_clip(lib, content, NewClip(f"{name}.npz")).clip
+    clip = clips.create_clip(lib, content, f"{name}.npz").clip
     return clip.id, len(body) / rate

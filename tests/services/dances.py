@@ -9,7 +9,6 @@ import numpy as np
 
 from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.services.clips import catalogue as clips
-from app.services.clips.catalogue import NewClip
 from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
 from tests.cyclic_dances import CyclicDance
@@ -33,4 +32,4 @@ def upload_dance(
     lib: Library, dance: CyclicDance, name: str = "dance.npz", **fields: Any
 ) -> ClipRecord:
     """Hand the dance in, to be analysed."""
-    return clips.create_clip(lib, io.BytesIO(dance_file(dance)), NewClip(name, **fields)).clip
+    return clips.create_clip(lib, io.BytesIO(dance_file(dance)), name, fields).clip

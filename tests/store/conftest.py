@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import shutil
 from collections.abc import Callable, Iterator
@@ -12,7 +13,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from app.store.clips import repository as clips
-from app.store.clips.record import ClipFacts, ClipRecord, ClipWarning, NewClip
+from app.store.clips.record import ClipFacts, ClipLabels, ClipRecord, ClipWarning, NewClip
 from app.store.database import schema
 from app.store.jobs import repository as jobs
 from app.store.jobs.record import JobKind, JobRecord, NewJob
@@ -40,9 +41,14 @@ def store(database_url: str, tmp_path: Path) -> Iterator[Store]:
     opened.close()
 
 
+LABELS = {field.name for field in dataclasses.fields(ClipLabels)}
+
+
 def new_clip(name: str, **fields: Any) -> NewClip:
+    """A clip that is called `name`; the other labels are keywords, too."""
     sha256 = hashlib.sha256(name.encode()).hexdigest()
-    return NewClip(sha256=sha256, file_name=f"{name}.bvh", file_size=7, name=name, **fields)
+    labels = {key: fields.pop(key) for key in LABELS & fields.keys()}
+    return NewClip(sha256, f"{name}.bvh", 7, ClipLabels(name, **labels), **fields)
 
 
 def facts(**changes: Any) -> ClipFacts:

@@ -15,7 +15,7 @@ from app.errors import LibraryMismatch, StorageError
 from app.store import identity
 from app.store.clips import repository as clips
 from app.store.clips import versions as library
-from app.store.clips.record import NewClip
+from app.store.clips.record import ClipLabels, NewClip
 from app.store.database import schema
 from app.store.database.engine import Database
 from app.store.files.id_file import NAME, read_id, write_id
@@ -37,7 +37,7 @@ def add(store: Store, *names: str) -> list[str]:
     for name in names:
         with store.files.stage(io.BytesIO(name.encode())) as staged, store.write() as tx:
             staged.keep()
-            new = NewClip(staged.sha256, f"{name}.bvh", staged.size, name)
+            new = NewClip(staged.sha256, f"{name}.bvh", staged.size, ClipLabels(name))
             made.append(clips.add_or_get(tx, new).clip.sha256)
     return made
 

@@ -16,10 +16,9 @@ from app.api.guard.admission import changes, quick
 from app.api.openapi import ClipId, body, refusals
 from app.api.queries import file_of
 from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch, ClipQuery
-from app.api.schemas.jobs import Job
 from app.errors import ClipNotFound
 from app.services.clips import catalogue as clips
-from app.services.clips.catalogue import NewClip, StoredFile
+from app.services.clips.catalogue import StoredFile
 from app.services.clips.recordings import NewRecording
 
 router = APIRouter(prefix="/v1/clips", tags=["clips"])
@@ -56,33 +55,14 @@ def create_clip(
     created = clips.create_clip(
         lib,
         upload.file,
-        _new_clip(form, upload.filename),
-        file_of(uploads, "skeleton"),
-        _recording(uploads),
+        upload.filename or "clip",
+        form.model_dump(exclude_none=True),
+        skeleton=file_of(uploads, "skeleton"),
+        recording=_recording(uploads),
     )
     if created.job is None:
         response.status_code = 200
-    job = None if created.job is None else Job.of(created.job)
-    return ClipCreated(clip=Clip.of(created.clip), job=job)
-
-
-def _new_clip(form: ClipForm, filename: str | None) -> NewClip:
-    return NewClip(
-        filename=filename or "clip",
-        name=form.name,
-        person=form.person,
-        task=form.task,
-        words=None if form.words is None else tuple(form.words),
-        license=form.license,
-        source=form.source,
-        frame_rate=form.frame_rate,
-        unit=form.unit,
-        roles=form.roles,
-        stack=form.stack,
-        audio_offset=form.audio_offset,
-        tempo=form.tempo,
-        beats=form.beats,
-    )
+    return ClipCreated.model_validate(created)
 
 
 def _recording(uploads: dict[str, UploadFile]) -> NewRecording | None:
@@ -94,13 +74,13 @@ def _recording(uploads: dict[str, UploadFile]) -> NewRecording | None:
 def list_clips(lib: Lib, query: Annotated[ClipQuery, Query()]) -> ClipList:
     """The clips that pass every filter; repeat a label parameter to mean any of its values."""
     page = clips.list_clips(lib, query.as_filter(), query.sort, query.limit, query.cursor)
-    return ClipList(items=[Clip.of(clip) for clip in page.items], next=page.next)
+    return ClipList.model_validate(page)
 
 
 @router.get("/{clip_id}", dependencies=[reads, quick], responses=refusals(404))
 def get_clip(lib: Lib, clip_id: ClipId) -> Clip:
     """One clip."""
-    return Clip.of(clips.get_clip(lib, clip_id))
+    return Clip.model_validate(clips.get_clip(lib, clip_id))
 
 
 @router.patch(
@@ -110,7 +90,8 @@ def get_clip(lib: Lib, clip_id: ClipId) -> Clip:
 )
 def update_clip(lib: Lib, clip_id: ClipId, patch: ClipPatch) -> Clip:
     """Correct what is said of a clip."""
-    return Clip.of(clips.update_clip(lib, clip_id, patch.model_dump(exclude_unset=True)))
+    changed = clips.update_clip(lib, clip_id, patch.model_dump(exclude_unset=True))
+    return Clip.model_validate(changed)
 
 
 @router.delete(
@@ -151,8 +132,8 @@ def get_audio(lib: Lib, clip_id: ClipId) -> FileResponse:
 
 @router.delete("/{clip_id}/audio", dependencies=[writes, changes], responses=refusals(404))
 def delete_audio(lib: Lib, clip_id: ClipId) -> Clip:
-    """Forget the recording that goes with a clip; the clip is analysed again."""
-    return Clip.of(clips.remove_recording(lib, clip_id))
+    """Forget the recording that goes with a clip; the clip is analyzed again."""
+    return Clip.model_validate(clips.remove_recording(lib, clip_id))
 
 
 def _attachment(file: StoredFile, clip_id: str) -> FileResponse:

@@ -38,4 +38,4 @@ def start_import(lib: Lib, archive: Annotated[UploadFile, Depends(_form)]) -> Jo
     `job.result` counts what came of them, `GET /v1/jobs/{id}/files` tells it of each.
     """
     job = imports.start_import(lib, archive.file, archive.filename or "archive.zip")
-    return JobStarted(job=Job.of(job))
+    return JobStarted(job=Job.model_validate(job))

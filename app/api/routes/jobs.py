@@ -13,7 +13,7 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, follow, quick
 from app.api.openapi import JobId, refusals
-from app.api.schemas.jobs import Job, JobFile, JobFileList, JobFileQuery, JobList, JobQuery
+from app.api.schemas.jobs import Job, JobFileList, JobFileQuery, JobList, JobQuery
 from app.errors import JobNotFound
 from app.services.clips import jobs
 from app.services.library.library import Library
@@ -29,13 +29,13 @@ POLL_SECONDS = 0.25
 def list_jobs(lib: Lib, query: Annotated[JobQuery, Query()]) -> JobList:
     """Jobs, the newest first."""
     page = jobs.list_jobs(lib, query.kind, query.state, query.limit, query.cursor)
-    return JobList(items=[Job.of(job) for job in page.items], next=page.next)
+    return JobList.model_validate(page)
 
 
 @router.get("/{job_id}", dependencies=[reads, quick], responses=refusals(404))
 def get_job(lib: Lib, job_id: JobId) -> Job:
     """One job."""
-    return Job.of(jobs.get_job(lib, job_id))
+    return Job.model_validate(jobs.get_job(lib, job_id))
 
 
 @router.get("/{job_id}/files", dependencies=[reads, quick], responses=refusals(404))
@@ -46,7 +46,7 @@ def list_files(lib: Lib, job_id: JobId, query: Annotated[JobFileQuery, Query()])
     job's result counts them all. Other jobs have no files.
     """
     page = jobs.list_files(lib, job_id, query.outcome, query.limit, query.cursor)
-    return JobFileList(items=[JobFile.of(file) for file in page.items], next=page.next)
+    return JobFileList.model_validate(page)
 
 
 @router.delete(
@@ -67,7 +67,7 @@ def cancel_or_delete_job(lib: Lib, job_id: JobId) -> Job | Response:
     by themselves after some time (`KINEDEX_JOB_RETENTION_DAYS`).
     """
     canceled = jobs.cancel_or_remove(lib, job_id)
-    return Response(status_code=204) if canceled is None else Job.of(canceled)
+    return Response(status_code=204) if canceled is None else Job.model_validate(canceled)
 
 
 def _existing(lib: Lib, job_id: JobId) -> JobRecord:
@@ -93,13 +93,13 @@ async def follow_job(
     now: JobRecord | None = job
     while now is not None and now.is_open:
         if now != seen:
-            yield ServerSentEvent(event="progress", data=Job.of(now))
+            yield ServerSentEvent(event="progress", data=Job.model_validate(now))
         seen = now
         await anyio.sleep(POLL_SECONDS)
         if request.app.state.stopping:
             return
         now = await run_in_threadpool(_look, lib, job.id)
-    yield ServerSentEvent(event="done", data=Job.of(now or job))
+    yield ServerSentEvent(event="done", data=Job.model_validate(now or job))
 
 
 def _look(lib: Library, job_id: str) -> JobRecord | None:

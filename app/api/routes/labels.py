@@ -37,7 +37,7 @@ router = APIRouter(prefix="/v1", tags=["labels"], dependencies=[reads], response
 def list_persons(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
     """Persons and how many clips each has."""
     page = labels.page(lib, LabelKind.PERSON, query.limit, query.cursor)
-    return NamedCounts.of(page.items, page.next)
+    return NamedCounts.model_validate(page)
 
 
 @router.delete(
@@ -58,7 +58,7 @@ def forget_person(lib: Lib, name: Annotated[str, Path(max_length=300)]) -> None:
 def list_tasks(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
     """Tasks and how many clips each has."""
     page = labels.page(lib, LabelKind.TASK, query.limit, query.cursor)
-    return NamedCounts.of(page.items, page.next)
+    return NamedCounts.model_validate(page)
 
 
 @router.get("/words", dependencies=[quick])
@@ -66,5 +66,6 @@ def list_words(lib: Lib, query: Annotated[WordBeginning, Query()]) -> NamedCount
     """Words and how many clips carry each, by name; completions of `q`, the likeliest first."""
     if query.q is None:
         page = labels.page(lib, LabelKind.WORD, query.limit or MOST_WORDS, query.cursor)
-        return NamedCounts.of(page.items, page.next)
-    return NamedCounts.of(suggestions.complete(lib, query.q, query.limit or MOST_COMPLETIONS))
+        return NamedCounts.model_validate(page)
+    found = suggestions.complete(lib, query.q, query.limit or MOST_COMPLETIONS)
+    return NamedCounts.model_validate({"items": found})

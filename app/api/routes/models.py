@@ -23,7 +23,7 @@ def list_models(lib: Lib) -> ModelList:
     """The current model of each kind, with the library's size at the fit and held-out figures."""
     return ModelList(
         items=[Model.of(one, errors_in_force(lib, one)) for one in models.list_models(lib)],
-        unfitted=[UnfittedModel.of(one) for one in models.list_unfitted(lib)],
+        unfitted=[UnfittedModel.model_validate(one) for one in models.list_unfitted(lib)],
     )
 
 
@@ -43,4 +43,4 @@ def update_model(
 @router.post("/fit", status_code=202, dependencies=[writes, changes], responses=refusals(409))
 def request_fit(lib: Lib) -> JobStarted:
     """Fit all models again in the background; searches go on with the old ones meanwhile."""
-    return JobStarted(job=Job.of(models.request_fit(lib)))
+    return JobStarted(job=Job.model_validate(models.request_fit(lib)))

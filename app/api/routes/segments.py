@@ -20,4 +20,4 @@ def get_segments(lib: Lib, clip_id: ClipId) -> SegmentList:
     Keyposes that a person named come before those that were found. Search with
     `POST /v1/search/motion` and `"scope": "segments"`, with `segment` or any part of a clip.
     """
-    return SegmentList.of(list_segments(lib, clip_id))
+    return SegmentList.model_validate(list_segments(lib, clip_id))

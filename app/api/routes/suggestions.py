@@ -42,4 +42,4 @@ def accept_words(lib: Lib, clip_id: ClipId, accepted: AcceptedWords | None = Non
     Without a body, all likely ones.
     """
     words = None if accepted is None else accepted.words
-    return Clip.of(suggestions.accept(lib, clip_id, words))
+    return Clip.model_validate(suggestions.accept(lib, clip_id, words))

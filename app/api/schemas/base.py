@@ -22,9 +22,13 @@ class Incoming(BaseModel):
 
 
 class Outgoing(BaseModel):
-    """An answer, built from fields named one by one."""
+    """An answer. It shows the fields that its class names and no others.
 
-    model_config = ConfigDict(extra="forbid")
+    `model_validate` builds it from a value that has attributes of the same names. A field with
+    `validation_alias` reads the attribute of that name.
+    """
+
+    model_config = ConfigDict(extra="forbid", from_attributes=True)
 
 
 def _as_list(value: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Clips: what is sent with one, what is told of one."""
+"""Clips: what clients send with a clip, and what the API shows of it."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from app.api.schemas.base import (
 )
 from app.api.schemas.filters import Filter
 from app.api.schemas.jobs import Job
-from app.api.schemas.problem import Problem
+from app.api.schemas.problem import KeptProblem
 from app.motion.skeleton.recording import FRAME_RATES
 from app.search.index.filters import parse_filter
 from app.services.fields import MAX_KEYPOSES, MAX_OFFSET, TEMPI
 from app.store.clips.filter import ClipFilter
-from app.store.clips.record import ClipRecord, ClipState, Reanalysis
+from app.store.clips.record import ClipState, Reanalysis
 
 Sort = Literal[
     "created_at",
@@ -94,56 +94,17 @@ class Clip(Outgoing):
     created_at: datetime
     has_audio: bool = Field(description="Whether a recording goes with it: GET .../audio.")
     audio_offset: float | None = Field(
-        description="Seconds of the motion at which the recording begins, as told or estimated."
-        " An estimate may be wrong by whole beats: the warning `audio_offset_estimated` tells how"
-        " long a beat is, and with what probability it is right."
+        validation_alias="audio_begins_at",
+        description="Seconds of the motion at which the recording begins, as given or estimated."
+        " An estimate may be wrong by whole beats: the warning `audio_offset_estimated` says how"
+        " long a beat is, and with what probability the estimate is right.",
     )
-    error: Problem | None = Field(description="Why the clip is `failed`, else null.")
+    error: KeptProblem = Field(description="Why the clip is `failed`, else null.")
     reanalysis: Reanalysis | None = Field(
         description="Where another analysis of a ready clip stands, after a change of the clip or"
         " of Kinedex: null once it is done. Until then the clip is searched by its earlier"
         " analysis. After `failed` it keeps that, and a warning says why."
     )
-
-    @classmethod
-    def of(cls, record: ClipRecord) -> Clip:
-        """A clip as it goes over the wire."""
-        return cls(
-            id=record.id,
-            name=record.name,
-            state=record.state,
-            format=record.format,
-            sha256=record.sha256,
-            person=record.person,
-            task=record.task,
-            words=list(record.words),
-            license=record.license,
-            source=record.source,
-            frames=record.frames,
-            frame_rate=record.frame_rate,
-            declared_frame_rate=record.declared_frame_rate,
-            duration=record.duration,
-            joints=record.joints,
-            roles=dict(record.roles),
-            missing_roles=list(record.missing_roles),
-            warnings=[
-                ClipWarning(code=doubt.code, detail=doubt.detail, likely=doubt.likely)
-                for doubt in record.warnings
-            ],
-            created_at=record.created_at,
-            has_audio=record.audio_sha256 is not None,
-            audio_offset=_offset(record),
-            error=Problem.of(record.error),
-            reanalysis=record.reanalysis,
-        )
-
-
-def _offset(record: ClipRecord) -> float | None:
-    """What was told, at once; what was estimated, once it was."""
-    if record.audio_sha256 is None:
-        return None
-    told = record.audio_offset_override
-    return record.audio_offset if told is None else told
 
 
 class ClipCreated(Outgoing):
@@ -186,7 +147,9 @@ class ClipForm(Incoming):
     beats: Annotated[list[Seconds], BeforeValidator(_split), Field(max_length=MAX_KEYPOSES)] | (
         None
     ) = Field(
-        None, description="Seconds, separated by spaces; they go before all.", examples=["0.5 1.1"]
+        None,
+        description="Seconds, separated by spaces; they replace all other beats.",
+        examples=["0.5 1.1"],
     )
 
 
@@ -200,24 +163,24 @@ class ClipPatch(Incoming):
     license: Label | None = None
     source: Label | None = None
     frame_rate: FrameRate | None = Field(
-        None, description="The clip is analysed again; null returns to the declared one."
+        None, description="The clip is analyzed again; null returns to the declared one."
     )
     stack: Label | None = Field(
         None,
-        description="Of an FBX file, the animation stack: the clip is analysed again; null"
+        description="Of an FBX file, the animation stack: the clip is analyzed again; null"
         " returns to the longest.",
     )
     audio_offset: Offset | None = Field(
-        None, description=f"{_OFFSET} The clip is analysed again; null has it estimated."
+        None, description=f"{_OFFSET} The clip is analyzed again; null has it estimated."
     )
     tempo: Tempo | None = Field(
-        None, description="Beats a minute: the clip is analysed again; null forgets it."
+        None, description="Beats a minute: the clip is analyzed again; null forgets it."
     )
     beats: list[Seconds] | None = Field(
         None,
         max_length=MAX_KEYPOSES,
-        description="Seconds, before all other beats: the clip is analysed again; null or none"
-        " forgets them.",
+        description="Seconds; they replace all other beats: the clip is analyzed again; null or"
+        " none forgets them.",
     )
 
     model_config = ConfigDict(
@@ -230,7 +193,7 @@ class ClipQuery(Filter):
 
     state: ClipState | None = None
     q: PartOfName | None = Field(None, description="Part of the name.")
-    sort: Sort = Field("-created_at", description="A leading - turns the order round.")
+    sort: Sort = Field("-created_at", description="A leading - reverses the order.")
     limit: Limit = 10
     cursor: Cursor | None = None
 

@@ -1,4 +1,4 @@
-"""How a clip is wanted as a file."""
+"""How a clip is exported as a file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which clips are meant: the same names in the body of a search and in the query of a list."""
+"""Filters of clips: the same names in the body of a search and in the query of a list."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ class Filter(Incoming):
     not_person: AnyOf | None = Field(None, description="None of these persons.")
     not_task: AnyOf | None = Field(None, description="None of these tasks.")
     not_word: AnyOf | None = Field(None, description="Carrying none of these words.")
-    not_license: AnyOf | None = Field(None, description="None of these licences.")
+    not_license: AnyOf | None = Field(None, description="None of these licenses.")
     not_source: AnyOf | None = Field(None, description="None of these sources.")
     min_duration: Seconds | None = Field(None, description="Seconds.")
     max_duration: Seconds | None = Field(None, description="Seconds.")
 
     def given(self) -> dict[str, Any]:
-        """The conditions that were sent, without what a subclass asks for beside them."""
-        told = {name: getattr(self, name) for name in Filter.model_fields}
-        return {name: value for name, value in told.items() if value is not None}
+        """The conditions that were sent, without the other fields of a subclass."""
+        values = {name: getattr(self, name) for name in Filter.model_fields}
+        return {name: value for name, value in values.items() if value is not None}

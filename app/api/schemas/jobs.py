@@ -3,15 +3,27 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from app.api.failures.problems import stored_problem
 from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing
-from app.api.schemas.problem import Problem
-from app.store.jobs.import_files import FileOutcome, ImportedFile
-from app.store.jobs.record import JobKind, JobRecord, JobState
+from app.api.schemas.problem import KeptProblem
+from app.store.jobs.import_files import FileOutcome
+from app.store.jobs.record import JobKind, JobState
+
+
+def _result(kept: dict[str, Any] | None) -> dict[str, Any] | None:
+    """The result, with the failure of each file completed to a whole problem."""
+    if kept is None or "files" not in kept:
+        return kept
+    files = [{**line, "error": _problem(line["error"])} for line in kept["files"]]
+    return {**kept, "files": files}
+
+
+def _problem(kept: dict[str, Any] | None) -> dict[str, Any] | None:
+    return None if kept is None else stored_problem(kept)
 
 
 class Job(Outgoing):
@@ -25,41 +37,13 @@ class Job(Outgoing):
     created_at: datetime
     started_at: datetime | None
     finished_at: datetime | None
-    result: dict[str, Any] | None = Field(
+    result: Annotated[dict[str, Any] | None, BeforeValidator(_result)] = Field(
         description="What came of it; its members by `kind`. Of an import: how many files came to"
         " what (`total`, `ready`, `exists`, `failed`, `deleted`, `absent`), its first 100 `files`"
         " (failed ones before others), and how many there are beside them (`files_left_out`);"
         " `GET .../files` has them all. Lists of jobs leave `files` out."
     )
-    error: Problem | None
-
-    @classmethod
-    def of(cls, record: JobRecord) -> Job:
-        """A job as it goes over the wire."""
-        return cls(
-            id=record.id,
-            kind=record.kind,
-            state=record.state,
-            progress=record.progress,
-            detail=record.detail,
-            created_at=record.created_at,
-            started_at=record.started_at,
-            finished_at=record.finished_at,
-            result=_result(record.result),
-            error=Problem.of(record.error),
-        )
-
-
-def _result(kept: dict[str, Any] | None) -> dict[str, Any] | None:
-    """The result with each file's failure as a whole problem."""
-    if kept is None or "files" not in kept:
-        return kept
-    files = [{**line, "error": _problem(line["error"])} for line in kept["files"]]
-    return {**kept, "files": files}
-
-
-def _problem(kept: dict[str, Any] | None) -> dict[str, Any] | None:
-    return None if kept is None else stored_problem(kept)
+    error: KeptProblem
 
 
 class JobFile(Outgoing):
@@ -68,21 +52,11 @@ class JobFile(Outgoing):
     path: str = Field(description="Where it is in the archive or folder.")
     outcome: FileOutcome = Field(
         description="queued, processing or ready: the clip's state; failed: no clip, or one that"
-        " cannot be analysed; exists: the library held the content before; deleted: the clip was"
+        " cannot be analyzed; exists: the library held the content before; deleted: the clip was"
         " deleted since; absent: a manifest names it, and it is not there."
     )
     clip_id: str | None
-    error: Problem | None = Field(description="Why it failed.")
-
-    @classmethod
-    def of(cls, file: ImportedFile) -> JobFile:
-        """A file as it goes over the wire."""
-        return cls(
-            path=file.path,
-            outcome=file.outcome,
-            clip_id=file.clip_id,
-            error=Problem.of(file.error),
-        )
+    error: KeptProblem = Field(description="Why it failed.")
 
 
 class JobFileList(Outgoing):

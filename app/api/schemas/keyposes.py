@@ -33,21 +33,24 @@ class KeyposeQuery(Incoming):
 
 
 class Energy(Outgoing):
-    """Energy curves, a value a frame, body lengths a second."""
+    """Energy curves: one value for each frame, in body lengths per second."""
 
     global_: list[float] = Field(alias="global")
     local: list[float]
 
 
 class EnergyNoise(Outgoing):
-    """What shaking markers had added to rest, taken off both curves; body lengths a second."""
+    """The energy that shaking markers have at rest, in body lengths per second.
+
+    It has been subtracted from both curves.
+    """
 
     global_: float = Field(alias="global")
     local: float
 
 
 class ThresholdSources(Outgoing):
-    """Whence T1 and T2 are."""
+    """Where T1 and T2 come from."""
 
     t1: Source
     t2: Source
@@ -66,8 +69,9 @@ class Keyposes(Outgoing):
     tempo: float | None = Field(description="Beats a minute; null where no beat was found.")
     beats: list[float] = Field(description="Seconds.")
     beats_source: Literal["given", "tempo", "audio", "motion", "none"] = Field(
-        description="Whence the beats are; keyposes are sought on `given`, `tempo` and `audio` "
-        "ones alone, while `motion` ones only tell which moment of a rest is meant."
+        description="Where the beats come from. Keyposes are sought only on beats that are "
+        "`given`, or from `tempo` or `audio`; beats from `motion` only select a moment within a "
+        "rest."
     )
     beats_confidence: float = Field(description="0 to 1: how surely they are no accident.")
     frames: list[int]
@@ -86,7 +90,7 @@ class Keyposes(Outgoing):
 
     @classmethod
     def of(cls, view: KeyposesView) -> Keyposes:
-        """Keyposes as they go over the wire."""
+        """The keyposes as the API shows them."""
         found, used = view.found, view.thresholds
         whole, own = found.energies.whole, found.energies.own
         return cls(

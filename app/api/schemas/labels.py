@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from pydantic import Field
 
 from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, PartOfName, Words
-from app.services.clips.labels import LabelCount
 
 
 class NamedCount(Outgoing):
     """A label and how many clips carry it, whatever their state."""
 
     name: str
-    count: int = Field(ge=0, description="Clips of what people did.")
+    count: int = Field(ge=0, validation_alias="recordings", description="Clips of what people did.")
     synthesized: int = Field(
         ge=0, description="Clips besides that were made by POST /v1/synthesize and kept."
     )
@@ -25,17 +22,6 @@ class NamedCounts(Outgoing):
 
     items: list[NamedCount]
     next: str | None = None
-
-    @classmethod
-    def of(cls, counts: Iterable[LabelCount], following: str | None = None) -> NamedCounts:
-        """Labels as they go over the wire, with the cursor of the next page."""
-        return cls(
-            next=following,
-            items=[
-                NamedCount(name=one.name, count=one.recordings, synthesized=one.synthesized)
-                for one in counts
-            ],
-        )
 
 
 class WordBeginning(Incoming):

@@ -63,7 +63,7 @@ class ReductionFields(Incoming):
 
 
 class LowDimensionalQuery(ReductionFields):
-    """How a low-dimensional motion is wanted."""
+    """How a low-dimensional motion is returned."""
 
     dimensions: int | None = Field(
         None,
@@ -87,17 +87,17 @@ class EigenPose(Outgoing):
     """A pose that the model was made of."""
 
     clip_id: str
-    time: float = Field(description="Seconds from the clip's begin.")
+    time: float = Field(description="Seconds from the clip's beginning.")
     point: Point = Field(description="Along the first three axes, body lengths (figs 7, 8).")
 
     @classmethod
     def of(cls, pose: ModelPose, point: list[float]) -> EigenPose:
-        """A pose as it goes over the wire."""
+        """The pose as the API shows it."""
         return cls(clip_id=pose.clip_id, time=pose.time, point=point)
 
 
 class PoseFault(Outgoing):
-    """From when to when a joint does what joints do not."""
+    """A stretch of time in which a joint does what no joint can do."""
 
     fault: Fault
     joint: JointRole
@@ -108,7 +108,7 @@ class PoseFault(Outgoing):
 
     @classmethod
     def of(cls, fault: Implausible) -> PoseFault:
-        """A fault as it goes over the wire."""
+        """The fault as the API shows it; frames become seconds."""
         return cls(
             fault=fault.fault,
             joint=fault.joint,
@@ -124,13 +124,13 @@ class ImplausiblePoses(Outgoing):
 
     frames: int = Field(description="Frames with a fault.")
     share: float = Field(ge=0, le=1)
-    original_frames: int = Field(description="As many has the original, judged alike.")
+    original_frames: int = Field(description="The same of the original motion.")
     original_share: float = Field(ge=0, le=1)
     faults: list[PoseFault] = Field(description=f"By time; the first {MOST_FAULTS:,}.")
 
     @classmethod
     def of(cls, reduced: Plausibility, original: Plausibility) -> ImplausiblePoses:
-        """Both judgements as they go over the wire."""
+        """The figures of the reduced and of the original motion."""
         frames = max(len(reduced.implausible), 1)
         return cls(
             frames=reduced.count,
@@ -159,7 +159,7 @@ class LowDimensionalFigures(Outgoing):
 
     @classmethod
     def of(cls, view: ReducedView) -> LowDimensionalFigures:
-        """The figures as they go over the wire."""
+        """The figures as the API shows them."""
         found = view.reduced
         points = plain(found.eigen_poses)
         return cls(

@@ -10,15 +10,14 @@ from pydantic import Field
 
 from app.api.schemas.base import Incoming, Outgoing
 from app.services.library.fitted_models import FALSE_ACCEPT_RATE
-from app.services.training import models as services
 from app.services.training.errors_in_force import Errors
 from app.store.models import ModelRecord
 
 
 class ErrorsInForce(Outgoing):
-    """How often a recogniser errs on what is new, at the threshold that is in force: shares of
-    clips that were held out at the fit. The threshold was chosen on them: other clips may fare a
-    little worse."""
+    """How often a recognizer errs on what is new, at the active threshold: shares of clips that
+    were held out at the fit. The threshold was chosen on these clips: for others the errors may be
+    a little higher."""
 
     threshold: float = Field(description="Novelty above which something is called new.")
     false_acceptance: float = Field(ge=0, le=1, description="Of what is new, called known.")
@@ -28,15 +27,6 @@ class ErrorsInForce(Outgoing):
         description="Of what is known, called new; where takes were hardly repeated, of further"
         " takes as the recogniser imagines them.",
     )
-
-    @classmethod
-    def of(cls, errors: Errors) -> ErrorsInForce:
-        """Errors as they go over the wire."""
-        return cls(
-            threshold=errors.threshold,
-            false_acceptance=errors.false_acceptance,
-            false_rejection=errors.false_rejection,
-        )
 
 
 class Model(Outgoing):
@@ -63,8 +53,12 @@ class Model(Outgoing):
 
     @classmethod
     def of(cls, record: ModelRecord, errors: Mapping[str, Errors] | None) -> Model:
-        """A model as it goes over the wire, with its errors in force."""
-        told = None if errors is None else {n: ErrorsInForce.of(e) for n, e in errors.items()}
+        """The model as the API shows it; errors: at the active threshold, by factor."""
+        shown = (
+            None
+            if errors is None
+            else {factor: ErrorsInForce.model_validate(found) for factor, found in errors.items()}
+        )
         return cls(
             id=record.id,
             kind=record.kind,
@@ -73,7 +67,7 @@ class Model(Outgoing):
             library_size=record.library_size,
             figures=dict(record.meta.get("figures", {})),
             false_accept_rate=record.settings.get(FALSE_ACCEPT_RATE),
-            errors_in_force=told,
+            errors_in_force=shown,
             created_at=record.created_at,
         )
 
@@ -99,11 +93,6 @@ class UnfittedModel(Outgoing):
     kind: str
     outcome: str = Field(description="skipped, or failed by a defect.")
     reason: str = Field(description="As: too few clips carry a label.")
-
-    @classmethod
-    def of(cls, unfitted: services.Unfitted) -> UnfittedModel:
-        """An unfitted kind as it goes over the wire."""
-        return cls(kind=unfitted.kind, outcome=unfitted.outcome, reason=unfitted.reason)
 
 
 class ModelList(Outgoing):

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import ConfigDict, Field
+from pydantic import BeforeValidator, ConfigDict, Field
 
 from app.api.failures.problems import stored_problem
 from app.api.schemas.base import Outgoing
@@ -43,7 +43,10 @@ class Problem(Outgoing):
         }
     )
 
-    @classmethod
-    def of(cls, told: Mapping[str, Any] | None) -> Problem | None:
-        """The failure that a clip, job or import entry keeps, as a whole problem."""
-        return None if told is None else cls.model_validate(stored_problem(told))
+
+def _whole(kept: Mapping[str, Any] | None) -> dict[str, Any] | None:
+    return None if kept is None else stored_problem(kept)
+
+
+KeptProblem = Annotated[Problem | None, BeforeValidator(_whole)]
+"""The failure that a clip, job or import entry keeps, completed to a whole problem."""

@@ -135,7 +135,7 @@ class Hit(Outgoing):
             distance=hit.distance,
             start=round(hit.start, 6),
             end=round(hit.end, 6),
-            clip=Clip.of(hit.clip),
+            clip=Clip.model_validate(hit.clip),
         )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pydantic import Field
 
 from app.api.schemas.base import Outgoing
-from app.services.views import segments
 
 
 class Segment(Outgoing):
@@ -24,7 +23,7 @@ class Cycle(Outgoing):
     index: int = Field(ge=0)
     run: int = Field(ge=0, description="Cycles of one run are repetitions of each other.")
     first: int = Field(ge=0, description="Index of its first segment.")
-    segments: int = Field(ge=1, description="How many it has.")
+    segments: int = Field(ge=1, validation_alias="count", description="How many it has.")
     start: float = Field(description="Seconds.")
     end: float
     duration: float
@@ -33,34 +32,6 @@ class Cycle(Outgoing):
 class SegmentList(Outgoing):
     """All segments of a clip and their cycles, by time; `next` is always null."""
 
-    items: list[Segment]
+    items: list[Segment] = Field(validation_alias="segments")
     next: str | None = None
     cycles: list[Cycle]
-
-    @classmethod
-    def of(cls, found: segments.Segments) -> SegmentList:
-        """Segments as they go over the wire."""
-        return cls(
-            items=[
-                Segment(
-                    index=one.index,
-                    start=one.start,
-                    end=one.end,
-                    duration=round(one.end - one.start, 6),
-                    cycle=one.cycle,
-                )
-                for one in found.segments
-            ],
-            cycles=[
-                Cycle(
-                    index=one.index,
-                    run=one.run,
-                    first=one.first,
-                    segments=one.count,
-                    start=one.start,
-                    end=one.end,
-                    duration=round(one.end - one.start, 6),
-                )
-                for one in found.cycles
-            ],
-        )

@@ -14,7 +14,7 @@ from app.store.clips.filter import ClipFilter
 
 
 class SpaceQuery(Filter):
-    """Which map is wanted, and of which clips: those that pass every filter."""
+    """Which map, and of which clips: those that pass every filter."""
 
     space: SpaceName = Field(
         "symbols", description="The motion symbol space, which is fitted, or motion vectors."
@@ -54,7 +54,7 @@ class SpaceMap(Outgoing):
 
     @classmethod
     def of(cls, query: SpaceQuery, found: Map) -> SpaceMap:
-        """A map as it goes over the wire."""
+        """The map as the API shows it."""
         points = found.points.tolist()
         return cls(
             space=query.space,

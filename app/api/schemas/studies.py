@@ -35,8 +35,8 @@ class NewPair(Incoming):
 
 
 class Pair(Outgoing):
-    """Two versions of a clip: one drawn from keyposes, one from uniform poses. Nothing tells
-    which stands on which side."""
+    """Two versions of a clip: one drawn from keyposes, one from uniform poses. The
+    answer does not say which side is which."""
 
     id: str
     clip_id: str
@@ -50,7 +50,7 @@ class Pair(Outgoing):
 
     @classmethod
     def of(cls, pair: PairRecord) -> Pair:
-        """A pair as it goes over the wire: without its sides."""
+        """The pair as the API shows it: without its sides."""
         path = f"{PAIRS}/{pair.id}"
         return cls(
             id=pair.id,
@@ -80,7 +80,7 @@ class PairsQuery(Incoming):
 
 
 class SideQuery(Incoming):
-    """How a motion of a pair is wanted."""
+    """How a motion of a pair is returned."""
 
     fps: Fps | None = Field(
         None, description="Resampled by time; default: 30, at which it is made."
@@ -95,7 +95,7 @@ class NewVote(Incoming):
         None,
         min_length=1,
         max_length=MOST_VOTER,
-        description="Anything that tells voters apart, such as a random number that the page "
+        description="Anything that identifies a voter, such as a random number that the page "
         "keeps; one vote each on a sequence. Kept as a hash only.",
     )
 
@@ -105,7 +105,8 @@ class NewVote(Incoming):
 
 
 class Vote(Outgoing):
-    """A vote that was kept. Which basis it was for is not told: the voter may see more pairs."""
+    """A vote that was kept. The answer does not say which basis it was for: the voter may see
+    more pairs."""
 
     id: str
     pair_id: str
@@ -125,7 +126,7 @@ class Tally(Outgoing):
 
     keypose: int = Field(description="How often the version drawn from keyposes was chosen.")
     uniform: int
-    same: int = Field(description="How often nobody could tell.")
+    same: int = Field(description="How often the two looked the same.")
     share: float | None = Field(
         ge=0, le=1, description="keypose / (keypose + uniform); null without such votes."
     )
@@ -135,21 +136,9 @@ class Tally(Outgoing):
     chance: float = Field(
         ge=0,
         le=1,
-        description="Probability of a share as far from one half if nobody could tell (exact "
-        "binomial test; takes votes for independent).",
+        description="Probability of a share as far from one half if nobody could see a difference "
+        "(exact binomial test, which assumes independent votes).",
     )
-
-    @classmethod
-    def of(cls, tally: studies.Tally) -> Tally:
-        """A tally as it goes over the wire."""
-        return cls(
-            keypose=tally.keypose,
-            uniform=tally.uniform,
-            same=tally.same,
-            share=tally.share,
-            interval=list(tally.interval),
-            chance=tally.chance,
-        )
 
 
 class SequenceTally(Tally):
@@ -161,9 +150,9 @@ class SequenceTally(Tally):
 
     @classmethod
     def of_sequence(cls, found: studies.SequenceTally) -> SequenceTally:
-        """A row of Table 2 as it goes over the wire."""
+        """The row of Table 2 as the API shows it."""
         return cls(
-            **dict(Tally.of(found.votes)),
+            **dict(Tally.model_validate(found.votes)),
             clip_id=found.clip_id,
             name=found.name,
             dimensions=found.dimensions,
@@ -184,9 +173,9 @@ class StudyTally(Outgoing):
 
     @classmethod
     def of(cls, found: studies.StudyTally) -> StudyTally:
-        """The table as it goes over the wire."""
+        """The table as the API shows it."""
         return cls(
             sequences=[SequenceTally.of_sequence(row) for row in found.sequences],
-            total=Tally.of(found.total),
+            total=Tally.model_validate(found.total),
             left_share=found.left_share,
         )

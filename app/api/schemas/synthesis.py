@@ -1,4 +1,4 @@
-"""Motions that nobody recorded: what is asked for, and what is told of them."""
+"""Motions that nobody recorded: the request for one, and the answer."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from app.api.schemas.search import ClipId
 from app.api.schemas.views import Motion, plain
 from app.services.library.synthesized import SYNTHESIZED
 from app.services.synthesis.plan import SynthesisKind
-from app.services.synthesis.quality import Quality as FoundQuality
 from app.services.synthesis.synthesise import MOST_CLIPS, SECONDS, Synthesised
 
 
@@ -35,7 +34,7 @@ class Synthesize(Incoming):
         " it. Default: some cycles, or as long as the task takes.",
     )
     store: bool = Field(False, description="Keep the motion as a clip.")
-    bvh: bool = Field(False, description="Tell the BVH file in the answer, too.")
+    bvh: bool = Field(False, description="Include the BVH file in the answer.")
 
     model_config = ConfigDict(
         json_schema_extra={
@@ -92,7 +91,8 @@ class Quality(Outgoing):
         " there is but one.",
     )
     nearest_clip: Clip | None = Field(
-        description="The real clip most like the motion, analysed as any other."
+        validation_alias="nearest",
+        description="The real clip most like the motion, analyzed like any other.",
     )
     nearest_person: str
     nearest_task: str
@@ -123,29 +123,6 @@ class Quality(Outgoing):
     skate: float = Field(ge=0, description="Mean horizontal speed of low feet, m/s.")
     real_skate: float | None = Field(description="The same of real takes of the task.")
 
-    @classmethod
-    def of(cls, found: FoundQuality) -> Quality:
-        """A quality as it goes over the wire."""
-        return cls(
-            kind=found.kind,
-            given_persons=list(found.given_persons),
-            given_tasks=list(found.given_tasks),
-            follows=found.follows,
-            agreement=found.agreement,
-            nearest_clip=None if found.nearest is None else Clip.of(found.nearest),
-            nearest_person=found.nearest_person,
-            nearest_task=found.nearest_task,
-            distance=found.distance,
-            person_is_right=found.person_is_right,
-            task_is_right=found.task_is_right,
-            expected_hit=found.expected_hit,
-            expected_given=found.expected_given,
-            expected_trials=found.expected_trials,
-            real_hit=found.real_hit,
-            skate=found.skate,
-            real_skate=found.real_skate,
-        )
-
 
 class Synthesis(Outgoing):
     """A motion that nobody recorded."""
@@ -159,13 +136,13 @@ class Synthesis(Outgoing):
 
     @classmethod
     def of(cls, made: Synthesised, *, with_bvh: bool) -> Synthesis:
-        """A synthesis as it goes over the wire."""
+        """The synthesis as the API shows it."""
         view = made.view
         return cls(
-            clip=_draft(made) if made.clip is None else Clip.of(made.clip),
-            job=None if made.job is None else Job.of(made.job),
+            clip=_draft(made) if made.clip is None else Clip.model_validate(made.clip),
+            job=None if made.job is None else Job.model_validate(made.job),
             cycles=made.cycles,
-            quality=Quality.of(made.quality),
+            quality=Quality.model_validate(made.quality),
             motion=Motion(
                 frame_rate=view.frame_rate,
                 joint_names=list(view.joint_names),

@@ -16,7 +16,7 @@ Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 
 
 class MotionQueryParameters(Incoming):
-    """How a clip's motion is wanted."""
+    """How a clip's motion is returned."""
 
     fps: Fps | None = Field(None, description="Resampled by time; default: the clip's own rate.")
     joints: Literal["all", "roles"] = Field(
@@ -34,7 +34,7 @@ class Motion(Outgoing):
 
 
 class Convergence(Outgoing):
-    """How the factors were found: by alternating least squares until lambda rests."""
+    """How the factors were found: by alternating least squares until lambda hardly changes."""
 
     errors: list[float] = Field(
         description="Share of the volume that the factors leave unexplained, by iteration."
@@ -56,7 +56,7 @@ class VolumeFactors(Outgoing):
     rho: list[float] = Field(description="Primary vector, (13,).")
     epsilon: list[float] = Field(description="Secondary vector, (frames,) at 30 Hz.")
     convergence: Convergence | None = Field(
-        description="null for a clip that was analysed before this was kept."
+        description="null for a clip whose analysis is of a version that did not keep this."
     )
 
 
@@ -84,7 +84,7 @@ class Descriptor(Outgoing):
 
     @classmethod
     def of(cls, view: DescriptorView) -> Descriptor:
-        """A descriptor as it goes over the wire."""
+        """The descriptor as the API shows it."""
         return cls(
             msv=VolumeFactors(
                 **{"lambda": view.msv_lambda},

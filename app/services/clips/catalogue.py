@@ -1,25 +1,24 @@
-"""Clips: take in, list, look up, change, remove."""
+"""Clips: add, list, get, change and delete them."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, BinaryIO, cast
+from typing import Any, BinaryIO
 
 from app.errors import BadContent, EmptyFile, NotFound
 from app.formats.read import check_stack_belongs
 from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
 from app.services import fields
-from app.services.clips.recordings import NewRecording, described, stage
+from app.services.clips.recordings import NewRecording, attached, stage
 from app.services.library.library import Library
 from app.store.clips import listing as clip_listing
 from app.store.clips import repository as stored
 from app.store.clips.filter import ClipFilter
-from app.store.clips.record import Added, ClipChanges, ClipRecord
-from app.store.clips.record import NewClip as NewRow
+from app.store.clips.record import Added, AttachedAudio, ClipChanges, ClipRecord, NewClip
 from app.store.database.engine import Tx
 from app.store.database.paging import Page
 from app.store.files.files import Readable, StagedFile
@@ -29,51 +28,19 @@ from app.store.jobs.record import JobKind, JobRecord, NewJob
 
 UPLOAD_PRIORITY = 10
 BULK_PRIORITY = 20
-"""Clips of an import, and clips to be analysed again: lower goes first."""
+"""For clips of an import and for repeated analyses. The lowest number goes first."""
 WORKER_DEATHS = 30
-"""A job whose worker dies is tried again so often, without progress in between. It is seldom the
-clip's doing: content is parsed in a child process, whose own deaths `job_max_attempts` limits."""
-PATCHABLE = (
-    *("name", "person", "task", "words", "license", "source", "frame_rate", "stack"),
-    *("audio_offset", "tempo", "beats"),
-)
-
-RHYTHM: Mapping[str, Callable[[Any], Any]] = {
-    "audio_offset": fields.audio_offset,
-    "tempo": fields.tempo,
-    "beats": fields.beats,
-}
-
-
-@dataclass(frozen=True, slots=True)
-class NewClip:
-    """What a client says of a file that it hands in; `frame_rate` in Hz.
-
-    unit: metres per unit, or m, cm, mm, in, ...; roles: joint names by role; stack: the
-    animation stack of an FBX file, by default its longest; words: tidied here; audio_offset:
-    seconds of the motion at which its recording begins; tempo: beats a minute; beats: seconds.
-    Strings may be empty, which is nothing said.
-    """
-
-    filename: str
-    name: str | None = None
-    person: str | None = None
-    task: str | None = None
-    words: tuple[str, ...] | None = None
-    license: str | None = None
-    source: str | None = None
-    frame_rate: float | str | None = None
-    unit: float | str | None = None
-    roles: Mapping[str, str] | None = None
-    stack: str | None = None
-    audio_offset: float | str | None = None
-    tempo: float | str | None = None
-    beats: Iterable[float] | str | None = None
+"""How often a job is tried again after the death of its worker, without progress in between. The
+clip is seldom the cause: a child process parses its content, and `job_max_attempts` limits the
+deaths of that."""
+FIXED_HINTS = (fields.UNIT, "roles")
+"""A client says these only when it hands in the file."""
+PATCHABLE = (*fields.LABELS, *(hint for hint in fields.HINTS if hint not in FIXED_HINTS))
 
 
 @dataclass(frozen=True, slots=True)
 class Created:
-    """What became of content: its clip, the job that analyses it, None where none is needed."""
+    """The clip of some content, and the job that analyzes it; None if it needs no analysis."""
 
     clip: ClipRecord
     job: JobRecord | None
@@ -82,7 +49,7 @@ class Created:
 
 @dataclass(frozen=True, slots=True)
 class StoredFile:
-    """A clip's original bytes: where they are, the name they came with, how many."""
+    """A stored file: its path, the name that it came with, its size in bytes."""
 
     path: Path
     name: str
@@ -92,50 +59,65 @@ class StoredFile:
 def create_clip(
     lib: Library,
     content: Readable,
-    given: NewClip,
+    filename: str,
+    said: Mapping[str, Any] | None = None,
+    *,
     skeleton: Readable | None = None,
     recording: NewRecording | None = None,
 ) -> Created:
     """Store a file durably and queue its analysis; on return both survive kill -9.
 
-    skeleton: the ASF file of an AMC file; recording: of the sound. The same bytes again (of
-    motion and skeleton) give the clip that exists, queued again if it had failed, or if it
-    comes with another recording, which then replaces the one it had. Raises BadField,
-    EmptyFile, UnknownFormat, TooLarge, DiskFull; then nothing is kept.
+    said: labels and hints as `fields.checked` takes them; skeleton: the ASF file of an AMC file;
+    recording: of the sound. The same bytes again (of motion and skeleton) give the clip that
+    exists. It is queued again if it had failed, or if it comes with another recording, which then
+    replaces the one it had. Raises BadField, EmptyFile, UnknownFormat, TooLarge, DiskFull; then
+    nothing is kept.
     """
-    row = _described(given)
+    file_name = fields.file_name(filename)
+    # Checked before the bytes are read.
+    labels, hints = fields.labels_and_hints(said or {}, fields.stem(file_name))
     limit = lib.settings.max_upload_bytes
     with ExitStack() as files:
         staged = files.enter_context(lib.store.files.stage(content, max_bytes=limit))
         format = check_content(staged)
-        _check_stack(given.stack, format)
+        if hints.stack is not None:
+            check_stack_belongs(format)
         companion = None
         if skeleton is not None:
             companion = files.enter_context(lib.store.files.stage(skeleton, max_bytes=limit))
             _check_pair(format, companion)
         sound: StagedFile | None = None
-        heard: dict[str, Any] = {}
+        audio: AttachedAudio | None = None
         if recording is not None:
             sound = files.enter_context(stage(lib, recording))
-            heard = described(sound, recording.filename)
+            audio = attached(sound, recording.filename)
+        new = NewClip(
+            sha256=staged.sha256,
+            file_name=file_name,
+            file_size=staged.size,
+            labels=labels,
+            hints=hints,
+            skeleton_sha256=None if companion is None else companion.sha256,
+            audio=audio,
+        )
         with lib.store.write() as tx:
             keep(staged, companion, sound)
-            return add(tx, replace(row(staged, companion), **heard))
+            return add(tx, new)
 
 
 def keep(*files: StagedFile | None) -> None:
-    """Keep those that there are, in the transaction that refers to them."""
+    """Keep the files that are not None, in the transaction that refers to them."""
     for file in files:
         if file is not None:
             file.keep()
 
 
-def add(tx: Tx, row: NewRow, priority: int = UPLOAD_PRIORITY) -> Created:
+def add(tx: Tx, new: NewClip, priority: int = UPLOAD_PRIORITY) -> Created:
     """Add a kept file's clip and queue its analysis, in the caller's transaction.
 
     A recording that it replaces is removed once that is committed.
     """
-    added: Added = stored.add_or_get(tx, row)
+    added: Added = stored.add_or_get(tx, new)
     if not added.needs_analysis:
         return Created(added.clip, None, is_new=False)
     job = enqueue_ingest(tx, added.clip.id, priority)
@@ -144,8 +126,8 @@ def add(tx: Tx, row: NewRow, priority: int = UPLOAD_PRIORITY) -> Created:
 
 
 def check_content(staged: StagedFile) -> str:
-    """The name of the content's format; raises EmptyFile or UnknownFormat where no reader
-    would take it."""
+    """The name of the content's format. Raises EmptyFile, and UnknownFormat if no reader knows
+    it."""
     if staged.size == 0:
         raise EmptyFile()
     with staged.open() as file:
@@ -153,17 +135,12 @@ def check_content(staged: StagedFile) -> str:
 
 
 def _format_of(file: BinaryIO) -> str:
-    """By the file's beginning and, where it is long, its end; raises EmptyFile, UnknownFormat."""
+    """As `check_content`, from the beginning of the file and the end of a long one."""
     content = file.read(HEAD_BYTES + TAIL_BYTES)
     if file.seek(0, os.SEEK_END) > len(content):
         file.seek(-TAIL_BYTES, os.SEEK_END)
         content = content[:HEAD_BYTES] + file.read()
     return sniff(content)
-
-
-def _check_stack(stack: str | None, format: str) -> None:
-    if fields.text("stack", stack) is not None:
-        check_stack_belongs(format)
 
 
 def _check_pair(format: str, skeleton: StagedFile) -> None:
@@ -193,7 +170,7 @@ def enqueue_ingest(tx: Tx, clip_id: str, priority: int) -> JobRecord:
 
 def list_clips(
     lib: Library,
-    wanted: ClipFilter | None = None,
+    filter: ClipFilter | None = None,
     sort: str = "-created_at",
     limit: int = 50,
     cursor: str | None = None,
@@ -201,7 +178,7 @@ def list_clips(
     """One page of the clips that pass a filter. Raises BadField for a bad sort or cursor."""
     with lib.store.read() as tx:
         return clip_listing.list_clips(
-            tx, wanted or ClipFilter(), sort=sort, limit=limit, cursor=cursor
+            tx, filter or ClipFilter(), sort=sort, limit=limit, cursor=cursor
         )
 
 
@@ -212,19 +189,18 @@ def get_clip(lib: Library, clip_id: str) -> ClipRecord:
 
 
 def update_clip(lib: Library, clip_id: str, changes: Mapping[str, Any]) -> ClipRecord:
-    """Change labels; or frame rate, stack, or what is said of the beats: then the clip is
-    analysed again under the same id.
+    """Change labels and hints (PATCHABLE). A changed hint has the clip analyzed again.
 
     A key that is absent stays; None takes a value away. Raises BadField, ClipNotFound.
     """
-    tidy = _tidied(changes)
-    if tidy.get("stack_override") is not None:
+    tidy = _checked_changes(changes)
+    if tidy.get("stack") is not None:
         with lib.store.files.open(get_clip(lib, clip_id).sha256) as file:
             check_stack_belongs(_format_of(file))
     with lib.store.write() as tx:
         before = stored.get(tx, clip_id)
         after = stored.patch(tx, clip_id, tidy)
-        if after.overrides == before.overrides:
+        if after.analysis_input == before.analysis_input:
             return after
         enqueue_ingest(tx, clip_id, BULK_PRIORITY)
         return stored.requeue(tx, clip_id)
@@ -243,76 +219,34 @@ def open_file(lib: Library, clip_id: str) -> StoredFile:
 
 def open_recording(lib: Library, clip_id: str) -> StoredFile:
     """The bytes of a clip's recording. Raises as `open_file`, NotFound where it has none."""
-    clip = get_clip(lib, clip_id)
-    path = lib.store.files.checked_path(_recording_of(clip))
-    return StoredFile(path, clip.audio_name or "audio", clip.audio_size or 0)
+    audio = _recording_of(get_clip(lib, clip_id))
+    return StoredFile(lib.store.files.checked_path(audio.sha256), audio.name, audio.size)
 
 
 def remove_recording(lib: Library, clip_id: str) -> ClipRecord:
-    """Take a clip's recording away; the clip is analysed again. Raises as `open_recording`."""
-    nothing = ClipChanges(
-        audio_sha256=None, audio_name=None, audio_size=None, audio_offset_override=None
-    )
+    """Take a clip's recording away; the clip is analyzed again. Raises as `open_recording`."""
 
     def remove(tx: Tx) -> ClipRecord:
-        sha256 = _recording_of(stored.get(tx, clip_id))
-        stored.patch(tx, clip_id, nothing)
-        removals.record(tx, [sha256])
+        audio = _recording_of(stored.get(tx, clip_id))
+        stored.patch(tx, clip_id, {"audio": None, "audio_offset": None})
+        removals.record(tx, [audio.sha256])
         enqueue_ingest(tx, clip_id, BULK_PRIORITY)
         return stored.requeue(tx, clip_id)
 
     return lib.store.write_even_when_full(remove)
 
 
-def _recording_of(clip: ClipRecord) -> str:
-    if clip.audio_sha256 is None:
+def _recording_of(clip: ClipRecord) -> AttachedAudio:
+    if clip.audio is None:
         raise NotFound(f"The clip {clip.id} has no recording.")
-    return clip.audio_sha256
+    return clip.audio
 
 
-def _described(given: NewClip) -> Callable[[StagedFile, StagedFile | None], NewRow]:
-    """Check what a client says, before its bytes are read; completes the row with the files."""
-    file_name = fields.file_name(given.filename)
-    name = fields.text("name", given.name) or fields.stem(file_name)
-    said: dict[str, Any] = {
-        "person": fields.text("person", given.person),
-        "task": fields.text("task", given.task),
-        "words": fields.words(given.words) or (),
-        "license": fields.text("license", given.license),
-        "source": fields.text("source", given.source),
-        "frame_rate_override": fields.frame_rate(given.frame_rate),
-        "metres_per_unit_override": fields.metres_per_unit(given.unit),
-        "roles_override": fields.roles(given.roles),
-        "stack_override": fields.text("stack", given.stack),
-        "audio_offset_override": fields.audio_offset(given.audio_offset),
-        "tempo_override": fields.tempo(given.tempo),
-        "beats_override": fields.beats(given.beats),
-    }
-
-    def row(staged: StagedFile, skeleton: StagedFile | None) -> NewRow:
-        companion = None if skeleton is None else skeleton.sha256
-        return NewRow(
-            staged.sha256, file_name, staged.size, name, skeleton_sha256=companion, **said
-        )
-
-    return row
-
-
-def _tidied(changes: Mapping[str, Any]) -> ClipChanges:
-    tidy: dict[str, Any] = {}
-    for key, value in changes.items():
-        if key not in PATCHABLE:
-            raise fields.bad_field(key, f"cannot be changed; what can: {', '.join(PATCHABLE)}")
-        if key == "words":
-            tidy["words"] = fields.words(value) or ()
-        elif key == "frame_rate":
-            tidy["frame_rate_override"] = fields.frame_rate(value)
-        elif key == "stack":
-            tidy["stack_override"] = fields.text(key, value)
-        elif key in RHYTHM:
-            tidy[f"{key}_override"] = RHYTHM[key](value)
-        else:
-            tidy[key] = fields.text(key, value)
+def _checked_changes(changes: Mapping[str, Any]) -> ClipChanges:
+    for field in changes:
+        if field not in PATCHABLE:
+            raise fields.bad_field(field, f"cannot be changed; what can: {', '.join(PATCHABLE)}")
+    tidy = fields.checked(changes)
     if "name" in tidy and tidy["name"] is None:
         raise fields.bad_field("name", "must not be empty")
-    return cast(ClipChanges, tidy)
+    return tidy

@@ -1,7 +1,7 @@
-"""From a stored file to a ready clip: what the analysis needs, and what becomes of it.
+"""From a stored file to a ready clip: what an analysis needs, and how its result is stored.
 
-Everything that an analysis finds enters in one transaction with the clip's state, the
-library's version, the job and the imports that wait: a clip is ready wholly or not at all.
+One transaction stores everything that an analysis finds, the clip's state, the library's version,
+the job and the imports that wait: a clip is never ready in part.
 """
 
 from __future__ import annotations
@@ -34,26 +34,26 @@ from app.store.jobs import leases, outcomes
 from app.store.jobs.record import ClaimedJob
 
 MOST_WARNINGS = 50
-"""Of one clip."""
+"""The most warnings that one clip keeps."""
 RETRY_DELAY_S = 5.0
-"""Before a failure that may pass is tried again."""
+"""How long to wait before a temporary failure is tried again."""
 
 
 def order_for(lib: Library, clip: ClipRecord) -> Order:
     """What to analyse for a clip. Raises StoredFileMissing where one of its files is gone."""
-    skeleton, audio = clip.skeleton_sha256, clip.audio_sha256
+    skeleton, audio, hints = clip.skeleton_sha256, clip.audio_sha256, clip.hints
     return Order(
         path=_place(lib, clip.sha256, "motion file"),
         skeleton_path=None if skeleton is None else _place(lib, skeleton, "skeleton file"),
-        stack=clip.stack_override,
-        frame_rate=clip.frame_rate_override,
-        metres_per_unit=clip.metres_per_unit_override,
-        roles=clip.roles_override,
+        stack=hints.stack,
+        frame_rate=hints.frame_rate,
+        metres_per_unit=hints.metres_per_unit,
+        roles=hints.roles,
         thresholds=_thresholds(lib),
         audio_path=None if audio is None else _place(lib, audio, "recording"),
-        beats=clip.beats_override,
-        tempo=clip.tempo_override,
-        audio_offset=clip.audio_offset_override,
+        beats=hints.beats,
+        tempo=hints.tempo,
+        audio_offset=hints.audio_offset,
     )
 
 
@@ -61,8 +61,8 @@ def _place(lib: Library, sha256: str, what: str) -> str:
     try:
         return str(lib.store.files.path(sha256))
     except NotFound as missing:
-        told = f"The stored {what} of this clip is missing ({sha256})"
-        raise StoredFileMissing(told) from missing
+        message = f"The stored {what} of this clip is missing ({sha256})"
+        raise StoredFileMissing(message) from missing
 
 
 def _thresholds(lib: Library) -> tuple[float, float] | None:
@@ -121,7 +121,7 @@ def _is_verdict(problem: KinedexError) -> bool:
 
 
 def facts(found: Analysis) -> ClipFacts:
-    """What a clip's row tells of its motion."""
+    """What the analysis found out, for the clip's row."""
     motion = found.motion
     doubts = (*motion.cautions, *found.cautions)
     return ClipFacts(
@@ -145,9 +145,9 @@ def facts(found: Analysis) -> ClipFacts:
 
 def _is_superseded(tx: Tx, clip: ClipRecord) -> bool:
     """Whether what the client says of the file has changed since the analysis began."""
-    return stored.overrides(tx, clip.id) != clip.overrides
+    return stored.analysis_input(tx, clip.id) != clip.analysis_input
 
 
 def _leave(tx: Tx, claimed: ClaimedJob, clip: ClipRecord) -> None:
-    """Leave the clip to the job that was queued when it was changed."""
+    """Drop this analysis: the change of the clip has queued another job."""
     leases.succeed(tx, claimed.lease, {"clip_id": clip.id, "superseded": True})

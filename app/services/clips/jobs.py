@@ -18,7 +18,7 @@ from app.store.jobs.import_files import FileOutcome, ImportedFile
 from app.store.jobs.record import JobKind, JobRecord, JobState
 
 FIRST_FILES = 100
-"""Files of an import that its job's result tells; `list_files` tells them all."""
+"""Files of an import in its job's result; `list_files` lists all of them."""
 FILES_A_PAGE = 1000
 JOBS_A_ROUND = 200
 FILES_A_ROUND = 5_000

@@ -15,8 +15,10 @@ from app.store.database.paging import Page
 
 @dataclass(frozen=True, slots=True)
 class LabelCount:
-    """A label; recordings: how many clips of what people did carry it; synthesized: how many of
-    what we made. Their states do not matter."""
+    """A label, and how many clips carry it, in any state.
+
+    recordings: clips of what people did; synthesized: clips that Kinedex made.
+    """
 
     name: str
     recordings: int
@@ -24,17 +26,17 @@ class LabelCount:
 
 
 def persons(lib: Library) -> list[LabelCount]:
-    """Who moves, by name."""
+    """The persons, by name."""
     return _counted(lib, stored.persons)
 
 
 def tasks(lib: Library) -> list[LabelCount]:
-    """What is done, by name."""
+    """The tasks, by name."""
     return _counted(lib, stored.tasks)
 
 
 def words(lib: Library) -> list[LabelCount]:
-    """In which words, by word."""
+    """The words, in alphabetical order."""
     return _counted(lib, stored.words)
 
 
@@ -42,7 +44,7 @@ def page(lib: Library, kind: LabelKind, limit: int, cursor: str | None = None) -
     """One page of the labels of a kind, by name. Raises BadField for a bad cursor."""
     with lib.store.read() as tx:
         found = stored.page(tx, kind, SYNTHESIZED, limit, cursor)
-    return Page(tuple(map(_told, found.items)), found.next)
+    return Page(tuple(map(_label_count, found.items)), found.next)
 
 
 def _counted(
@@ -50,8 +52,8 @@ def _counted(
 ) -> list[LabelCount]:
     with lib.store.read() as tx:
         found = count(tx, SYNTHESIZED)
-    return list(map(_told, found))
+    return list(map(_label_count, found))
 
 
-def _told(one: stored.Count) -> LabelCount:
+def _label_count(one: stored.Count) -> LabelCount:
     return LabelCount(one.name, one.others, one.of_source)

@@ -1,9 +1,9 @@
-"""Forgetting a person (issue 7, privacy: gait identifies people).
+"""Forgetting a person: gait identifies people, so that a library must be able to forget them.
 
-Their label is taken from every clip and every model that holds them goes at once, in one
-transaction: from then on no search and no recognition knows them. The models are fitted again
-without them in the background; what needs those models says meanwhile that it must wait. Files
-keep their content and their names.
+One transaction removes the person's label from every clip, and every model that holds persons:
+after it no search and no recognition knows the person. A job fits the models again without them;
+until it is done, whatever needs those models asks the client to wait. Files keep their content and
+their names.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
-"""Analysing stored clips anew: those of an earlier analysis, failed ones, or all.
+"""Analyzing stored clips again: those of an earlier analysis version, failed ones, or all.
 
-A clip's file is kept, so that whatever an analysis finds can be found again by a better one.
+A clip's file is kept, so that a better analysis can find everything again.
 A ready clip stays ready and searchable with the analysis that it has, until the new one replaces
-it in one transaction. So during an upgrade searches go on over analyses of two versions: a hit
-may rest on the older one, and a clip whose older arrays have another shape is left out of the
-index that needs them (`search.rows`, `search.span_index`) until it has been analysed again.
+it in one transaction. So during an upgrade searches use analyses of two versions: a hit may come
+from the older one. If the older arrays of a clip have another shape, the index that needs them
+leaves the clip out until its new analysis is done.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ BATCH = 200
 
 
 def requeue_outdated(lib: Library) -> int:
-    """Queue the ready clips whose analysis is of another version, or older than a change of what
-    it depends on; how many."""
+    """Queue the ready clips whose analysis is of another version, or older than a change of the
+    hints or the recording; return how many."""
     with lib.store.read() as tx:
         ids = clip_listing.list_outdated_ids(tx, ANALYSIS_VERSION)
     return _requeue(lib, ids)
 
 
 def requeue_ready(lib: Library) -> int:
-    """Queue every ready clip; how many."""
+    """Queue every ready clip; return how many."""
     with lib.store.read() as tx:
         ids = clip_listing.list_ids(tx, ClipFilter(state=(ClipState.READY,)))
     return _requeue(lib, ids)
 
 
 def requeue_failed(lib: Library) -> int:
-    """Queue every clip whose last analysis failed; how many."""
+    """Queue every clip whose last analysis failed; return how many."""
     with lib.store.read() as tx:
         ids = clip_listing.list_unfit_ids(tx)
     return _requeue(lib, ids)

@@ -19,7 +19,7 @@ _LENGTHS = struct.Struct("<HHH")
 _LENGTHS_AT = 28
 _SIGNATURE = b"PK\x01\x02"
 ENTRY_BYTES = 640
-"""Of an entry in the directory, on average, with its name."""
+"""Most bytes of a directory entry, on average, with its name."""
 OTHERS = 3
 """An archive may hold so many times the files that are taken: folders, and hidden files."""
 

@@ -1,9 +1,9 @@
 """Imports: many files at once, from a ZIP, a folder or single files.
 
-Each file becomes a clip with its own ingest job, in one transaction with the import's record
-of it. An import that is cut off goes on where it stopped, and the same files imported twice
-give the same clips. A worker does one import at a time, so a long one lets others go first now
-and then: its job returns to the queue, with its progress.
+Each file becomes a clip with its own ingest job, in one transaction with the import's record of it.
+An import that was interrupted continues where it stopped. The same files imported twice give the
+same clips. A worker does one import at a time, so a long one gives way to others now and then: its
+job returns to the queue with its progress.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ from app.store.jobs.record import ClaimedJob, JobKind, JobRecord, NewJob
 
 IMPORT_PRIORITY = 10
 LOWEST_PRIORITY = 20
-"""An import loses a step with each turn: new ones go first, long ones in their order."""
+"""With each turn an import's priority goes down one step: new imports run first."""
 TURN_S = 5.0
-"""For which an import goes on before it asks whether others wait; no less than it took to read
-the archive's directory, which each turn does anew."""
+"""How long an import runs before it asks whether others wait. A turn is at least as long as reading
+the archive's directory took, because each turn reads it again."""
 OWN_PRIORITY = -1_000_000_000
-"""Of an import that this process does itself: no worker may take it first."""
+"""The priority of an import that this process does itself: no worker may take it first."""
 WAITING = "waiting for the clips' analyses"
 
 
@@ -99,7 +99,7 @@ def unpack(
 def import_path(lib: Library, path: Path, progress: Progress | None = None) -> JobRecord:
     """Import a folder, a ZIP or a single file from this machine's disk.
 
-    Returns the import's job once every file is registered; it ends when a worker has analysed
+    Returns the import's job once every file is registered; it ends when a worker has analyzed
     the clips. Raises NotFound where there is no such path, and as `unpack` does.
     """
     with _sources(lib, path) as files:
@@ -110,14 +110,14 @@ def import_path(lib: Library, path: Path, progress: Progress | None = None) -> J
 
 
 class _Turn:
-    """For how long an import may go on while others wait."""
+    """The time for which an import may run while others wait."""
 
     def __init__(self, lib: Library, seconds: float) -> None:
         self._lib, self._seconds = lib, seconds
         self._began = time.monotonic()
 
     def is_over(self) -> bool:
-        """Whether another import is to go on now; begins another turn where none waits."""
+        """Whether another import must run now; if none waits, another turn begins."""
         if time.monotonic() - self._began < self._seconds:
             return False
         self._began = time.monotonic()

@@ -1,10 +1,10 @@
 """manifest.csv: what a library's owner says about the files beside it.
 
 Columns: `path` (relative to the manifest), and any of `name person task words license source
-fps unit keyposes audio audio_offset tempo beats`; words are separated by spaces, a phrase has
-underscores; keyposes and beats are seconds, separated by spaces; audio is a path like `path`.
-Other columns are left alone. Rows that cannot be used are kept with their problem, to be told
-with their file.
+fps unit keyposes audio audio_offset tempo beats`; `frame_rate` is another name of `fps`. Words are
+separated by spaces, a phrase has underscores; keyposes and beats are seconds, separated by spaces;
+audio is a path like `path`. Other columns are ignored. A row that cannot be used is kept with its
+problem, which is reported with its file.
 
 A manifest is read as a stream, by `manifest_table`; what is kept of a row is its text, and that
 is understood when its file's turn comes.
@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from app.errors import BadField, KinedexError, Place
 from app.services import fields
@@ -27,11 +27,14 @@ from app.services.imports.manifest_table import (
     read_rows,
     too_long_path,
 )
+from app.store.clips.record import AnalysisHints, ClipLabels
 
-LABELS = ("name", "person", "task", "words", "license", "source")
-NUMBERS = ("fps", "frame_rate", "unit", "audio_offset", "tempo")
-TIMES = ("keyposes", "beats")
-KNOWN = (*LABELS, *NUMBERS, *TIMES)
+FPS = "fps"
+"""Another name of the column `frame_rate`, which it goes before."""
+NO_COLUMN = ("roles", "stack")
+"""Hints that a manifest has no column for."""
+HINTS = tuple(hint for hint in fields.HINTS if hint not in NO_COLUMN)
+KNOWN = (*fields.LABELS, FPS, *HINTS, "keyposes")
 """The columns that are kept of a row, beside its `path` and `audio`."""
 
 
@@ -39,23 +42,15 @@ KNOWN = (*LABELS, *NUMBERS, *TIMES)
 class ManifestRow:
     """What a manifest says about one file; `problem` where the row cannot be used.
 
-    audio: path of a recording, seen from where `path` is.
+    line: 0 where no manifest names the file; keyposes: seconds; audio: path of a recording, seen
+    from where `path` is.
     """
 
     line: int
-    name: str | None = None
-    person: str | None = None
-    task: str | None = None
-    words: tuple[str, ...] | None = None
-    license: str | None = None
-    source: str | None = None
-    frame_rate: float | None = None
-    metres_per_unit: float | None = None
+    labels: ClipLabels
+    hints: AnalysisHints = field(default_factory=AnalysisHints)
     keyposes: tuple[float, ...] | None = None
     audio: str | None = None
-    audio_offset: float | None = None
-    tempo: float | None = None
-    beats: tuple[float, ...] | None = None
     problem: KinedexError | None = None
 
 
@@ -96,11 +91,14 @@ class Manifest:
             )
 
     def row(self, path: str) -> ManifestRow:
-        """What is said about a file; an empty row where nothing is."""
+        """What is said about a file, which is called by its path where no name is said."""
         kept = self._rows.get(path)
+        name = fields.stem(fields.file_name(path))
         if kept is None:
-            return ManifestRow(line=0)
-        return _repeated(kept.line) if kept.cells is None else _row(kept, kept.cells)
+            return ManifestRow(0, ClipLabels(name))
+        if kept.cells is None:
+            return ManifestRow(kept.line, ClipLabels(name), problem=_repeated(kept.line))
+        return _row(kept, kept.cells, name)
 
     def recordings(self) -> dict[str, int]:
         """The line that names each recording, by the recording's path."""
@@ -119,39 +117,28 @@ def _path(folder: str, written: str, line: int) -> str:
     return path
 
 
-def _row(kept: _Kept, cells: tuple[str, ...]) -> ManifestRow:
-    line = kept.line
+def _row(kept: _Kept, cells: tuple[str, ...], default_name: str) -> ManifestRow:
     said = dict(zip(kept.columns.names, cells, strict=True))
+    if fps := said.pop(FPS, None):
+        said["frame_rate"] = fps
+    named = said.pop("keyposes", None)
     try:
-        return ManifestRow(
-            line=line,
-            name=fields.text("name", said.get("name")),
-            person=fields.text("person", said.get("person")),
-            task=fields.text("task", said.get("task")),
-            words=fields.words(said.get("words")) or None,
-            license=fields.text("license", said.get("license")),
-            source=fields.text("source", said.get("source")),
-            frame_rate=fields.frame_rate(said.get("fps") or said.get("frame_rate")),
-            metres_per_unit=fields.metres_per_unit(said.get("unit")),
-            keyposes=fields.keyposes(said.get("keyposes")) or None,
-            audio=kept.audio,
-            audio_offset=fields.audio_offset(said.get("audio_offset")),
-            tempo=fields.tempo(said.get("tempo")),
-            beats=fields.beats(said.get("beats")),
-        )
+        labels, hints = fields.labels_and_hints(said, default_name)
+        keyposes = fields.keyposes(named) or None
     except BadField as problem:
-        places = [
-            Place(f"{MANIFEST_NAME} line {line}: {p.location}", p.message) for p in problem.places
-        ]
-        return ManifestRow(
-            line,
-            problem=BadField(
-                f"Line {line} of {MANIFEST_NAME} cannot be used: {problem.detail}", places=places
-            ),
-        )
+        return ManifestRow(kept.line, ClipLabels(default_name), problem=_unusable(kept, problem))
+    return ManifestRow(kept.line, labels, hints, keyposes, kept.audio)
 
 
-def _repeated(line: int) -> ManifestRow:
+def _unusable(kept: _Kept, problem: BadField) -> BadField:
+    where = f"{MANIFEST_NAME} line {kept.line}"
+    return BadField(
+        f"Line {kept.line} of {MANIFEST_NAME} cannot be used: {problem.detail}",
+        places=[Place(f"{where}: {p.location}", p.message) for p in problem.places],
+    )
+
+
+def _repeated(line: int) -> BadField:
     message = "this path stands in an earlier line already"
     place = Place(f"{MANIFEST_NAME} line {line}", message)
-    return ManifestRow(line, problem=BadField(f"{MANIFEST_NAME}: {message}.", places=[place]))
+    return BadField(f"{MANIFEST_NAME}: {message}.", places=[place])

@@ -1,6 +1,6 @@
 """The table in a manifest, read row by row: never more of it in memory than one row.
 
-Bounds hold for each row (columns, characters) and for all manifests of an import together (rows,
+Each row has limits (columns, characters), and so have all manifests of an import together (rows,
 bytes), so that a small archive cannot unpack to a table that fills the memory.
 """
 
@@ -33,7 +33,7 @@ class Readable(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class ManifestLimits:
-    """Of all manifests of one import together."""
+    """Limits for all manifests of one import together."""
 
     rows: int
     bytes: int = MAX_BYTES
@@ -152,7 +152,7 @@ class _Lines:
 
 
 class _Counted(io.RawIOBase):
-    """What a manifest unpacks to, counted."""
+    """The bytes of a manifest, counted as they are read."""
 
     def __init__(self, content: Readable, used: Used, lines: _Lines) -> None:
         self._content, self._used, self._lines = content, used, lines

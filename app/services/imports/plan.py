@@ -1,7 +1,7 @@
 """What the files of an import are to each other: motions, and what goes with each.
 
-A manifest tells of motions and names their recordings; an ASF file is the skeleton of the AMC
-files beside it. Nothing but manifests is read here.
+A manifest describes motions and names their recordings; an ASF file is the skeleton of the AMC
+files in its folder. Only manifests are read here.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from app.services.imports.skeleton_pairs import pair_skeletons
 from app.services.imports.sources import SourceFile
 
 MOST_ABSENT = 100
-"""Paths that a manifest names in vain and that are told one by one; the others are counted."""
+"""How many missing files of manifests are reported one by one; the others are only counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,10 +32,10 @@ class Item:
 
 
 class Plan:
-    """What is to be done with the files of an import.
+    """What an import does with its files.
 
-    motions: the files that may become a clip each; absent: the problem of each path that a
-    manifest names and that is not there, of the first MOST_ABSENT; absent_count: of all.
+    motions: the files that may become clips; absent: the problems of the first MOST_ABSENT paths
+    that a manifest names and that are missing; absent_count: how many paths are missing.
     """
 
     def __init__(self, files: Iterable[SourceFile], limits: ManifestLimits) -> None:
@@ -86,8 +86,8 @@ def _read_manifest(manifest: Manifest, file: SourceFile) -> None:
         with file.open() as content:
             manifest.read(content, file.path.rpartition("/")[0])
     except (Unreadable, TooLarge) as problem:
-        told = problem.detail.removeprefix(MANIFEST_NAME)
-        detail = f"{file.path}{told}" if told != problem.detail else f"{file.path}: {told}"
+        rest = problem.detail.removeprefix(MANIFEST_NAME)
+        detail = f"{file.path}{rest}" if rest != problem.detail else f"{file.path}: {rest}"
         raise type(problem)(detail, places=problem.places) from problem
 
 

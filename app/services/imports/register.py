@@ -9,20 +9,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import replace
 
 from app.errors import Canceled, KinedexError, LeaseLost, StorageError
 from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
 from app.services import fields
 from app.services.clips.catalogue import BULK_PRIORITY, add, check_content, keep
-from app.services.clips.recordings import described
-from app.services.imports.manifest import ManifestRow
+from app.services.clips.recordings import attached
 from app.services.imports.plan import Item, Plan
 from app.services.imports.sources import SourceFile
 from app.services.library.library import Library
 from app.store.clips import keypose_annotations
-from app.store.clips.record import ClipState
-from app.store.clips.record import NewClip as NewRow
+from app.store.clips.record import ClipState, NewClip
 from app.store.database.engine import Tx
 from app.store.files.files import Readable, StagedFile
 from app.store.jobs import imports as stored
@@ -32,24 +29,24 @@ from app.store.jobs.imports import NewEntry
 from app.store.jobs.record import JobRecord, Lease
 
 Progress = Callable[[int, int, str], None]
-"""Told after each file: files done, files in all, the file's path."""
+"""Called after each file with the number of files done, the number of all, the file's path."""
 Over = Callable[[], bool]
-"""Whether an import is to let others go on."""
+"""Returns whether the import must stop now to let other imports run."""
 
 MOST_TOGETHER = 500
 """Files without a clip that are recorded in one transaction."""
 RECORD_AFTER_S = 1.0
-"""They wait no longer, so that a cancellation is noticed."""
+"""Such files wait at most this long, so that a cancellation is noticed."""
 FIRST_CLIPS = 64
 LOWEST_STEPS = 9
-"""How far the clips of a large import stand back behind those of a small one: those after the
-first 64 by one step of priority, after 128 by two, after 256 by three."""
+"""The clips of a large import wait for those of a small one: those after the first 64 have a
+priority lower by one step, after 128 by two, after 256 by three, up to LOWEST_STEPS."""
 JUDGED_AT_ONCE = HEAD_BYTES + TAIL_BYTES
-"""A file of so many bytes at most is judged before it is written anywhere."""
+"""A file of at most this many bytes is checked before it is written anywhere."""
 
 
 class Registering:
-    """An import in hand: its plan, and the right to its job."""
+    """A running import: its plan, and the lease of its job."""
 
     def __init__(self, lib: Library, lease: Lease, plan: Plan) -> None:
         self.lib, self.lease, self.plan = lib, lease, plan
@@ -65,7 +62,7 @@ class Registering:
         return len(self.plan.motions)
 
     def run(self, progress: Progress, should_stop: Callable[[], bool], is_over: Over) -> bool:
-        """Register file after file until none is left; whether that is so.
+        """Register file after file; return whether all are registered.
 
         `should_stop` is asked before each file, and then Canceled is raised; `is_over` after
         each, and then False is returned. Raises LeaseLost and StorageError, too.
@@ -85,7 +82,7 @@ class Registering:
         return True
 
     def finish(self, detail: str) -> JobRecord:
-        """Record what the manifests name in vain; the job waits for its clips from here on."""
+        """Record the missing files that manifests name; then the job waits for its clips."""
         with self.lib.store.write() as tx:
             absent = [
                 NewEntry(path, ImportOutcome.ABSENT, problem=problem.as_problem())
@@ -138,8 +135,15 @@ class Registering:
             is_amc = check_content(staged) == "amc"
             companion = _staged(lib, files, item.skeleton if is_amc else None)
             recording = _staged(lib, files, item.sound)
-            heard = {} if recording is None else described(recording, row.audio or "")
-            new = replace(_new_row(path, row, staged, companion), **heard)
+            new = NewClip(
+                sha256=staged.sha256,
+                file_name=fields.file_name(path),
+                file_size=staged.size,
+                labels=row.labels,
+                hints=row.hints,
+                skeleton_sha256=None if companion is None else companion.sha256,
+                audio=None if recording is None else attached(recording, row.audio or ""),
+            )
             with lib.store.write() as tx:
                 keep(staged, companion, recording)
                 created = add(tx, new, self._priority())
@@ -151,7 +155,7 @@ class Registering:
         self._problems = []
 
     def _priority(self) -> int:
-        """Of the analysis of the file in hand: a large import must not hold up a small one."""
+        """The priority of the next analysis: a large import must not delay a small one."""
         return BULK_PRIORITY + min((self.done // FIRST_CLIPS).bit_length(), LOWEST_STEPS)
 
 
@@ -171,7 +175,7 @@ def judged(content: Readable) -> Readable:
 
 
 class _Rejoined:
-    """What was read of a file, and then the rest of it."""
+    """A file whose beginning was read already: gives the beginning, then the rest."""
 
     def __init__(self, head: bytes, rest: Readable) -> None:
         self._head, self._rest = memoryview(head), rest
@@ -185,7 +189,7 @@ class _Rejoined:
 
 
 def _staged(lib: Library, files: ExitStack, source: SourceFile | None) -> StagedFile | None:
-    """A file that goes with a motion, if there is one, for as long as `files` are open."""
+    """Stage a file that goes with a motion, if there is one, until `files` is closed."""
     if source is None:
         return None
     if source.problem is not None:
@@ -196,26 +200,3 @@ def _staged(lib: Library, files: ExitStack, source: SourceFile | None) -> Staged
 def _stage(lib: Library, files: ExitStack, content: Readable) -> StagedFile:
     limit = lib.settings.max_upload_bytes
     return files.enter_context(lib.store.files.stage(content, max_bytes=limit))
-
-
-def _new_row(
-    path: str, row: ManifestRow, staged: StagedFile, skeleton: StagedFile | None
-) -> NewRow:
-    file_name = fields.file_name(path)
-    return NewRow(
-        sha256=staged.sha256,
-        file_name=file_name,
-        file_size=staged.size,
-        name=row.name or fields.stem(file_name),
-        person=row.person,
-        task=row.task,
-        words=row.words or (),
-        license=row.license,
-        source=row.source,
-        skeleton_sha256=None if skeleton is None else skeleton.sha256,
-        frame_rate_override=row.frame_rate,
-        metres_per_unit_override=row.metres_per_unit,
-        audio_offset_override=row.audio_offset,
-        tempo_override=row.tempo,
-        beats_override=row.beats,
-    )

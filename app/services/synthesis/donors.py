@@ -67,7 +67,7 @@ def material_of(lib: Library, model: Synthesis, plan: Plan) -> Material:
         take_shape=take_shape,
         license=licenses.pop() if len(licenses) == 1 else None,
         words=tuple(sorted(words)),
-        roles=own[0].roles_override,
+        roles=own[0].hints.roles,
     )
 
 

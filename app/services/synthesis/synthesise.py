@@ -152,16 +152,15 @@ def _as_motion(animation: Animation, joints: dict[JointRole, int]) -> Motion:
 
 def _stored(lib: Library, made: Synthesised, material: Material, plan: Plan) -> Synthesised:
     """The motion as a clip like any other, marked by its source."""
-    given = clips.NewClip(
-        filename=f"{made.name}.bvh",
-        name=made.name,
-        person=plan.person,
-        task=plan.task,
-        words=material.words,
-        license=made.license,
-        source=SYNTHESIZED,
-        unit="cm",
-        roles=material.roles,
-    )
-    created = clips.create_clip(lib, io.BytesIO(made.bvh), given)
+    said = {
+        "name": made.name,
+        "person": plan.person,
+        "task": plan.task,
+        "words": material.words,
+        "license": made.license,
+        "source": SYNTHESIZED,
+        "unit": "cm",
+        "roles": material.roles,
+    }
+    created = clips.create_clip(lib, io.BytesIO(made.bvh), f"{made.name}.bvh", said)
     return replace(made, clip=created.clip, job=created.job, is_new=created.is_new)

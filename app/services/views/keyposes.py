@@ -144,7 +144,7 @@ def name_keyposes(lib: Library, clip_id: str, times: Sequence[float]) -> tuple[f
     with lib.store.write() as tx:
         now = clips.get(tx, clip_id)
         keypose_annotations.put(tx, clip_id, tidy)
-        is_same = bool(tidy) or now.overrides == before.overrides
+        is_same = bool(tidy) or now.analysis_input == before.analysis_input
         if now.state is ClipState.READY and is_same and instead is not None:
             store_keyposes(tx, now, instead)
     return tidy

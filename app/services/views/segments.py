@@ -37,6 +37,11 @@ class Segment:
     end: float
     cycle: int | None
 
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        return round(self.end - self.start, 6)
+
 
 @dataclass(frozen=True, slots=True)
 class SegmentCycle:
@@ -49,6 +54,11 @@ class SegmentCycle:
     count: int
     start: float
     end: float
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        return round(self.end - self.start, 6)
 
 
 @dataclass(frozen=True, slots=True)

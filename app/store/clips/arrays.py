@@ -31,7 +31,7 @@ _DELETE_ALL = delete(clip_arrays).where(clip_arrays.c.clip_id == bindparam("the_
 
 
 def put_many(tx: Tx, clip_id: str, arrays: Mapping[str, NDArray[Any]], *, version: int) -> None:
-    """Stores a clip's arrays in place of all that it had."""
+    """Stores a clip's arrays; they replace all arrays that it had."""
     delete_all(tx, clip_id)
     rows = [
         {"clip_id": clip_id, "name": name, "version": version, **to_blob(array)}
@@ -42,7 +42,7 @@ def put_many(tx: Tx, clip_id: str, arrays: Mapping[str, NDArray[Any]], *, versio
 
 
 def put_some(tx: Tx, clip_id: str, arrays: Mapping[str, NDArray[Any]], *, version: int) -> None:
-    """Stores arrays in place of those of the same names."""
+    """Stores some arrays of a clip; they replace those with the same names."""
     named = clip_arrays.c.name.in_(list(arrays))
     tx.execute(delete(clip_arrays).where(clip_arrays.c.clip_id == clip_id, named))
     tx.execute(

@@ -1,7 +1,8 @@
-"""Which clips are meant: one value for lists and for searches."""
+"""A filter of clips: one value for lists and for searches."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from sqlalchemy import ColumnElement, Select, and_, or_, select
@@ -9,12 +10,16 @@ from sqlalchemy import ColumnElement, Select, and_, or_, select
 from app.store.clips.record import ClipState
 from app.store.database.tables import clip_words, clips
 
+_LABELS = ("person", "task", "license", "source")
+"""Labels with a column of their own; for each, ClipFilter has two fields: NAME and not_NAME."""
+
 
 @dataclass(frozen=True, slots=True)
 class ClipFilter:
-    """Every condition that is given must hold; a tuple means any of; empty or None: no condition.
+    """Conditions on clips. A clip passes if all of them hold.
 
-    not_*: none of these; a clip that lacks the label passes. q: part of the name, any case;
+    A tuple holds if the clip has any of its values; with not_, if it has none of them (a clip
+    without the label passes). Empty or None is no condition. q: part of the name, any case;
     durations in seconds, both ends included.
     """
 
@@ -39,43 +44,29 @@ class ClipFilter:
         return self == ClipFilter()
 
 
-def condition(wanted: ClipFilter) -> ColumnElement[bool]:
+def condition(filter: ClipFilter) -> ColumnElement[bool]:
     """The filter as a WHERE clause over `clips`."""
-    terms = [*_any_of_terms(wanted), *_none_of_terms(wanted), *_range_terms(wanted)]
-    if wanted.word:
-        terms.append(clips.c.id.in_(_carriers(wanted.word)))
-    if wanted.not_word:
-        terms.append(clips.c.id.not_in(_carriers(wanted.not_word)))
-    if wanted.q:
-        # autoescape: % and _ are looked for as themselves.
-        terms.append(clips.c.name_folded.contains(wanted.q.casefold(), autoescape=True))
+    terms = [*_label_terms(filter), *_range_terms(filter)]
+    if filter.state:
+        terms.append(clips.c.state.in_([state.value for state in filter.state]))
+    if filter.word:
+        terms.append(clips.c.id.in_(_carriers(filter.word)))
+    if filter.not_word:
+        terms.append(clips.c.id.not_in(_carriers(filter.not_word)))
+    if filter.q:
+        # autoescape: % and _ stand for themselves.
+        terms.append(clips.c.name_folded.contains(filter.q.casefold(), autoescape=True))
     return and_(True, *terms)
 
 
-def _any_of_terms(wanted: ClipFilter) -> list[ColumnElement[bool]]:
-    choices: dict[str, tuple[str, ...]] = {
-        "person": wanted.person,
-        "task": wanted.task,
-        "license": wanted.license,
-        "source": wanted.source,
-        "state": tuple(state.value for state in wanted.state),
-    }
-    return [clips.c[name].in_(values) for name, values in choices.items() if values]
-
-
-def _none_of_terms(wanted: ClipFilter) -> list[ColumnElement[bool]]:
-    refused: dict[str, tuple[str, ...]] = {
-        "person": wanted.not_person,
-        "task": wanted.not_task,
-        "license": wanted.not_license,
-        "source": wanted.not_source,
-    }
-    # NOT IN alone would drop the clips that have no such label.
-    return [
-        or_(clips.c[name].is_(None), clips.c[name].not_in(values))
-        for name, values in refused.items()
-        if values
-    ]
+def _label_terms(filter: ClipFilter) -> Iterator[ColumnElement[bool]]:
+    for name in _LABELS:
+        column = clips.c[name]
+        if accepted := getattr(filter, name):
+            yield column.in_(accepted)
+        if refused := getattr(filter, f"not_{name}"):
+            # NOT IN alone would drop the clips that have no such label.
+            yield or_(column.is_(None), column.not_in(refused))
 
 
 def _carriers(words: tuple[str, ...]) -> Select[tuple[str]]:
@@ -83,10 +74,10 @@ def _carriers(words: tuple[str, ...]) -> Select[tuple[str]]:
     return select(clip_words.c.clip_id).where(clip_words.c.word.in_(words))
 
 
-def _range_terms(wanted: ClipFilter) -> list[ColumnElement[bool]]:
+def _range_terms(filter: ClipFilter) -> list[ColumnElement[bool]]:
     terms: list[ColumnElement[bool]] = []
-    if wanted.min_duration is not None:
-        terms.append(clips.c.duration >= wanted.min_duration)
-    if wanted.max_duration is not None:
-        terms.append(clips.c.duration <= wanted.max_duration)
+    if filter.min_duration is not None:
+        terms.append(clips.c.duration >= filter.min_duration)
+    if filter.max_duration is not None:
+        terms.append(clips.c.duration <= filter.max_duration)
     return terms

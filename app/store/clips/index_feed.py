@@ -1,9 +1,9 @@
-"""What an index takes from the library: labels and one array of each clip, in batches.
+"""What an index reads from the library: labels and one array of each clip, in batches.
 
 Rows are streamed and never become `ClipRecord`s, so that a million clips are loaded in
-seconds and are never held twice. A ready clip that is analysed again is fed with the arrays
-that it has. Those may be of an earlier version of the analysis: an index skips a clip whose array
-has not the shape that it needs.
+seconds and are never held twice. A ready clip that waits for another analysis comes with the arrays
+that it has. An earlier version of the analysis may have made them: an index skips a clip whose
+array does not have the shape that it needs.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from app.store.database.engine import Tx
 from app.store.database.tables import clip_arrays, clip_words, clips
 
 BATCH = 5000
-"""Clips of one batch."""
+"""How many clips are in one batch."""
 
 _WORDS = (
     select(func.aggregate_strings(clip_words.c.word, " "))
@@ -57,10 +57,10 @@ _CLIPS = (
 
 @dataclass(frozen=True, slots=True)
 class IndexedClip:
-    """What a search looks at of a clip, without what it shows of it.
+    """What a search needs to rank and filter a clip.
 
     duration: seconds; array: the one that was asked for, read-only, None where the clip has
-    none (it was analysed before there was such an array).
+    none (an earlier version of the analysis, which made no such array).
     """
 
     id: str

@@ -16,7 +16,7 @@ Times = tuple[float, ...]
 
 
 def put(tx: Tx, clip_id: str, times: Sequence[float]) -> None:
-    """Store a clip's annotation in place of the one it had; no times take it away.
+    """Store a clip's annotation, which replaces the one it had; without times, remove it.
 
     A ready clip counts as changed, so that models are fitted again. Raises ClipNotFound.
     """
@@ -33,7 +33,7 @@ def get(tx: Tx, clip_id: str) -> Times | None:
 
 
 def get_many(tx: Tx, clip_ids: Collection[str]) -> dict[str, Times]:
-    """The annotations of those of the clips that have one, in the order asked for."""
+    """The annotations by clip id, in the order of `clip_ids`; clips without one are left out."""
     found: dict[str, Times] = {}
     for batch in clips.in_batches(clip_ids):
         query = select(keypose_annotations.c.clip_id, keypose_annotations.c.times).where(

@@ -15,8 +15,10 @@ from app.store.database.tables import clip_words, clips
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """A label, and how many clips carry it, whatever their state: those of one source, which
-    are told apart, and all others."""
+    """A label, and how many clips carry it, in any state.
+
+    of_source: clips of the source that the caller names; others: all other clips.
+    """
 
     name: str
     others: int
@@ -42,22 +44,22 @@ _KINDS: dict[LabelKind, tuple[ColumnElement[Any], FromClause]] = {
 
 
 def persons(tx: Tx, source: str) -> tuple[Count, ...]:
-    """Who moves, by name; the clips of `source` are counted by themselves."""
+    """The persons, by name; the clips of `source` are counted separately."""
     return _counts(tx, *_KINDS[LabelKind.PERSON], source)
 
 
 def tasks(tx: Tx, source: str) -> tuple[Count, ...]:
-    """What is done, as `persons`."""
+    """The tasks, as `persons`."""
     return _counts(tx, *_KINDS[LabelKind.TASK], source)
 
 
 def words(tx: Tx, source: str) -> tuple[Count, ...]:
-    """In which words, as `persons`."""
+    """The words, as `persons`."""
     return _counts(tx, *_KINDS[LabelKind.WORD], source)
 
 
 def person_names(tx: Tx) -> frozenset[str]:
-    """Everybody whose label a clip carries."""
+    """The persons that any clip is labeled with."""
     found = select(clips.c.person).where(clips.c.person.is_not(None)).distinct()
     return frozenset(tx.execute(found).scalars())
 

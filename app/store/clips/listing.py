@@ -11,6 +11,7 @@ from app.errors import BadField, Place
 from app.store.clips import repository as clip_repository
 from app.store.clips.filter import ClipFilter, condition
 from app.store.clips.record import REANALYSIS_OPEN, ClipRecord, ClipState, Reanalysis
+from app.store.clips.rows import to_record
 from app.store.database.engine import Tx
 from app.store.database.paging import Page, Position, Value, after, read_cursor, write_cursor
 from app.store.database.tables import clips
@@ -38,7 +39,7 @@ SORT_NAMES: tuple[str, ...] = tuple(_SORTS)
 
 def list_clips(
     tx: Tx,
-    wanted: ClipFilter,
+    filter: ClipFilter,
     *,
     sort: str = DEFAULT_SORT,
     limit: int = 50,
@@ -46,26 +47,26 @@ def list_clips(
 ) -> Page[ClipRecord]:
     """One page of at most `limit` clips; raises BadField at "sort" or "cursor"."""
     chosen, descending = _sort_of(sort)
-    query = select(clips, chosen.column.label("sorted_by")).where(condition(wanted))
+    query = select(clips, chosen.column.label("sorted_by")).where(condition(filter))
     if cursor is not None:
         position = read_cursor(cursor, sort, chosen.kind)
         query = query.where(after(chosen.column, clips.c.id, position, descending=descending))
     return _page(tx, _ordered(query, chosen, descending).limit(limit + 1), sort, limit)
 
 
-def count_clips(tx: Tx, wanted: ClipFilter) -> int:
+def count_clips(tx: Tx, filter: ClipFilter) -> int:
     """How many clips pass the filter."""
-    found = tx.execute(select(func.count()).select_from(clips).where(condition(wanted)))
+    found = tx.execute(select(func.count()).select_from(clips).where(condition(filter)))
     return int(found.scalar_one())
 
 
-def list_ids(tx: Tx, wanted: ClipFilter) -> tuple[str, ...]:
+def list_ids(tx: Tx, filter: ClipFilter) -> tuple[str, ...]:
     """The ids of all clips that pass the filter."""
-    return tuple(tx.execute(select(clips.c.id).where(condition(wanted))).scalars())
+    return tuple(tx.execute(select(clips.c.id).where(condition(filter))).scalars())
 
 
 def list_outdated_ids(tx: Tx, version: int) -> tuple[str, ...]:
-    """The ids of ready clips that are to be analysed again and do not wait for it yet.
+    """The ids of ready clips that need another analysis and do not wait for one yet.
 
     Their arrays are not those of analysis `version`, or a client changed what it depends on.
     """
@@ -87,7 +88,7 @@ def list_unfit_ids(tx: Tx) -> tuple[str, ...]:
 
 
 def count_waiting(tx: Tx) -> int:
-    """How many clips wait for an analysis, or are being analysed."""
+    """How many clips wait for an analysis or are in one."""
     return int(tx.execute(select(func.count()).select_from(clips).where(_WAITS)).scalar_one())
 
 
@@ -123,7 +124,7 @@ def _page(tx: Tx, query: Select[tuple[object, ...]], sort: str, limit: int) -> P
     rows = tx.execute(query).mappings().all()
     shown = rows[:limit]
     words = clip_repository.words_of(tx, [row["id"] for row in shown])
-    items = tuple(clip_repository.to_record(row, words.get(row["id"], ())) for row in shown)
+    items = tuple(to_record(row, words.get(row["id"], ())) for row in shown)
     if len(rows) <= limit or not shown:
         return Page(items, None)
     return Page(items, write_cursor(sort, Position(shown[-1]["sorted_by"], shown[-1]["id"])))

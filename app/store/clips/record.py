@@ -1,37 +1,37 @@
-"""The clip as the store tells it: the fields of DESIGN 8's Clip and what a re-analysis needs."""
+"""The values that make up a clip in the store: labels, hints, recording, and the whole record."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
-from typing import Any, TypedDict
+from typing import Any
 
 
 class ClipState(StrEnum):
-    """Where a clip stands."""
+    """The state of a clip."""
 
     QUEUED = "queued"
     """Stored durably; waits for a worker."""
     PROCESSING = "processing"
-    """A worker is analysing it."""
+    """A worker analyzes it."""
     READY = "ready"
-    """Analysed: the next search finds it."""
+    """Analyzed: the next search finds it."""
     FAILED = "failed"
-    """Cannot be analysed; `error` says why. Listed, never searched."""
+    """Cannot be analyzed; `error` says why. It is listed and never searched."""
 
 
 class Reanalysis(StrEnum):
-    """Where another analysis of a ready clip stands."""
+    """The state of another analysis of a ready clip."""
 
     QUEUED = "queued"
     """It waits for a worker."""
     PROCESSING = "processing"
-    """A worker does it."""
+    """A worker is at it."""
     FAILED = "failed"
-    """It could not be done: a warning says why."""
+    """It failed: a warning says why."""
 
 
 REANALYSIS_OPEN = (Reanalysis.QUEUED, Reanalysis.PROCESSING)
@@ -39,50 +39,85 @@ REANALYSIS_OPEN = (Reanalysis.QUEUED, Reanalysis.PROCESSING)
 
 @dataclass(frozen=True, slots=True)
 class ClipWarning:
-    """A doubt about a clip: `code` for machines, `detail` for people, `likely` a better value."""
+    """A doubt about a clip: `code` for machines, `detail` for people, `likely`: a better value."""
 
     code: str
     detail: str
     likely: float | None = None
 
 
-OVERRIDES = (
-    "frame_rate_override",
-    "metres_per_unit_override",
-    "roles_override",
-    "stack_override",
-    "audio_sha256",
-    "audio_offset_override",
-    "tempo_override",
-    "beats_override",
-)
-"""Fields of a clip on which its analysis depends beside its file."""
+@dataclass(frozen=True, slots=True)
+class ClipLabels:
+    """What people call a clip and say about it; searches filter by these.
+
+    words: in lower case, each once; the store's callers tidy all of them. A label that is added
+    here needs a column of the same name in the table `clips` (words have a table of their own).
+    """
+
+    name: str
+    person: str | None = None
+    task: str | None = None
+    words: tuple[str, ...] = ()
+    license: str | None = None
+    source: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class ClipRecord:
-    """A clip's row. What the analysis finds is None (or empty) until the clip is ready.
+class AnalysisHints:
+    """What a client says about a motion file: it goes before what the file says.
 
-    sha256: of the file's own bytes; content_key: what makes the clip one of a kind (the same,
-    or with a skeleton companion a hash of both); roles: joint name by role; durations in
-    seconds, rates in Hz; error: an RFC 9457 problem; *_override: what the client said, which
-    wins over what the file says; audio_*: the recording that goes with the motion, its bytes,
-    their name and number, audio_offset the time of the motion (s) at which it begins, if known;
-    reanalysis: of a ready clip, where another analysis stands, None where there is none to come;
-    is_changed: whether what the client said has changed since the analysis; changed_version:
-    library version of the last change that searches see, 0 while it was never searchable.
+    frame_rate: Hz; metres_per_unit: of the file's coordinates; roles: joint name by role; stack:
+    name of an FBX file's animation stack; audio_offset: seconds of the motion at which the
+    recording begins; tempo: beats a minute; beats: seconds. The column of a hint in the table
+    `clips` has its name and `_override`.
+    """
+
+    frame_rate: float | None = None
+    metres_per_unit: float | None = None
+    roles: dict[str, str] | None = None
+    stack: str | None = None
+    audio_offset: float | None = None
+    tempo: float | None = None
+    beats: tuple[float, ...] | None = None
+
+
+AUDIO_HINTS = ("audio_offset", "tempo", "beats")
+"""The hints about a recording. They are replaced together with it."""
+
+
+@dataclass(frozen=True, slots=True)
+class AttachedAudio:
+    """The recording that goes with a motion: SHA-256 of its bytes, file name, size in bytes.
+
+    The columns in the table `clips` begin with `audio_`.
+    """
+
+    sha256: str
+    name: str = "audio"
+    size: int = 0
+
+
+AnalysisInput = tuple[AnalysisHints, str | None]
+"""What an analysis depends on besides the motion file: the hints, the recording's SHA-256."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClipRecord(ClipLabels):
+    """A clip's row with its labels. What the analysis finds is None (or empty) until it is ready.
+
+    sha256: of the file's own bytes; content_key: makes the clip one of a kind (the same as
+    sha256, or with a skeleton companion a hash of both); roles: joint name by role; durations in
+    seconds, rates in Hz; error: an RFC 9457 problem; audio_offset: the time of the motion (s) at
+    which the analysis says that the recording begins, if known; reanalysis: where another
+    analysis of a ready clip stands, None where none is to come; is_changed: whether a client has
+    changed the hints or the recording since the analysis; changed_version: library version of
+    the last change that searches see, 0 while the clip was never searchable.
     """
 
     id: str
-    name: str
     state: ClipState
     format: str | None
     sha256: str
-    person: str | None
-    task: str | None
-    words: tuple[str, ...]
-    license: str | None
-    source: str | None
     frames: int | None
     frame_rate: float | None
     declared_frame_rate: float | None
@@ -98,16 +133,8 @@ class ClipRecord:
     file_name: str
     file_size: int
     skeleton_sha256: str | None
-    frame_rate_override: float | None
-    metres_per_unit_override: float | None
-    roles_override: dict[str, str] | None
-    stack_override: str | None
-    audio_sha256: str | None
-    audio_name: str | None
-    audio_size: int | None
-    audio_offset_override: float | None
-    tempo_override: float | None
-    beats_override: tuple[float, ...] | None
+    hints: AnalysisHints
+    audio: AttachedAudio | None
     audio_offset: float | None
     analysis_version: int | None
     reanalysis: Reanalysis | None
@@ -115,42 +142,47 @@ class ClipRecord:
     changed_version: int
 
     @property
-    def overrides(self) -> tuple[Any, ...]:
-        """What the client said of the file, as named in OVERRIDES: an analysis depends on it."""
-        return tuple(getattr(self, name) for name in OVERRIDES)
+    def audio_sha256(self) -> str | None:
+        """SHA-256 of the recording, None where there is none."""
+        return None if self.audio is None else self.audio.sha256
+
+    @property
+    def has_audio(self) -> bool:
+        """Whether a recording goes with the motion."""
+        return self.audio is not None
+
+    @property
+    def audio_begins_at(self) -> float | None:
+        """Seconds of the motion at which the recording begins: as the client says, otherwise as
+        the analysis estimates; None without a recording."""
+        if self.audio is None:
+            return None
+        said = self.hints.audio_offset
+        return self.audio_offset if said is None else said
+
+    @property
+    def analysis_input(self) -> AnalysisInput:
+        """The hints and the recording, on which the analysis depends."""
+        return self.hints, self.audio_sha256
 
     @property
     def is_settled(self) -> bool:
-        """Whether no analysis of it is to come."""
+        """Whether no analysis of the clip is waiting or running."""
         is_done = self.state in (ClipState.READY, ClipState.FAILED)
         return is_done and self.reanalysis not in REANALYSIS_OPEN
 
 
 @dataclass(frozen=True, slots=True)
 class NewClip:
-    """What is known of a clip before its analysis; words are normalised by the caller."""
+    """What is known of a clip before its analysis; the caller has tidied the labels."""
 
     sha256: str
     file_name: str
     file_size: int
-    name: str
-    person: str | None = None
-    task: str | None = None
-    words: tuple[str, ...] = ()
-    license: str | None = None
-    source: str | None = None
-    format: str | None = None
+    labels: ClipLabels
+    hints: AnalysisHints = AnalysisHints()
     skeleton_sha256: str | None = None
-    frame_rate_override: float | None = None
-    metres_per_unit_override: float | None = None
-    roles_override: dict[str, str] | None = None
-    stack_override: str | None = None
-    audio_sha256: str | None = None
-    audio_name: str | None = None
-    audio_size: int | None = None
-    audio_offset_override: float | None = None
-    tempo_override: float | None = None
-    beats_override: tuple[float, ...] | None = None
+    audio: AttachedAudio | None = None
 
     @property
     def content_key(self) -> str:
@@ -178,29 +210,13 @@ class ClipFacts:
     audio_offset: float | None = None
 
 
-class ClipChanges(TypedDict, total=False):
-    """What a PATCH may change; a key that is absent stays, None takes a value away."""
-
-    name: str
-    person: str | None
-    task: str | None
-    words: Sequence[str]
-    license: str | None
-    source: str | None
-    frame_rate_override: float | None
-    metres_per_unit_override: float | None
-    roles_override: dict[str, str] | None
-    stack_override: str | None
-    audio_sha256: str | None
-    audio_name: str | None
-    audio_size: int | None
-    audio_offset_override: float | None
-    tempo_override: float | None
-    beats_override: tuple[float, ...] | None
+ClipChanges = Mapping[str, Any]
+"""New values of some fields of ClipLabels and AnalysisHints, and of `audio` (AttachedAudio or
+None), by their names; a field that is absent keeps its value."""
 
 
 class AddOutcome(StrEnum):
-    """What became of content that was handed in."""
+    """What `add_or_get` did with new content."""
 
     ADDED = "added"
     """A new clip: it needs an ingest job."""

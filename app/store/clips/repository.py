@@ -1,4 +1,4 @@
-"""Clips: adding, reading, changing, removing. Listing is in `clip_listing`."""
+"""Clips: adding, reading, changing, removing. `listing` lists them."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from sqlalchemy import RowMapping, bindparam, delete, insert, select, update
+from sqlalchemy import bindparam, delete, insert, select, update
 
 from app.errors import ClipNotFound, Place
 from app.store.clips import versions as library
 from app.store.clips.record import (
-    OVERRIDES,
+    AUDIO_HINTS,
     Added,
     AddOutcome,
+    AnalysisInput,
     ClipChanges,
     ClipFacts,
     ClipRecord,
@@ -22,19 +23,10 @@ from app.store.clips.record import (
     NewClip,
     Reanalysis,
 )
+from app.store.clips.rows import changed_input, said_by_client, to_columns, to_record
 from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
 from app.store.database.tables import clip_words, clips
-
-AUDIO_FIELDS = (
-    "audio_sha256",
-    "audio_name",
-    "audio_size",
-    "audio_offset_override",
-    "tempo_override",
-    "beats_override",
-)
-"""What comes with a recording."""
 
 IDS_PER_QUERY = 500
 """Databases limit the parameters of one statement."""
@@ -53,19 +45,19 @@ _WORDS = (
 
 
 def add_or_get(tx: Tx, new: NewClip) -> Added:
-    """Adds a clip in state queued, or finds the one with the same content.
+    """Adds a clip in the state queued, or finds the clip with the same content.
 
-    A failed one is queued again, with those labels and overrides that are given now; any other
-    with another recording, and what is told of its beats. Safe
-    between processes: writers take turns, so the look-up cannot be overtaken.
+    A failed one is queued again, with the labels and hints that are given now; any other is queued
+    again only if it comes with another recording, with that and the hints about it. Safe between
+    processes: writers take turns, so that no other can add the same content after the look-up.
     """
     library.lock(tx)
     found = find_by_content(tx, new.content_key)
     if found is None:
         return Added(_insert(tx, new), AddOutcome.ADDED)
     is_failed = found.state is ClipState.FAILED
-    if is_failed or new.audio_sha256 not in (None, found.audio_sha256):
-        again = _requeue_with(tx, found, new, None if is_failed else AUDIO_FIELDS)
+    if is_failed or (new.audio is not None and new.audio.sha256 != found.audio_sha256):
+        again = _requeue_with(tx, found, new, None if is_failed else ("audio", *AUDIO_HINTS))
         replaced = found.audio_sha256 if again.audio_sha256 != found.audio_sha256 else None
         return Added(again, AddOutcome.REQUEUED, replaced)
     return Added(found, AddOutcome.EXISTS)
@@ -92,16 +84,14 @@ def find_by_content(tx: Tx, content_key: str) -> ClipRecord | None:
 
 
 def patch(tx: Tx, clip_id: str, changes: ClipChanges) -> ClipRecord:
-    """Changes labels and overrides; a ready clip's change is seen by the next search.
+    """Changes labels, hints and the recording; the next search sees a ready clip's change.
 
-    A changed override takes effect with the next analysis: see `requeue`.
+    A changed hint or recording takes effect with the next analysis: see `requeue`.
     """
     before = get(tx, clip_id)
-    values: dict[str, Any] = {key: value for key, value in changes.items() if key != "words"}
-    if any(values[name] != getattr(before, name) for name in OVERRIDES if name in values):
+    values = to_columns(changes)
+    if changed_input(before, changes) != before.analysis_input:
         values["is_changed"] = True
-    if "name" in changes:
-        values["name_folded"] = changes["name"].casefold()
     if "words" in changes:
         _set_words(tx, clip_id, changes["words"])
     if before.state is ClipState.READY:
@@ -112,7 +102,7 @@ def patch(tx: Tx, clip_id: str, changes: ClipChanges) -> ClipRecord:
 
 
 def forget_person(tx: Tx, person: str) -> tuple[str, ...]:
-    """Takes a person's label from all their clips; their ids."""
+    """Removes a person's label from all their clips; returns the ids of these."""
     theirs = clips.c.person == person
     ids = tuple(tx.execute(select(clips.c.id).where(theirs).order_by(clips.c.id)).scalars())
     tx.execute(
@@ -125,7 +115,7 @@ def forget_person(tx: Tx, person: str) -> tuple[str, ...]:
 
 
 def requeue(tx: Tx, clip_id: str) -> ClipRecord:
-    """To be analysed, again or at last. A ready clip stays ready, with the analysis that it has,
+    """Let the clip wait for an analysis. A ready clip stays ready with the analysis that it has,
     until the new one replaces it."""
     if _state_of(tx, clip_id) is ClipState.READY:
         _set(tx, clip_id, reanalysis=Reanalysis.QUEUED.value)
@@ -135,7 +125,7 @@ def requeue(tx: Tx, clip_id: str) -> ClipRecord:
 
 
 def wait_again(tx: Tx, clip_id: str) -> None:
-    """Nobody works on it any more, and its job waits. A clip that is gone needs nothing."""
+    """The clip's worker is gone and its job waits again. A clip that was deleted needs nothing."""
     clip = get_many(tx, [clip_id]).get(clip_id)
     if clip is None:
         return
@@ -144,7 +134,7 @@ def wait_again(tx: Tx, clip_id: str) -> None:
 
 
 def set_processing(tx: Tx, clip_id: str) -> None:
-    """A worker has begun."""
+    """A worker has begun its analysis."""
     begun = update(clips).where(clips.c.id == clip_id, clips.c.state == ClipState.QUEUED.value)
     if tx.execute(begun.values(state=ClipState.PROCESSING.value)).rowcount:
         return
@@ -155,18 +145,18 @@ def set_processing(tx: Tx, clip_id: str) -> None:
 
 
 def set_ready(tx: Tx, clip_id: str, facts: ClipFacts) -> None:
-    """Analysed: searchable from this transaction's commit on."""
+    """The clip is analyzed: searches find it as soon as this transaction is committed."""
     done: dict[str, Any] = {"error": None, "reanalysis": None, "is_changed": False}
     _enter(tx, clip_id, ClipState.READY, **done, **asdict(facts))
 
 
 def set_failed(tx: Tx, clip_id: str, problem: dict[str, Any]) -> None:
-    """Cannot be analysed, for the reason given as an RFC 9457 problem."""
+    """The clip cannot be analyzed; problem: why (RFC 9457)."""
     _enter(tx, clip_id, ClipState.FAILED, error=problem, reanalysis=None)
 
 
 def keep_analysis(tx: Tx, clip_id: str, why: ClipWarning) -> None:
-    """A ready clip could not be analysed again: it keeps what it has, and says why."""
+    """Another analysis of a ready clip failed: the clip keeps the one it has, and says why."""
     others = [warning for warning in get(tx, clip_id).warnings if warning.code != why.code]
     warnings = [asdict(warning) for warning in (*others, why)]
     _set(tx, clip_id, reanalysis=Reanalysis.FAILED.value, warnings=warnings)
@@ -201,27 +191,32 @@ def in_batches(ids: Iterable[str], size: int = IDS_PER_QUERY) -> Iterator[list[s
 
 def _insert(tx: Tx, new: NewClip) -> ClipRecord:
     clip_id = new_id("clip")
-    values = {key: value for key, value in asdict(new).items() if key != "words"}
-    values |= {
+    values = to_columns(said_by_client(new)) | {
         "id": clip_id,
+        "sha256": new.sha256,
+        "file_name": new.file_name,
+        "file_size": new.file_size,
+        "skeleton_sha256": new.skeleton_sha256,
         "content_key": new.content_key,
-        "name_folded": new.name.casefold(),
         "state": ClipState.QUEUED.value,
         "changed_version": 0,
         "created_at": utc_now(),
     }
     tx.execute(_ADD, values)
-    _add_words(tx, clip_id, new.words)
+    _add_words(tx, clip_id, new.labels.words)
     return get(tx, clip_id)
 
 
 def _requeue_with(
     tx: Tx, found: ClipRecord, new: NewClip, only: Collection[str] | None
 ) -> ClipRecord:
-    """Queue again with what is given now, of the fields `only` where they are named."""
-    given = {key: value for key, value in asdict(new).items() if value not in (None, ())}
-    names = ClipChanges.__annotations__.keys() & given.keys() & set(only or given)
-    patch(tx, found.id, ClipChanges(**{name: given[name] for name in names}))  # type: ignore[typeddict-item]
+    """Queue again with what is given now; `only`: names of the fields that may change."""
+    given = {
+        name: value
+        for name, value in said_by_client(new).items()
+        if value not in (None, ()) and (only is None or name in only)
+    }
+    patch(tx, found.id, given)
     return requeue(tx, found.id)
 
 
@@ -239,9 +234,9 @@ def _add_words(tx: Tx, clip_id: str, words: Sequence[str]) -> None:
         tx.execute(_ADD_WORDS, rows)
 
 
-def overrides(tx: Tx, clip_id: str) -> tuple[Any, ...]:
-    """As `ClipRecord.overrides`, of a clip as it is now. Raises ClipNotFound."""
-    return get(tx, clip_id).overrides
+def analysis_input(tx: Tx, clip_id: str) -> AnalysisInput:
+    """As `ClipRecord.analysis_input`, of a clip as it is now. Raises ClipNotFound."""
+    return get(tx, clip_id).analysis_input
 
 
 def _enter(tx: Tx, clip_id: str, state: ClipState, **values: Any) -> None:
@@ -252,7 +247,7 @@ def _enter(tx: Tx, clip_id: str, state: ClipState, **values: Any) -> None:
 
 
 def _set(tx: Tx, clip_id: str, **values: Any) -> None:
-    """Change what no search looks at."""
+    """Change columns that no search reads."""
     tx.execute(_CHANGE, {"the_id": clip_id, **values})
 
 
@@ -282,49 +277,3 @@ def words_of(tx: Tx, clip_ids: Collection[str]) -> dict[str, tuple[str, ...]]:
         for clip_id, word in tx.execute(_WORDS, {"ids": batch}):
             found.setdefault(clip_id, []).append(word)
     return {clip_id: tuple(words) for clip_id, words in found.items()}
-
-
-def to_record(row: RowMapping, words: tuple[str, ...]) -> ClipRecord:
-    """A row of `clips` as a record, field by field."""
-    return ClipRecord(
-        id=row["id"],
-        name=row["name"],
-        state=ClipState(row["state"]),
-        format=row["format"],
-        sha256=row["sha256"],
-        person=row["person"],
-        task=row["task"],
-        words=words,
-        license=row["license"],
-        source=row["source"],
-        frames=row["frames"],
-        frame_rate=row["frame_rate"],
-        declared_frame_rate=row["declared_frame_rate"],
-        duration=row["duration"],
-        joints=row["joints"],
-        roles=dict(row["roles"] or {}),
-        missing_roles=tuple(row["missing_roles"] or ()),
-        warnings=tuple(ClipWarning(**warning) for warning in row["warnings"] or ()),
-        created_at=row["created_at"],
-        error=row["error"],
-        metres_per_unit=row["metres_per_unit"],
-        content_key=row["content_key"],
-        file_name=row["file_name"],
-        file_size=row["file_size"],
-        skeleton_sha256=row["skeleton_sha256"],
-        frame_rate_override=row["frame_rate_override"],
-        metres_per_unit_override=row["metres_per_unit_override"],
-        roles_override=row["roles_override"],
-        stack_override=row["stack_override"],
-        audio_sha256=row["audio_sha256"],
-        audio_name=row["audio_name"],
-        audio_size=row["audio_size"],
-        audio_offset_override=row["audio_offset_override"],
-        tempo_override=row["tempo_override"],
-        beats_override=None if row["beats_override"] is None else tuple(row["beats_override"]),
-        audio_offset=row["audio_offset"],
-        analysis_version=row["analysis_version"],
-        reanalysis=None if row["reanalysis"] is None else Reanalysis(row["reanalysis"]),
-        is_changed=row["is_changed"],
-        changed_version=row["changed_version"],
-    )

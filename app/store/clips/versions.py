@@ -31,7 +31,7 @@ _RAISE = (
 
 @dataclass(frozen=True, slots=True)
 class LibraryChanges:
-    """What an index has to do to stand at `version`.
+    """What an index must change to be at `version`.
 
     changed: ids of clips that are ready, to be loaded again; removed: ids to forget (deleted, or
     failed after a change).
@@ -48,7 +48,7 @@ def version(tx: Tx) -> int:
 
 
 def library_id(tx: Tx) -> str:
-    """The id that the library was given when it was made."""
+    """The id of the library, made when the library was created."""
     return str(tx.execute(_LIBRARY_ID).scalar_one())
 
 
@@ -63,7 +63,7 @@ def bump(tx: Tx) -> int:
 
 
 def bury(tx: Tx, clip_id: str) -> None:
-    """Records that a clip that searches may know is gone."""
+    """Records that a clip that searches may know was deleted."""
     tx.execute(insert(tombstones).values(clip_id=clip_id, version=bump(tx)))
 
 

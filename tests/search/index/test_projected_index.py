@@ -16,7 +16,7 @@ from app.search.index.vector_index import VECTOR, WIDTH, VectorIndex
 from app.store.clips import arrays
 from app.store.clips import repository as clips
 from app.store.clips.filter import ClipFilter
-from app.store.clips.record import ClipFacts, NewClip
+from app.store.clips.record import ClipFacts, ClipLabels, NewClip
 from app.store.database import schema
 from app.store.store import Store
 
@@ -38,7 +38,7 @@ def add(store: Store) -> Add:
     rng = np.random.default_rng(5)
 
     def ready(name: str, task: str | None = None) -> str:
-        new = NewClip(f"{abs(hash(name)):064x}"[:64], f"{name}.bvh", 3, name, task=task)
+        new = NewClip(f"{abs(hash(name)):064x}"[:64], f"{name}.bvh", 3, ClipLabels(name, task=task))
         facts = ClipFacts("bvh", 60, 30.0, 30.0, 2.0, 22, 0.01, {}, (), (), 1)
         with store.write() as tx:
             clip = clips.add_or_get(tx, new).clip

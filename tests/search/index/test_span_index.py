@@ -14,7 +14,7 @@ from app.search.index.span_index import SpanIndex, Spans
 from app.store.clips import arrays
 from app.store.clips import repository as clips
 from app.store.clips.filter import ClipFilter
-from app.store.clips.record import ClipFacts, NewClip
+from app.store.clips.record import ClipFacts, ClipLabels, NewClip
 from app.store.database import schema
 from app.store.store import Store
 
@@ -38,7 +38,7 @@ def add(store: Store) -> Add:
     rng = np.random.default_rng(3)
 
     def ready(name: str, parts: int) -> str:
-        new = NewClip(name.encode().hex().zfill(64), f"{name}.bvh", 3, name)
+        new = NewClip(name.encode().hex().zfill(64), f"{name}.bvh", 3, ClipLabels(name))
         facts = ClipFacts("bvh", 60, 30.0, 30.0, 9.0, 22, 0.01, {}, (), (), 1)
         starts = np.arange(parts, dtype=np.float32)
         found = {

@@ -20,7 +20,7 @@ from app.search.index.vector_index import VECTOR, WIDTH, VectorIndex
 from app.store.clips import arrays, index_feed
 from app.store.clips import repository as clips
 from app.store.clips.filter import ClipFilter
-from app.store.clips.record import ClipFacts, ClipRecord, NewClip
+from app.store.clips.record import ClipFacts, ClipLabels, ClipRecord, NewClip
 from app.store.database import schema
 from app.store.store import Store
 
@@ -41,7 +41,7 @@ def add(store: Store) -> Add:
     rng = np.random.default_rng(5)
 
     def ready(name: str, duration: float = 2.0, **labels: Any) -> ClipRecord:
-        new = NewClip(f"{abs(hash(name)):064x}"[:64], f"{name}.bvh", 3, name, **labels)
+        new = NewClip(f"{abs(hash(name)):064x}"[:64], f"{name}.bvh", 3, ClipLabels(name, **labels))
         facts = ClipFacts("bvh", 60, 30.0, 30.0, duration, 22, 0.01, {}, (), (), 1)
         vector = rng.normal(size=WIDTH).astype(np.float32)
         with store.write() as tx:

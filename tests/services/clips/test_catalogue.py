@@ -12,7 +12,6 @@ from app.errors import BadField, ClipNotFound, EmptyFile, NotFound, TooLarge, Un
 from app.search.example.methods import Method
 from app.services.clips import catalogue as clips
 from app.services.clips import jobs
-from app.services.clips.catalogue import NewClip
 from app.services.find import find
 from app.services.find.find import MotionQuery
 from app.services.library.library import Library
@@ -44,7 +43,7 @@ def test_the_same_bytes_again_give_the_clip_that_exists(
 
 
 def test_bad_content_fails_at_once_for_its_own_reason_and_can_be_sent_again(lib: Library) -> None:
-    created = clips.create_clip(lib, io.BytesIO(NOT_HUMAN), NewClip("stick.bvh"))
+    created = clips.create_clip(lib, io.BytesIO(NOT_HUMAN), "stick.bvh")
     work(lib.settings)
     failed = clips.get_clip(lib, created.clip.id)
     assert failed.state is ClipState.FAILED
@@ -53,7 +52,7 @@ def test_bad_content_fails_at_once_for_its_own_reason_and_can_be_sent_again(lib:
     assert created.job is not None
     job = jobs.get_job(lib, created.job.id)
     assert (job.state, job.error) == (JobState.FAILED, failed.error)
-    again = clips.create_clip(lib, io.BytesIO(NOT_HUMAN), NewClip("stick.bvh", person="ada"))
+    again = clips.create_clip(lib, io.BytesIO(NOT_HUMAN), "stick.bvh", {"person": "ada"})
     assert (again.is_new, again.clip.id, again.clip.state) == (True, failed.id, ClipState.QUEUED)
     assert again.clip.person == "ada"
 
@@ -67,7 +66,7 @@ def test_what_no_reader_takes_is_refused_and_nothing_is_kept(
 ) -> None:
     lib = Library.open(settings_for(tmp_path, max_upload_bytes=50))
     with pytest.raises(failure):
-        clips.create_clip(lib, io.BytesIO(content), NewClip("a.bvh"))
+        clips.create_clip(lib, io.BytesIO(content), "a.bvh")
     assert clips.list_clips(lib).items == ()
     kept = [path.name for path in lib.settings.files_dir.rglob("*") if path.is_file()]
     assert kept == [id_file.NAME]
@@ -90,19 +89,19 @@ def test_what_no_reader_takes_is_refused_and_nothing_is_kept(
 )
 def test_a_wrong_field_is_named(lib: Library, said: dict[str, Any], location: str) -> None:
     with pytest.raises(BadField) as refused:
-        clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), NewClip("a.bvh", **said))
+        clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), "a.bvh", said)
     assert [place.location for place in refused.value.places] == [location]
 
 
 def test_a_file_name_keeps_nothing_of_a_path(lib: Library) -> None:
-    given = NewClip("..\\..//etc/pass\nwd.bvh")
+    given = "..\\..//etc/pass\nwd.bvh"
     clip = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), given).clip
     assert (clip.file_name, clip.name) == ("passwd.bvh", "passwd")
 
 
 @pytest.mark.parametrize("name", ["", ".", "..", "../..", "\n"])
 def test_a_file_without_a_name_is_called_clip(lib: Library, name: str) -> None:
-    clip = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), NewClip(name)).clip
+    clip = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), name).clip
     assert (clip.file_name, clip.name) == ("clip", "clip")
 
 

@@ -15,7 +15,7 @@ from app.demo import DemoClip
 from app.demo.dances import Sound, dance
 from app.errors import BadField, NotFound
 from app.services.clips import catalogue as clips
-from app.services.clips.catalogue import Created, NewClip
+from app.services.clips.catalogue import Created
 from app.services.clips.recordings import NewRecording
 from app.services.imports import imports
 from app.services.library.analysis_pool import Order, analyse_order
@@ -35,9 +35,7 @@ def danced() -> DemoClip:
 
 def send(lib: Library, clip: DemoClip, audio: bytes | None, **said: Any) -> Created:
     recording = None if audio is None else NewRecording(io.BytesIO(audio), "../song.wav")
-    return clips.create_clip(
-        lib, io.BytesIO(clip.content), NewClip("a.bvh", **said), recording=recording
-    )
+    return clips.create_clip(lib, io.BytesIO(clip.content), "a.bvh", said, recording=recording)
 
 
 def ready(lib: Library, created: Created) -> ClipRecord:
@@ -216,6 +214,10 @@ def test_a_manifest_names_recordings(lib: Library, danced: DemoClip) -> None:
     assert gone is not None
     assert gone["errors"][0]["location"] == "manifest.csv line 3"
     one, two = (clips.get_clip(lib, str(entries[f"in/{n}.bvh"].clip_id)) for n in ("one", "two"))
-    assert (one.state, one.audio_offset, one.audio_name) == (ClipState.READY, -1.3, "one.wav")
+    assert (one.state, one.audio_offset, one.audio and one.audio.name) == (
+        ClipState.READY,
+        -1.3,
+        "one.wav",
+    )
     assert keyposes.view(lib, one.id).found.beats.source == "audio"
     assert keyposes.view(lib, two.id).found.beats.times.tolist() == [0.5, 1.0, 1.5]

@@ -20,7 +20,7 @@ from app.errors import (
 )
 from app.services.clips import catalogue as clips
 from app.services.clips import jobs
-from app.services.clips.catalogue import Created, NewClip
+from app.services.clips.catalogue import Created
 from app.services.find import find
 from app.services.find.find import MotionQuery
 from app.services.imports import imports
@@ -41,7 +41,7 @@ def create(
     lib: Library, content: bytes, skeleton: bytes | None, name: str = "07_01.amc"
 ) -> Created:
     companion = None if skeleton is None else io.BytesIO(skeleton)
-    return clips.create_clip(lib, io.BytesIO(content), NewClip(name), companion)
+    return clips.create_clip(lib, io.BytesIO(content), name, skeleton=companion)
 
 
 def by_name(lib: Library) -> dict[str, ClipRecord]:

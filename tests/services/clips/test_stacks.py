@@ -9,7 +9,6 @@ import pytest
 
 from app.errors import BadField
 from app.services.clips import catalogue as clips
-from app.services.clips.catalogue import NewClip
 from app.services.find import find
 from app.services.find.find import MotionQuery
 from app.services.library.library import Library
@@ -33,8 +32,8 @@ def lib(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Library]:
 
 def upload(lib: Library, stack: str | None, extra: bytes = b"") -> ClipRecord:
     """`extra` bytes at the end, which no reader asks for, make it a clip of its own."""
-    given = NewClip("takes.fbx", stack=stack)
-    return clips.create_clip(lib, io.BytesIO(TAKES + extra), given).clip
+    said = {"stack": stack}
+    return clips.create_clip(lib, io.BytesIO(TAKES + extra), "takes.fbx", said).clip
 
 
 def worked(lib: Library, clip_id: str) -> ClipRecord:
@@ -54,7 +53,7 @@ def test_another_is_picked_afterwards_and_null_returns(lib: Library) -> None:
     assert (clip.state, clip.frames) == (ClipState.READY, 31)
     assert clips.update_clip(lib, clip.id, {"stack": " bow "}).state is ClipState.READY
     queued = clips.update_clip(lib, clip.id, {"stack": None})
-    assert (queued.reanalysis, queued.stack_override) == (Reanalysis.QUEUED, None)
+    assert (queued.reanalysis, queued.hints.stack) == (Reanalysis.QUEUED, None)
     assert worked(lib, clip.id).frames == 61
     clips.update_clip(lib, clip.id, {"stack": "bow"})
     assert worked(lib, clip.id).frames == 31
@@ -76,8 +75,8 @@ def test_an_unknown_one_fails_with_the_list_and_can_be_mended(lib: Library) -> N
 def test_other_formats_have_none(lib: Library) -> None:
     content = bvh()
     with pytest.raises(BadField, match="not with BVH"):
-        clips.create_clip(lib, io.BytesIO(content), NewClip("a.bvh", stack="bow"))
-    clip = clips.create_clip(lib, io.BytesIO(content), NewClip("a.bvh", stack=" ")).clip
+        clips.create_clip(lib, io.BytesIO(content), "a.bvh", {"stack": "bow"})
+    clip = clips.create_clip(lib, io.BytesIO(content), "a.bvh", {"stack": " "}).clip
     with pytest.raises(BadField, match="not with BVH"):
         clips.update_clip(lib, clip.id, {"stack": "bow"})
     assert clips.update_clip(lib, clip.id, {"stack": None}).state is ClipState.QUEUED

@@ -15,7 +15,6 @@ from app.errors import BadField, ClipNotFound, ClipNotReady
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.search.pose.by_pose import pose_distances
 from app.services.clips import catalogue as clips
-from app.services.clips.catalogue import NewClip
 from app.services.find.by_pose import PoseQuery, find_pose
 from app.services.find.hits import Hits
 from app.services.library.library import Library
@@ -197,7 +196,7 @@ def test_a_clip_that_is_not_there_or_not_ready(
 ) -> None:
     with pytest.raises(ClipNotFound):
         find_pose(lib, PoseQuery("clip_of_nobody", time=0.0))
-    made = clips.create_clip(lib, io.BytesIO(some_demo_clips[0].content), NewClip("a.bvh"))
+    made = clips.create_clip(lib, io.BytesIO(some_demo_clips[0].content), "a.bvh")
     with pytest.raises(ClipNotReady):
         find_pose(lib, PoseQuery(made.clip.id, time=0.0))
     assert find_pose(lib, PoseQuery(positions=GOOD)).items == ()

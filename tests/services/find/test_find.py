@@ -11,7 +11,6 @@ from app.demo import DemoClip
 from app.errors import BadField, ClipNotFound, ClipNotReady, EmptyFile, ModelNotFitted, Unreadable
 from app.search.example.methods import Method
 from app.services.clips import catalogue as clips
-from app.services.clips.catalogue import NewClip
 from app.services.find import find
 from app.services.find.find import MotionQuery, WordQuery
 from app.services.find.hits import Hits
@@ -165,7 +164,7 @@ def test_queries_that_cannot_be_used_say_why(ready_library: Library) -> None:
 
 
 def test_a_clip_that_is_not_ready_cannot_be_asked_about(lib: Library) -> None:
-    queued = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), NewClip("a.bvh")).clip
+    queued = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), "a.bvh").clip
     with pytest.raises(ClipNotReady):
         find.find_motion(lib, MotionQuery(queued.id))
     with pytest.raises(ModelNotFitted):

@@ -16,7 +16,6 @@ from app.errors import BadField
 from app.numerics.arrays import FloatArray
 from app.search.windows.overlap_merging import MERGED
 from app.services.clips import catalogue as clips
-from app.services.clips.catalogue import NewClip
 from app.services.find import find
 from app.services.find.find import MotionQuery
 from app.services.find.hits import Hit, Hits
@@ -50,7 +49,7 @@ class Hidden:
 
 def put(lib: Library, name: str, body: FloatArray, rate: float, **labels: Any) -> str:
     content = io.BytesIO(npz_of(body, rate))
-    return clips.create_clip(lib, content, NewClip(f"{name}.npz", **labels)).clip.id
+    return clips.create_clip(lib, content, f"{name}.npz", labels).clip.id
 
 
 @pytest.fixture(scope="session")

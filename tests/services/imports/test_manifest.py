@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from app.errors import KinedexError, TooLarge, Unreadable
 from app.services.imports.manifest import Manifest
 from app.services.imports.manifest_table import MAX_COLUMNS, MAX_ROW, ManifestLimits
+from app.store.clips.record import AnalysisHints, ClipLabels
 
 FEW_ROWS = ManifestLimits(rows=5)
 
@@ -31,18 +32,19 @@ def _read(content: bytes, folder: str = "", limits: ManifestLimits = FEW_ROWS) -
 def test_a_row_tells_all_that_its_columns_hold() -> None:
     manifest = _read(TABLE.encode(), "set")
     row = manifest.row("set/a.bvh")
-    assert (row.person, row.task, row.license, row.source) == ("ada", "walk", "CC0", "me")
-    assert row.words == ("walk", "slow", "left_leg")
-    assert (row.frame_rate, row.metres_per_unit, row.problem) == (60.0, 0.01, None)
+    words = ("walk", "slow", "left_leg")
+    assert row.labels == ClipLabels("a", "ada", "walk", words, "CC0", "me")
+    assert row.hints == AnalysisHints(frame_rate=60.0, metres_per_unit=0.01)
+    assert row.problem is None
     empty = manifest.row("set/deep/b.bvh")
-    assert (empty.person, empty.words, empty.frame_rate) == (None, None, None)
+    assert (empty.labels, empty.hints) == (ClipLabels("b"), AnalysisHints())
 
 
 @pytest.mark.parametrize("separator", [";", "\t"])
 def test_what_spreadsheets_of_other_countries_write_is_read(separator: str) -> None:
     table = "path,person,words\na.bvh,ada,walk slow\n".replace(",", separator)
     row = _read(table.encode()).row("a.bvh")
-    assert (row.person, row.words) == ("ada", ("walk", "slow"))
+    assert (row.labels.person, row.labels.words) == ("ada", ("walk", "slow"))
 
 
 @pytest.mark.parametrize(
@@ -141,7 +143,7 @@ def test_limits_hold_for_all_manifests_of_an_import_together() -> None:
 def test_of_two_manifests_the_later_counts() -> None:
     manifest = _read(b"path,person\nset/a.bvh,ada\n")
     manifest.read(io.BytesIO(b"person,path\nbruno,a.bvh\n"), "set")
-    assert manifest.row("set/a.bvh").person == "bruno"
+    assert manifest.row("set/a.bvh").labels.person == "bruno"
 
 
 def test_recordings_are_named_with_their_line_and_as_seen_from_the_root() -> None:

@@ -18,7 +18,6 @@ from app.motion.motion import Motion
 from app.motion.posing.canonical_body import BODY_ROLES
 from app.numerics.arrays import FloatArray
 from app.services.clips import catalogue as clips
-from app.services.clips.catalogue import NewClip
 from app.services.library.library import Library
 from app.services.library.stored_motion import load_motion
 from app.services.views import export, views
@@ -132,7 +131,7 @@ def test_positions_without_rotations_are_solved(lib: Library) -> None:
         parents=recording.skeleton.parents,
         frame_rate=60.0,
     )
-    clip = clips.create_clip(lib, io.BytesIO(content), NewClip("=a/../<b>?.npz")).clip
+    clip = clips.create_clip(lib, io.BytesIO(content), "=a/../<b>?.npz").clip
     work(lib.settings)
     clip = clips.get_clip(lib, clip.id)
     assert clip.state is ClipState.READY
@@ -188,7 +187,7 @@ def test_a_wrong_field_is_named(
 
 
 def test_only_ready_clips_are_exported(lib: Library) -> None:
-    queued = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), NewClip("a.bvh")).clip
+    queued = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), "a.bvh").clip
     with pytest.raises(ClipNotReady):
         export.export(lib, queued.id, "bvh")
     with pytest.raises(ClipNotFound):

@@ -15,7 +15,6 @@ from app.demo.dances import dance
 from app.errors import BadField, ClipNotFound
 from app.models.keyposes.thresholds import KeyposeThresholds, Thresholds
 from app.services.clips import catalogue as clips
-from app.services.clips.catalogue import NewClip
 from app.services.imports.imports import import_path
 from app.services.library.library import Library
 from app.services.training.annotated import read_annotated
@@ -38,7 +37,7 @@ def danced(tmp_path_factory: pytest.TempPathFactory, dances: list[DemoClip]) -> 
     """Two dances, ready; tests take away again what they name."""
     opened = Library.open(settings_for(tmp_path_factory.mktemp("danced")))
     for made in dances:
-        clips.create_clip(opened, io.BytesIO(made.content), NewClip(made.path, task="dance"))
+        clips.create_clip(opened, io.BytesIO(made.content), made.path, {"task": "dance"})
     work(opened.settings)
     yield opened
     opened.close()
@@ -120,7 +119,7 @@ def test_times_outside_the_clip_are_refused(
 def test_a_clip_may_be_annotated_before_it_is_analysed(
     lib: Library, dances: list[DemoClip]
 ) -> None:
-    queued = clips.create_clip(lib, io.BytesIO(dances[0].content), NewClip("a.bvh")).clip
+    queued = clips.create_clip(lib, io.BytesIO(dances[0].content), "a.bvh").clip
     name_keyposes(lib, queued.id, [1.0])
     work(lib.settings)
     assert clips.get_clip(lib, queued.id).state is ClipState.READY

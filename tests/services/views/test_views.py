@@ -11,7 +11,6 @@ import pytest
 from app.errors import BadField, ClipNotFound, ClipNotReady
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.services.clips import catalogue as clips
-from app.services.clips.catalogue import NewClip
 from app.services.figures.thumbnail import thumbnail
 from app.services.library.library import Library
 from app.services.views import keyposes, views
@@ -94,7 +93,7 @@ def test_a_wrong_field_is_named(
     "view", [views.motion, keyposes.view, views.descriptor, views.thumbnail_svg]
 )
 def test_only_ready_clips_can_be_seen(lib: Library, view: object) -> None:
-    queued = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), NewClip("a.bvh")).clip
+    queued = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), "a.bvh").clip
     with pytest.raises(ClipNotReady):
         view(lib, queued.id)  # type: ignore[operator]
     with pytest.raises(ClipNotFound):

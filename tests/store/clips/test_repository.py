@@ -15,10 +15,20 @@ from app.store.clips import arrays, labels
 from app.store.clips import repository as clips
 from app.store.clips import versions as library
 from app.store.clips.labels import Count
-from app.store.clips.record import AddOutcome, ClipState
+from app.store.clips.record import AddOutcome, AnalysisHints, AttachedAudio, ClipState
 from app.store.store import Store
 from tests.store.conftest import AddClip, facts, new_clip
 from tests.store.stored_arrays import array_versions
+
+HINTS = AnalysisHints(
+    frame_rate=60.0,
+    metres_per_unit=0.01,
+    roles={"hips": "Root"},
+    stack="Take 001",
+    audio_offset=-1.5,
+    tempo=98.0,
+    beats=(0.5, 1.1),
+)
 
 
 def test_a_new_clip_comes_back_as_it_was_given(store: Store) -> None:
@@ -29,16 +39,8 @@ def test_a_new_clip_comes_back_as_it_was_given(store: Store) -> None:
         words=("walk", "left_leg", "walk"),
         license="CC0-1.0",
         source="lab",
-        frame_rate_override=60.0,
-        metres_per_unit_override=0.01,
-        roles_override={"hips": "Root"},
-        stack_override="Take 001",
-        audio_sha256="c" * 64,
-        audio_name="song.mp3",
-        audio_size=7,
-        audio_offset_override=-1.5,
-        tempo_override=98.0,
-        beats_override=(0.5, 1.1),
+        hints=HINTS,
+        audio=AttachedAudio("c" * 64, "song.mp3", 7),
     )
     with store.write() as tx:
         added = clips.add_or_get(tx, new)
@@ -49,9 +51,10 @@ def test_a_new_clip_comes_back_as_it_was_given(store: Store) -> None:
     assert (clip.name, clip.person, clip.task, clip.license) == ("Größe", "anna", "walk", "CC0-1.0")
     assert clip.words == ("walk", "left_leg")
     assert clip.state is ClipState.QUEUED
-    told = ("c" * 64, -1.5, 98.0, (0.5, 1.1))
-    assert clip.overrides == (60.0, 0.01, {"hips": "Root"}, "Take 001", *told)
-    assert (clip.audio_name, clip.audio_size, clip.audio_offset) == ("song.mp3", 7, None)
+    assert clip.hints == HINTS
+    assert clip.audio == AttachedAudio("c" * 64, "song.mp3", 7)
+    assert clip.analysis_input == (HINTS, "c" * 64)
+    assert (clip.audio_offset, clip.audio_begins_at) == (None, -1.5)
     assert clip.created_at.tzinfo is UTC
     assert (clip.frames, clip.roles, clip.warnings, clip.error) == (None, {}, (), None)
 
@@ -82,13 +85,15 @@ def test_a_failed_clip_is_queued_again_with_what_is_given_now(
     clip = add_clip("walk", person="anna", words=("walk",))
     with store.write() as tx:
         clips.set_failed(tx, clip.id, {"code": "unreadable"})
-        again = clips.add_or_get(tx, new_clip("walk", task="run", metres_per_unit_override=0.01))
+        again = clips.add_or_get(
+            tx, new_clip("walk", task="run", hints=AnalysisHints(metres_per_unit=0.01))
+        )
     assert again.outcome is AddOutcome.REQUEUED
     assert again.clip.id == clip.id
     assert again.clip.state is ClipState.QUEUED
     assert again.clip.error is None
     assert (again.clip.person, again.clip.task, again.clip.words) == ("anna", "run", ("walk",))
-    assert again.clip.metres_per_unit_override == 0.01
+    assert again.clip.hints.metres_per_unit == 0.01
 
 
 def test_ready_tells_what_the_analysis_found(add_clip: AddClip) -> None:

@@ -15,7 +15,7 @@ from app.errors import DiskFull
 from app.store import identity
 from app.store.clips import arrays
 from app.store.clips import repository as clips
-from app.store.clips.record import ClipRecord, NewClip
+from app.store.clips.record import ClipLabels, ClipRecord, NewClip
 from app.store.files.reserve import LEAST
 from app.store.jobs import outcomes
 from app.store.store import Store
@@ -40,7 +40,9 @@ def add(store: Store, name: str) -> ClipRecord:
     """A clip with a file and a large array."""
     with store.files.stage(io.BytesIO(name.encode())) as staged, store.write() as tx:
         staged.keep()
-        clip = clips.add_or_get(tx, NewClip(staged.sha256, name, staged.size, name)).clip
+        clip = clips.add_or_get(
+            tx, NewClip(staged.sha256, name, staged.size, ClipLabels(name))
+        ).clip
         large = np.random.default_rng(1).integers(0, 255, ARRAY_BYTES, np.uint8)
         arrays.put_many(tx, clip.id, {"positions": large}, version=1)
         return clip

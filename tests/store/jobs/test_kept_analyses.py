@@ -72,7 +72,7 @@ def test_only_a_verdict_after_a_change_takes_a_ready_clip_away(
     with store.write() as tx:
         clip = make_ready(tx, "walk")
         if is_changed:
-            clips.patch(tx, clip.id, {"frame_rate_override": 12.0})
+            clips.patch(tx, clip.id, {"frame_rate": 12.0})
         claimed = analyse_again(tx, clip)
         outcomes.fail_job(tx, claimed, problem, is_verdict=is_verdict)
         found = clips.get(tx, clip.id)

@@ -24,7 +24,7 @@ from app.errors import BadField, ConfigurationError, DatabaseDamaged, StorageErr
 from app.store import identity
 from app.store.clips import repository as clips
 from app.store.clips import versions as library
-from app.store.clips.record import ClipRecord, NewClip
+from app.store.clips.record import ClipLabels, ClipRecord, NewClip
 from app.store.database.engine import Database
 from app.store.database.tables import file_removals
 from app.store.files.files import FileStore
@@ -46,7 +46,7 @@ def add(store: Store) -> Add:
         content = name.encode()
         with store.files.stage(io.BytesIO(content)) as staged, store.write() as tx:
             staged.keep()
-            new = NewClip(staged.sha256, f"{name}.bvh", staged.size, name)
+            new = NewClip(staged.sha256, f"{name}.bvh", staged.size, ClipLabels(name))
             return clips.add_or_get(tx, new).clip
 
     return one

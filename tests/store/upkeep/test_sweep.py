@@ -14,7 +14,7 @@ from sqlalchemy import select
 
 from app.errors import StorageError
 from app.store.clips import repository as clips
-from app.store.clips.record import ClipRecord, NewClip
+from app.store.clips.record import AttachedAudio, ClipLabels, ClipRecord, NewClip
 from app.store.database.engine import Tx
 from app.store.database.tables import file_removals
 from app.store.files.files import FileStore
@@ -40,7 +40,7 @@ def add(store: Store, name: str, **fields: Any) -> ClipRecord:
     """A clip with its file, as an upload makes it."""
     with store.files.stage(io.BytesIO(name.encode())) as staged, store.write() as tx:
         staged.keep()
-        new = NewClip(staged.sha256, f"{name}.bvh", staged.size, name, **fields)
+        new = NewClip(staged.sha256, f"{name}.bvh", staged.size, ClipLabels(name), **fields)
         return clips.add_or_get(tx, new).clip
 
 
@@ -62,8 +62,8 @@ def start_import(store: Store, content: bytes = b"a ZIP") -> tuple[JobRecord, st
 
 def test_the_files_of_a_deleted_clip_go_with_it(store: Store) -> None:
     skeleton, audio = put(store.files, b"skeleton"), put(store.files, b"audio")
-    clip = add(store, "walk", skeleton_sha256=skeleton, audio_sha256=audio)
-    other = add(store, "run", audio_sha256=audio)
+    clip = add(store, "walk", skeleton_sha256=skeleton, audio=AttachedAudio(audio))
+    other = add(store, "run", audio=AttachedAudio(audio))
     delete(store, clip)
     assert set(store.files) == {other.sha256, audio}
     delete(store, other)

@@ -11,7 +11,7 @@ from sqlalchemy import update
 
 from app.store.clips import arrays
 from app.store.clips import repository as clips
-from app.store.clips.record import NewClip
+from app.store.clips.record import ClipLabels, NewClip
 from app.store.database.tables import clip_arrays
 from app.store.store import Store
 from app.store.upkeep.verify import verify
@@ -25,7 +25,9 @@ def names(store: Store) -> list[str]:
     for name in ("walk", "run", "jump"):
         with store.files.stage(io.BytesIO(name.encode())) as staged, store.write() as tx:
             staged.keep()
-            clip = clips.add_or_get(tx, NewClip(staged.sha256, name, staged.size, name)).clip
+            clip = clips.add_or_get(
+                tx, NewClip(staged.sha256, name, staged.size, ClipLabels(name))
+            ).clip
             found = {"positions": np.zeros((40, 13, 3), np.float32)}
             arrays.put_many(tx, clip.id, found, version=1)
             made.append(staged.sha256)

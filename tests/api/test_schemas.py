@@ -1,0 +1,112 @@
+"""Answers are built from values of other layers, and show only the fields that they name."""
+
+from __future__ import annotations
+
+import dataclasses
+from datetime import UTC, datetime
+from types import SimpleNamespace
+from typing import Any
+
+from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch
+from app.api.schemas.jobs import Job
+from app.services import fields
+from app.services.clips.catalogue import PATCHABLE, Created
+from app.services.imports.manifest import KNOWN
+from app.store.clips.record import (
+    AnalysisHints,
+    AttachedAudio,
+    ClipLabels,
+    ClipRecord,
+    ClipState,
+    ClipWarning,
+)
+from app.store.database.paging import Page
+from app.store.jobs.record import JobKind, JobRecord, JobState
+from tests.api.test_clips import CLIP_FIELDS
+
+NOW = datetime(2026, 1, 2, tzinfo=UTC)
+CLIP = ClipRecord(
+    name="walk",
+    person="anna",
+    task="walk",
+    words=("walk", "slow"),
+    license="CC0",
+    source="lab",
+    id="clip_1",
+    state=ClipState.READY,
+    format="bvh",
+    sha256="a" * 64,
+    frames=90,
+    frame_rate=30.0,
+    declared_frame_rate=None,
+    duration=3.0,
+    joints=22,
+    roles={"hips": "Hips"},
+    missing_roles=("head",),
+    warnings=(ClipWarning("frame_rate_suspect", "looks like 60", 60.0),),
+    created_at=NOW,
+    error={"code": "unreadable", "detail": "Bad."},
+    metres_per_unit=0.01,
+    content_key="secret",
+    file_name="secret.bvh",
+    file_size=7,
+    skeleton_sha256="secret",
+    hints=AnalysisHints(frame_rate=60.0, audio_offset=-1.5),
+    audio=AttachedAudio("b" * 64, "secret.wav", 7),
+    audio_offset=0.5,
+    analysis_version=3,
+    reanalysis=None,
+    is_changed=True,
+    changed_version=4,
+)
+JOB = JobRecord(
+    "job_1", JobKind.INGEST, JobState.QUEUED, 0.0, None, NOW, None, None, {"files": []}, None
+)
+
+
+def test_a_clip_shows_the_fields_that_its_schema_names_and_no_column_else() -> None:
+    shown = Clip.model_validate(CLIP).model_dump(mode="json")
+    assert set(shown) == CLIP_FIELDS
+    assert "secret" not in str(shown)
+    assert (shown["words"], shown["missing_roles"]) == (["walk", "slow"], ["head"])
+    assert shown["warnings"] == [
+        {"code": "frame_rate_suspect", "detail": "looks like 60", "likely": 60.0}
+    ]
+    assert (shown["frame_rate"], shown["has_audio"], shown["audio_offset"]) == (30.0, True, -1.5)
+    assert (shown["error"]["code"], shown["error"]["detail"]) == ("unreadable", "Bad.")
+
+
+def test_an_estimated_offset_is_shown_where_none_was_said() -> None:
+    estimated = dataclasses.replace(CLIP, hints=AnalysisHints())
+    assert Clip.model_validate(estimated).audio_offset == 0.5
+    silent = Clip.model_validate(dataclasses.replace(CLIP, audio=None))
+    assert (silent.has_audio, silent.audio_offset) == (False, None)
+
+
+def test_an_attribute_that_no_schema_names_is_not_shown() -> None:
+    named: dict[str, Any] = {
+        field.name: getattr(JOB, field.name) for field in dataclasses.fields(JOB)
+    }
+    shown = Job.model_validate(SimpleNamespace(**named, owner="secret")).model_dump()
+    assert set(shown) == Job.model_fields.keys()
+
+
+def test_answers_with_other_answers_inside_are_built_at_once() -> None:
+    created = ClipCreated.model_validate(Created(CLIP, JOB, is_new=True))
+    assert created.clip == Clip.model_validate(CLIP)
+    assert created.job == Job.model_validate(JOB)
+    assert set(created.model_dump()) == {"clip", "job"}
+    page = ClipList.model_validate(Page((CLIP,), "more"))
+    assert (page.items, page.next) == ([created.clip], "more")
+
+
+def test_every_label_and_hint_has_its_check_its_form_field_and_its_column() -> None:
+    labels = {field.name for field in dataclasses.fields(ClipLabels)}
+    hints = {field.name for field in dataclasses.fields(AnalysisHints)}
+    assert fields.LABELS.keys() == labels
+    assert {"metres_per_unit" if one == "unit" else one for one in fields.HINTS} == hints
+    assert ClipForm.model_fields.keys() == fields.LABELS.keys() | fields.HINTS.keys()
+    assert ClipPatch.model_fields.keys() == set(PATCHABLE)
+    assert labels < Clip.model_fields.keys()
+    not_in_manifests = {"roles", "stack"}
+    assert {*KNOWN} == (ClipForm.model_fields.keys() - not_in_manifests) | {"fps", "keyposes"}
