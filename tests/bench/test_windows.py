@@ -192,7 +192,7 @@ def test_pieces_hidden_in_an_hour_are_found_and_bounded(
     monkeypatch.setattr(in_windows, "LEAST_PROPOSED", FEW)
     few = _of_pieces(reported, "fused")
     FIGURES.print(f"\n{FEW} places only:{few.told()[:8]}, as where the hour is one of 20", end="")
-    kept = sum(index.bytes_kept for index in reported.lib.windows.values())
+    kept = sum(index.state[1].nbytes for index in reported.lib.windows.values())
     FIGURES.print(f"\nwindows in memory: {kept / hours / 2**20:.1f} MB an hour")
     assert few.average.mean() >= FLOOR_OF_FEW
     for method, floor in FLOORS.items():

@@ -205,12 +205,13 @@ class Labels:
             coded.extend(getattr(clip, name) for clip in clips)
         self.number_of.update((clip.id, first + i) for i, clip in enumerate(clips))
 
-    def remove(self, clip_ids: Iterable[str]) -> None:
-        """Take away those of the clips that are there."""
+    def remove(self, clip_ids: Iterable[str]) -> list[int]:
+        """Take away those of the clips that are there, and return their numbers."""
         numbers = [self.number_of.pop(i) for i in clip_ids if i in self.number_of]
         if numbers:
             self._alive = self._alive.apart()  # views that were taken keep theirs
             self._alive.view()[numbers] = False
+        return numbers
 
     def codes(self, wanted: ClipFilter, *, refused: bool = False) -> dict[str, list[int]]:
         """For each label that a filter names, the codes that pass, or those that are refused."""

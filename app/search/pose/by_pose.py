@@ -21,8 +21,8 @@ from app.search.index.rows import Layout, RowsView
 from app.search.pose.pose_places import Places, PosePlace, pose_places
 from app.search.ranking.cursor import Position
 
-POSES = Layout("pose_cover", POSE_WIDTH, told=2, several=True)
-"""Rows of the index of poses; they tell frame and radius."""
+POSES = Layout(("pose_cover",), POSE_WIDTH, facts=2, several=True)
+"""Rows of the index of poses; their facts are frame and radius."""
 POSITIONS = "role_positions"
 AT_ONCE = 64
 """Clips looked into at a time."""
@@ -135,5 +135,5 @@ def _bounds(rows: RowsView, query: FloatArray) -> FloatArray:
     squares, error = squared_distances(rows.blocks, query)
     squares -= np.float32(error)
     np.sqrt(np.maximum(squares, 0.0, out=squares), out=squares)
-    squares -= rows.told[:, _RADIUS]
+    squares -= rows.facts[:, _RADIUS]
     return np.asarray(np.minimum.reduceat(squares, rows.starts))

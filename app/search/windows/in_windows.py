@@ -65,10 +65,10 @@ def by_both(
     if not nearest:
         return rest, None
     regions = _regions(proposed, [place.index for place in nearest], piece)
-    ids = proposed.spans.ids
-    matched = matches_in(ids, proposed.spans.seconds(), regions, piece, barred, load)
-    centres = (matched.starts + matched.ends) / 2
-    head = matched.distances + VECTOR_WEIGHT * proposed.distances_near(matched.owners, centres)
+    ids = proposed.windows.ids
+    matched = matches_in(ids, proposed.windows.seconds(), regions, piece, barred, load)
+    centers = (matched.starts + matched.ends) / 2
+    head = matched.distances + VECTOR_WEIGHT * proposed.distances_near(matched.owners, centers)
     last = nearest[-1]
     end = float(head.max(initial=0.0))
     if anchor is None or anchor.end is None:
@@ -97,10 +97,10 @@ def _regions(proposed: Proposals, chosen: list[int], piece: Piece) -> list[Regio
     """Where the chosen places could really be: half the query's length more on both sides."""
     hop = scale_for(len(piece.features)).hop / WARPING_RATE
     margin = piece.seconds / 2 + hop
-    rows = proposed.rows[chosen]
+    rows = proposed.allowed[chosen]
     firsts = np.maximum((proposed.starts[rows] - margin) * WARPING_RATE, 0).astype(int)
     stops = np.ceil((proposed.ends[rows] + margin) * WARPING_RATE).astype(int)
-    owners = proposed.spans.owners[rows]
+    owners = proposed.windows.owners[rows]
     return merged(
         Region(int(clip), int(first), int(stop))
         for clip, first, stop in zip(owners, firsts, stops, strict=True)

@@ -4,7 +4,7 @@ A clip's file is kept, so that whatever an analysis finds can be found again by 
 A ready clip stays ready and searchable with the analysis that it has, until the new one replaces
 it in one transaction. So during an upgrade searches go on over analyses of two versions: a hit
 may rest on the older one, and a clip whose older arrays have another shape is left out of the
-index that needs them (`search.rows`, `search.span_index`) until it has been analysed again.
+index that needs them (`search.index.rows`) until it has been analyzed again.
 """
 
 from __future__ import annotations

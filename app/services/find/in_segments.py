@@ -6,13 +6,12 @@ import numpy as np
 
 from app.analysis.segments.segments import SEGMENT_SPANS, SEGMENT_VECTORS, segment_vectors
 from app.numerics.arrays import BoolArray, FloatArray
-from app.numerics.euclidean import distances
 from app.search.example.distances import FEATURES
 from app.search.example.methods import Method
-from app.search.index.span_index import Spans
 from app.search.ranking import cursor as cursors
 from app.search.ranking.cursor import Position
 from app.search.windows.overlap_merging import Candidates, places
+from app.search.windows.parts import Parts
 from app.search.windows.proposals import Barred
 from app.services import fields
 from app.services.find.hits import Hits
@@ -90,21 +89,20 @@ def _candidates(
 ) -> Candidates:
     """All segments that are meant, with their distances."""
     lib.segments.catch_up(lib.store)
-    spans = lib.segments.view(wanted)
-    rows = spans.rows()
-    rows = rows[~_touching(spans, barred)[rows]]
-    apart = distances(vector[None], spans.vectors[rows], spans.squares[rows])[0]
+    parts = Parts.of(lib.segments.state[1], wanted)
+    apart = parts.distances(vector[None])[0].astype(float)
+    kept = np.flatnonzero(~_touching(parts, barred))
     return Candidates(
-        spans.ids, spans.owners[rows], spans.starts[rows], spans.ends[rows], apart.astype(float)
+        parts.ids, parts.owners[kept], parts.starts[kept], parts.ends[kept], apart[kept]
     )
 
 
-def _touching(spans: Spans, barred: Barred | None) -> BoolArray:
+def _touching(parts: Parts, barred: Barred | None) -> BoolArray:
     """(n,) whether a segment overlaps what is barred; the next one, which only touches it, does
     not."""
     if barred is None:
-        return np.zeros(len(spans), dtype=bool)
-    owned = (spans.ids == barred.clip_id)[spans.owners]
+        return np.zeros(len(parts), dtype=bool)
+    owned = (parts.ids == barred.clip_id)[parts.owners]
     # the ends are float32, times that a client sends are not
-    inside = (spans.starts + 1e-3 < barred.end) & (spans.ends - 1e-3 > barred.start)
+    inside = (parts.starts + 1e-3 < barred.end) & (parts.ends - 1e-3 > barred.start)
     return np.asarray(owned & inside)

@@ -10,12 +10,12 @@ from app.analysis.descriptors.windows import WindowScale
 from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.search.example.distances import FEATURES
 from app.search.example.methods import Method
-from app.search.index.span_index import Spans
 from app.search.ranking import cursor as cursors
 from app.search.ranking.cursor import Anchor, Position
 from app.search.ranking.ranking import score
 from app.search.windows.in_windows import WINDOW_SCORES, by_both, by_warping, by_windows
 from app.search.windows.overlap_merging import Candidates, Place, places
+from app.search.windows.parts import Parts
 from app.search.windows.proposals import Barred, Piece
 from app.services import fields
 from app.services.find.hits import Hit, Hits
@@ -94,10 +94,10 @@ def _rank(
     return by_both(view, piece, barred, load, after.anchor if after else None)
 
 
-def _view(lib: Library, wanted: ClipFilter, scale: WindowScale) -> Spans:
+def _view(lib: Library, wanted: ClipFilter, scale: WindowScale) -> Parts:
     index = lib.windows[scale.name]
     index.catch_up(lib.store)
-    return index.view(wanted)
+    return Parts.of(index.state[1], wanted)
 
 
 def _piece(asked: Answered, question: Question) -> Piece:

@@ -20,7 +20,7 @@ from tests.search.indexed import indexed
 from tests.search.walking import walk, walked
 
 WIDTH = 3
-LAYOUT = Layout("vector", WIDTH)
+LAYOUT = Layout(("vector",), WIDTH)
 QUERY = np.zeros(WIDTH, dtype=np.float32)
 BRIEF = settings(max_examples=60, deadline=None)
 

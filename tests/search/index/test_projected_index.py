@@ -133,7 +133,7 @@ def test_a_clip_that_goes_while_it_is_computed_disturbs_nothing(store: Store, ad
 def test_it_goes_on_when_the_index_drops_its_dead_rows(
     store: Store, add: Add, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(rows, "FEW_DEAD", 2)
+    monkeypatch.setattr(rows, "MAX_FEW_DEAD", 2)
     monkeypatch.setattr(beside_module, "BATCH", 3)
     ids = [add(f"c{i}") for i in range(10)]
     index, model = VectorIndex(), Model(store)

@@ -258,7 +258,7 @@ def test_no_search_waits_for_another(
 OTHER_PROCESS = """
 import sys
 from pathlib import Path
-from app.store import clips
+from app.store.clips import repository as clips
 from app.store.store import Store
 
 store = Store.open(sys.argv[1], Path(sys.argv[2]))

@@ -11,11 +11,12 @@ import pytest
 
 from app.analysis.descriptors.windows import WIDTH, RunningSums, WindowScale, window_arrays
 from app.numerics.arrays import FloatArray
-from app.search.index.span_index import SpanRows, Spans
+from app.search.index.rows import Rows
 from app.search.windows import in_windows
 from app.search.windows import warped_matches as matches
 from app.search.windows.in_windows import by_both, by_warping, by_windows
 from app.search.windows.overlap_merging import Candidates, places
+from app.search.windows.parts import Parts, parts_layout
 from app.search.windows.proposals import MOST_WINDOWS, Barred, Piece, propose, scale_for
 from app.search.windows.warped_matches import Region, matches_in, merged
 from tests.search.indexed import indexed
@@ -38,15 +39,16 @@ class Clips:
     def seconds(self) -> np.ndarray:
         return np.array([len(one) / 10 for one in self.features.values()])
 
-    def view(self, scale: WindowScale) -> Spans:
-        rows = SpanRows(WIDTH)
-        arrays = [window_arrays(one) for one in self.features.values()]
-        rows.add(
-            [indexed(clip_id) for clip_id in self.features],
-            [a[scale.vectors] for a in arrays],
-            [a[scale.spans] for a in arrays],
+    def view(self, scale: WindowScale) -> Parts:
+        rows = Rows(parts_layout(scale.vectors, scale.spans, WIDTH))
+        arrays = {clip_id: window_arrays(one) for clip_id, one in self.features.items()}
+        rows.put(
+            [
+                indexed(clip_id, np.hstack([own[scale.spans], own[scale.vectors]]))
+                for clip_id, own in arrays.items()
+            ]
         )
-        return rows.view().spans
+        return Parts.of(rows.view())
 
     def load(self, clip_ids: Sequence[str], _: str) -> Mapping[str, FloatArray]:
         return {clip_id: self.features[clip_id] for clip_id in clip_ids}
@@ -73,22 +75,23 @@ def test_proposals_are_those_of_the_obvious_loop(some: Clips, frames: int) -> No
     piece = Piece(smooth(frames / 10, 99), frames / 10)
     scale = scale_for(frames)
     found = propose(some.view, piece, None)
-    spans = found.spans
+    windows = found.windows
+    vectors = np.concatenate([block.vectors for block in windows.view.blocks])
     hops = _hops(frames, scale)
     assert len(hops) <= MOST_WINDOWS
     firsts = [min(hop * scale.hop, max(frames - scale.frames, 0)) for hop in hops]
     length = scale.frames if len(hops) > 1 else frames
     cuts = np.array([[first, first + length] for first in firsts])
     queries = RunningSums(piece.features).vectors(cuts).astype(float)
-    for row in range(0, len(spans), 7):
-        clip = np.flatnonzero(spans.owners == spans.owners[row])
+    for row in range(0, len(windows), 7):
+        clip = np.flatnonzero(windows.owners == windows.owners[row])
         behind = clip[clip >= row]
         apart = [
-            np.linalg.norm(spans.vectors[behind[min(hop, len(behind) - 1)]] - query)
+            np.linalg.norm(vectors[behind[min(hop, len(behind) - 1)]] - query)
             for hop, query in zip(hops, queries, strict=True)
         ]
         assert found.distances[row] == pytest.approx(np.mean(apart), rel=1e-4)
-        assert 0 <= found.starts[row] < found.ends[row] <= spans.ends[clip[-1]] + 1e-6
+        assert 0 <= found.starts[row] < found.ends[row] <= windows.ends[clip[-1]] + 1e-6
 
 
 def _hops(frames: int, scale: WindowScale) -> list[int]:
