@@ -10,7 +10,7 @@ from app.motion.roles.joint_roles import JointRole
 from app.search.index.filters import LONGEST_LABEL, MOST_LABELS
 from app.services import fields
 from app.services.views.frame_rates import LEAST_FPS, MOST_FPS
-from app.store.database.paging import MAX_CURSOR_LENGTH
+from app.store.database.cursor_codec import MAX_CURSOR_LENGTH
 
 Value = TypeVar("Value")
 
