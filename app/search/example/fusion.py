@@ -22,21 +22,21 @@ SHORTLIST = 300
 DTW_WEIGHT = 0.25
 """Weight of the DTW distance beside the vector's."""
 
-NEIGHBOURS = 0.7
+NEIGHBORS = 0.7
 """A clip's neighbours in the graph, as a share of the square root of the number of clips."""
 
 DETOUR = 1.0
 """Weight of being far on the graph, in units of the distance between neighbours."""
 
-LEAST_CLOSENESS = 1e-3
+MIN_CLOSENESS = 1e-3
 """What is less close on the graph is as far as if there were no way."""
 
-MOST_DETOUR = 5.0
+MAX_DETOUR = 5.0
 """The graph adds at most so many times the distance itself: the same motion stays at 0."""
 
 
 @dataclass(frozen=True, slots=True)
-class Surroundings:
+class FusedDistance:
     """The part of the fused distance that needs only vectors, which is cheaper than warping.
 
     near: (n,) the distances of the vectors to the query; far: (n,) the most that the graph adds.
@@ -46,14 +46,14 @@ class Surroundings:
     far: FloatArray
 
     @classmethod
-    def of(cls, query: FloatArray, vectors: FloatArray) -> Surroundings:
+    def of(cls, query: FloatArray, vectors: FloatArray) -> FusedDistance:
         """query: (d,) and vectors: (n, d), motion vectors."""
         if not len(vectors):
             return cls(np.zeros(0), np.zeros(0))
         between = _distances(np.vstack([query, vectors]).astype(np.float64))
-        radii = neighbour_radii(between, max(1, round(NEIGHBOURS * len(between) ** 0.5)))
+        radii = neighbour_radii(between, max(1, round(NEIGHBORS * len(between) ** 0.5)))
         closeness = diffused_closeness(between, radii)[1:]
-        far = -np.log((closeness + LEAST_CLOSENESS) / (1.0 + LEAST_CLOSENESS))
+        far = -np.log((closeness + MIN_CLOSENESS) / (1.0 + MIN_CLOSENESS))
         return cls(between[0, 1:], float(np.median(radii)) * far)
 
     def distances(self, rows: IntArray, warped: FloatArray) -> FloatArray:
@@ -63,7 +63,7 @@ class Surroundings:
         the results are lower bounds.
         """
         straight = self.near[rows] + DTW_WEIGHT * warped
-        return np.asarray(straight + DETOUR * np.minimum(self.far[rows], MOST_DETOUR * straight))
+        return np.asarray(straight + DETOUR * np.minimum(self.far[rows], MAX_DETOUR * straight))
 
 
 def _distances(points: FloatArray) -> FloatArray:

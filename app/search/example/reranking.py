@@ -13,15 +13,15 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray
 from app.numerics.nearest import DECIMALS
-from app.search.index.nearest_ranking import Near
+from app.search.index.nearest_ranking import NearestRanking
 from app.search.ranking.cursor import Anchor, Position
-from app.search.ranking.lower_bounds import Bounded, Bounds
+from app.search.ranking.lower_bounds import LowerBoundRanking, LowerBounds
 from app.search.ranking.ranking import IdArray, Page
 
 STEP = 10.0**-DECIMALS
 """Between the last of the shortlist and what follows, so that a distance tells them apart."""
 
-Rerank = Callable[[Page], Bounds]
+Rerank = Callable[[Page], LowerBounds]
 """How a shortlist is ranked anew."""
 
 
@@ -34,7 +34,7 @@ class ReRanked:
     """
 
     def __init__(
-        self, first: Near, rerank: Rerank, size: int, anchor: Anchor | None = None
+        self, first: NearestRanking, rerank: Rerank, size: int, anchor: Anchor | None = None
     ) -> None:
         """first: all clips; size: of the shortlist; anchor: of the cursor that goes on."""
         self._first = first
@@ -116,12 +116,12 @@ class ReRanked:
         return self._first.until(self._given.distance, self._given.clip_id)
 
     @cached_property
-    def _head(self) -> Bounded:
+    def _head(self) -> LowerBoundRanking:
         clips, given = self._rerank(self._shortlist), self._given
         if given is None or given.end is None:
-            return Bounded(clips)
+            return LowerBoundRanking(clips)
         # What came since the first page must not overtake what follows the shortlist.
-        return Bounded(clips, most=given.end)
+        return LowerBoundRanking(clips, most=given.end)
 
 
 def _shift(anchor: Anchor, end: float) -> float:

@@ -19,9 +19,9 @@ from app.store.clips.filter import ClipFilter
 LABEL_KEYS = ("person", "task", "word", "license", "source")
 NOT = "not_"
 REFUSAL_KEYS = tuple(NOT + key for key in LABEL_KEYS)
-MOST_LABELS = 100
+MAX_LABELS = 100
 """Labels of one kind that a filter names."""
-LONGEST_LABEL = 300
+MAX_LABEL_LENGTH = 300
 """Characters; no clip carries a longer one."""
 DURATION_KEYS = ("min_duration", "max_duration")
 
@@ -71,8 +71,8 @@ def _labels(key: str, value: Any) -> tuple[str, ...]:
         raise ValueError("must be a string, or an array of strings")
     if not values:
         raise ValueError("an empty array has no meaning; leave the key out")
-    if len(values) > MOST_LABELS or any(len(v) > LONGEST_LABEL for v in values):
-        raise ValueError(f"must be at most {MOST_LABELS}, of at most {LONGEST_LABEL} characters")
+    if len(values) > MAX_LABELS or any(len(v) > MAX_LABEL_LENGTH for v in values):
+        raise ValueError(f"must be at most {MAX_LABELS}, of at most {MAX_LABEL_LENGTH} characters")
     return tuple(as_kept(key, v) for v in values)
 
 

@@ -137,19 +137,19 @@ class LabelView:
     coded: dict[str, IntArray]
     labels: Labels
 
-    def passing(self, wanted: ClipFilter, exclude: Iterable[str] = ()) -> BoolArray:
+    def mask(self, clip_filter: ClipFilter, exclude: Iterable[str] = ()) -> BoolArray:
         """(n,) whether each clip passes a filter and is not excluded.
 
         The state and the name are not looked at: every clip here is ready.
         """
         mask = self.alive.copy()
-        if wanted.min_duration is not None:
-            mask &= self.durations >= wanted.min_duration
-        if wanted.max_duration is not None:
-            mask &= self.durations <= wanted.max_duration
-        for name, codes in self.labels.codes(wanted).items():
+        if clip_filter.min_duration is not None:
+            mask &= self.durations >= clip_filter.min_duration
+        if clip_filter.max_duration is not None:
+            mask &= self.durations <= clip_filter.max_duration
+        for name, codes in self.labels.codes(clip_filter).items():
             mask &= _any_of(self.coded[name], codes)
-        for name, codes in self.labels.codes(wanted, refused=True).items():
+        for name, codes in self.labels.codes(clip_filter, refused=True).items():
             mask &= ~_any_of(self.coded[name], codes)
         for clip_id in exclude:
             mask[self._numbers_of(clip_id)] = False
@@ -213,15 +213,15 @@ class Labels:
             self._alive.view()[numbers] = False
         return numbers
 
-    def codes(self, wanted: ClipFilter, *, refused: bool = False) -> dict[str, list[int]]:
+    def codes(self, clip_filter: ClipFilter, *, refused: bool = False) -> dict[str, list[int]]:
         """For each label that a filter names, the codes that pass, or those that are refused."""
         before = "not_" if refused else ""
         found = {
             name: coded.codes(values)
             for name, coded in self._named.items()
-            if (values := getattr(wanted, before + name))
+            if (values := getattr(clip_filter, before + name))
         }
-        words = getattr(wanted, before + "word")
+        words = getattr(clip_filter, before + "word")
         return found | ({"word": self.words.codes(words)} if words else {})
 
     def clip_at(self, number: int, array: NDArray[Any] | None) -> IndexedClip:

@@ -34,7 +34,7 @@ def nothing_known() -> tuple[Sequence[str], FloatArray]:
 
 
 @dataclass(frozen=True, slots=True)
-class Beside:
+class ModelRowsView:
     """Rows of a model for the n clips of an index at one moment.
 
     values: (n, width) float32, 0 where nothing could be computed; there: (n,) whether it could;
@@ -46,7 +46,7 @@ class Beside:
     series: object
 
 
-class RowsBeside:
+class ModelRows:
     """Rows (width,) float32 of an index's clips, by one version of one model at a time."""
 
     def __init__(self) -> None:
@@ -65,7 +65,7 @@ class RowsBeside:
         width: int,
         compute: Compute,
         known: Known = nothing_known,
-    ) -> Beside:
+    ) -> ModelRowsView:
         """The rows of all clips of an index, always the same one.
 
         model: id of the model that `compute` and what is `known` are of.
@@ -93,4 +93,4 @@ class RowsBeside:
             if len(self._there) >= self._kept_for:
                 self._kept = {}
             values, there = self._values.view()[: len(ids)], self._there.view()[: len(ids)]
-            return Beside(values, there, self._values)
+            return ModelRowsView(values, there, self._values)

@@ -17,7 +17,7 @@ FIRST_LOOK = 256
 """Clips taken at first where it is not known how many are meant."""
 
 
-class Near:
+class NearestRanking:
     """A ranking (see `rank.Ranked`) over the rows of an index, one row a clip.
 
     A page costs one pass over the vectors, however deep it lies.
@@ -25,13 +25,13 @@ class Near:
 
     anchor = None
 
-    def __init__(self, version: int, rows: RowsView, passing: BoolArray, query: FloatArray) -> None:
-        """passing: (n,) the clips that are meant; query: (width,); version: the library's."""
+    def __init__(self, version: int, rows: RowsView, mask: BoolArray, query: FloatArray) -> None:
+        """mask: (n,) the clips that are meant; query: (width,); version: the library's."""
         self.version = version
         self._rows = rows
-        self._passing = passing
+        self._passing = mask
         self._query = query
-        self._masks = rows.masks(passing)
+        self._masks = rows.masks(mask)
 
     def __len__(self) -> int:
         return int(np.count_nonzero(self._passing))

@@ -10,8 +10,8 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 from app.numerics.nearest import Block, squared_lengths
 from app.search.index.labels import Column
-from app.search.index.model_rows import Beside, Compute, Known, RowsBeside, nothing_known
-from app.search.index.nearest_ranking import Near
+from app.search.index.model_rows import Compute, Known, ModelRows, ModelRowsView, nothing_known
+from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.vector_index import VectorIndex
 from app.store.clips.filter import ClipFilter
 
@@ -21,7 +21,7 @@ class ProjectedIndex:
 
     def __init__(self, index: VectorIndex) -> None:
         self._index = index
-        self._coordinates = RowsBeside()
+        self._coordinates = ModelRows()
         self._squares = Column(np.float32)
         self._series: object = None
         self._lock = threading.Lock()
@@ -31,10 +31,10 @@ class ProjectedIndex:
         model: str,
         project: Compute,
         query: FloatArray,
-        wanted: ClipFilter,
+        clip_filter: ClipFilter,
         exclude: frozenset[str] = frozenset(),
         known: Known = nothing_known,
-    ) -> Near:
+    ) -> NearestRanking:
         """The clips that pass a filter, ranked by how far their coordinates are from `query` (k,).
 
         model: id of the model that `project`, `query` and what is `known` are of. The index has
@@ -43,9 +43,9 @@ class ProjectedIndex:
         version, rows = self._index.state
         beside = self._coordinates.of(rows.labels, model, len(query), project, known)
         rows = replace(rows, blocks=(self._block(beside),))
-        return Near(version, rows, rows.labels.passing(wanted, exclude), query)
+        return NearestRanking(version, rows, rows.labels.mask(clip_filter, exclude), query)
 
-    def _block(self, beside: Beside) -> Block:
+    def _block(self, beside: ModelRowsView) -> Block:
         """Coordinates of all rows; 0 for those of clips that are gone."""
         count = len(beside.values)
         with self._lock:

@@ -16,7 +16,7 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray
 from app.search.index import usable_arrays
-from app.search.index.nearest_ranking import Near
+from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.rows import Layout, Rows, RowsView
 from app.search.ranking.ranking import IdArray
 from app.store.clips import index_feed
@@ -93,19 +93,21 @@ class VectorIndex:
                 self._follow(tx, now)
             return now
 
-    def candidates(self, wanted: ClipFilter, exclude: frozenset[str] = frozenset()) -> Candidates:
+    def candidates(
+        self, clip_filter: ClipFilter, exclude: frozenset[str] = frozenset()
+    ) -> Candidates:
         """The clips that pass a filter, without distances."""
         version, rows = self._state
         labels = rows.labels
-        passing = labels.passing(wanted, exclude)
-        return Candidates(version, labels.ids[passing], labels.durations[passing])
+        mask = labels.mask(clip_filter, exclude)
+        return Candidates(version, labels.ids[mask], labels.durations[mask])
 
     def nearest(
-        self, query: FloatArray, wanted: ClipFilter, exclude: frozenset[str] = frozenset()
-    ) -> Near:
+        self, query: FloatArray, clip_filter: ClipFilter, exclude: frozenset[str] = frozenset()
+    ) -> NearestRanking:
         """The clips that pass a filter, ranked by Euclidean distance to `query` (width,)."""
         version, rows = self._state
-        return Near(version, rows, rows.labels.passing(wanted, exclude), query)
+        return NearestRanking(version, rows, rows.labels.mask(clip_filter, exclude), query)
 
     def _follow(self, tx: Tx, now: int) -> None:
         """Take what changed up to version `now`; what searches see changes at once, at the end."""

@@ -60,18 +60,18 @@ class PoseRanking:
     def __init__(
         self,
         rows: RowsView,
-        passing: BoolArray,
+        mask: BoolArray,
         query: FloatArray,
         load: Loader,
         places: Places = Places.BEST,
     ) -> None:
-        """rows: of POSES; passing: (n,) the clips that are meant; query: (36,) its vector."""
+        """rows: of POSES; mask: (n,) the clips that are meant; query: (36,) its vector."""
         self._ids = rows.labels.ids
         self._query = query.astype(np.float64)
         self._load = load
         self._places = places
         self._bounds = _bounds(rows, query)
-        self._passing = passing
+        self._passing = mask
 
     def page(self, after: Position | None, limit: int) -> PosePage:
         """The first `limit` places behind a position; its clip id is a `PoseHit.key`'s."""

@@ -17,7 +17,7 @@ from app.numerics.nearest import DECIMALS
 from app.search.ranking.cursor import Position
 from app.search.ranking.ranking import IdArray, Page, Ranking
 
-FEWEST = 16
+MIN_MEASURED = 16
 """Clips measured at a time, at least: one costs little less."""
 
 Measure = Callable[[IntArray], FloatArray]
@@ -27,7 +27,7 @@ They depend on nothing but the clip, however often and beside whatever it is mea
 
 
 @dataclass(frozen=True, slots=True)
-class Bounds:
+class LowerBounds:
     """Clips (n,), what their distances are not below (n,), and how they are measured."""
 
     ids: IdArray
@@ -35,10 +35,10 @@ class Bounds:
     measure: Measure
 
 
-class Bounded:
+class LowerBoundRanking:
     """Clips by distance, measured as pages ask; those that are gone are left out."""
 
-    def __init__(self, clips: Bounds, most: float = np.inf) -> None:
+    def __init__(self, clips: LowerBounds, most: float = np.inf) -> None:
         """most: distances are no larger, whatever is measured."""
         self._ids = clips.ids
         self._measure = clips.measure
@@ -67,7 +67,7 @@ class Bounded:
             page = self._so_far().page(after, limit + 1)
             if len(page.ids) <= limit:
                 missing = limit + 1 - len(page.ids)
-                some = self._nearest_bounds(max(missing, FEWEST))
+                some = self._nearest_bounds(max(missing, MIN_MEASURED))
             else:
                 some = self._least <= page.distances[-1]
             if not self._look(some):

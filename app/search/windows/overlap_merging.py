@@ -1,6 +1,6 @@
 """Places: parts of clips in order of distance, those that overlap merged into the nearest.
 
-Of two that share more than MERGED of the shorter one only the nearer is told (non-maximum
+Of two that share more than MAX_OVERLAP of the shorter one only the nearer is told (non-maximum
 suppression, greedy). Only as many are looked at as a page needs.
 """
 
@@ -17,7 +17,7 @@ from app.numerics.arrays import FloatArray, IntArray
 from app.search.ranking.cursor import Position
 from app.search.ranking.ranking import DECIMALS, IdArray
 
-MERGED = 0.2
+MAX_OVERLAP = 0.2
 """Share of the shorter of two places; those that overlap by more are one."""
 
 FIRST_LOOK = 2048
@@ -47,7 +47,7 @@ class Candidates:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class FoundInterval:
     """A part of a clip, in seconds, and how far it is; index: the candidate that it was."""
 
     clip_id: str
@@ -62,15 +62,15 @@ class Place:
         return f"{self.clip_id} {self.start:013.4f} {self.end:013.4f}"
 
 
-def places(
+def merge_overlapping(
     found: Candidates, count: int, after: Position | None = None, until: float = np.inf
-) -> tuple[list[Place], bool]:
+) -> tuple[list[FoundInterval], bool]:
     """The `count` nearest places behind a position, and whether there are more.
 
     until: the largest distance that is told.
     """
     behind = (-1.0, "") if after is None else (after.distance, after.clip_id)
-    told: list[Place] = []
+    told: list[FoundInterval] = []
     for place in _merged(found):
         if place.distance > until:
             break
@@ -81,7 +81,7 @@ def places(
     return told, False
 
 
-def _merged(found: Candidates) -> Iterator[Place]:
+def _merged(found: Candidates) -> Iterator[FoundInterval]:
     taken: dict[int, _Taken] = {}
     for index in _nearest_first(found):
         check()
@@ -89,7 +89,7 @@ def _merged(found: Candidates) -> Iterator[Place]:
         start, end = float(found.starts[index]), float(found.ends[index])
         if taken.setdefault(owner, _Taken()).take(start, end):
             distance = round(float(found.distances[index]), DECIMALS)
-            yield Place(str(found.ids[owner]), start, end, distance, index)
+            yield FoundInterval(str(found.ids[owner]), start, end, distance, index)
 
 
 class _Taken:
@@ -106,7 +106,7 @@ class _Taken:
             if other_start >= end:
                 break
             shared = min(end, other_end) - max(start, other_start)
-            if shared > MERGED * min(end - start, other_end - other_start):
+            if shared > MAX_OVERLAP * min(end - start, other_end - other_start):
                 return False
         insort(self._spans, (start, end))
         self._longest = max(self._longest, end - start)

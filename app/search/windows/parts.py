@@ -45,7 +45,7 @@ class Parts:
         """The parts in a view of an index that has a `parts_layout`."""
         if view.owners is None:
             raise ValueError("an index of parts has several rows a clip")
-        rows = np.flatnonzero(view.rows_of(view.labels.passing(clip_filter)))
+        rows = np.flatnonzero(view.rows_of(view.labels.mask(clip_filter)))
         # `take` is many times as fast as an index in brackets.
         starts, ends = np.ascontiguousarray(view.facts.take(rows, axis=0).T)
         return cls(view, view.labels.ids, rows, view.owners.take(rows), starts, ends)

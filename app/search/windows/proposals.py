@@ -12,7 +12,7 @@ from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.search.windows.overlap_merging import Candidates
 from app.search.windows.parts import Parts
 
-MOST_WINDOWS = 16
+MAX_WINDOWS = 16
 """Of a long query; they stand farther apart the longer it is."""
 
 View = Callable[[WindowScale], Parts]
@@ -20,7 +20,7 @@ View = Callable[[WindowScale], Parts]
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class QuerySegment:
     """The query: features (m, 82) at 10 Hz, and how long it is in seconds."""
 
     features: FloatArray
@@ -28,7 +28,7 @@ class Piece:
 
 
 @dataclass(frozen=True, slots=True)
-class Barred:
+class ExcludedInterval:
     """A part of a clip, in seconds, in which nothing may be found: the query itself."""
 
     clip_id: str
@@ -41,7 +41,7 @@ class Proposals:
     """For each of n windows the place where the query would be, and its distance.
 
     starts, ends: (n,) seconds; distances: (n,); allowed: (k,) the windows that do not touch what
-    is barred.
+    is excluded.
     """
 
     windows: Parts
@@ -79,22 +79,22 @@ def scale_for(frames: int) -> WindowScale:
     return filled[-1] if filled else WINDOW_SCALES[0]
 
 
-def propose(view: View, piece: Piece, barred: Barred | None) -> Proposals:
+def propose(view: View, segment: QuerySegment, excluded: ExcludedInterval | None) -> Proposals:
     """Compare a query with all windows of the scale that suits it.
 
     A query that is longer than a window is cut into windows itself, and compared with as many
     in their order; where a clip ends before they do, its last window stands for the missing.
     """
-    scale = scale_for(len(piece.features))
+    scale = scale_for(len(segment.features))
     windows = view(scale)
-    steps = _steps(len(piece.features), scale)
-    apart = windows.distances(_vectors(piece, scale, steps))
+    steps = _steps(len(segment.features), scale)
+    apart = windows.distances(_vectors(segment, scale, steps))
     lasts, numbers = windows.last_parts(), np.arange(len(windows))
     total = np.zeros(len(windows))
     for step, row in zip(steps, apart, strict=True):
         total += row[np.minimum(numbers + step, lasts)]
-    starts, ends = _places(windows, piece.seconds, lasts, is_one=len(steps) == 1)
-    allowed = np.flatnonzero(~_touching(windows, starts, ends, barred))
+    starts, ends = _places(windows, segment.seconds, lasts, is_one=len(steps) == 1)
+    allowed = np.flatnonzero(~_touching(windows, starts, ends, excluded))
     return Proposals(windows, starts, ends, total / len(steps), allowed)
 
 
@@ -103,16 +103,16 @@ def _steps(frames: int, scale: WindowScale) -> IntArray:
     last = round((frames - scale.frames) / scale.hop)
     if last <= 0:
         return np.zeros(1, dtype=np.int64)
-    apart = max(scale.frames // (2 * scale.hop), -(-last // (MOST_WINDOWS - 1)), 1)
+    apart = max(scale.frames // (2 * scale.hop), -(-last // (MAX_WINDOWS - 1)), 1)
     return np.unique(np.append(np.arange(0, last, apart), last))
 
 
-def _vectors(piece: Piece, scale: WindowScale, steps: IntArray) -> FloatArray:
+def _vectors(segment: QuerySegment, scale: WindowScale, steps: IntArray) -> FloatArray:
     """(q, d) float32 vectors of the query's windows, or of all of it where there is one."""
-    frames = len(piece.features)
+    frames = len(segment.features)
     firsts = np.minimum(steps * scale.hop, max(frames - scale.frames, 0))
     stops = firsts + scale.frames if len(steps) > 1 else np.array([frames])
-    vectors = RunningSums(piece.features).vectors(np.stack([firsts, stops], axis=1))
+    vectors = RunningSums(segment.features).vectors(np.stack([firsts, stops], axis=1))
     return vectors.astype(np.float32)
 
 
@@ -128,15 +128,15 @@ def _places(
 
 
 def _touching(
-    windows: Parts, starts: FloatArray, ends: FloatArray, barred: Barred | None
+    windows: Parts, starts: FloatArray, ends: FloatArray, excluded: ExcludedInterval | None
 ) -> BoolArray:
-    """(n,) whether a window, or its place, overlaps what is barred."""
+    """(n,) whether a window, or its place, overlaps what is excluded."""
     touching = np.zeros(len(windows), dtype=bool)
-    if barred is None:
+    if excluded is None:
         return touching
-    for number in np.flatnonzero(windows.ids == barred.clip_id):
+    for number in np.flatnonzero(windows.ids == excluded.clip_id):
         own = slice(*np.searchsorted(windows.owners, [number, number + 1]))
         first = np.minimum(starts[own], windows.starts[own])
         last = np.maximum(ends[own], windows.ends[own])
-        touching[own] = (first < barred.end) & (last > barred.start)
+        touching[own] = (first < excluded.end) & (last > excluded.start)
     return touching

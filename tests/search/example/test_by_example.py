@@ -14,7 +14,7 @@ from app.search.example.by_example import rank_by_example
 from app.search.example.distances import QueryArrays
 from app.search.example.fusion import SHORTLIST
 from app.search.example.methods import Method
-from app.search.index.nearest_ranking import Near
+from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.rows import Rows
 from app.search.index.vector_index import MOTION_VECTORS, VectorIndex
 from app.store.clips.filter import ClipFilter
@@ -43,8 +43,8 @@ class Gallery:
         rows.put([indexed(i, v) for i, v in zip(self.features, self.vectors, strict=True)])
         self.rows = rows.view()
 
-    def nearest(self, query: FloatArray, wanted: ClipFilter, exclude: Any) -> Near:
-        return Near(1, self.rows, self.rows.labels.passing(wanted, exclude), query)
+    def nearest(self, query: FloatArray, wanted: ClipFilter, exclude: Any) -> NearestRanking:
+        return NearestRanking(1, self.rows, self.rows.labels.mask(wanted, exclude), query)
 
     def load(self, clip_ids: Sequence[str], _: str) -> Mapping[str, FloatArray]:
         self.read.extend(clip_ids)

@@ -10,7 +10,7 @@ import pytest
 
 from app.search.index import model_rows as beside_module
 from app.search.index import rows
-from app.search.index.nearest_ranking import Near
+from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.projected_index import ProjectedIndex
 from app.search.index.vector_index import VECTOR, WIDTH, VectorIndex
 from app.store.clips import arrays
@@ -69,7 +69,7 @@ def ask(
     model: Model,
     wanted: ClipFilter | None = None,
     exclude: frozenset[str] = frozenset(),
-) -> Near:
+) -> NearestRanking:
     return beside.nearest(model.name, model.project, np.ones(K), wanted or ClipFilter(), exclude)
 
 

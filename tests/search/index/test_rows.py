@@ -92,7 +92,7 @@ def test_they_hold_what_came_last(layout: Layout, steps: list[Any]) -> None:
 def test_filters_agree_with_the_slow_twin(steps: list[Any], wanted: Any, excluded: str) -> None:
     rows, kept = _played(ONE, steps)
     labels = rows.view().labels
-    found = labels.ids[labels.passing(wanted, [excluded])]
+    found = labels.ids[labels.mask(wanted, [excluded])]
     expected = {i for i, clip in kept.items() if passes(clip, wanted) and i != excluded}
     assert sorted(found) == sorted(expected)
 
@@ -110,7 +110,7 @@ def test_a_view_stays_as_it_was(before: list[Any], after: list[Any]) -> None:
         else:
             rows.put([indexed(clip_id, _array(MANY, number), **labels)])
     assert _held(view) == held
-    excluded = {clip_id: view.labels.passing(ClipFilter(), [clip_id]).sum() for clip_id in held}
+    excluded = {clip_id: view.labels.mask(ClipFilter(), [clip_id]).sum() for clip_id in held}
     assert set(excluded.values()) <= {len(held) - 1}
     assert _words(view) == words
     assert words.keys() == held.keys()

@@ -9,7 +9,12 @@ from hypothesis import strategies as st
 
 from app.search.ranking.cursor import Position
 from app.search.windows import overlap_merging as module
-from app.search.windows.overlap_merging import MERGED, Candidates, Place, places
+from app.search.windows.overlap_merging import (
+    MAX_OVERLAP,
+    Candidates,
+    FoundInterval,
+    merge_overlapping,
+)
 
 Told = tuple[str, float, float, float]
 
@@ -29,14 +34,14 @@ def naive_places(found: Candidates) -> list[Told]:
     kept: list[Told] = []
     for distance, clip, start, end in rows:
         if not any(
-            clip == other and min(end, e) - max(start, s) > MERGED * min(end - start, e - s)
+            clip == other and min(end, e) - max(start, s) > MAX_OVERLAP * min(end - start, e - s)
             for other, s, e, _ in kept
         ):
             kept.append((clip, start, end, distance))
     return kept
 
 
-def told(found: list[Place]) -> list[Told]:
+def told(found: list[FoundInterval]) -> list[Told]:
     return [(place.clip_id, place.start, place.end, place.distance) for place in found]
 
 
@@ -58,7 +63,7 @@ def _some(draw: st.DrawFn) -> Candidates:
 def test_they_are_those_of_the_greedy_loop(found: Candidates, first_look: int) -> None:
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(module, "FIRST_LOOK", first_look)
-        everything, more = places(found, 1000)
+        everything, more = merge_overlapping(found, 1000)
     assert told(everything) == naive_places(found)
     assert not more
 
@@ -66,10 +71,10 @@ def test_they_are_those_of_the_greedy_loop(found: Candidates, first_look: int) -
 @given(found=_some(), size=st.integers(1, 7))
 @settings(max_examples=30, deadline=None)
 def test_pages_put_together_are_all_of_them(found: Candidates, size: int) -> None:
-    paged: list[Place] = []
+    paged: list[FoundInterval] = []
     after: Position | None = None
     while True:
-        page, more = places(found, size, after)
+        page, more = merge_overlapping(found, size, after)
         paged += page
         if not more:
             break
@@ -80,14 +85,14 @@ def test_pages_put_together_are_all_of_them(found: Candidates, size: int) -> Non
 
 def test_neighbours_that_hardly_overlap_are_two_places() -> None:
     found = candidates([(0, 0.0, 2.0, 0.1), (0, 1.7, 3.7, 0.2), (0, 3.0, 5.0, 0.3)])
-    assert [place.start for place in places(found, 9)[0]] == [0.0, 1.7]
+    assert [place.start for place in merge_overlapping(found, 9)[0]] == [0.0, 1.7]
 
 
 def test_nothing_farther_than_asked_is_told() -> None:
     found = candidates([(0, 0.0, 1.0, 0.1), (1, 0.0, 1.0, 0.2), (2, 0.0, 1.0, 0.3)])
-    assert [p.distance for p in places(found, 9, until=0.2)[0]] == [0.1, 0.2]
+    assert [p.distance for p in merge_overlapping(found, 9, until=0.2)[0]] == [0.1, 0.2]
 
 
 def test_a_place_knows_which_candidate_it_was() -> None:
     found = candidates([(0, 5.0, 6.0, 0.9), (1, 2.0, 3.0, 0.5)])
-    assert [place.index for place in places(found, 9)[0]] == [1, 0]
+    assert [place.index for place in merge_overlapping(found, 9)[0]] == [1, 0]
