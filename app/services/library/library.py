@@ -10,7 +10,7 @@ from app.analysis.descriptors.windows import WIDTH, WINDOW_SCALES
 from app.analysis.segments.segments import SEGMENT_SPANS, SEGMENT_VECTORS, SEGMENT_WIDTH
 from app.config import Settings
 from app.search.index.array_cache import ArrayCache
-from app.search.index.model_rows import RowsBeside
+from app.search.index.model_rows import ModelRows
 from app.search.index.projected_index import ProjectedIndex
 from app.search.index.vector_index import VectorIndex
 from app.search.pose.by_pose import POSES
@@ -44,8 +44,8 @@ class Library:
     index: VectorIndex
     arrays: ArrayCache
     models: ModelShelf
-    word_scores: RowsBeside
-    symbol_points: RowsBeside
+    word_scores: ModelRows
+    symbol_points: ModelRows
     pool: AnalysisPool
     windows: Mapping[str, VectorIndex]
     segments: VectorIndex
@@ -72,8 +72,8 @@ class Library:
             index=index,
             arrays=kept,
             models=ModelShelf(),
-            word_scores=RowsBeside(),
-            symbol_points=RowsBeside(),
+            word_scores=ModelRows(),
+            symbol_points=ModelRows(),
             pool=AnalysisPool(query_limits(settings)),
             windows={
                 scale.name: VectorIndex(layout=parts_layout(scale.vectors, scale.spans, WIDTH))
