@@ -1,7 +1,8 @@
-"""Rows beside an index are computed once, in its order, and again only for clips that changed."""
+"""Rows of a model are computed once, in its order, and again only for clips that changed."""
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 
 from app.errors import ClientLeft
 from app.numerics.arrays import FloatArray
-from app.search.index import model_rows as beside_module
+from app.search.index import model_rows as module
 from app.search.index.labels import Labels
 from app.search.index.model_rows import ModelRows
 from tests.search.indexed import indexed
@@ -53,7 +54,7 @@ def test_rows_stand_in_the_order_of_the_index() -> None:
 def test_a_request_that_stops_half_way_leaves_the_rest_to_the_next_one(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(beside_module, "BATCH", 2)
+    monkeypatch.setattr(module, "BATCH", 2)
     labels, rows, model = labels_of(*"123456"), ModelRows(), Model(stamp=7.0)
     told = np.array([[9.0, 9.0], [9.0, 9.0]])
 
@@ -120,7 +121,7 @@ def test_another_model_has_rows_of_its_own_and_of_its_own_width() -> None:
 
 
 def test_many_clips_are_computed_in_batches(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(beside_module, "BATCH", 3)
+    monkeypatch.setattr(module, "BATCH", 3)
     labels, model = labels_of(*map(str, range(8))), Model()
     found = ModelRows().of(labels.view(), "m", 2, model)
     assert [len(asked) for asked in model.asked] == [3, 3, 2]
@@ -136,3 +137,28 @@ def test_a_computation_that_fails_is_tried_again() -> None:
     with pytest.raises(OSError):
         rows.of(labels.view(), "m", 2, fails)
     assert rows.of(labels.view(), "m", 2, Model()).values.tolist() == [[1, 0]]
+
+
+def test_a_search_does_not_wait_while_rows_of_new_clips_are_computed() -> None:
+    labels, rows = labels_of("1", "2"), ModelRows()
+    before = labels.view()
+    rows.of(before, "m", 2, Model())
+    put(labels, "3")
+    computing, finish = threading.Event(), threading.Event()
+
+    def slow(clip_ids: Sequence[str]) -> Mapping[str, FloatArray]:
+        computing.set()
+        assert finish.wait(30)
+        return Model()(clip_ids)
+
+    computer = threading.Thread(target=rows.of, args=(labels.view(), "m", 2, slow))
+    computer.start()
+    assert computing.wait(30)
+    found: list[FloatArray] = []
+    search = threading.Thread(target=lambda: found.append(rows.of(before, "m", 2, Model()).values))
+    search.start()
+    search.join(10)
+    finish.set()
+    computer.join(30)
+    assert [values.tolist() for values in found] == [[[1, 0], [2, 0]]]
+    assert rows.of(labels.view(), "m", 2, Model()).values.tolist() == [[1, 0], [2, 0], [3, 0]]
