@@ -1,4 +1,4 @@
-"""Rank the library against a query motion, by any method (DESIGN 7)."""
+"""Rank the library against a query motion, by any method."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ def rank_by_example(
     load: Loader,
     anchor: Anchor | None = None,
 ) -> Ranked:
-    """Every clip that passes the filter and is not excluded, from the nearest on.
+    """All clips that pass the filter and are not excluded, in order of distance.
 
-    anchor: of the cursor that goes on, if one does.
+    anchor: of the cursor whose next page is asked for, if there is one.
     """
     if method in (Method.FUSED, Method.VECTOR):
         near = index.nearest(query.vector, clip_filter, exclude)
@@ -51,7 +51,7 @@ def rank_by_example(
 
 
 def _fused(query: QueryArrays, near: NearestRanking, load: Loader, shortlist: Page) -> LowerBounds:
-    """The shortlist by vectors, the graph between them, and warping, which is the dearest."""
+    """The fused distances of the shortlist; warping costs most, so it is measured last."""
     ids = shortlist.ids
     known = FusedDistance.of(query.vector, near.vectors(ids))
 
@@ -64,6 +64,6 @@ def _fused(query: QueryArrays, near: NearestRanking, load: Loader, shortlist: Pa
 
 
 def _known(ids: IdArray, distances: FloatArray) -> Ranking:
-    """The ranking without clips that were deleted while they were compared."""
+    """The ranking; clips that were deleted during the comparison are left out."""
     there = np.isfinite(distances)
     return Ranking(ids[there], distances[there])

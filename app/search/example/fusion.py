@@ -17,22 +17,22 @@ from app.numerics.diffusion import diffused_closeness, neighbour_radii
 from app.numerics.euclidean import distances
 
 SHORTLIST = 300
-"""Clips that are compared so; the graph costs the cube of it, 12 ms."""
+"""Number of clips in the graph; its cost grows with the cube of it, and is 12 ms."""
 
 DTW_WEIGHT = 0.25
-"""Weight of the DTW distance beside the vector's."""
+"""Weight of the DTW distance, where that of the vectors weighs 1."""
 
 NEIGHBORS = 0.7
-"""A clip's neighbours in the graph, as a share of the square root of the number of clips."""
+"""A clip has so many neighbors in the graph, times the square root of the number of clips."""
 
 DETOUR = 1.0
-"""Weight of being far on the graph, in units of the distance between neighbours."""
+"""Weight of a long way along the graph, in units of the distance between neighbors."""
 
 MIN_CLOSENESS = 1e-3
-"""What is less close on the graph is as far as if there were no way."""
+"""Clips that are less close on the graph count as if no path led to them."""
 
 MAX_DETOUR = 5.0
-"""The graph adds at most so many times the distance itself: the same motion stays at 0."""
+"""The graph adds at most so many times the distance itself. So the same motion keeps distance 0."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +71,6 @@ def _distances(points: FloatArray) -> FloatArray:
 
     Those from the first point are exact: it is the origin, so that its products are zero.
     """
-    centred = points - points[0]
-    between = distances(centred, centred)
+    centered = points - points[0]
+    between = distances(centered, centered)
     return np.asarray(np.maximum(between, between.T))

@@ -1,8 +1,8 @@
 """What an index holds: the clips' labels, and one vector of each clip or several.
 
 Rows are added at the end, in blocks that never move. The rows of a clip that is gone stay as dead
-rows; when too many are dead, the living rows are copied. A search reads a `RowsView`, which stays
-as it is whatever comes later.
+rows; when too many are dead, the living rows are copied. A search reads a `RowsView`, which no
+later change touches.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ class RowsView:
 
 
 class Rows:
-    """The rows of an index, to which clips are added and from which they are taken."""
+    """The rows of an index; clips are added and removed."""
 
     def __init__(self, layout: Layout) -> None:
         self._layout = layout

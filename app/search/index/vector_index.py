@@ -3,7 +3,7 @@
 One class serves all that is searched in memory: motion vectors (one row a clip), and poses, windows
 and segments (several rows a clip); see `Layout`. An index follows the library's version: `catch_up`
 reads one number and loads what changed since. It takes a lock only where something changed. Each
-search reads a `RowsView` of its own, whatever is loaded at the same time.
+search reads its own `RowsView`, while changes are loaded at the same time.
 """
 
 from __future__ import annotations
@@ -37,8 +37,10 @@ windows."""
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """Clips that passed a filter, in the index's order: ids (n,), durations (n,) in seconds,
-    of a library version."""
+    """Clips that passed a filter, in the index's order.
+
+    version: of the library; ids: (n,); seconds: (n,) how long the clips are.
+    """
 
     version: int
     ids: IdArray
@@ -66,12 +68,12 @@ class VectorIndex:
 
     @property
     def is_loaded(self) -> bool:
-        """Whether it has caught up with the library once."""
+        """Whether the library was loaded once."""
         return self._loaded
 
     @property
     def version(self) -> int:
-        """The library version that it stands at."""
+        """The library version whose clips it holds."""
         return self._state[0]
 
     @property
@@ -110,7 +112,7 @@ class VectorIndex:
         return NearestRanking(version, rows, rows.labels.mask(clip_filter, exclude), query)
 
     def _follow(self, tx: Tx, now: int) -> None:
-        """Take what changed up to version `now`; what searches see changes at once, at the end."""
+        """Load what changed up to version `now`; searches see all changes together, at the end."""
         since = self.version
         if self._loaded:
             self._forget(library.buried_since(tx, since))

@@ -1,4 +1,4 @@
-"""What windows propose for a query: where in clips it might be, and how far that is."""
+"""What windows propose for a query: where in clips it may be, and at which distance."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.search.windows.overlap_merging import Candidates
 from app.search.windows.parts import Parts
 
 MAX_WINDOWS = 16
-"""Of a long query; they stand farther apart the longer it is."""
+"""Windows of a long query; the longer it is, the larger are the steps between them."""
 
 View = Callable[[WindowScale], Parts]
 """The windows of one scale, of the clips that pass the filter."""
@@ -29,7 +29,7 @@ class QuerySegment:
 
 @dataclass(frozen=True, slots=True)
 class ExcludedInterval:
-    """A part of a clip, in seconds, in which nothing may be found: the query itself."""
+    """A part of a clip, in seconds, where nothing may be found: the query itself."""
 
     clip_id: str
     start: float
@@ -38,10 +38,10 @@ class ExcludedInterval:
 
 @dataclass(frozen=True, slots=True)
 class Proposals:
-    """For each of n windows the place where the query would be, and its distance.
+    """For each of n windows the interval where the query would be, and its distance.
 
-    starts, ends: (n,) seconds; distances: (n,); allowed: (k,) the windows that do not touch what
-    is excluded.
+    starts, ends: (n,) seconds; distances: (n,); allowed: (k,) the windows that do not touch the
+    excluded interval.
     """
 
     windows: Parts
@@ -51,7 +51,7 @@ class Proposals:
     allowed: IntArray
 
     def candidates(self) -> Candidates:
-        """The places of the allowed windows, in their order."""
+        """The intervals of the allowed windows, in their order."""
         return Candidates(
             self.windows.ids,
             self.windows.owners[self.allowed],
@@ -82,8 +82,8 @@ def scale_for(frames: int) -> WindowScale:
 def propose(view: View, segment: QuerySegment, excluded: ExcludedInterval | None) -> Proposals:
     """Compare a query with all windows of the scale that suits it.
 
-    A query that is longer than a window is cut into windows itself, and compared with as many
-    in their order; where a clip ends before they do, its last window stands for the missing.
+    A query longer than a window is cut into windows too. Each is compared with the window of the
+    clip at the same step. Where the clip ends earlier, its last window is used instead.
     """
     scale = scale_for(len(segment.features))
     windows = view(scale)
@@ -93,7 +93,7 @@ def propose(view: View, segment: QuerySegment, excluded: ExcludedInterval | None
     total = np.zeros(len(windows))
     for step, row in zip(steps, apart, strict=True):
         total += row[np.minimum(numbers + step, lasts)]
-    starts, ends = _places(windows, segment.seconds, lasts, is_one=len(steps) == 1)
+    starts, ends = _intervals(windows, segment.seconds, lasts, is_one=len(steps) == 1)
     allowed = np.flatnonzero(~_touching(windows, starts, ends, excluded))
     return Proposals(windows, starts, ends, total / len(steps), allowed)
 
@@ -116,7 +116,7 @@ def _vectors(segment: QuerySegment, scale: WindowScale, steps: IntArray) -> Floa
     return vectors.astype(np.float32)
 
 
-def _places(
+def _intervals(
     windows: Parts, seconds: float, lasts: IntArray, *, is_one: bool
 ) -> tuple[FloatArray, FloatArray]:
     """(n,) starts and ends of the query at each window: around its middle, or from its start."""
@@ -130,7 +130,7 @@ def _places(
 def _touching(
     windows: Parts, starts: FloatArray, ends: FloatArray, excluded: ExcludedInterval | None
 ) -> BoolArray:
-    """(n,) whether a window, or its place, overlaps what is excluded."""
+    """(n,) whether a window, or its interval, overlaps the excluded one."""
     touching = np.zeros(len(windows), dtype=bool)
     if excluded is None:
         return touching

@@ -1,4 +1,4 @@
-"""Where in clips a query is matched by warping, in regions of them or everywhere."""
+"""Matches of a query by time warping, in regions of clips or in whole clips."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from app.search.ranking.ranking import IdArray
 from app.search.windows.overlap_merging import Candidates
 from app.search.windows.proposals import ExcludedInterval, QuerySegment
 
-CLIPS_AT_ONCE = 256
-FRAMES_AT_ONCE = 200_000
+MAX_CLIPS_AT_ONCE = 256
+MAX_FRAMES_AT_ONCE = 200_000
 """Clips whose features are held at a time: 66 MB, or those of one clip that is longer."""
 
 EVERYTHING = 2**31 - 1
@@ -43,7 +43,7 @@ def matches_in(
 ) -> Candidates:
     """The matches of a query in regions of the clips `ids` (c,), which do not overlap.
 
-    seconds: (c,) how long the clips are. Clips that are gone (deleted meanwhile) have none.
+    seconds: (c,) how long the clips are. Clips that were deleted meanwhile have no matches.
     """
     allowed = [part for region in regions for part in _without(region, ids, excluded)]
     allowed.sort(key=lambda region: (region.clip, region.first))
@@ -57,12 +57,12 @@ def matches_in(
 
 
 def _together(numbers: Sequence[int], seconds: FloatArray) -> Iterator[set[int]]:
-    """The clips with these numbers in groups whose features are held at a time."""
+    """The clips with these numbers, in groups whose features are in memory together."""
     some: set[int] = set()
     frames = 0.0
     for number in numbers:
         more = float(seconds[number]) * WARPING_RATE
-        if some and (len(some) == CLIPS_AT_ONCE or frames + more > FRAMES_AT_ONCE):
+        if some and (len(some) == MAX_CLIPS_AT_ONCE or frames + more > MAX_FRAMES_AT_ONCE):
             yield some
             some, frames = set(), 0.0
         some.add(number)
@@ -83,7 +83,7 @@ def together(found: Sequence[Candidates]) -> Candidates:
 
 
 def merged(regions: Iterable[Region]) -> list[Region]:
-    """The regions, those that touch put together."""
+    """The regions; those that touch are joined."""
     whole: list[Region] = []
     for region in sorted(regions, key=lambda region: (region.clip, region.first)):
         last = whole[-1] if whole else None
@@ -95,7 +95,7 @@ def merged(regions: Iterable[Region]) -> list[Region]:
 
 
 def _without(region: Region, ids: IdArray, excluded: ExcludedInterval | None) -> list[Region]:
-    """What is left of a region when the frames of what is excluded are taken out."""
+    """What is left of a region without the frames of the excluded interval."""
     if excluded is None or ids[region.clip] != excluded.clip_id:
         return [region]
     first = int(np.floor(excluded.start * WARPING_RATE))

@@ -195,7 +195,7 @@ def test_few_frames_are_held_at_a_time_and_nothing_changes(
         held.append(sum(len(one) for one in found.values()) if len(found) > 1 else 0)
         return found
 
-    monkeypatch.setattr(matches, "FRAMES_AT_ONCE", frames)
+    monkeypatch.setattr(matches, "MAX_FRAMES_AT_ONCE", frames)
     assert _rows(by_warping(some.ids, some.seconds, segment, None, load)) == _rows(whole)
     assert max(held) <= frames
 
