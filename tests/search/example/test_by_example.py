@@ -84,14 +84,14 @@ def test_pages_of_fused_are_those_of_all_that_is_measured_at_once(size: int) -> 
         size,
     )
     expected = gallery.expected(query)
-    told = [
+    listed = [
         (distance, str(clip_id))
         for page in pages
         for distance, clip_id in zip(page.distances.tolist(), page.ids, strict=True)
     ]
-    assert told[:SHORTLIST] == expected
-    assert len({clip_id for _, clip_id in told}) == len(told) == COUNT
-    assert [distance for distance, _ in told] == sorted(distance for distance, _ in told)
+    assert listed[:SHORTLIST] == expected
+    assert len({clip_id for _, clip_id in listed}) == len(listed) == COUNT
+    assert [distance for distance, _ in listed] == sorted(distance for distance, _ in listed)
 
 
 def test_a_short_page_of_fused_reads_few_features() -> None:

@@ -67,7 +67,7 @@ def test_no_clip_has_no_distance_and_one_has_one() -> None:
 
 @given(seed=st.integers(0, 10_000))
 @settings(max_examples=20, deadline=None)
-def test_without_warping_it_is_a_bound_and_rows_are_told_alike_alone(seed: int) -> None:
+def test_without_warping_it_is_a_bound_and_each_row_has_the_same_distance_alone(seed: int) -> None:
     rng = np.random.default_rng(seed)
     query, vectors, warped = rng.normal(size=8), rng.normal(size=(40, 8)), rng.uniform(size=40)
     known, every = FusedDistance.of(query, vectors), np.arange(40)

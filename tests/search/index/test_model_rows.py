@@ -56,7 +56,7 @@ def test_a_request_that_stops_half_way_leaves_the_rest_to_the_next_one(
 ) -> None:
     monkeypatch.setattr(module, "BATCH", 2)
     labels, rows, model = labels_of(*"123456"), ModelRows(), Model(stamp=7.0)
-    told = np.array([[9.0, 9.0], [9.0, 9.0]])
+    known = np.array([[9.0, 9.0], [9.0, 9.0]])
 
     def stops(clip_ids: Sequence[str]) -> Mapping[str, FloatArray]:
         if "4" in clip_ids:
@@ -64,7 +64,7 @@ def test_a_request_that_stops_half_way_leaves_the_rest_to_the_next_one(
         return model(clip_ids)
 
     with pytest.raises(ClientLeft):
-        rows.of(labels.view(), "m", 2, stops, lambda: (["3", "5"], told))
+        rows.of(labels.view(), "m", 2, stops, lambda: (["3", "5"], known))
     put(labels, "5")  # what was known of it holds no more
     found = rows.of(labels.view(), "m", 2, model)
     by_id = dict(zip(labels.view().ids.tolist(), found.values.tolist(), strict=True))

@@ -125,10 +125,10 @@ CHANGES = st.lists(
 
 @BRIEF
 @given(VECTORS, st.integers(1, 9), st.integers(1, 12), CHANGES, st.booleans())
-def test_clips_that_come_and_go_between_pages_make_none_be_missed_or_told_twice(
+def test_clips_that_come_and_go_between_pages_make_none_be_missed_or_listed_twice(
     vectors: Vectors, size: int, shortlist: int, changes: list[Any], rerank: bool
 ) -> None:
-    """Clips that were there all the while are told once; none is told twice."""
+    """Clips that were there all the time are listed once; none is listed twice."""
     now, stayed = dict(vectors), set(vectors)
     to_come = iter(changes)
 
@@ -146,10 +146,10 @@ def test_clips_that_come_and_go_between_pages_make_none_be_missed_or_told_twice(
             return near
         return ReRanked(near, _backwards, shortlist, after.anchor if after else None)
 
-    told = [str(i) for page in walk(ranked, size) for i in page.ids]
-    came_twice = {i for i in told if told.count(i) > 1}
+    listed = [str(i) for page in walk(ranked, size) for i in page.ids]
+    came_twice = {i for i in listed if listed.count(i) > 1}
     assert came_twice & stayed == set()
-    assert stayed <= set(told)
+    assert stayed <= set(listed)
 
 
 def test_a_clip_that_is_gone_from_the_shortlist_is_left_out() -> None:

@@ -60,7 +60,7 @@ def test_each_clip_is_measured_once_and_few_where_bounds_are_near() -> None:
     assert found.end == float(truth.max().round(9))
 
 
-def test_nothing_is_farther_than_what_is_told_to_be_the_end() -> None:
+def test_nothing_is_farther_than_the_end() -> None:
     truth = np.array([1.0, 5.0, 3.0])
     found = LowerBoundRanking(LowerBounds(_ids(3), truth, lambda rows: truth[rows]), most=2.5)
     assert sorted(found.page(None, 3).distances.tolist()) == [1.0, 2.5, 2.5]

@@ -123,7 +123,7 @@ def test_every_way_finds_a_piece_where_it_was_cut_from(some: Clips, length: floa
         assert (best.start, best.end) == pytest.approx((12.0, 12.0 + length), abs=tolerance + 1e-6)
 
 
-def test_nothing_is_found_in_what_is_barred(some: Clips) -> None:
+def test_nothing_is_found_in_the_excluded_interval(some: Clips) -> None:
     segment, excluded = (
         segment_of(some.features["clip_0"], 12, 14),
         ExcludedInterval("clip_0", 12.0, 14.0),

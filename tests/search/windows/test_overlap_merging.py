@@ -16,7 +16,7 @@ from app.search.windows.overlap_merging import (
     merge_overlapping,
 )
 
-Told = tuple[str, float, float, float]
+Listed = tuple[str, float, float, float]
 
 
 def candidates(rows: list[tuple[int, float, float, float]], clips: int = 3) -> Candidates:
@@ -26,12 +26,12 @@ def candidates(rows: list[tuple[int, float, float, float]], clips: int = 3) -> C
     return Candidates(ids, owners.astype(int), starts, ends, distances)
 
 
-def naive_places(found: Candidates) -> list[Told]:
+def naive_merging(found: Candidates) -> list[Listed]:
     rows = sorted(
         (round(float(d), 9), str(found.ids[o]), float(s), float(e))
         for o, s, e, d in zip(found.owners, found.starts, found.ends, found.distances, strict=True)
     )
-    kept: list[Told] = []
+    kept: list[Listed] = []
     for distance, clip, start, end in rows:
         if not any(
             clip == other and min(end, e) - max(start, s) > MAX_OVERLAP * min(end - start, e - s)
@@ -41,7 +41,7 @@ def naive_places(found: Candidates) -> list[Told]:
     return kept
 
 
-def told(found: list[FoundInterval]) -> list[Told]:
+def listed(found: list[FoundInterval]) -> list[Listed]:
     return [(place.clip_id, place.start, place.end, place.distance) for place in found]
 
 
@@ -64,7 +64,7 @@ def test_they_are_those_of_the_greedy_loop(found: Candidates, first_look: int) -
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(module, "FIRST_LOOK", first_look)
         everything, more = merge_overlapping(found, 1000)
-    assert told(everything) == naive_places(found)
+    assert listed(everything) == naive_merging(found)
     assert not more
 
 
@@ -80,7 +80,7 @@ def test_pages_put_together_are_all_of_them(found: Candidates, size: int) -> Non
             break
         assert len(page) == size
         after = Position(len(paged), page[-1].distance, page[-1].key)
-    assert told(paged) == naive_places(found)
+    assert listed(paged) == naive_merging(found)
 
 
 def test_neighbours_that_hardly_overlap_are_two_places() -> None:
@@ -88,7 +88,7 @@ def test_neighbours_that_hardly_overlap_are_two_places() -> None:
     assert [place.start for place in merge_overlapping(found, 9)[0]] == [0.0, 1.7]
 
 
-def test_nothing_farther_than_asked_is_told() -> None:
+def test_nothing_farther_than_asked_is_found() -> None:
     found = candidates([(0, 0.0, 1.0, 0.1), (1, 0.0, 1.0, 0.2), (2, 0.0, 1.0, 0.3)])
     assert [p.distance for p in merge_overlapping(found, 9, until=0.2)[0]] == [0.1, 0.2]
 
