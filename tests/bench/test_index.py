@@ -21,7 +21,7 @@ import psutil
 import pytest
 
 from app.numerics.nearest import Block
-from app.search.index.nearest_ranking import Near
+from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.rows import Rows, RowsView
 from app.search.index.vector_index import MOTION_VECTORS, VectorIndex
 from app.search.ranking.cursor import Position
@@ -157,8 +157,8 @@ def test_loading(tmp_path: Path, count: int) -> None:
     assert taken * 1e6 / count < 2 * 512
 
 
-def _near(rows: RowsView, wanted: ClipFilter, query: np.ndarray) -> Near:
-    return Near(1, rows, rows.labels.passing(wanted), query)
+def _near(rows: RowsView, wanted: ClipFilter, query: np.ndarray) -> NearestRanking:
+    return NearestRanking(1, rows, rows.labels.mask(wanted), query)
 
 
 def _exact(block: Block, query: np.ndarray) -> np.ndarray:

@@ -83,7 +83,7 @@ TOLERANCE = 0.01
 CHANGES: tuple[tuple[ModuleType, str, tuple[Any, ...]], ...] = (
     (fusion, "DTW_WEIGHT", (0.0, 0.5, 1.0)),
     (fusion, "DETOUR", (0.0, 0.5, 2.0)),
-    (fusion, "NEIGHBOURS", (0.5, 1.0)),
+    (fusion, "NEIGHBORS", (0.5, 1.0)),
     (fusion, "SHORTLIST", (100, 200)),
     (diffusion, "REACH", (1.0, 3.0)),
     (motion_vector, "SLOW", (0.5, 2.0)),

@@ -36,7 +36,7 @@ from app.config import Settings
 from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray, IntArray
 from app.search.windows import in_windows
-from app.search.windows.overlap_merging import Candidates, places
+from app.search.windows.overlap_merging import Candidates, merge_overlapping
 from app.services.find import find
 from app.services.find.find import MotionQuery
 from app.services.find.hits import Hit
@@ -188,11 +188,11 @@ def test_pieces_hidden_in_an_hour_are_found_and_bounded(
         FIGURES.print(
             f" {length:g}: {found['fused'].average[seconds == length].mean():.2f}", end=""
         )
-    monkeypatch.setattr(in_windows, "MOST_PROPOSED", FEW)
-    monkeypatch.setattr(in_windows, "LEAST_PROPOSED", FEW)
+    monkeypatch.setattr(in_windows, "MAX_PROPOSED", FEW)
+    monkeypatch.setattr(in_windows, "MIN_PROPOSED", FEW)
     few = _of_pieces(reported, "fused")
     FIGURES.print(f"\n{FEW} places only:{few.told()[:8]}, as where the hour is one of 20", end="")
-    kept = sum(index.bytes_kept for index in reported.lib.windows.values())
+    kept = sum(index.state[1].nbytes for index in reported.lib.windows.values())
     FIGURES.print(f"\nwindows in memory: {kept / hours / 2**20:.1f} MB an hour")
     assert few.average.mean() >= FLOOR_OF_FEW
     for method, floor in FLOORS.items():
@@ -269,7 +269,7 @@ def _ranked(hidden: Hidden, number: int, windows: list[Windows], describe: Descr
         ends=middles + len(piece) / RATE / 2,
         distances=np.linalg.norm(np.concatenate([v for _, v in windows]) - query, axis=1),
     )
-    hits = [(place.clip_id, place.start, place.end) for place in places(found, 5)[0]]
+    hits = [(place.clip_id, place.start, place.end) for place in merge_overlapping(found, 5)[0]]
     return _judged(hits, hidden.places[number])[0]
 
 

@@ -7,10 +7,10 @@ from typing import Annotated, Any, TypeVar
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 from app.motion.roles.joint_roles import JointRole
-from app.search.index.filters import LONGEST_LABEL, MOST_LABELS
+from app.search.index.filters import MAX_LABEL_LENGTH, MAX_LABELS
 from app.services import fields
 from app.services.views.frame_rates import LEAST_FPS, MOST_FPS
-from app.store.database.paging import MAX_CURSOR_LENGTH
+from app.store.database.cursor_codec import MAX_CURSOR_LENGTH
 
 Value = TypeVar("Value")
 
@@ -48,8 +48,8 @@ def _without_control(value: str) -> str:
 PartOfName = Annotated[str, Field(max_length=300), AfterValidator(_without_control)]
 """What was typed of a name; SQLite's LIKE would end at a NUL, and so find everything."""
 
-_Filtered = Annotated[str, Field(min_length=1, max_length=LONGEST_LABEL)]
-_SomeFiltered = Annotated[list[_Filtered], Field(min_length=1, max_length=MOST_LABELS)]
+_Filtered = Annotated[str, Field(min_length=1, max_length=MAX_LABEL_LENGTH)]
+_SomeFiltered = Annotated[list[_Filtered], Field(min_length=1, max_length=MAX_LABELS)]
 AnyOf = Annotated[
     _SomeFiltered, BeforeValidator(_as_list, json_schema_input_type=_Filtered | _SomeFiltered)
 ]

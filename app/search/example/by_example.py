@@ -1,4 +1,4 @@
-"""Rank the library against a query motion, by any method (DESIGN 7)."""
+"""Rank the library against a query motion, by any method."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
 from app.search.example.distances import Loader, QueryArrays, distances_to
-from app.search.example.fusion import SHORTLIST, Surroundings
+from app.search.example.fusion import SHORTLIST, FusedDistance
 from app.search.example.methods import Method
 from app.search.example.reranking import ReRanked
-from app.search.index.nearest_ranking import Near
+from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.vector_index import VectorIndex
 from app.search.ranking.cursor import Anchor
-from app.search.ranking.lower_bounds import Bounds
+from app.search.ranking.lower_bounds import LowerBounds
 from app.search.ranking.ranking import IdArray, Page, Ranked, Ranking
 from app.store.clips.filter import ClipFilter
 
@@ -32,38 +32,38 @@ def rank_by_example(
     index: VectorIndex,
     query: QueryArrays,
     method: Method,
-    wanted: ClipFilter,
+    clip_filter: ClipFilter,
     exclude: frozenset[str],
     load: Loader,
     anchor: Anchor | None = None,
 ) -> Ranked:
-    """Every clip that passes the filter and is not excluded, from the nearest on.
+    """All clips that pass the filter and are not excluded, in order of distance.
 
-    anchor: of the cursor that goes on, if one does.
+    anchor: of the cursor whose next page is asked for, if there is one.
     """
     if method in (Method.FUSED, Method.VECTOR):
-        near = index.nearest(query.vector, wanted, exclude)
+        near = index.nearest(query.vector, clip_filter, exclude)
         if method is Method.VECTOR:
             return near
         return ReRanked(near, partial(_fused, query, near, load), SHORTLIST, anchor)
-    ids = index.candidates(wanted, exclude).ids
+    ids = index.candidates(clip_filter, exclude).ids
     return _known(ids, distances_to(query, list(ids), method, load))
 
 
-def _fused(query: QueryArrays, near: Near, load: Loader, shortlist: Page) -> Bounds:
-    """The shortlist by vectors, the graph between them, and warping, which is the dearest."""
+def _fused(query: QueryArrays, near: NearestRanking, load: Loader, shortlist: Page) -> LowerBounds:
+    """The fused distances of the shortlist; warping costs most, so it is measured last."""
     ids = shortlist.ids
-    known = Surroundings.of(query.vector, near.vectors(ids))
+    known = FusedDistance.of(query.vector, near.vectors(ids))
 
     def measure(rows: IntArray) -> FloatArray:
         warped = distances_to(query, ids[rows].tolist(), Method.DTW, load)
         return known.distances(rows, warped)
 
     every = np.arange(len(ids))
-    return Bounds(ids, known.distances(every, np.zeros(len(ids))), measure)
+    return LowerBounds(ids, known.distances(every, np.zeros(len(ids))), measure)
 
 
 def _known(ids: IdArray, distances: FloatArray) -> Ranking:
-    """The ranking without clips that were deleted while they were compared."""
+    """The ranking; clips that were deleted during the comparison are left out."""
     there = np.isfinite(distances)
     return Ranking(ids[there], distances[there])

@@ -1,7 +1,6 @@
-"""How far clips are from a query, by each method that looks at more than the motion vector.
+"""Distances of clips to a query, by each method that uses more than the motion vector.
 
-Arrays of clips are loaded and compared a batch at a time, so that memory stays bounded
-however many clips are compared.
+Arrays of clips are loaded and compared in batches, so memory stays bounded for any number of clips.
 """
 
 from __future__ import annotations

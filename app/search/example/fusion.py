@@ -17,26 +17,26 @@ from app.numerics.diffusion import diffused_closeness, neighbour_radii
 from app.numerics.euclidean import distances
 
 SHORTLIST = 300
-"""Clips that are compared so; the graph costs the cube of it, 12 ms."""
+"""Number of clips in the graph; its cost grows with the cube of it, and is 12 ms."""
 
 DTW_WEIGHT = 0.25
-"""Weight of the DTW distance beside the vector's."""
+"""Weight of the DTW distance, where that of the vectors weighs 1."""
 
-NEIGHBOURS = 0.7
-"""A clip's neighbours in the graph, as a share of the square root of the number of clips."""
+NEIGHBORS = 0.7
+"""A clip has so many neighbors in the graph, times the square root of the number of clips."""
 
 DETOUR = 1.0
-"""Weight of being far on the graph, in units of the distance between neighbours."""
+"""Weight of a long way along the graph, in units of the distance between neighbors."""
 
-LEAST_CLOSENESS = 1e-3
-"""What is less close on the graph is as far as if there were no way."""
+MIN_CLOSENESS = 1e-3
+"""Clips that are less close on the graph count as if no path led to them."""
 
-MOST_DETOUR = 5.0
-"""The graph adds at most so many times the distance itself: the same motion stays at 0."""
+MAX_DETOUR = 5.0
+"""The graph adds at most so many times the distance itself. So the same motion keeps distance 0."""
 
 
 @dataclass(frozen=True, slots=True)
-class Surroundings:
+class FusedDistance:
     """The part of the fused distance that needs only vectors, which is cheaper than warping.
 
     near: (n,) the distances of the vectors to the query; far: (n,) the most that the graph adds.
@@ -46,14 +46,14 @@ class Surroundings:
     far: FloatArray
 
     @classmethod
-    def of(cls, query: FloatArray, vectors: FloatArray) -> Surroundings:
+    def of(cls, query: FloatArray, vectors: FloatArray) -> FusedDistance:
         """query: (d,) and vectors: (n, d), motion vectors."""
         if not len(vectors):
             return cls(np.zeros(0), np.zeros(0))
         between = _distances(np.vstack([query, vectors]).astype(np.float64))
-        radii = neighbour_radii(between, max(1, round(NEIGHBOURS * len(between) ** 0.5)))
+        radii = neighbour_radii(between, max(1, round(NEIGHBORS * len(between) ** 0.5)))
         closeness = diffused_closeness(between, radii)[1:]
-        far = -np.log((closeness + LEAST_CLOSENESS) / (1.0 + LEAST_CLOSENESS))
+        far = -np.log((closeness + MIN_CLOSENESS) / (1.0 + MIN_CLOSENESS))
         return cls(between[0, 1:], float(np.median(radii)) * far)
 
     def distances(self, rows: IntArray, warped: FloatArray) -> FloatArray:
@@ -63,7 +63,7 @@ class Surroundings:
         the results are lower bounds.
         """
         straight = self.near[rows] + DTW_WEIGHT * warped
-        return np.asarray(straight + DETOUR * np.minimum(self.far[rows], MOST_DETOUR * straight))
+        return np.asarray(straight + DETOUR * np.minimum(self.far[rows], MAX_DETOUR * straight))
 
 
 def _distances(points: FloatArray) -> FloatArray:
@@ -71,6 +71,6 @@ def _distances(points: FloatArray) -> FloatArray:
 
     Those from the first point are exact: it is the origin, so that its products are zero.
     """
-    centred = points - points[0]
-    between = distances(centred, centred)
+    centered = points - points[0]
+    between = distances(centered, centered)
     return np.asarray(np.maximum(between, between.T))

@@ -1,4 +1,4 @@
-"""How two motions are compared in a search by example (DESIGN 7)."""
+"""How two motions are compared in a search by example ."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""A ranking whose first clips are ranked again, by what is too dear to compare all with.
+"""A ranking in two stages: the first clips, the shortlist, are ranked again by a costly distance.
 
-The rest follows in the order of the first stage. A cursor remembers where the shortlist
-ended (`Anchor`), so that it is the same on the next page although clips came and went.
+The other clips follow in the order of the first stage. A cursor holds where the shortlist ended
+(`Anchor`), so the next page has the same shortlist although clips came and went.
 """
 
 from __future__ import annotations
@@ -13,30 +13,30 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray
 from app.numerics.nearest import DECIMALS
-from app.search.index.nearest_ranking import Near
+from app.search.index.nearest_ranking import NearestRanking
 from app.search.ranking.cursor import Anchor, Position
-from app.search.ranking.lower_bounds import Bounded, Bounds
+from app.search.ranking.lower_bounds import LowerBoundRanking, LowerBounds
 from app.search.ranking.ranking import IdArray, Page
 
 STEP = 10.0**-DECIMALS
-"""Between the last of the shortlist and what follows, so that a distance tells them apart."""
+"""Added to the distances behind the shortlist, so that each is larger than all in the shortlist."""
 
-Rerank = Callable[[Page], Bounds]
-"""How a shortlist is ranked anew."""
+Rerank = Callable[[Page], LowerBounds]
+"""Gives the clips of a shortlist with the distances of the second stage."""
 
 
 class ReRanked:
-    """A ranking (see `rank.Ranked`): a shortlist in its final order, the rest behind it.
+    """A ranking (see `ranking.Ranked`): a shortlist in its final order, the rest behind it.
 
     The rest keeps the order and the spacing of the first stage, shifted to begin where the
-    shortlist ends. Where that is, is known once all of the shortlist is measured; no page goes
-    beyond before.
+    shortlist ends. This end is known only when all of the shortlist is measured. No page goes
+    beyond the shortlist before that.
     """
 
     def __init__(
-        self, first: Near, rerank: Rerank, size: int, anchor: Anchor | None = None
+        self, first: NearestRanking, rerank: Rerank, size: int, anchor: Anchor | None = None
     ) -> None:
-        """first: all clips; size: of the shortlist; anchor: of the cursor that goes on."""
+        """first: all clips; size: of the shortlist; anchor: of the last page's cursor."""
         self._first = first
         self._rerank = rerank
         self._size = size
@@ -48,7 +48,7 @@ class ReRanked:
 
     @property
     def anchor(self) -> Anchor | None:
-        """Where the shortlist ends, as far as that is known; None where there is no clip."""
+        """Where the shortlist ends, as far as this is known; None where there is no clip."""
         given, shortlist = self._given, self._shortlist
         if given is not None and given.end is not None:
             return given
@@ -56,7 +56,8 @@ class ReRanked:
             return None
         end = self._head.end
         if end is not None:
-            end = max(end, self._seen)  # what was told must not come after what follows
+            # Clips on earlier pages must not be farther than those that follow.
+            end = max(end, self._seen)
         if given is not None:
             return Anchor(given.distance, given.clip_id, end)
         return Anchor(float(shortlist.distances[-1]), str(shortlist.ids[-1]), end)
@@ -88,9 +89,9 @@ class ReRanked:
         return self._going_on(page, limit)
 
     def _going_on(self, page: Page, limit: int) -> Page:
-        """The last of the shortlist, and as many of the rest as there is room for."""
+        """The end of the shortlist, then as many of the rest as the page has room for."""
         anchor = self.anchor
-        if anchor is None or anchor.end is None:  # never: all of the shortlist was measured
+        if anchor is None or anchor.end is None:  # cannot be: all of the shortlist was measured
             return page
         behind = Position(0, anchor.distance, anchor.clip_id)
         rest = self._rest(_shift(anchor, anchor.end), behind, limit - len(page.ids))
@@ -101,7 +102,7 @@ class ReRanked:
         )
 
     def _rest(self, shift: float, behind: Position, limit: int) -> Page:
-        """What follows a position of the first stage, with final distances."""
+        """The clips behind a position of the first stage, with final distances."""
         page = self._first.page(behind, limit)
         return Page(page.ids, np.round(page.distances + shift, DECIMALS), page.more)
 
@@ -116,14 +117,14 @@ class ReRanked:
         return self._first.until(self._given.distance, self._given.clip_id)
 
     @cached_property
-    def _head(self) -> Bounded:
+    def _head(self) -> LowerBoundRanking:
         clips, given = self._rerank(self._shortlist), self._given
         if given is None or given.end is None:
-            return Bounded(clips)
-        # What came since the first page must not overtake what follows the shortlist.
-        return Bounded(clips, most=given.end)
+            return LowerBoundRanking(clips)
+        # Clips that came since the first page must not move behind clips that follow the shortlist.
+        return LowerBoundRanking(clips, most=given.end)
 
 
 def _shift(anchor: Anchor, end: float) -> float:
-    """From a distance of the first stage to the final one, behind a shortlist that ends there."""
+    """What is added to a distance of the first stage, behind a shortlist that ends at `end`."""
     return end + STEP - anchor.distance

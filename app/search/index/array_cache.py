@@ -1,4 +1,4 @@
-"""Descriptors of clips, loaded when a search needs them and kept within a bound of bytes."""
+"""Descriptors of clips, loaded when a search needs them; the bytes in memory are bounded."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _Key = tuple[str, str]
 
 
 class ArrayCache:
-    """Arrays by (clip id, name), the least recently used forgotten first.
+    """Arrays by (clip id, name); the least recently used are dropped first.
 
-    It does not know when a clip changes: whoever follows the library calls `forget`.
+    The cache does not notice that a clip changes: the index calls `forget` when it does.
     """
 
     def __init__(self, max_bytes: int) -> None:
@@ -32,7 +32,7 @@ class ArrayCache:
         return self._bytes
 
     def get_many(self, store: Store, clip_ids: Iterable[str], name: str) -> dict[str, FloatArray]:
-        """One array of many clips, by clip id; those that have no usable one are left out."""
+        """One array of many clips, by clip id; clips without a usable one are left out."""
         found: dict[str, FloatArray] = {}
         missing: list[str] = []
         with self._lock:
@@ -65,7 +65,7 @@ class ArrayCache:
     def _keep(self, name: str, loaded: dict[str, FloatArray], forgotten: int) -> None:
         with self._lock:
             if forgotten != self._forgotten:
-                return  # something changed while we were loading: what we have may be old
+                return  # a clip changed during the load: these arrays may be old
             for clip_id, array in loaded.items():
                 before = self._kept.pop((clip_id, name), None)
                 self._bytes += array.nbytes - (0 if before is None else before.nbytes)

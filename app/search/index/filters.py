@@ -1,8 +1,8 @@
-"""What narrows a search before anything is ranked (DESIGN 8, "Search input").
+"""Filters: the conditions that a clip must meet before it is ranked.
 
-A filter names any of `person task word license source` (a string, or an array meaning any
-of), the same with `not_` before them (none of), and `min_duration max_duration` (seconds). All
-that are named must hold; a clip without a label has none of the refused ones.
+A filter has any of the keys `person task word license source` (a string, or an array that means any
+of them), the same keys with `not_` before them (none of them), and `min_duration max_duration`
+(seconds). All conditions must hold. A clip without a label meets every `not_` condition for it.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from app.store.clips.filter import ClipFilter
 LABEL_KEYS = ("person", "task", "word", "license", "source")
 NOT = "not_"
 REFUSAL_KEYS = tuple(NOT + key for key in LABEL_KEYS)
-MOST_LABELS = 100
-"""Labels of one kind that a filter names."""
-LONGEST_LABEL = 300
-"""Characters; no clip carries a longer one."""
+MAX_LABELS = 100
+"""Labels of one kind in a filter."""
+MAX_LABEL_LENGTH = 300
+"""Characters of a label; no clip has a longer one."""
 DURATION_KEYS = ("min_duration", "max_duration")
 
 
@@ -44,12 +44,12 @@ def parse_filter(given: Mapping[str, Any] | None) -> ClipFilter:
 
 
 def as_filter(given: ClipFilter | Mapping[str, Any] | None) -> ClipFilter:
-    """A filter that was read already as it is, any other by `parse_filter`."""
+    """A filter that was parsed already, unchanged; any other is parsed by `parse_filter`."""
     return given if isinstance(given, ClipFilter) else parse_filter(given)
 
 
 def as_kept(key: str, value: str) -> str:
-    """A label as clips keep it: composed (NFC), no space around; a word in lower case, joined."""
+    """A label in the form in which clips keep it: NFC, without outer spaces; words normalized."""
     tidy = unicodedata.normalize("NFC", value).strip()
     return normalise_word(tidy) if key == "word" else tidy
 
@@ -71,8 +71,8 @@ def _labels(key: str, value: Any) -> tuple[str, ...]:
         raise ValueError("must be a string, or an array of strings")
     if not values:
         raise ValueError("an empty array has no meaning; leave the key out")
-    if len(values) > MOST_LABELS or any(len(v) > LONGEST_LABEL for v in values):
-        raise ValueError(f"must be at most {MOST_LABELS}, of at most {LONGEST_LABEL} characters")
+    if len(values) > MAX_LABELS or any(len(v) > MAX_LABEL_LENGTH for v in values):
+        raise ValueError(f"must be at most {MAX_LABELS}, of at most {MAX_LABEL_LENGTH} characters")
     return tuple(as_kept(key, v) for v in values)
 
 

@@ -1,7 +1,7 @@
 """The labels of the clips in an index, as columns of small integers that filters compare.
 
-Columns only ever grow. What a search reads is a `LabelView`, a length of them that nothing
-that comes later changes; so searches need no lock.
+Columns only grow. A search reads a `LabelView`: the first entries of the columns, which no later
+change touches. So searches need no lock.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _FIRST_CAPACITY = 1024
 
 
 class Column:
-    """An array (n, *tail) that grows at its end; what was read of it stays as it is."""
+    """An array (n, *tail) that grows at its end; views that were taken of it never change."""
 
     def __init__(self, dtype: DTypeLike, tail: tuple[int, ...] = ()) -> None:
         self._data = np.empty((_FIRST_CAPACITY, *tail), dtype=dtype)
@@ -47,15 +47,15 @@ class Column:
         """All entries so far, (n, *tail)."""
         return self._data[: self._count]
 
-    def apart(self) -> Column:
-        """A copy, in which entries may be changed under no one's view."""
-        copy = Column(self._data.dtype, self._data.shape[1:])
-        copy.extend(self.view())
-        return copy
+    def copy(self) -> Column:
+        """A copy whose entries may be changed, because nobody has a view of it."""
+        made = Column(self._data.dtype, self._data.shape[1:])
+        made.extend(self.view())
+        return made
 
 
 class Coded:
-    """A column of labels, each a small integer; codes count up as new labels come."""
+    """A column of labels, each kept as a small integer; a new label gets the next one."""
 
     def __init__(self) -> None:
         self.column = Column(np.int32)
@@ -71,7 +71,7 @@ class Coded:
         return self._labels[int(self.column.view()[number])]
 
     def codes(self, labels: Iterable[str]) -> list[int]:
-        """The codes of those labels that some clip carried."""
+        """The codes of those labels that some clip has had."""
         return [self._code_of[label] for label in labels if label in self._code_of]
 
     def _code(self, label: str | None) -> int:
@@ -84,9 +84,9 @@ class Coded:
 
 
 class CodedWords:
-    """A column of sets of words, each a small integer, and the sets that hold each word.
+    """A column of sets of words, each kept as a small integer, and the sets that contain each word.
 
-    Clips share few sets, so a filter by words asks each set once and then each clip's code.
+    Many clips have equal sets, so a filter by words checks each set once, then each clip's code.
     """
 
     def __init__(self) -> None:
@@ -105,7 +105,7 @@ class CodedWords:
 
     @property
     def sets(self) -> tuple[frozenset[str], ...]:
-        """All sets that some clip carried, by code."""
+        """All sets that some clip has had, by code."""
         return tuple(self._sets)
 
     def at(self, number: int) -> frozenset[str]:
@@ -137,26 +137,26 @@ class LabelView:
     coded: dict[str, IntArray]
     labels: Labels
 
-    def passing(self, wanted: ClipFilter, exclude: Iterable[str] = ()) -> BoolArray:
+    def mask(self, clip_filter: ClipFilter, exclude: Iterable[str] = ()) -> BoolArray:
         """(n,) whether each clip passes a filter and is not excluded.
 
-        The state and the name are not looked at: every clip here is ready.
+        The filter's state and name are ignored: every clip here is ready.
         """
         mask = self.alive.copy()
-        if wanted.min_duration is not None:
-            mask &= self.durations >= wanted.min_duration
-        if wanted.max_duration is not None:
-            mask &= self.durations <= wanted.max_duration
-        for name, codes in self.labels.codes(wanted).items():
+        if clip_filter.min_duration is not None:
+            mask &= self.durations >= clip_filter.min_duration
+        if clip_filter.max_duration is not None:
+            mask &= self.durations <= clip_filter.max_duration
+        for name, codes in self.labels.codes(clip_filter).items():
             mask &= _any_of(self.coded[name], codes)
-        for name, codes in self.labels.codes(wanted, refused=True).items():
+        for name, codes in self.labels.codes(clip_filter, refused=True).items():
             mask &= ~_any_of(self.coded[name], codes)
         for clip_id in exclude:
             mask[self._numbers_of(clip_id)] = False
         return mask
 
     def word_sets(self) -> tuple[IntArray, tuple[frozenset[str], ...]]:
-        """(n,) which set of words each clip carries, and the sets."""
+        """(n,) the code of each clip's set of words, and the sets by code."""
         return self.coded["word"], self.labels.words.sets
 
     def numbers(self, ids: IdArray) -> IntArray:
@@ -167,14 +167,14 @@ class LabelView:
         number = self.labels.number_of.get(clip_id)
         if number is not None and number < len(self.ids):
             return [number]
-        # It changed or went since this view was taken, or was never here.
+        # The clip changed or was deleted since this view was taken, or it was never here.
         return [int(n) for n in np.flatnonzero(self.ids == clip_id) if self.alive[n]]
 
 
 class Labels:
-    """The labels of clips, to which clips are added and from which they are taken.
+    """The labels of clips; clips are added and removed.
 
-    A clip that changes is taken away and added anew: numbers are never used again.
+    A clip that changes is removed and added again with a new number: numbers are never used twice.
     """
 
     def __init__(self) -> None:
@@ -191,11 +191,11 @@ class Labels:
 
     @property
     def used(self) -> int:
-        """Numbers that were given out."""
+        """How many numbers were given to clips so far."""
         return len(self._ids)
 
     def add(self, clips: Sequence[IndexedClip]) -> None:
-        """Give the next numbers to clips that are not there."""
+        """Add clips that are not there; they get the next numbers."""
         first = self.used
         self._ids.extend([clip.id for clip in clips])
         self._durations.extend([clip.duration for clip in clips])
@@ -205,22 +205,23 @@ class Labels:
             coded.extend(getattr(clip, name) for clip in clips)
         self.number_of.update((clip.id, first + i) for i, clip in enumerate(clips))
 
-    def remove(self, clip_ids: Iterable[str]) -> None:
-        """Take away those of the clips that are there."""
+    def remove(self, clip_ids: Iterable[str]) -> list[int]:
+        """Remove those of the clips that are there; returns their numbers."""
         numbers = [self.number_of.pop(i) for i in clip_ids if i in self.number_of]
         if numbers:
-            self._alive = self._alive.apart()  # views that were taken keep theirs
+            self._alive = self._alive.copy()  # views that were taken keep the old one
             self._alive.view()[numbers] = False
+        return numbers
 
-    def codes(self, wanted: ClipFilter, *, refused: bool = False) -> dict[str, list[int]]:
-        """For each label that a filter names, the codes that pass, or those that are refused."""
+    def codes(self, clip_filter: ClipFilter, *, refused: bool = False) -> dict[str, list[int]]:
+        """For each label in a filter, the codes that pass, or with `refused` those that do not."""
         before = "not_" if refused else ""
         found = {
             name: coded.codes(values)
             for name, coded in self._named.items()
-            if (values := getattr(wanted, before + name))
+            if (values := getattr(clip_filter, before + name))
         }
-        words = getattr(wanted, before + "word")
+        words = getattr(clip_filter, before + "word")
         return found | ({"word": self.words.codes(words)} if words else {})
 
     def clip_at(self, number: int, array: NDArray[Any] | None) -> IndexedClip:

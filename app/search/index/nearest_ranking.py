@@ -1,4 +1,4 @@
-"""Clips in order of their vectors' distance to a query, measured as far as one looks."""
+"""Clips in order of their vectors' distance to a query, measured as far as pages are read."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from app.search.ranking.cursor import Position
 from app.search.ranking.ranking import IdArray, Page, Ranking
 
 FIRST_LOOK = 256
-"""Clips taken at first where it is not known how many are meant."""
+"""Clips that are ranked first where it is not known how many are needed."""
 
 
-class Near:
-    """A ranking (see `rank.Ranked`) over the rows of an index, one row a clip.
+class NearestRanking:
+    """A ranking (see `ranking.Ranked`) over the rows of an index, one row a clip.
 
-    A page costs one pass over the vectors, however deep it lies.
+    Each page costs one pass over the vectors, the last as much as the first.
     """
 
     anchor = None
 
-    def __init__(self, version: int, rows: RowsView, passing: BoolArray, query: FloatArray) -> None:
-        """passing: (n,) the clips that are meant; query: (width,); version: the library's."""
+    def __init__(self, version: int, rows: RowsView, mask: BoolArray, query: FloatArray) -> None:
+        """mask: (n,) the clips that pass; query: (width,); version: the library's."""
         self.version = version
         self._rows = rows
-        self._passing = passing
+        self._mask = mask
         self._query = query
-        self._masks = rows.masks(passing)
+        self._masks = rows.masks(mask)
 
     def __len__(self) -> int:
-        return int(np.count_nonzero(self._passing))
+        return int(np.count_nonzero(self._mask))
 
     @property
     def ids(self) -> IdArray:
@@ -53,7 +53,7 @@ class Near:
         return self._ranking(*found).page(after, limit)
 
     def until(self, distance: float, clip_id: str) -> Page:
-        """All clips that do not stand behind (distance, clip id)."""
+        """All clips up to (distance, clip id), which is included."""
         limit, key = FIRST_LOOK, (distance, clip_id)
         while True:
             page = self.page(None, limit)
@@ -69,7 +69,7 @@ class Near:
 
     @cached_property
     def _whole(self) -> Ranking:
-        rows = np.flatnonzero(self._passing)
+        rows = np.flatnonzero(self._mask)
         return self._ranking(rows, distances_to(self._rows.blocks, rows, self._query))
 
     def _ranking(self, rows: IntArray, distances: FloatArray) -> Ranking:

@@ -10,8 +10,8 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 from app.numerics.nearest import Block, squared_lengths
 from app.search.index.labels import Column
-from app.search.index.model_rows import Beside, Compute, Known, RowsBeside, nothing_known
-from app.search.index.nearest_ranking import Near
+from app.search.index.model_rows import Compute, Known, ModelRows, ModelRowsView, nothing_known
+from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.vector_index import VectorIndex
 from app.store.clips.filter import ClipFilter
 
@@ -21,9 +21,9 @@ class ProjectedIndex:
 
     def __init__(self, index: VectorIndex) -> None:
         self._index = index
-        self._coordinates = RowsBeside()
-        self._squares = Column(np.float32)
-        self._series: object = None
+        self._coordinates = ModelRows()
+        self._column = Column(np.float32)
+        self._squares: tuple[object, FloatArray] = None, self._column.view()
         self._lock = threading.Lock()
 
     def nearest(
@@ -31,25 +31,33 @@ class ProjectedIndex:
         model: str,
         project: Compute,
         query: FloatArray,
-        wanted: ClipFilter,
+        clip_filter: ClipFilter,
         exclude: frozenset[str] = frozenset(),
         known: Known = nothing_known,
-    ) -> Near:
+    ) -> NearestRanking:
         """The clips that pass a filter, ranked by how far their coordinates are from `query` (k,).
 
-        model: id of the model that `project`, `query` and what is `known` are of. The index has
+        model: id of the model that `project`, `query` and `known` belong to. The index must have
         caught up.
         """
         version, rows = self._index.state
-        beside = self._coordinates.of(rows.labels, model, len(query), project, known)
-        rows = replace(rows, blocks=(self._block(beside),))
-        return Near(version, rows, rows.labels.passing(wanted, exclude), query)
+        coordinates = self._coordinates.of(rows.labels, model, len(query), project, known)
+        rows = replace(rows, blocks=(self._block(coordinates),))
+        return NearestRanking(version, rows, rows.labels.mask(clip_filter, exclude), query)
 
-    def _block(self, beside: Beside) -> Block:
+    def _block(self, coordinates: ModelRowsView) -> Block:
         """Coordinates of all rows; 0 for those of clips that are gone."""
-        count = len(beside.values)
+        count = len(coordinates.values)
+        series, squares = self._squares
+        if series is not coordinates.series or len(squares) < count:
+            squares = self._add_squares(coordinates)
+        return Block(coordinates.values, squares[:count])
+
+    def _add_squares(self, coordinates: ModelRowsView) -> FloatArray:
+        """The squares of these coordinates and of all that were there before them."""
         with self._lock:
-            if self._series is not beside.series:
-                self._series, self._squares = beside.series, Column(np.float32)
-            self._squares.extend(squared_lengths(beside.values[len(self._squares) :]))
-            return Block(beside.values, self._squares.view()[:count])
+            if self._squares[0] is not coordinates.series:
+                self._column = Column(np.float32)
+            self._column.extend(squared_lengths(coordinates.values[len(self._column) :]))
+            self._squares = coordinates.series, self._column.view()
+            return self._squares[1]

@@ -1,7 +1,7 @@
 """Arrays of clips that this version of the analysis can use.
 
-A clip that waits for another analysis after an upgrade keeps its older arrays. Those of another
-shape are left out here, so that a comparison goes on without that clip.
+After an upgrade a clip keeps its older arrays until it is analyzed again. Arrays of another shape
+are left out here, so comparisons work without that clip.
 """
 
 from __future__ import annotations

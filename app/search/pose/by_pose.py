@@ -1,9 +1,8 @@
-"""Rank clips by how near they come to one pose, exactly.
+"""Rank clips by the distance of their nearest frame to one pose, exactly.
 
-Each clip's pose cover bounds from below how near any of its frames can be: the distance to
-a chosen pose less that pose's radius. Clips are looked into frame by frame, in the order of
-those bounds, until no other can be nearer than what was found; so nothing is missed, and
-most clips are never looked into.
+Each clip's pose cover gives a lower bound of this distance: the distance to a pose of the cover
+less that pose's radius. The frames of clips are compared in the order of these bounds, until no
+other clip can be nearer than those found. So nothing is missed, and most clips are never read.
 """
 
 from __future__ import annotations
@@ -21,11 +20,11 @@ from app.search.index.rows import Layout, RowsView
 from app.search.pose.pose_places import Places, PosePlace, pose_places
 from app.search.ranking.cursor import Position
 
-POSES = Layout("pose_cover", POSE_WIDTH, told=2, several=True)
-"""Rows of the index of poses; they tell frame and radius."""
+POSES = Layout(("pose_cover",), POSE_WIDTH, facts=2, several=True)
+"""Rows of the index of poses; their facts are frame and radius."""
 POSITIONS = "role_positions"
 AT_ONCE = 64
-"""Clips looked into at a time."""
+"""Clips whose frames are compared at a time."""
 
 FRAMES_AT_ONCE = 100_000
 """Poses that are compared at a time."""
@@ -48,36 +47,36 @@ class PoseHit:
 
 @dataclass(frozen=True, slots=True)
 class PosePage:
-    """A stretch of a ranking by pose; more: whether it goes on."""
+    """Part of a ranking by pose; more: whether hits follow."""
 
     hits: tuple[PoseHit, ...]
     more: bool
 
 
 class PoseRanking:
-    """All places of the clips that pass a filter, from the nearest pose on."""
+    """All places of the clips that pass a filter, in order of distance."""
 
     def __init__(
         self,
         rows: RowsView,
-        passing: BoolArray,
+        mask: BoolArray,
         query: FloatArray,
         load: Loader,
         places: Places = Places.BEST,
     ) -> None:
-        """rows: of POSES; passing: (n,) the clips that are meant; query: (36,) its vector."""
+        """rows: of POSES; mask: (n,) the clips that pass; query: (36,) a pose vector."""
         self._ids = rows.labels.ids
         self._query = query.astype(np.float64)
         self._load = load
         self._places = places
         self._bounds = _bounds(rows, query)
-        self._passing = passing
+        self._mask = mask
 
     def page(self, after: Position | None, limit: int) -> PosePage:
         """The first `limit` places behind a position; its clip id is a `PoseHit.key`'s."""
         behind = (-1.0, "") if after is None else (after.distance, after.clip_id)
         hits: list[PoseHit] = []
-        farthest, waiting = np.inf, self._passing.copy()
+        farthest, waiting = np.inf, self._mask.copy()
         while len(numbers := self._next(waiting, farthest)):
             hits += [hit for hit in self._look_into(numbers) if hit.key > behind]
             if len(hits) > limit:
@@ -87,7 +86,7 @@ class PoseRanking:
         return PosePage(tuple(hits[:limit]), len(hits) > limit)
 
     def _next(self, waiting: BoolArray, farthest: float) -> IntArray:
-        """Numbers of the next clips that may come as near as that, no longer `waiting` (n,)."""
+        """Numbers of the next clips that may be so near; they are removed from `waiting` (n,)."""
         numbers = np.flatnonzero(waiting & (self._bounds <= farthest))
         if len(numbers) > AT_ONCE:
             numbers = numbers[np.argpartition(self._bounds[numbers], AT_ONCE)[:AT_ONCE]]
@@ -109,7 +108,7 @@ class PoseRanking:
         ]
 
     def _distances(self, positions: FloatArray) -> FloatArray:
-        """(n,) of all poses, some at a time: between them the work may stop."""
+        """(n,) of all poses, in batches; a request that has ended stops between two of them."""
         found = np.empty(len(positions))
         for first in range(0, len(positions), FRAMES_AT_ONCE):
             check()
@@ -129,11 +128,11 @@ def pose_distances(positions: FloatArray, query: FloatArray) -> FloatArray:
 
 
 def _bounds(rows: RowsView, query: FloatArray) -> FloatArray:
-    """(n,) of each clip, a distance that none of its poses is nearer than."""
+    """(n,) for each clip a lower bound of the distances of its poses."""
     if rows.starts is None or not len(rows.starts):
         return np.zeros(0)
     squares, error = squared_distances(rows.blocks, query)
     squares -= np.float32(error)
     np.sqrt(np.maximum(squares, 0.0, out=squares), out=squares)
-    squares -= rows.told[:, _RADIUS]
+    squares -= rows.facts[:, _RADIUS]
     return np.asarray(np.minimum.reduceat(squares, rows.starts))

@@ -1,4 +1,4 @@
-"""Where in a clip a pose is taken: the frames of one stay in it are one place."""
+"""Where in a clip a pose is taken. Neighboring frames that stay near it are one place."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from app.numerics.arrays import FloatArray
 from app.numerics.nearest import DECIMALS
 
 SAME_PLACE = 0.05
-"""Body lengths. A place reaches as far as the pose stays within this of its best frame; two
-are two only if in between it becomes worse by more than this than in both."""
+"""Body lengths. A place extends as far as the distance exceeds that of its best frame by at most
+this. Between two places the distance rises by more than this above that of both."""
 
 
 class Places(StrEnum):
@@ -28,7 +28,7 @@ class Places(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class PosePlace:
-    """A stretch of a clip around the frame whose pose is nearest.
+    """The part of a clip around the frame whose pose is nearest.
 
     distance: body lengths; frame, first, last: at ANALYSIS_RATE.
     """
@@ -62,12 +62,12 @@ def pose_places(distances: FloatArray, places: Places) -> list[PosePlace]:
         return []
     if places is Places.BEST:
         return [_place(found, best)]
-    told: list[PosePlace] = []
+    found_places: list[PosePlace] = []
     for frame in _minima(found):
-        # minima exactly as deep as each other can be of one place
-        if not told or frame > told[-1].last:
-            told.append(_place(found, frame))
-    return told
+        # two minima of equal depth can belong to one place
+        if not found_places or frame > found_places[-1].last:
+            found_places.append(_place(found, frame))
+    return found_places
 
 
 def _minima(distances: FloatArray) -> list[int]:

@@ -1,22 +1,22 @@
 """Opaque cursors that page through a ranking.
 
-A cursor remembers the last hit of a page as (rank, distance, clip id) and a digest of the
-question. The next page starts behind that key, so that clips that arrive in between
-shift nothing; a cursor used with another question is refused. Where only a shortlist was
-ranked again, it also remembers where that ended.
+A cursor holds a digest of the query, and the rank, distance and clip id of the last hit of a page.
+The next page begins behind that hit, so clips that arrive between two pages shift nothing. A cursor
+of another query is refused. Where only a shortlist was ranked again, the cursor also holds where
+the shortlist ended.
 """
 
 from __future__ import annotations
 
-import base64
 import hashlib
 import json
-import math
 from dataclasses import dataclass
 
 from app.errors import BadField, Place
+from app.store.database import cursor_codec
+from app.store.database.cursor_codec import as_count, as_number, as_text
 
-LARGEST_RANK = 10**9
+MAX_RANK = 10**9
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,54 +44,37 @@ class Position:
 
 
 def digest(*parts: object) -> str:
-    """A short digest of what identifies a question: the same parts, the same digest."""
+    """A short digest of what identifies a query: the same parts give the same digest."""
     text = json.dumps([str(part) for part in parts])
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def encode(position: Position, question: str) -> str:
-    """A cursor for what follows `position` in the answer to `question` (a digest)."""
-    anchor = position.anchor
-    told = [] if anchor is None else [anchor.distance, anchor.clip_id, anchor.end]
-    body = json.dumps([question, position.rank, position.distance, position.clip_id, *told])
-    return base64.urlsafe_b64encode(body.encode()).decode().rstrip("=")
+def encode(position: Position, query: str) -> str:
+    """A cursor for what follows `position` in the answer to a query, given by its digest."""
+    values: list[str | float | None] = [
+        query, position.rank, position.distance, position.clip_id
+    ]  # fmt: skip
+    if (anchor := position.anchor) is not None:
+        values += [anchor.distance, anchor.clip_id, anchor.end]
+    return cursor_codec.encode(values)
 
 
-def decode(cursor: str, question: str) -> Position:
-    """The position in a cursor; raises BadField where it is none, or of another question."""
+def decode(cursor: str, query: str) -> Position:
+    """The position in a cursor. Raises BadField if it is no cursor, or one of another query."""
     try:
-        padded = cursor.encode("ascii") + b"=" * (-len(cursor) % 4)
-        found, rank, distance, clip_id, *told = json.loads(base64.urlsafe_b64decode(padded))
-        anchor = _anchor(*told) if told else None
-        position = Position(_rank(rank), _distance(distance), _text(clip_id), anchor)
-    except (ValueError, TypeError, OverflowError, RecursionError) as problem:
-        raise _refused("this is no cursor that was given out") from problem
-    if found != question:
-        raise _refused("this cursor belongs to another question")
+        found, rank, distance, clip_id, *rest = cursor_codec.decode(cursor)
+        anchor = _anchor(rest) if rest else None
+        position = Position(as_count(rank, MAX_RANK), as_number(distance), as_text(clip_id), anchor)
+    except ValueError as problem:
+        raise _refused("this is not a cursor that was given out") from problem
+    if found != query:
+        raise _refused("this cursor belongs to another query")
     return position
 
 
-def _anchor(distance: object, clip_id: object, end: object) -> Anchor:
-    return Anchor(_distance(distance), _text(clip_id), None if end is None else _distance(end))
-
-
-def _rank(value: object) -> int:
-    if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value <= LARGEST_RANK:
-        raise ValueError("rank")
-    return value
-
-
-def _distance(value: object) -> float:
-    if not isinstance(value, float | int) or isinstance(value, bool) or not math.isfinite(value):
-        raise ValueError("distance")
-    return float(value)
-
-
-def _text(value: object) -> str:
-    if not isinstance(value, str):
-        raise TypeError("clip id")
-    value.encode()  # Half of a surrogate pair is valid JSON, but no text.
-    return value
+def _anchor(values: list[object]) -> Anchor:
+    distance, clip_id, end = values
+    return Anchor(as_number(distance), as_text(clip_id), None if end is None else as_number(end))
 
 
 def _refused(message: str) -> BadField:

@@ -1,7 +1,7 @@
-"""A ranking of clips whose distances are dear, but cheaply known not to be below a bound.
+"""A ranking of clips whose distances cost much, while lower bounds of them cost little.
 
-As few are measured as a page needs, in the order of their bounds, until no other can be nearer
-than what was found: the page is that of the ranking with everything measured.
+Clips are measured in the order of their bounds, until no other clip can be nearer than those found.
+So a page is the same as if every clip had been measured.
 """
 
 from __future__ import annotations
@@ -17,33 +17,33 @@ from app.numerics.nearest import DECIMALS
 from app.search.ranking.cursor import Position
 from app.search.ranking.ranking import IdArray, Page, Ranking
 
-FEWEST = 16
-"""Clips measured at a time, at least: one costs little less."""
+MIN_MEASURED = 16
+"""Clips that are measured at a time, at least: one clip alone costs nearly as much."""
 
 Measure = Callable[[IntArray], FloatArray]
 """Distances (m,) of the clips with these numbers (m,), ascending; infinity for one that is gone.
 
-They depend on nothing but the clip, however often and beside whatever it is measured."""
+A distance must depend on its clip alone, not on the other clips that are measured with it."""
 
 
 @dataclass(frozen=True, slots=True)
-class Bounds:
-    """Clips (n,), what their distances are not below (n,), and how they are measured."""
+class LowerBounds:
+    """Clips (n,), lower bounds of their distances (n,), and the function that measures them."""
 
     ids: IdArray
     least: FloatArray
     measure: Measure
 
 
-class Bounded:
-    """Clips by distance, measured as pages ask; those that are gone are left out."""
+class LowerBoundRanking:
+    """Clips in order of distance, measured as pages need them; clips that are gone are left out."""
 
-    def __init__(self, clips: Bounds, most: float = np.inf) -> None:
-        """most: distances are no larger, whatever is measured."""
+    def __init__(self, clips: LowerBounds, most: float = np.inf) -> None:
+        """most: larger distances count as this."""
         self._ids = clips.ids
         self._measure = clips.measure
         self._most = most
-        self._least = self._told(clips.least)
+        self._least = self._rounded(clips.least)
         self._distances = np.full(len(clips.ids), np.inf)
         self._waiting = np.ones(len(clips.ids), dtype=bool)
 
@@ -67,7 +67,7 @@ class Bounded:
             page = self._so_far().page(after, limit + 1)
             if len(page.ids) <= limit:
                 missing = limit + 1 - len(page.ids)
-                some = self._nearest_bounds(max(missing, FEWEST))
+                some = self._nearest_bounds(max(missing, MIN_MEASURED))
             else:
                 some = self._least <= page.distances[-1]
             if not self._look(some):
@@ -82,20 +82,20 @@ class Bounded:
         return np.asarray(np.isfinite(self._distances))
 
     def _nearest_bounds(self, count: int) -> BoolArray:
-        """(n,) the `count` that wait with the smallest bounds."""
+        """(n,) the `count` clips with the smallest bounds of those that are not measured yet."""
         numbers = np.flatnonzero(self._waiting)
         chosen = np.zeros(len(self._waiting), dtype=bool)
         chosen[numbers[np.argsort(self._least[numbers], kind="stable")[:count]]] = True
         return chosen
 
     def _look(self, chosen: BoolArray) -> bool:
-        """Measure those of `chosen` (n,) that wait; whether there were any."""
+        """Measure those of `chosen` (n,) that are not measured yet; return whether any was."""
         numbers = np.flatnonzero(chosen & self._waiting)
         if len(numbers):
             found = self._measure(numbers)
-            self._distances[numbers] = np.where(np.isfinite(found), self._told(found), np.inf)
+            self._distances[numbers] = np.where(np.isfinite(found), self._rounded(found), np.inf)
             self._waiting[numbers] = False
         return bool(len(numbers))
 
-    def _told(self, distances: FloatArray) -> FloatArray:
+    def _rounded(self, distances: FloatArray) -> FloatArray:
         return np.asarray(np.round(np.minimum(distances, self._most), DECIMALS))

@@ -1,8 +1,8 @@
 """Rankings: clips in order of distance, with scores that fall strictly with it.
 
-Distances are rounded to nine decimals before they are ordered, so that two that differ
-also differ in their score, whatever the rounding of 1 / (1 + d). Clips equally far stand in
-the order of their ids. A ranking is put in order only as far as it is looked at.
+Distances are rounded to nine decimals before they are ordered. So two distances that differ have
+scores that differ, although 1 / (1 + d) is rounded too. Clips with equal distances are in the order
+of their ids. A ranking is sorted only as far as it is read.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ IdArray = NDArray[np.object_]
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """A stretch of a ranking: ids (n,) and distances (n,) float64; more: whether it goes on."""
+    """Part of a ranking: ids (n,) and distances (n,) float64; more: whether clips follow."""
 
     ids: IdArray
     distances: FloatArray
@@ -35,7 +35,7 @@ class Ranked(Protocol):
 
     @property
     def anchor(self) -> Anchor | None:
-        """What a cursor has to remember so that the ranking goes on in the same way."""
+        """What a cursor must hold so that the next page continues the same ranking."""
 
     @property
     def ids(self) -> IdArray:
@@ -48,11 +48,11 @@ class Ranked(Protocol):
     def __len__(self) -> int: ...
 
     def page(self, after: Position | None, limit: int) -> Page:
-        """The first `limit` clips behind a position, which need not be there any more."""
+        """The first `limit` clips behind a position; the clip at it may be gone."""
 
 
 class Ranking:
-    """Clips whose distances are all known."""
+    """Clips with distances that are all known."""
 
     anchor: Anchor | None = None
 

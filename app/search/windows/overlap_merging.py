@@ -1,7 +1,7 @@
-"""Places: parts of clips in order of distance, those that overlap merged into the nearest.
+"""Parts of clips in order of distance, where the nearest stands for those that overlap it.
 
-Of two that share more than MERGED of the shorter one only the nearer is told (non-maximum
-suppression, greedy). Only as many are looked at as a page needs.
+Of two parts that share more than MAX_OVERLAP of the shorter one, only the nearer is kept (greedy
+non-maximum suppression). Only as many are compared as a page needs.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from app.numerics.arrays import FloatArray, IntArray
 from app.search.ranking.cursor import Position
 from app.search.ranking.ranking import DECIMALS, IdArray
 
-MERGED = 0.2
-"""Share of the shorter of two places; those that overlap by more are one."""
+MAX_OVERLAP = 0.2
+"""Share of the shorter of two parts; parts that overlap by more are merged."""
 
 FIRST_LOOK = 2048
-"""Candidates that are put in order first; then four times as many, and so on."""
+"""Candidates that are sorted first; then four times as many, and so on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +47,8 @@ class Candidates:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
-    """A part of a clip, in seconds, and how far it is; index: the candidate that it was."""
+class FoundInterval:
+    """A part of a clip, in seconds, and its distance; index: of the candidate."""
 
     clip_id: str
     start: float
@@ -58,30 +58,30 @@ class Place:
 
     @property
     def key(self) -> str:
-        """Orders places of the same distance, and names one in a cursor."""
+        """Orders parts of the same distance, and identifies one in a cursor."""
         return f"{self.clip_id} {self.start:013.4f} {self.end:013.4f}"
 
 
-def places(
+def merge_overlapping(
     found: Candidates, count: int, after: Position | None = None, until: float = np.inf
-) -> tuple[list[Place], bool]:
-    """The `count` nearest places behind a position, and whether there are more.
+) -> tuple[list[FoundInterval], bool]:
+    """The `count` nearest parts behind a position, and whether more follow.
 
-    until: the largest distance that is told.
+    until: parts that are farther are left out.
     """
     behind = (-1.0, "") if after is None else (after.distance, after.clip_id)
-    told: list[Place] = []
-    for place in _merged(found):
-        if place.distance > until:
+    nearest: list[FoundInterval] = []
+    for part in _merged(found):
+        if part.distance > until:
             break
-        if (place.distance, place.key) > behind:
-            if len(told) == count:
-                return told, True
-            told.append(place)
-    return told, False
+        if (part.distance, part.key) > behind:
+            if len(nearest) == count:
+                return nearest, True
+            nearest.append(part)
+    return nearest, False
 
 
-def _merged(found: Candidates) -> Iterator[Place]:
+def _merged(found: Candidates) -> Iterator[FoundInterval]:
     taken: dict[int, _Taken] = {}
     for index in _nearest_first(found):
         check()
@@ -89,24 +89,24 @@ def _merged(found: Candidates) -> Iterator[Place]:
         start, end = float(found.starts[index]), float(found.ends[index])
         if taken.setdefault(owner, _Taken()).take(start, end):
             distance = round(float(found.distances[index]), DECIMALS)
-            yield Place(str(found.ids[owner]), start, end, distance, index)
+            yield FoundInterval(str(found.ids[owner]), start, end, distance, index)
 
 
 class _Taken:
-    """The places of one clip that were told."""
+    """The parts of one clip that were kept."""
 
     def __init__(self) -> None:
         self._spans: list[tuple[float, float]] = []
         self._longest = 0.0
 
     def take(self, start: float, end: float) -> bool:
-        """Take a place, unless one that was taken is the same."""
+        """Keep a part, unless it overlaps one that was kept; returns whether it was kept."""
         first = bisect_left(self._spans, (start - self._longest, 0.0))
         for other_start, other_end in self._spans[first:]:
             if other_start >= end:
                 break
             shared = min(end, other_end) - max(start, other_start)
-            if shared > MERGED * min(end - start, other_end - other_start):
+            if shared > MAX_OVERLAP * min(end - start, other_end - other_start):
                 return False
         insort(self._spans, (start, end))
         self._longest = max(self._longest, end - start)
@@ -114,7 +114,7 @@ class _Taken:
 
 
 def _nearest_first(found: Candidates) -> Iterator[int]:
-    """Indices of the candidates by (distance, clip id, start), put in order as they are asked."""
+    """Indices of the candidates by (distance, clip id, start), sorted as they are read."""
     distances = np.round(np.asarray(found.distances, dtype=np.float64), DECIMALS)
     low, count = -np.inf, FIRST_LOOK
     while low < np.inf:
@@ -130,7 +130,7 @@ def _nearest_first(found: Candidates) -> Iterator[int]:
 def _in_order(found: Candidates, distances: FloatArray, chosen: IntArray) -> IntArray:
     order = np.argsort(distances[chosen], kind="stable")
     if np.any(np.diff(distances[chosen][order]) == 0):
-        # Only ties need the ids, which are slow to sort.
+        # Only equal distances need the ids, which are slow to sort.
         ids = found.ids[found.owners[chosen]].astype(str)
         order = np.lexsort((found.ends[chosen], found.starts[chosen], ids, distances[chosen]))
     return np.asarray(chosen[order])

@@ -1,4 +1,4 @@
-"""What windows propose for a query: where in clips it might be, and how far that is."""
+"""What windows propose for a query: where in clips it may be, and at which distance."""
 
 from __future__ import annotations
 
@@ -9,19 +9,18 @@ import numpy as np
 
 from app.analysis.descriptors.windows import WINDOW_SCALES, RunningSums, WindowScale
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
-from app.numerics.euclidean import distances
-from app.search.index.span_index import Spans
 from app.search.windows.overlap_merging import Candidates
+from app.search.windows.parts import Parts
 
-MOST_WINDOWS = 16
-"""Of a long query; they stand farther apart the longer it is."""
+MAX_WINDOWS = 16
+"""Windows of a long query; the longer it is, the larger are the steps between them."""
 
-View = Callable[[WindowScale], Spans]
-"""The windows of one scale, with the clips that are meant marked."""
+View = Callable[[WindowScale], Parts]
+"""The windows of one scale, of the clips that pass the filter."""
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class QuerySegment:
     """The query: features (m, 82) at 10 Hz, and how long it is in seconds."""
 
     features: FloatArray
@@ -29,8 +28,8 @@ class Piece:
 
 
 @dataclass(frozen=True, slots=True)
-class Barred:
-    """A part of a clip, in seconds, in which nothing may be found: the query itself."""
+class ExcludedInterval:
+    """A part of a clip, in seconds, where nothing may be found: the query itself."""
 
     clip_id: str
     start: float
@@ -39,36 +38,36 @@ class Barred:
 
 @dataclass(frozen=True, slots=True)
 class Proposals:
-    """For each row of `spans` the place where the query would be, and its distance.
+    """For each of n windows the interval where the query would be, and its distance.
 
-    starts, ends: (n,) seconds; distances: (n,); rows: (k,) those of clips that are meant and
-    touch nothing barred.
+    starts, ends: (n,) seconds; distances: (n,); allowed: (k,) the windows that do not touch the
+    excluded interval.
     """
 
-    spans: Spans
+    windows: Parts
     starts: FloatArray
     ends: FloatArray
     distances: FloatArray
-    rows: IntArray
+    allowed: IntArray
 
     def candidates(self) -> Candidates:
-        """The places of `rows`, in their order."""
+        """The intervals of the allowed windows, in their order."""
         return Candidates(
-            self.spans.ids,
-            self.spans.owners[self.rows],
-            self.starts[self.rows],
-            self.ends[self.rows],
-            self.distances[self.rows],
+            self.windows.ids,
+            self.windows.owners[self.allowed],
+            self.starts[self.allowed],
+            self.ends[self.allowed],
+            self.distances[self.allowed],
         )
 
-    def distances_near(self, owners: IntArray, centres: FloatArray) -> FloatArray:
-        """(k,) distances of the rows of clips `owners` (k,) nearest to times `centres` (k,)."""
+    def distances_near(self, owners: IntArray, centers: FloatArray) -> FloatArray:
+        """(k,) distances of the windows of clips `owners` (k,) nearest to times `centers` (k,)."""
         longest = float(self.ends.max(initial=0.0)) + 1.0
-        along = self.spans.owners * longest + (self.starts + self.ends) / 2
-        sought = owners * longest + centres
+        along = self.windows.owners * longest + (self.starts + self.ends) / 2
+        sought = owners * longest + centers
         behind = np.searchsorted(along, sought)
-        firsts = self.spans.firsts[owners]
-        lasts = firsts + self.spans.counts[owners] - 1
+        firsts = np.searchsorted(self.windows.owners, owners)
+        lasts = np.searchsorted(self.windows.owners, owners, side="right") - 1
         left, right = np.clip(behind - 1, firsts, lasts), np.clip(behind, firsts, lasts)
         is_left = np.abs(along[left] - sought) <= np.abs(along[right] - sought)
         return np.asarray(self.distances[np.where(is_left, left, right)])
@@ -80,23 +79,23 @@ def scale_for(frames: int) -> WindowScale:
     return filled[-1] if filled else WINDOW_SCALES[0]
 
 
-def propose(view: View, piece: Piece, barred: Barred | None) -> Proposals:
+def propose(view: View, segment: QuerySegment, excluded: ExcludedInterval | None) -> Proposals:
     """Compare a query with all windows of the scale that suits it.
 
-    A query that is longer than a window is cut into windows itself, and compared with as many
-    in their order; where a clip ends before they do, its last window stands for the missing.
+    A query longer than a window is cut into windows too. Each is compared with the window of the
+    clip at the same step. Where the clip ends earlier, its last window is used instead.
     """
-    scale = scale_for(len(piece.features))
-    spans = view(scale)
-    steps = _steps(len(piece.features), scale)
-    apart = distances(_vectors(piece, scale, steps), spans.vectors, spans.squares)
-    lasts, rows = spans.last_rows(), np.arange(len(spans))
-    total = np.zeros(len(spans))
+    scale = scale_for(len(segment.features))
+    windows = view(scale)
+    steps = _steps(len(segment.features), scale)
+    apart = windows.distances(_vectors(segment, scale, steps))
+    lasts, numbers = windows.last_parts(), np.arange(len(windows))
+    total = np.zeros(len(windows))
     for step, row in zip(steps, apart, strict=True):
-        total += row[np.minimum(rows + step, lasts)]
-    starts, ends = _places(spans, piece.seconds, lasts, is_one=len(steps) == 1)
-    meant = spans.passing[spans.owners] & ~_touching(spans, starts, ends, barred)
-    return Proposals(spans, starts, ends, total / len(steps), np.flatnonzero(meant))
+        total += row[np.minimum(numbers + step, lasts)]
+    starts, ends = _intervals(windows, segment.seconds, lasts, is_one=len(steps) == 1)
+    allowed = np.flatnonzero(~_touching(windows, starts, ends, excluded))
+    return Proposals(windows, starts, ends, total / len(steps), allowed)
 
 
 def _steps(frames: int, scale: WindowScale) -> IntArray:
@@ -104,40 +103,40 @@ def _steps(frames: int, scale: WindowScale) -> IntArray:
     last = round((frames - scale.frames) / scale.hop)
     if last <= 0:
         return np.zeros(1, dtype=np.int64)
-    apart = max(scale.frames // (2 * scale.hop), -(-last // (MOST_WINDOWS - 1)), 1)
+    apart = max(scale.frames // (2 * scale.hop), -(-last // (MAX_WINDOWS - 1)), 1)
     return np.unique(np.append(np.arange(0, last, apart), last))
 
 
-def _vectors(piece: Piece, scale: WindowScale, steps: IntArray) -> FloatArray:
+def _vectors(segment: QuerySegment, scale: WindowScale, steps: IntArray) -> FloatArray:
     """(q, d) float32 vectors of the query's windows, or of all of it where there is one."""
-    frames = len(piece.features)
+    frames = len(segment.features)
     firsts = np.minimum(steps * scale.hop, max(frames - scale.frames, 0))
     stops = firsts + scale.frames if len(steps) > 1 else np.array([frames])
-    vectors = RunningSums(piece.features).vectors(np.stack([firsts, stops], axis=1))
+    vectors = RunningSums(segment.features).vectors(np.stack([firsts, stops], axis=1))
     return vectors.astype(np.float32)
 
 
-def _places(
-    spans: Spans, seconds: float, lasts: IntArray, *, is_one: bool
+def _intervals(
+    windows: Parts, seconds: float, lasts: IntArray, *, is_one: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """(n,) starts and ends of the query at each row: around its middle, or from its start."""
-    clip_ends = spans.ends[lasts].astype(np.float64)
-    starts = spans.starts.astype(np.float64)
+    """(n,) starts and ends of the query at each window: around its middle, or from its start."""
+    clip_ends = windows.ends[lasts].astype(np.float64)
+    starts = windows.starts.astype(np.float64)
     if is_one:
-        starts = np.maximum((starts + spans.ends) / 2 - seconds / 2, 0.0)
+        starts = np.maximum((starts + windows.ends) / 2 - seconds / 2, 0.0)
     return np.minimum(starts, clip_ends), np.minimum(starts + seconds, clip_ends)
 
 
 def _touching(
-    spans: Spans, starts: FloatArray, ends: FloatArray, barred: Barred | None
+    windows: Parts, starts: FloatArray, ends: FloatArray, excluded: ExcludedInterval | None
 ) -> BoolArray:
-    """(n,) whether a row's window or place overlaps what is barred."""
-    touching = np.zeros(len(spans), dtype=bool)
-    if barred is None:
+    """(n,) whether a window, or its interval, overlaps the excluded one."""
+    touching = np.zeros(len(windows), dtype=bool)
+    if excluded is None:
         return touching
-    for number in np.flatnonzero(spans.ids == barred.clip_id):
-        own = slice(spans.firsts[number], spans.firsts[number] + spans.counts[number])
-        first = np.minimum(starts[own], spans.starts[own])
-        last = np.maximum(ends[own], spans.ends[own])
-        touching[own] = (first < barred.end) & (last > barred.start)
+    for number in np.flatnonzero(windows.ids == excluded.clip_id):
+        own = slice(*np.searchsorted(windows.owners, [number, number + 1]))
+        first = np.minimum(starts[own], windows.starts[own])
+        last = np.maximum(ends[own], windows.ends[own])
+        touching[own] = (first < excluded.end) & (last > excluded.start)
     return touching

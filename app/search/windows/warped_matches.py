@@ -1,4 +1,4 @@
-"""Where in clips a query is matched by warping, in regions of them or everywhere."""
+"""Matches of a query by time warping, in regions of clips or in whole clips."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from app.numerics.arrays import FloatArray
 from app.search.example.distances import FEATURES, Loader
 from app.search.ranking.ranking import IdArray
 from app.search.windows.overlap_merging import Candidates
-from app.search.windows.proposals import Barred, Piece
+from app.search.windows.proposals import ExcludedInterval, QuerySegment
 
-CLIPS_AT_ONCE = 256
-FRAMES_AT_ONCE = 200_000
+MAX_CLIPS_AT_ONCE = 256
+MAX_FRAMES_AT_ONCE = 200_000
 """Clips whose features are held at a time: 66 MB, or those of one clip that is longer."""
 
 EVERYTHING = 2**31 - 1
@@ -37,32 +37,32 @@ def matches_in(
     ids: IdArray,
     seconds: FloatArray,
     regions: Sequence[Region],
-    piece: Piece,
-    barred: Barred | None,
+    segment: QuerySegment,
+    excluded: ExcludedInterval | None,
     load: Loader,
 ) -> Candidates:
     """The matches of a query in regions of the clips `ids` (c,), which do not overlap.
 
-    seconds: (c,) how long the clips are. Clips that are gone (deleted meanwhile) have none.
+    seconds: (c,) how long the clips are. Clips that were deleted meanwhile have no matches.
     """
-    allowed = [part for region in regions for part in _without(region, ids, barred)]
+    allowed = [part for region in regions for part in _without(region, ids, excluded)]
     allowed.sort(key=lambda region: (region.clip, region.first))
     found: list[Candidates] = [_none(ids)]
     numbers = list(dict.fromkeys(region.clip for region in allowed))
     for some in _together(numbers, seconds):
         check()
         features = load([str(ids[number]) for number in some], FEATURES)
-        found.append(_matches(ids, [r for r in allowed if r.clip in some], piece, features))
+        found.append(_matches(ids, [r for r in allowed if r.clip in some], segment, features))
     return together(found)
 
 
 def _together(numbers: Sequence[int], seconds: FloatArray) -> Iterator[set[int]]:
-    """The clips with these numbers in groups whose features are held at a time."""
+    """The clips with these numbers, in groups whose features are in memory together."""
     some: set[int] = set()
     frames = 0.0
     for number in numbers:
         more = float(seconds[number]) * WARPING_RATE
-        if some and (len(some) == CLIPS_AT_ONCE or frames + more > FRAMES_AT_ONCE):
+        if some and (len(some) == MAX_CLIPS_AT_ONCE or frames + more > MAX_FRAMES_AT_ONCE):
             yield some
             some, frames = set(), 0.0
         some.add(number)
@@ -83,7 +83,7 @@ def together(found: Sequence[Candidates]) -> Candidates:
 
 
 def merged(regions: Iterable[Region]) -> list[Region]:
-    """The regions, those that touch put together."""
+    """The regions; those that touch are joined."""
     whole: list[Region] = []
     for region in sorted(regions, key=lambda region: (region.clip, region.first)):
         last = whole[-1] if whole else None
@@ -94,28 +94,31 @@ def merged(regions: Iterable[Region]) -> list[Region]:
     return whole
 
 
-def _without(region: Region, ids: IdArray, barred: Barred | None) -> list[Region]:
-    """What is left of a region when the frames of what is barred are taken out."""
-    if barred is None or ids[region.clip] != barred.clip_id:
+def _without(region: Region, ids: IdArray, excluded: ExcludedInterval | None) -> list[Region]:
+    """What is left of a region without the frames of the excluded interval."""
+    if excluded is None or ids[region.clip] != excluded.clip_id:
         return [region]
-    first = int(np.floor(barred.start * WARPING_RATE))
-    stop = int(np.ceil(barred.end * WARPING_RATE))
+    first = int(np.floor(excluded.start * WARPING_RATE))
+    stop = int(np.ceil(excluded.end * WARPING_RATE))
     before = Region(region.clip, region.first, min(region.stop, first))
     after = Region(region.clip, max(region.first, stop), region.stop)
     return [part for part in (before, after) if part.first < part.stop]
 
 
 def _matches(
-    ids: IdArray, regions: Sequence[Region], piece: Piece, features: Mapping[str, FloatArray]
+    ids: IdArray,
+    regions: Sequence[Region],
+    segment: QuerySegment,
+    features: Mapping[str, FloatArray],
 ) -> Candidates:
     there = [region for region in regions if str(ids[region.clip]) in features]
     streams = [features[str(ids[region.clip])][region.first : region.stop] for region in there]
-    found = subsequence_dtw(piece.features, streams)
+    found = subsequence_dtw(segment.features, streams)
     clips = np.array([region.clip for region in there], dtype=np.int64)
     firsts = np.array([region.first for region in there], dtype=np.int64)
     starts = (found.starts + firsts[found.streams]) / WARPING_RATE
     # the query goes on for a part of a frame behind its last one
-    rest = piece.seconds - len(piece.features) / WARPING_RATE
+    rest = segment.seconds - len(segment.features) / WARPING_RATE
     ends = (found.ends + firsts[found.streams]) / WARPING_RATE + rest
     return Candidates(ids, clips[found.streams], starts, ends, found.costs.astype(np.float64))
 

@@ -14,7 +14,7 @@ from app.models.metric.learned_metric import INPUTS, Described, LearnedMetric
 from app.numerics.arrays import FloatArray
 from app.search.example.methods import Method
 from app.search.index import usable_arrays
-from app.search.index.nearest_ranking import Near
+from app.search.index.nearest_ranking import NearestRanking
 from app.services.find.query import Arrays
 from app.services.library.fitted_models import ModelKind
 from app.services.library.library import Library
@@ -32,7 +32,7 @@ class MetricRanking:
     """A ranking; model: id of the model that ranked; digest: of what was asked about;
     to_score: from a distance to the probability that the labels are the same."""
 
-    ranking: Near
+    ranking: NearestRanking
     model: str
     digest: str
     to_score: Callable[[float], float]

@@ -73,7 +73,7 @@ def find_pose(lib: Library, query: PoseQuery) -> Hits:
     after = None if query.cursor is None else cursors.decode(query.cursor, question)
     _, rows = lib.poses.state
     load = partial(lib.arrays.get_many, lib.store)
-    found = PoseRanking(rows, rows.labels.passing(wanted, exclude), pose, load, places)
+    found = PoseRanking(rows, rows.labels.mask(wanted, exclude), pose, load, places)
     page = found.page(after, limit)
     rank = after.rank if after else 0
     following = None

@@ -15,7 +15,7 @@ from app.models.words.query import WordsAsked
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.search.index import usable_arrays
 from app.search.index.labels import LabelView
-from app.search.index.model_rows import Beside
+from app.search.index.model_rows import ModelRowsView
 from app.search.ranking.ranking import Ranking
 from app.services.library.fitted_models import Fitted
 from app.services.library.library import Library
@@ -63,14 +63,14 @@ def rank_by_words(lib: Library, texts: Sequence[str], mode: str, wanted: ClipFil
     if not asked.weights and not asked.excluded:
         nothing = Ranking(np.empty(0, dtype=object), np.zeros(0))
         return WordRanking(nothing, fitted.id, asked, to_score)
-    passing = clips.passing(wanted)
+    passing = clips.mask(wanted)
     if asked.excluded:
         passing &= ~_believed_to_carry(lib, fitted, clips, asked.excluded)
     rows, distances = measure(lib, fitted, clips, passing, asked)
     return WordRanking(Ranking(clips.ids[rows], distances), fitted.id, asked, to_score)
 
 
-def clip_points(lib: Library, fitted: Words, clips: LabelView) -> Beside:
+def clip_points(lib: Library, fitted: Words, clips: LabelView) -> ModelRowsView:
     """(n, d) coordinates of an index's clips in the model's symbol space."""
     return lib.symbol_points.of(
         clips,
@@ -81,7 +81,7 @@ def clip_points(lib: Library, fitted: Words, clips: LabelView) -> Beside:
     )
 
 
-def _word_scores(lib: Library, fitted: Words, clips: LabelView) -> Beside:
+def _word_scores(lib: Library, fitted: Words, clips: LabelView) -> ModelRowsView:
     """(n, V) probabilities that an index's clips carry the words of the vocabulary."""
     return lib.word_scores.of(
         clips,

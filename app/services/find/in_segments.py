@@ -6,14 +6,13 @@ import numpy as np
 
 from app.analysis.segments.segments import SEGMENT_SPANS, SEGMENT_VECTORS, segment_vectors
 from app.numerics.arrays import BoolArray, FloatArray
-from app.numerics.euclidean import distances
 from app.search.example.distances import FEATURES
 from app.search.example.methods import Method
-from app.search.index.span_index import Spans
 from app.search.ranking import cursor as cursors
 from app.search.ranking.cursor import Position
-from app.search.windows.overlap_merging import Candidates, places
-from app.search.windows.proposals import Barred
+from app.search.windows.overlap_merging import Candidates, merge_overlapping
+from app.search.windows.parts import Parts
+from app.search.windows.proposals import ExcludedInterval
 from app.services import fields
 from app.services.find.hits import Hits
 from app.services.find.in_windows import Paging, own_place, place_hits, seconds_of
@@ -47,10 +46,10 @@ def find_in_segments(
         known = ", ".join(METHODS)
         raise fields.bad_field("method", f"with scope segments it must be one of {known}")
     vector, own = _of_motion(lib, question) if segment is None else _own(lib, question, segment)
-    barred = None if paging.include_self else own
-    fingerprint = cursors.digest("segments", own, vector.tobytes().hex(), wanted, barred)
+    excluded = None if paging.include_self else own
+    fingerprint = cursors.digest("segments", own, vector.tobytes().hex(), wanted, excluded)
     after = None if paging.cursor is None else cursors.decode(paging.cursor, fingerprint)
-    told, more = places(_candidates(lib, vector, wanted, barred), paging.limit, after)
+    told, more = merge_overlapping(_candidates(lib, vector, wanted, excluded), paging.limit, after)
     rank = after.rank if after else 0
     following = None
     if more:
@@ -60,7 +59,7 @@ def find_in_segments(
     return Hits(Method.VECTOR.value, 0.0, lib.index.version, hits, following)
 
 
-def _of_motion(lib: Library, question: Question) -> tuple[FloatArray, Barred | None]:
+def _of_motion(lib: Library, question: Question) -> tuple[FloatArray, ExcludedInterval | None]:
     """The vector of a motion taken as one segment, and its place in a stored clip."""
     asked = describe(lib, question, (FEATURES,))
     span = np.array([[0.0, seconds_of(asked, question)]])
@@ -68,7 +67,7 @@ def _of_motion(lib: Library, question: Question) -> tuple[FloatArray, Barred | N
     return vector, own_place(asked, question)
 
 
-def _own(lib: Library, question: Question, segment: int) -> tuple[FloatArray, Barred]:
+def _own(lib: Library, question: Question, segment: int) -> tuple[FloatArray, ExcludedInterval]:
     """The vector and the place of a segment of a stored clip."""
     if question.clip_id is None:
         raise fields.bad_field("segment", "goes with a stored clip, not with an uploaded file")
@@ -82,29 +81,28 @@ def _own(lib: Library, question: Question, segment: int) -> tuple[FloatArray, Ba
         raise fields.bad_field("segment", message)
     start, end = spans[segment].tolist()
     vector = found[SEGMENT_VECTORS][segment].astype(np.float32)
-    return vector, Barred(question.clip_id, start, end)
+    return vector, ExcludedInterval(question.clip_id, start, end)
 
 
 def _candidates(
-    lib: Library, vector: FloatArray, wanted: ClipFilter, barred: Barred | None
+    lib: Library, vector: FloatArray, wanted: ClipFilter, excluded: ExcludedInterval | None
 ) -> Candidates:
     """All segments that are meant, with their distances."""
     lib.segments.catch_up(lib.store)
-    spans = lib.segments.view(wanted)
-    rows = spans.rows()
-    rows = rows[~_touching(spans, barred)[rows]]
-    apart = distances(vector[None], spans.vectors[rows], spans.squares[rows])[0]
+    parts = Parts.of(lib.segments.state[1], wanted)
+    apart = parts.distances(vector[None])[0].astype(float)
+    kept = np.flatnonzero(~_touching(parts, excluded))
     return Candidates(
-        spans.ids, spans.owners[rows], spans.starts[rows], spans.ends[rows], apart.astype(float)
+        parts.ids, parts.owners[kept], parts.starts[kept], parts.ends[kept], apart[kept]
     )
 
 
-def _touching(spans: Spans, barred: Barred | None) -> BoolArray:
-    """(n,) whether a segment overlaps what is barred; the next one, which only touches it, does
+def _touching(parts: Parts, excluded: ExcludedInterval | None) -> BoolArray:
+    """(n,) whether a segment overlaps what is excluded; the next one, which only touches it, does
     not."""
-    if barred is None:
-        return np.zeros(len(spans), dtype=bool)
-    owned = (spans.ids == barred.clip_id)[spans.owners]
+    if excluded is None:
+        return np.zeros(len(parts), dtype=bool)
+    owned = (parts.ids == excluded.clip_id)[parts.owners]
     # the ends are float32, times that a client sends are not
-    inside = (spans.starts + 1e-3 < barred.end) & (spans.ends - 1e-3 > barred.start)
+    inside = (parts.starts + 1e-3 < excluded.end) & (parts.ends - 1e-3 > excluded.start)
     return np.asarray(owned & inside)

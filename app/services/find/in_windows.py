@@ -10,13 +10,13 @@ from app.analysis.descriptors.windows import WindowScale
 from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.search.example.distances import FEATURES
 from app.search.example.methods import Method
-from app.search.index.span_index import Spans
 from app.search.ranking import cursor as cursors
 from app.search.ranking.cursor import Anchor, Position
 from app.search.ranking.ranking import score
 from app.search.windows.in_windows import WINDOW_SCORES, by_both, by_warping, by_windows
-from app.search.windows.overlap_merging import Candidates, Place, places
-from app.search.windows.proposals import Barred, Piece
+from app.search.windows.overlap_merging import Candidates, FoundInterval, merge_overlapping
+from app.search.windows.parts import Parts
+from app.search.windows.proposals import ExcludedInterval, QuerySegment
 from app.services import fields
 from app.services.find.hits import Hit, Hits
 from app.services.find.query import Answered, Question, describe
@@ -52,12 +52,12 @@ def find_in_windows(
         known = ", ".join(WINDOW_SCORES)
         raise fields.bad_field("method", f"with scope windows it must be one of {known}")
     asked = describe(lib, question, (FEATURES,))
-    piece = _piece(asked, question)
-    barred = None if paging.include_self else own_place(asked, question)
-    fingerprint = _fingerprint(asked, piece, method, wanted, barred)
+    segment = _segment(asked, question)
+    excluded = None if paging.include_self else own_place(asked, question)
+    fingerprint = _fingerprint(asked, segment, method, wanted, excluded)
     after = None if paging.cursor is None else cursors.decode(paging.cursor, fingerprint)
-    found, anchor = _rank(lib, method, wanted, piece, barred, after)
-    told, more = places(found, paging.limit, after)
+    found, anchor = _rank(lib, method, wanted, segment, excluded, after)
+    told, more = merge_overlapping(found, paging.limit, after)
     rank = after.rank if after else 0
     following = None
     if more:
@@ -68,44 +68,48 @@ def find_in_windows(
 
 
 def _fingerprint(
-    asked: Answered, piece: Piece, method: Method, wanted: ClipFilter, barred: Barred | None
+    asked: Answered,
+    segment: QuerySegment,
+    method: Method,
+    wanted: ClipFilter,
+    excluded: ExcludedInterval | None,
 ) -> str:
     """What binds a cursor to its question; an upload is known by its features."""
-    content = hashlib.sha256(piece.features.tobytes()).hexdigest()
+    content = hashlib.sha256(segment.features.tobytes()).hexdigest()
     clip_id = asked.clip.id if asked.clip else None
-    return cursors.digest("windows", clip_id, content, method, wanted, barred)
+    return cursors.digest("windows", clip_id, content, method, wanted, excluded)
 
 
 def _rank(
     lib: Library,
     method: Method,
     wanted: ClipFilter,
-    piece: Piece,
-    barred: Barred | None,
+    segment: QuerySegment,
+    excluded: ExcludedInterval | None,
     after: Position | None,
 ) -> tuple[Candidates, Anchor | None]:
     load = partial(lib.arrays.get_many, lib.store)
     if method is Method.DTW:
         clips = lib.index.candidates(wanted)
-        return by_warping(clips.ids, clips.seconds, piece, barred, load), None
+        return by_warping(clips.ids, clips.seconds, segment, excluded, load), None
     view = partial(_view, lib, wanted)
     if method is Method.VECTOR:
-        return by_windows(view, piece, barred), None
-    return by_both(view, piece, barred, load, after.anchor if after else None)
+        return by_windows(view, segment, excluded), None
+    return by_both(view, segment, excluded, load, after.anchor if after else None)
 
 
-def _view(lib: Library, wanted: ClipFilter, scale: WindowScale) -> Spans:
+def _view(lib: Library, wanted: ClipFilter, scale: WindowScale) -> Parts:
     index = lib.windows[scale.name]
     index.catch_up(lib.store)
-    return index.view(wanted)
+    return Parts.of(index.state[1], wanted)
 
 
-def _piece(asked: Answered, question: Question) -> Piece:
+def _segment(asked: Answered, question: Question) -> QuerySegment:
     seconds = seconds_of(asked, question)
     if seconds > LONGEST_SECONDS:
         most = f"{LONGEST_SECONDS:g} s are the most that is looked for in windows"
         raise fields.bad_field("end", f"{most}; start and end leave {seconds:.1f} s")
-    return Piece(asked.arrays[FEATURES], seconds)
+    return QuerySegment(asked.arrays[FEATURES], seconds)
 
 
 def seconds_of(asked: Answered, question: Question) -> float:
@@ -118,15 +122,15 @@ def seconds_of(asked: Answered, question: Question) -> float:
     return (end or 0.0) - start
 
 
-def own_place(asked: Answered, question: Question) -> Barred | None:
+def own_place(asked: Answered, question: Question) -> ExcludedInterval | None:
     """The queried part of a stored clip."""
     if asked.clip is None:
         return None
     start = question.start or 0.0
-    return Barred(asked.clip.id, start, start + seconds_of(asked, question))
+    return ExcludedInterval(asked.clip.id, start, start + seconds_of(asked, question))
 
 
-def place_hits(lib: Library, told: list[Place], rank: int, scale: float) -> tuple[Hit, ...]:
+def place_hits(lib: Library, told: list[FoundInterval], rank: int, scale: float) -> tuple[Hit, ...]:
     """The places with their clips as they are now; those deleted meanwhile are left out."""
     with lib.store.read() as tx:
         clips = stored.get_many(tx, {place.clip_id: None for place in told})

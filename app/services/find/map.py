@@ -64,7 +64,7 @@ def draw_map(
         raise fields.bad_field("limit", f"must be from 1 to {MOST_POINTS}")
     version = lib.index.catch_up(lib.store)
     every = lib.index.state[1].labels
-    passing = np.flatnonzero(every.passing(wanted or ClipFilter()))
+    passing = np.flatnonzero(every.mask(wanted or ClipFilter()))
     by_id = passing[np.argsort(every.ids[passing].astype(str), kind="stable")]
     picked = by_id[_evenly(len(by_id), limit)]
     ids, points, axes, model = _placed(lib, space, every, picked, dimensions)

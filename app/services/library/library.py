@@ -10,11 +10,11 @@ from app.analysis.descriptors.windows import WIDTH, WINDOW_SCALES
 from app.analysis.segments.segments import SEGMENT_SPANS, SEGMENT_VECTORS, SEGMENT_WIDTH
 from app.config import Settings
 from app.search.index.array_cache import ArrayCache
-from app.search.index.model_rows import RowsBeside
+from app.search.index.model_rows import ModelRows
 from app.search.index.projected_index import ProjectedIndex
-from app.search.index.span_index import SpanIndex
 from app.search.index.vector_index import VectorIndex
 from app.search.pose.by_pose import POSES
+from app.search.windows.parts import parts_layout
 from app.services.library.analysis_pool import AnalysisPool, Limits
 from app.services.library.fitted_models import METRICS, ModelKind, ModelShelf
 from app.store import identity
@@ -44,11 +44,11 @@ class Library:
     index: VectorIndex
     arrays: ArrayCache
     models: ModelShelf
-    word_scores: RowsBeside
-    symbol_points: RowsBeside
+    word_scores: ModelRows
+    symbol_points: ModelRows
     pool: AnalysisPool
-    windows: Mapping[str, SpanIndex]
-    segments: SpanIndex
+    windows: Mapping[str, VectorIndex]
+    segments: VectorIndex
     poses: VectorIndex
     metrics: Mapping[ModelKind, ProjectedIndex]
 
@@ -72,11 +72,16 @@ class Library:
             index=index,
             arrays=kept,
             models=ModelShelf(),
-            word_scores=RowsBeside(),
-            symbol_points=RowsBeside(),
+            word_scores=ModelRows(),
+            symbol_points=ModelRows(),
             pool=AnalysisPool(query_limits(settings)),
-            windows={s.name: SpanIndex(s.vectors, s.spans, WIDTH) for s in WINDOW_SCALES},
-            segments=SpanIndex(SEGMENT_VECTORS, SEGMENT_SPANS, SEGMENT_WIDTH),
+            windows={
+                scale.name: VectorIndex(layout=parts_layout(scale.vectors, scale.spans, WIDTH))
+                for scale in WINDOW_SCALES
+            },
+            segments=VectorIndex(
+                layout=parts_layout(SEGMENT_VECTORS, SEGMENT_SPANS, SEGMENT_WIDTH)
+            ),
             poses=VectorIndex(layout=POSES),
             metrics={kind: ProjectedIndex(index) for kind in METRICS},
         )

@@ -1,14 +1,11 @@
 """Pages of a list: opaque cursors that say after which row the next page begins.
 
-A cursor names the last row's place in the order, so rows that come and go between two pages
-never make one of the others appear twice or not at all.
+A cursor holds the sort, and the last row's value in the sorted column and its id. So rows that come
+and go between two pages never make another row appear twice or not at all.
 """
 
 from __future__ import annotations
 
-import base64
-import json
-import math
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Generic, TypeVar
@@ -16,10 +13,11 @@ from typing import Generic, TypeVar
 from sqlalchemy import ColumnElement, and_, or_
 
 from app.errors import BadField, Place
+from app.store.database import cursor_codec
+from app.store.database.cursor_codec import as_number, as_text
 
 Item = TypeVar("Item")
 Value = str | float | datetime
-MAX_CURSOR_LENGTH = 4096
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +30,7 @@ class Page(Generic[Item]):
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """A row's place in a list: its value in the sorted column, then its id."""
+    """Where a row stands in a list: its value in the sorted column, then its id."""
 
     value: Value
     id: str
@@ -42,18 +40,16 @@ def write_cursor(sort: str, position: Position) -> str:
     """A URL-safe cursor for the page after `position`."""
     value = position.value
     plain = value.isoformat() if isinstance(value, datetime) else value
-    # Not escaped: a long name of another script than Latin would outgrow MAX_CURSOR_LENGTH.
-    content = json.dumps([sort, plain, position.id], separators=(",", ":"), ensure_ascii=False)
-    return base64.urlsafe_b64encode(content.encode()).decode().rstrip("=")
+    return cursor_codec.encode([sort, plain, position.id])
 
 
 def read_cursor(cursor: str, sort: str, kind: type[Value]) -> Position:
     """The position that a cursor of the same sort holds; raises BadField at "cursor"."""
     try:
-        said, value, row_id = json.loads(_unpad(cursor))
-        if said == sort:
-            return Position(_as_kind(value, kind), _as_text(row_id))
-    except (ValueError, TypeError, OverflowError, RecursionError):
+        found, value, row_id = cursor_codec.decode(cursor)
+        if found == sort:
+            return Position(_as_kind(value, kind), as_text(row_id))
+    except ValueError:
         pass
     raise BadField(
         "The cursor is not one that this list gave",
@@ -76,39 +72,19 @@ def after(
     return or_(further, and_(column == position.value, tie_further))
 
 
-def _unpad(cursor: str) -> bytes:
-    if len(cursor) > MAX_CURSOR_LENGTH:
-        raise ValueError
-    padded = cursor + "=" * (-len(cursor) % 4)
-    return base64.b64decode(padded.encode("ascii"), altchars=b"-_", validate=True)
-
-
 def _as_kind(value: object, kind: type[Value]) -> Value:
     if kind is str:
-        return _as_text(value)
+        return as_text(value)
     if kind is datetime:
         return _as_moment(value)
-    return _as_number(value)
-
-
-def _as_text(value: object) -> str:
-    if not isinstance(value, str):
-        raise TypeError
-    value.encode()  # a lone surrogate is valid JSON, but no database takes it
-    return value
+    return as_number(value)
 
 
 def _as_moment(value: object) -> datetime:
-    moment = datetime.fromisoformat(_as_text(value))
+    moment = datetime.fromisoformat(as_text(value))
     if moment.tzinfo is None:
-        raise ValueError
-    return moment.astimezone(UTC)
-
-
-def _as_number(value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise TypeError
-    number = float(value)
-    if not math.isfinite(number):
-        raise ValueError
-    return number
+        raise ValueError("a moment without a time zone")
+    try:
+        return moment.astimezone(UTC)
+    except OverflowError as problem:
+        raise ValueError("a moment outside the calendar") from problem

@@ -14,7 +14,7 @@ from app.search.example.by_example import rank_by_example
 from app.search.example.distances import QueryArrays
 from app.search.example.fusion import SHORTLIST
 from app.search.example.methods import Method
-from app.search.index.nearest_ranking import Near
+from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.rows import Rows
 from app.search.index.vector_index import MOTION_VECTORS, VectorIndex
 from app.store.clips.filter import ClipFilter
@@ -43,8 +43,8 @@ class Gallery:
         rows.put([indexed(i, v) for i, v in zip(self.features, self.vectors, strict=True)])
         self.rows = rows.view()
 
-    def nearest(self, query: FloatArray, wanted: ClipFilter, exclude: Any) -> Near:
-        return Near(1, self.rows, self.rows.labels.passing(wanted, exclude), query)
+    def nearest(self, query: FloatArray, wanted: ClipFilter, exclude: Any) -> NearestRanking:
+        return NearestRanking(1, self.rows, self.rows.labels.mask(wanted, exclude), query)
 
     def load(self, clip_ids: Sequence[str], _: str) -> Mapping[str, FloatArray]:
         self.read.extend(clip_ids)
@@ -84,14 +84,14 @@ def test_pages_of_fused_are_those_of_all_that_is_measured_at_once(size: int) -> 
         size,
     )
     expected = gallery.expected(query)
-    told = [
+    listed = [
         (distance, str(clip_id))
         for page in pages
         for distance, clip_id in zip(page.distances.tolist(), page.ids, strict=True)
     ]
-    assert told[:SHORTLIST] == expected
-    assert len({clip_id for _, clip_id in told}) == len(told) == COUNT
-    assert [distance for distance, _ in told] == sorted(distance for distance, _ in told)
+    assert listed[:SHORTLIST] == expected
+    assert len({clip_id for _, clip_id in listed}) == len(listed) == COUNT
+    assert [distance for distance, _ in listed] == sorted(distance for distance, _ in listed)
 
 
 def test_a_short_page_of_fused_reads_few_features() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.search.example.fusion import DTW_WEIGHT, MOST_DETOUR, Surroundings
+from app.search.example.fusion import DTW_WEIGHT, MAX_DETOUR, FusedDistance
 from tests.search.fused import fused_distances
 
 
@@ -20,7 +20,7 @@ def test_it_is_never_below_both_distances_and_nothing_only_to_itself(n: int, see
     straight = np.linalg.norm(vectors - query, axis=1) + DTW_WEIGHT * warped
     assert found[0] == 0.0
     assert (found >= straight - 1e-9).all()
-    assert (found <= (1 + MOST_DETOUR) * straight + 1e-9).all()
+    assert (found <= (1 + MAX_DETOUR) * straight + 1e-9).all()
 
 
 @given(seed=st.integers(0, 10_000))
@@ -62,15 +62,15 @@ def test_a_little_noise_changes_distances_by_less_than_a_hundredth() -> None:
 def test_no_clip_has_no_distance_and_one_has_one() -> None:
     assert fused_distances(np.ones(4), np.zeros((0, 4)), np.zeros(0)).shape == (0,)
     alone = fused_distances(np.ones(4), np.zeros((1, 4)), np.zeros(1))
-    assert 2.0 <= alone[0] <= 2.0 * (1 + MOST_DETOUR)
+    assert 2.0 <= alone[0] <= 2.0 * (1 + MAX_DETOUR)
 
 
 @given(seed=st.integers(0, 10_000))
 @settings(max_examples=20, deadline=None)
-def test_without_warping_it_is_a_bound_and_rows_are_told_alike_alone(seed: int) -> None:
+def test_without_warping_it_is_a_bound_and_each_row_has_the_same_distance_alone(seed: int) -> None:
     rng = np.random.default_rng(seed)
     query, vectors, warped = rng.normal(size=8), rng.normal(size=(40, 8)), rng.uniform(size=40)
-    known, every = Surroundings.of(query, vectors), np.arange(40)
+    known, every = FusedDistance.of(query, vectors), np.arange(40)
     found = known.distances(every, warped)
     assert (known.distances(every, np.zeros(40)) <= found).all()
     some = rng.permutation(40)[:7]

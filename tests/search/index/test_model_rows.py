@@ -1,7 +1,8 @@
-"""Rows beside an index are computed once, in its order, and again only for clips that changed."""
+"""Rows of a model are computed once, in its order, and again only for clips that changed."""
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -9,9 +10,9 @@ import pytest
 
 from app.errors import ClientLeft
 from app.numerics.arrays import FloatArray
-from app.search.index import model_rows as beside_module
+from app.search.index import model_rows as module
 from app.search.index.labels import Labels
-from app.search.index.model_rows import RowsBeside
+from app.search.index.model_rows import ModelRows
 from tests.search.indexed import indexed
 
 
@@ -40,7 +41,7 @@ def put(labels: Labels, *clip_ids: str) -> None:
 
 
 def test_rows_stand_in_the_order_of_the_index() -> None:
-    labels, model, rows = labels_of("3", "1"), Model(), RowsBeside()
+    labels, model, rows = labels_of("3", "1"), Model(), ModelRows()
     found = rows.of(labels.view(), "m", 2, model)
     assert found.values.tolist() == [[3, 0], [1, 0]]
     put(labels, "2")
@@ -53,9 +54,9 @@ def test_rows_stand_in_the_order_of_the_index() -> None:
 def test_a_request_that_stops_half_way_leaves_the_rest_to_the_next_one(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(beside_module, "BATCH", 2)
-    labels, rows, model = labels_of(*"123456"), RowsBeside(), Model(stamp=7.0)
-    told = np.array([[9.0, 9.0], [9.0, 9.0]])
+    monkeypatch.setattr(module, "BATCH", 2)
+    labels, rows, model = labels_of(*"123456"), ModelRows(), Model(stamp=7.0)
+    known = np.array([[9.0, 9.0], [9.0, 9.0]])
 
     def stops(clip_ids: Sequence[str]) -> Mapping[str, FloatArray]:
         if "4" in clip_ids:
@@ -63,7 +64,7 @@ def test_a_request_that_stops_half_way_leaves_the_rest_to_the_next_one(
         return model(clip_ids)
 
     with pytest.raises(ClientLeft):
-        rows.of(labels.view(), "m", 2, stops, lambda: (["3", "5"], told))
+        rows.of(labels.view(), "m", 2, stops, lambda: (["3", "5"], known))
     put(labels, "5")  # what was known of it holds no more
     found = rows.of(labels.view(), "m", 2, model)
     by_id = dict(zip(labels.view().ids.tolist(), found.values.tolist(), strict=True))
@@ -74,20 +75,20 @@ def test_a_request_that_stops_half_way_leaves_the_rest_to_the_next_one(
 
 
 def test_a_clip_of_which_nothing_can_be_computed_is_not_there() -> None:
-    labels, model, rows = labels_of("3", "9", "1"), Model(gone=["9"]), RowsBeside()
+    labels, model, rows = labels_of("3", "9", "1"), Model(gone=["9"]), ModelRows()
     for _ in range(2):
         assert rows.of(labels.view(), "m", 2, model).there.tolist() == [True, False, True]
     assert len(model.asked) == 1
 
 
 def test_an_empty_index_has_no_rows() -> None:
-    found = RowsBeside().of(Labels().view(), "m", 2, Model())
+    found = ModelRows().of(Labels().view(), "m", 2, Model())
     assert found.values.shape == (0, 2)
     assert found.there.shape == (0,)
 
 
 def test_a_clip_that_changed_is_computed_anew_and_an_older_view_keeps_its_row() -> None:
-    labels, rows = labels_of("1", "2"), RowsBeside()
+    labels, rows = labels_of("1", "2"), ModelRows()
     before = labels.view()
     rows.of(before, "m", 2, Model())
     put(labels, "1")
@@ -100,7 +101,7 @@ def test_a_clip_that_changed_is_computed_anew_and_an_older_view_keeps_its_row() 
 
 
 def test_what_the_fit_knows_is_not_computed() -> None:
-    labels, model, rows = labels_of("1", "2", "3"), Model(), RowsBeside()
+    labels, model, rows = labels_of("1", "2", "3"), Model(), ModelRows()
 
     def known() -> tuple[list[str], FloatArray]:
         return ["2", "4"], np.array([[2.0, 7.0], [4.0, 7.0]])
@@ -111,7 +112,7 @@ def test_what_the_fit_knows_is_not_computed() -> None:
 
 
 def test_another_model_has_rows_of_its_own_and_of_its_own_width() -> None:
-    labels, rows = labels_of("1"), RowsBeside()
+    labels, rows = labels_of("1"), ModelRows()
     one = rows.of(labels.view(), "m", 2, Model())
     other = rows.of(labels.view(), "n", 3, lambda ids: {i: np.full(3, 2.0) for i in ids})
     assert other.values.tolist() == [[2, 2, 2]]
@@ -120,15 +121,15 @@ def test_another_model_has_rows_of_its_own_and_of_its_own_width() -> None:
 
 
 def test_many_clips_are_computed_in_batches(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(beside_module, "BATCH", 3)
+    monkeypatch.setattr(module, "BATCH", 3)
     labels, model = labels_of(*map(str, range(8))), Model()
-    found = RowsBeside().of(labels.view(), "m", 2, model)
+    found = ModelRows().of(labels.view(), "m", 2, model)
     assert [len(asked) for asked in model.asked] == [3, 3, 2]
     assert found.values[:, 0].tolist() == list(range(8))
 
 
 def test_a_computation_that_fails_is_tried_again() -> None:
-    labels, rows = labels_of("1"), RowsBeside()
+    labels, rows = labels_of("1"), ModelRows()
 
     def fails(clip_ids: Sequence[str]) -> Mapping[str, FloatArray]:
         raise OSError
@@ -136,3 +137,28 @@ def test_a_computation_that_fails_is_tried_again() -> None:
     with pytest.raises(OSError):
         rows.of(labels.view(), "m", 2, fails)
     assert rows.of(labels.view(), "m", 2, Model()).values.tolist() == [[1, 0]]
+
+
+def test_a_search_does_not_wait_while_rows_of_new_clips_are_computed() -> None:
+    labels, rows = labels_of("1", "2"), ModelRows()
+    before = labels.view()
+    rows.of(before, "m", 2, Model())
+    put(labels, "3")
+    computing, finish = threading.Event(), threading.Event()
+
+    def slow(clip_ids: Sequence[str]) -> Mapping[str, FloatArray]:
+        computing.set()
+        assert finish.wait(30)
+        return Model()(clip_ids)
+
+    computer = threading.Thread(target=rows.of, args=(labels.view(), "m", 2, slow))
+    computer.start()
+    assert computing.wait(30)
+    found: list[FloatArray] = []
+    search = threading.Thread(target=lambda: found.append(rows.of(before, "m", 2, Model()).values))
+    search.start()
+    search.join(10)
+    finish.set()
+    computer.join(30)
+    assert [values.tolist() for values in found] == [[[1, 0], [2, 0]]]
+    assert rows.of(labels.view(), "m", 2, Model()).values.tolist() == [[1, 0], [2, 0], [3, 0]]

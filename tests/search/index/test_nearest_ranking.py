@@ -11,16 +11,16 @@ from hypothesis import strategies as st
 
 from app.search.example.reranking import ReRanked
 from app.search.index import rows as rows_module
-from app.search.index.nearest_ranking import Near
+from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.rows import Layout, Rows
-from app.search.ranking.lower_bounds import Bounds
+from app.search.ranking.lower_bounds import LowerBounds
 from app.search.ranking.ranking import Page
 from app.store.clips.filter import ClipFilter
 from tests.search.indexed import indexed
 from tests.search.walking import walk, walked
 
 WIDTH = 3
-LAYOUT = Layout("vector", WIDTH)
+LAYOUT = Layout(("vector",), WIDTH)
 QUERY = np.zeros(WIDTH, dtype=np.float32)
 BRIEF = settings(max_examples=60, deadline=None)
 
@@ -40,11 +40,11 @@ VECTORS = st.dictionaries(
 )
 
 
-def _near(vectors: Vectors, left_out: str = "") -> Near:
+def _near(vectors: Vectors, left_out: str = "") -> NearestRanking:
     rows = Rows(LAYOUT)
     rows.put([indexed(i, np.array(v, dtype=np.float32)) for i, v in vectors.items()])
     view = rows.view()
-    return Near(1, view, view.labels.passing(ClipFilter(), [left_out]), QUERY)
+    return NearestRanking(1, view, view.labels.mask(ClipFilter(), [left_out]), QUERY)
 
 
 def _keys(vectors: Vectors) -> list[tuple[float, str]]:
@@ -79,14 +79,14 @@ def test_what_is_excluded_is_neither_ranked_nor_counted() -> None:
     assert (list(near.ids), len(near)) == (["b"], 1)
 
 
-def _bounds(ids: np.ndarray, distances: np.ndarray) -> Bounds:
+def _bounds(ids: np.ndarray, distances: np.ndarray) -> LowerBounds:
     """Distances that are known, behind bounds that are sometimes far below them."""
     shares = np.array([int(str(clip_id)[1:]) % 5 / 4 for clip_id in ids])
     finite = np.where(np.isfinite(distances), distances, 1.0)
-    return Bounds(ids, finite * shares, lambda rows: distances[rows])
+    return LowerBounds(ids, finite * shares, lambda rows: distances[rows])
 
 
-def _backwards(shortlist: Page) -> Bounds:
+def _backwards(shortlist: Page) -> LowerBounds:
     """Ranks anew by something that has nothing to do with the first stage: the id's digits."""
     return _bounds(shortlist.ids, np.array([100.0 - int(i[1:]) for i in shortlist.ids]))
 
@@ -125,10 +125,10 @@ CHANGES = st.lists(
 
 @BRIEF
 @given(VECTORS, st.integers(1, 9), st.integers(1, 12), CHANGES, st.booleans())
-def test_clips_that_come_and_go_between_pages_make_none_be_missed_or_told_twice(
+def test_clips_that_come_and_go_between_pages_make_none_be_missed_or_listed_twice(
     vectors: Vectors, size: int, shortlist: int, changes: list[Any], rerank: bool
 ) -> None:
-    """Clips that were there all the while are told once; none is told twice."""
+    """Clips that were there all the time are listed once; none is listed twice."""
     now, stayed = dict(vectors), set(vectors)
     to_come = iter(changes)
 
@@ -146,16 +146,16 @@ def test_clips_that_come_and_go_between_pages_make_none_be_missed_or_told_twice(
             return near
         return ReRanked(near, _backwards, shortlist, after.anchor if after else None)
 
-    told = [str(i) for page in walk(ranked, size) for i in page.ids]
-    came_twice = {i for i in told if told.count(i) > 1}
+    listed = [str(i) for page in walk(ranked, size) for i in page.ids]
+    came_twice = {i for i in listed if listed.count(i) > 1}
     assert came_twice & stayed == set()
-    assert stayed <= set(told)
+    assert stayed <= set(listed)
 
 
 def test_a_clip_that_is_gone_from_the_shortlist_is_left_out() -> None:
     vectors: Vectors = {f"c{n:02d}": (float(n), 0.0, 0.0) for n in range(6)}
 
-    def gone(shortlist: Page) -> Bounds:
+    def gone(shortlist: Page) -> LowerBounds:
         away = np.where(shortlist.ids == "c00", np.inf, 0.0)
         return _bounds(shortlist.ids, shortlist.distances + away)
 

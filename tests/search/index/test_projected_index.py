@@ -1,4 +1,4 @@
-"""Coordinates beside an index against the obvious: all computed, compared one by one."""
+"""Coordinates of the clips of an index against the obvious: all computed, compared one by one."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.search.index import model_rows as beside_module
-from app.search.index import rows
-from app.search.index.nearest_ranking import Near
+from app.search.index import model_rows, rows
+from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.projected_index import ProjectedIndex
 from app.search.index.vector_index import VECTOR, WIDTH, VectorIndex
 from app.store.clips import arrays
@@ -65,12 +64,12 @@ class Model:
 
 
 def ask(
-    beside: ProjectedIndex,
+    projected: ProjectedIndex,
     model: Model,
     wanted: ClipFilter | None = None,
     exclude: frozenset[str] = frozenset(),
-) -> Near:
-    return beside.nearest(model.name, model.project, np.ones(K), wanted or ClipFilter(), exclude)
+) -> NearestRanking:
+    return projected.nearest(model.name, model.project, np.ones(K), wanted or ClipFilter(), exclude)
 
 
 def test_distances_are_those_of_the_obvious_loop(store: Store, add: Add) -> None:
@@ -87,10 +86,10 @@ def test_distances_are_those_of_the_obvious_loop(store: Store, add: Add) -> None
 def test_only_what_is_new_is_computed(store: Store, add: Add) -> None:
     first, second = add("first", "walk"), add("second")
     index, model = VectorIndex(), Model(store)
-    beside = ProjectedIndex(index)
+    projected = ProjectedIndex(index)
     index.catch_up(store)
-    ask(beside, model)
-    ask(beside, model)
+    ask(projected, model)
+    ask(projected, model)
     assert sorted(model.asked) == sorted([first, second])
     with store.write() as tx:
         clips.patch(tx, first, {"task": "run"})
@@ -98,10 +97,10 @@ def test_only_what_is_new_is_computed(store: Store, add: Add) -> None:
     third = add("third")
     index.catch_up(store)
     model.asked.clear()
-    assert set(ask(beside, model).ids) == {first, third}
+    assert set(ask(projected, model).ids) == {first, third}
     assert sorted(model.asked) == sorted([first, third])
-    assert list(ask(beside, model, ClipFilter(task=("run",))).ids) == [first]
-    assert list(ask(beside, model, exclude=frozenset({first})).ids) == [third]
+    assert list(ask(projected, model, ClipFilter(task=("run",))).ids) == [first]
+    assert list(ask(projected, model, exclude=frozenset({first})).ids) == [third]
 
 
 def test_another_model_has_coordinates_of_its_own(store: Store, add: Add) -> None:
@@ -109,13 +108,13 @@ def test_another_model_has_coordinates_of_its_own(store: Store, add: Add) -> Non
         add(f"c{i}")
     index = VectorIndex()
     index.catch_up(store)
-    beside = ProjectedIndex(index)
+    projected = ProjectedIndex(index)
     one, other = Model(store), Model(store, "other", sign=-1.0)
-    order = list(ask(beside, one).ids)
-    turned = ask(beside, other)
+    order = list(ask(projected, one).ids)
+    turned = ask(projected, other)
     assert list(turned.ids) != order
     assert len(other.asked) == 5
-    assert list(ask(beside, one).ids) == order
+    assert list(ask(projected, one).ids) == order
 
 
 def test_a_clip_that_goes_while_it_is_computed_disturbs_nothing(store: Store, add: Add) -> None:
@@ -124,29 +123,29 @@ def test_a_clip_that_goes_while_it_is_computed_disturbs_nothing(store: Store, ad
     index.catch_up(store)
     with store.write() as tx:
         clips.delete_clip(tx, goes)
-    beside = ProjectedIndex(index)
-    assert set(ask(beside, model).ids) == {stays, goes}
+    projected = ProjectedIndex(index)
+    assert set(ask(projected, model).ids) == {stays, goes}
     index.catch_up(store)
-    assert list(ask(beside, model).ids) == [stays]
+    assert list(ask(projected, model).ids) == [stays]
 
 
 def test_it_goes_on_when_the_index_drops_its_dead_rows(
     store: Store, add: Add, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(rows, "FEW_DEAD", 2)
-    monkeypatch.setattr(beside_module, "BATCH", 3)
+    monkeypatch.setattr(rows, "MAX_FEW_DEAD", 2)
+    monkeypatch.setattr(model_rows, "BATCH", 3)
     ids = [add(f"c{i}") for i in range(10)]
     index, model = VectorIndex(), Model(store)
-    beside = ProjectedIndex(index)
+    projected = ProjectedIndex(index)
     index.catch_up(store)
-    ask(beside, model)
+    ask(projected, model)
     for gone in ids[:7]:
         with store.write() as tx:
             clips.delete_clip(tx, gone)
     index.catch_up(store)
     late = add("late")
     index.catch_up(store)
-    found = ask(beside, model)
+    found = ask(projected, model)
     obvious = {i: np.linalg.norm(p - 1) for i, p in model.project([*ids[7:], late]).items()}
     assert list(found.ids) == sorted(obvious, key=lambda i: obvious[i])
     np.testing.assert_allclose(found.distances, sorted(obvious.values()), rtol=1e-6)
@@ -158,11 +157,11 @@ def test_what_a_fit_computed_is_taken_over_but_of_clips_that_changed_later(
     first, second, third = add("first"), add("second"), add("third")
     index, model = VectorIndex(), Model(store)
     index.catch_up(store)
-    beside, told = ProjectedIndex(index), np.full((2, K), 9.0)
+    projected, known = ProjectedIndex(index), np.full((2, K), 9.0)
 
     def search() -> dict[str, float]:
-        found = beside.nearest(
-            "model", model.project, np.ones(K), ClipFilter(), known=lambda: ([first, second], told)
+        found = projected.nearest(
+            "model", model.project, np.ones(K), ClipFilter(), known=lambda: ([first, second], known)
         )
         return dict(zip(found.ids, found.distances.tolist(), strict=True))
 

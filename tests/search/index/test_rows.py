@@ -15,8 +15,8 @@ from app.store.clips.filter import ClipFilter
 from app.store.clips.index_feed import IndexedClip
 from tests.search.indexed import FILTERS, LABELS, indexed, passes
 
-ONE = Layout("vector", width=2)
-MANY = Layout("poses", width=2, told=1, several=True)
+ONE = Layout(("vector",), width=2)
+MANY = Layout(("poses",), width=2, facts=1, several=True)
 SMALL = settings(
     max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
@@ -26,7 +26,7 @@ SMALL = settings(
 def _small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     """So that few clips fill blocks, and few dead ones are dropped."""
     monkeypatch.setattr(module, "BLOCK", 5)
-    monkeypatch.setattr(module, "FEW_DEAD", 3)
+    monkeypatch.setattr(module, "MAX_FEW_DEAD", 3)
     monkeypatch.setattr(module, "COPIED", 2)
 
 
@@ -68,9 +68,9 @@ def _held(view: RowsView) -> dict[str, list[list[float]]]:
     vectors = [row.tolist() for block in view.blocks for row in block.vectors]
     owners = range(len(vectors)) if view.owners is None else view.owners.tolist()
     found: dict[str, list[list[float]]] = {}
-    for owner, told, vector in zip(owners, view.told.tolist(), vectors, strict=True):
+    for owner, facts, vector in zip(owners, view.facts.tolist(), vectors, strict=True):
         if view.labels.alive[owner]:
-            found.setdefault(str(view.labels.ids[owner]), []).append([*told, *vector])
+            found.setdefault(str(view.labels.ids[owner]), []).append([*facts, *vector])
     return found
 
 
@@ -81,7 +81,7 @@ def test_they_hold_what_came_last(layout: Layout, steps: list[Any]) -> None:
     rows, kept = _played(layout, steps)
     assert len(rows) == len(kept)
     assert _held(rows.view()) == {
-        clip_id: clip.array.reshape(-1, layout.told + layout.width).tolist()
+        clip_id: clip.array.reshape(-1, layout.facts + layout.width).tolist()
         for clip_id, clip in kept.items()
         if clip.array is not None
     }
@@ -92,7 +92,7 @@ def test_they_hold_what_came_last(layout: Layout, steps: list[Any]) -> None:
 def test_filters_agree_with_the_slow_twin(steps: list[Any], wanted: Any, excluded: str) -> None:
     rows, kept = _played(ONE, steps)
     labels = rows.view().labels
-    found = labels.ids[labels.passing(wanted, [excluded])]
+    found = labels.ids[labels.mask(wanted, [excluded])]
     expected = {i for i, clip in kept.items() if passes(clip, wanted) and i != excluded}
     assert sorted(found) == sorted(expected)
 
@@ -110,7 +110,7 @@ def test_a_view_stays_as_it_was(before: list[Any], after: list[Any]) -> None:
         else:
             rows.put([indexed(clip_id, _array(MANY, number), **labels)])
     assert _held(view) == held
-    excluded = {clip_id: view.labels.passing(ClipFilter(), [clip_id]).sum() for clip_id in held}
+    excluded = {clip_id: view.labels.mask(ClipFilter(), [clip_id]).sum() for clip_id in held}
     assert set(excluded.values()) <= {len(held) - 1}
     assert _words(view) == words
     assert words.keys() == held.keys()

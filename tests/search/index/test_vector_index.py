@@ -142,10 +142,10 @@ def test_filters_agree_with_those_of_lists(store: Store, add: Add, wanted: ClipF
 def test_it_is_loaded_in_batches(store: Store, add: Add, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(index_feed, "BATCH", 3)
     made = [add(f"c{i}", words=("slow",) if i % 2 else ("fast", "sad")) for i in range(8)]
-    told: list[str] = []
-    index = VectorIndex(on_change=told.extend)
+    changed: list[str] = []
+    index = VectorIndex(on_change=changed.extend)
     index.catch_up(store)
-    assert sorted(told) == sorted(index.candidates(ClipFilter()).ids)
+    assert sorted(changed) == sorted(index.candidates(ClipFilter()).ids)
     assert len(index) == len(made)
     labels = index.state[1].labels
     codes, sets = labels.word_sets()

@@ -69,7 +69,7 @@ class _Searched:
         none = np.zeros(0, dtype=int)
         rows.put([indexed(i, pose_cover(p, none)) for i, p in self.clips.items()])
         view = rows.view()
-        passing = view.labels.passing(ClipFilter(), exclude)
+        passing = view.labels.mask(ClipFilter(), exclude)
         return PoseRanking(view, passing, self.query, self.load, self.places)
 
     def naive(self) -> list[tuple[float, str]]:

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.errors import BadField
-from app.search.ranking.cursor import LARGEST_RANK, Position, decode, digest, encode
+from app.search.ranking.cursor import MAX_RANK, Position, decode, digest, encode
 
 QUESTION = digest("clip_1", "fused")
 
@@ -86,7 +86,7 @@ def test_whatever_a_cursor_holds_it_is_a_position_or_refused(content: bytes, cut
         except BadField:
             continue
         assert math.isfinite(position.distance)
-        assert 0 <= position.rank <= LARGEST_RANK
+        assert 0 <= position.rank <= MAX_RANK
 
 
 def test_a_cursor_that_is_nested_too_deeply_is_refused() -> None:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from app.numerics.arrays import FloatArray, IntArray
 from app.search.ranking.cursor import Position
-from app.search.ranking.lower_bounds import FEWEST, Bounded, Bounds
+from app.search.ranking.lower_bounds import MIN_MEASURED, LowerBoundRanking, LowerBounds
 from app.search.ranking.ranking import Ranking
 
 DISTANCES = st.lists(st.sampled_from([0.0, 0.5, 0.5 + 1e-9, 2.0, 2.0, 7.0, np.inf]), max_size=60)
@@ -31,7 +31,7 @@ def test_pages_are_those_of_everything_measured(
     after, seen = None, 0
     while True:
         # each page is asked of a new one, as each request is
-        found = Bounded(Bounds(_ids(len(truth)), least, lambda rows: truth[rows]))
+        found = LowerBoundRanking(LowerBounds(_ids(len(truth)), least, lambda rows: truth[rows]))
         page, expected = found.page(after, size), every.page(after, size)
         assert list(page.ids) == list(expected.ids)
         assert page.distances.tolist() == expected.distances.tolist()
@@ -51,22 +51,22 @@ def test_each_clip_is_measured_once_and_few_where_bounds_are_near() -> None:
         looked.extend(rows.tolist())
         return truth[rows]
 
-    found = Bounded(Bounds(_ids(300), 0.9 * truth, measure))
+    found = LowerBoundRanking(LowerBounds(_ids(300), 0.9 * truth, measure))
     found.page(None, 10)
-    assert found.measured == len(looked) <= 2 * FEWEST + 10
+    assert found.measured == len(looked) <= 2 * MIN_MEASURED + 10
     assert found.end is None
     found.page(None, 300)
     assert sorted(looked) == list(range(300))
     assert found.end == float(truth.max().round(9))
 
 
-def test_nothing_is_farther_than_what_is_told_to_be_the_end() -> None:
+def test_nothing_is_farther_than_the_end() -> None:
     truth = np.array([1.0, 5.0, 3.0])
-    found = Bounded(Bounds(_ids(3), truth, lambda rows: truth[rows]), most=2.5)
+    found = LowerBoundRanking(LowerBounds(_ids(3), truth, lambda rows: truth[rows]), most=2.5)
     assert sorted(found.page(None, 3).distances.tolist()) == [1.0, 2.5, 2.5]
     assert found.end == 2.5
 
 
 def test_no_clip_has_an_end_too() -> None:
-    found = Bounded(Bounds(_ids(0), np.zeros(0), lambda rows: np.zeros(len(rows))))
+    found = LowerBoundRanking(LowerBounds(_ids(0), np.zeros(0), lambda rows: np.zeros(len(rows))))
     assert (len(found.page(None, 5).ids), found.end) == (0, 0.0)

@@ -11,12 +11,19 @@ import pytest
 
 from app.analysis.descriptors.windows import WIDTH, RunningSums, WindowScale, window_arrays
 from app.numerics.arrays import FloatArray
-from app.search.index.span_index import SpanRows, Spans
+from app.search.index.rows import Rows
 from app.search.windows import in_windows
 from app.search.windows import warped_matches as matches
 from app.search.windows.in_windows import by_both, by_warping, by_windows
-from app.search.windows.overlap_merging import Candidates, places
-from app.search.windows.proposals import MOST_WINDOWS, Barred, Piece, propose, scale_for
+from app.search.windows.overlap_merging import Candidates, merge_overlapping
+from app.search.windows.parts import Parts, parts_layout
+from app.search.windows.proposals import (
+    MAX_WINDOWS,
+    ExcludedInterval,
+    QuerySegment,
+    propose,
+    scale_for,
+)
 from app.search.windows.warped_matches import Region, matches_in, merged
 from tests.search.indexed import indexed
 
@@ -38,15 +45,16 @@ class Clips:
     def seconds(self) -> np.ndarray:
         return np.array([len(one) / 10 for one in self.features.values()])
 
-    def view(self, scale: WindowScale) -> Spans:
-        rows = SpanRows(WIDTH)
-        arrays = [window_arrays(one) for one in self.features.values()]
-        rows.add(
-            [indexed(clip_id) for clip_id in self.features],
-            [a[scale.vectors] for a in arrays],
-            [a[scale.spans] for a in arrays],
+    def view(self, scale: WindowScale) -> Parts:
+        rows = Rows(parts_layout(scale.vectors, scale.spans, WIDTH))
+        arrays = {clip_id: window_arrays(one) for clip_id, one in self.features.items()}
+        rows.put(
+            [
+                indexed(clip_id, np.hstack([own[scale.spans], own[scale.vectors]]))
+                for clip_id, own in arrays.items()
+            ]
         )
-        return rows.view().spans
+        return Parts.of(rows.view())
 
     def load(self, clip_ids: Sequence[str], _: str) -> Mapping[str, FloatArray]:
         return {clip_id: self.features[clip_id] for clip_id in clip_ids}
@@ -64,31 +72,32 @@ def some() -> Clips:
     return Clips({f"clip_{i}": smooth(seconds, i) for i, seconds in enumerate(SECONDS)})
 
 
-def piece_of(features: FloatArray, start: float, end: float) -> Piece:
-    return Piece(features[round(start * 10) : round(end * 10)], end - start)
+def segment_of(features: FloatArray, start: float, end: float) -> QuerySegment:
+    return QuerySegment(features[round(start * 10) : round(end * 10)], end - start)
 
 
 @pytest.mark.parametrize("frames", [1, 4, 10, 12, 20, 33, 40, 47, 110, 1200])
 def test_proposals_are_those_of_the_obvious_loop(some: Clips, frames: int) -> None:
-    piece = Piece(smooth(frames / 10, 99), frames / 10)
+    segment = QuerySegment(smooth(frames / 10, 99), frames / 10)
     scale = scale_for(frames)
-    found = propose(some.view, piece, None)
-    spans = found.spans
+    found = propose(some.view, segment, None)
+    windows = found.windows
+    vectors = np.concatenate([block.vectors for block in windows.view.blocks])
     hops = _hops(frames, scale)
-    assert len(hops) <= MOST_WINDOWS
+    assert len(hops) <= MAX_WINDOWS
     firsts = [min(hop * scale.hop, max(frames - scale.frames, 0)) for hop in hops]
     length = scale.frames if len(hops) > 1 else frames
     cuts = np.array([[first, first + length] for first in firsts])
-    queries = RunningSums(piece.features).vectors(cuts).astype(float)
-    for row in range(0, len(spans), 7):
-        clip = np.flatnonzero(spans.owners == spans.owners[row])
+    queries = RunningSums(segment.features).vectors(cuts).astype(float)
+    for row in range(0, len(windows), 7):
+        clip = np.flatnonzero(windows.owners == windows.owners[row])
         behind = clip[clip >= row]
         apart = [
-            np.linalg.norm(spans.vectors[behind[min(hop, len(behind) - 1)]] - query)
+            np.linalg.norm(vectors[behind[min(hop, len(behind) - 1)]] - query)
             for hop, query in zip(hops, queries, strict=True)
         ]
         assert found.distances[row] == pytest.approx(np.mean(apart), rel=1e-4)
-        assert 0 <= found.starts[row] < found.ends[row] <= spans.ends[clip[-1]] + 1e-6
+        assert 0 <= found.starts[row] < found.ends[row] <= windows.ends[clip[-1]] + 1e-6
 
 
 def _hops(frames: int, scale: WindowScale) -> list[int]:
@@ -96,30 +105,33 @@ def _hops(frames: int, scale: WindowScale) -> list[int]:
     last = round((frames - scale.frames) / scale.hop)
     if last <= 0:
         return [0]
-    step = max(scale.frames // 2 // scale.hop, int(np.ceil(last / (MOST_WINDOWS - 1))))
+    step = max(scale.frames // 2 // scale.hop, int(np.ceil(last / (MAX_WINDOWS - 1))))
     return sorted({*range(0, last, step), last})
 
 
 @pytest.mark.parametrize("length", [0.7, 2.0, 9.0])
 def test_every_way_finds_a_piece_where_it_was_cut_from(some: Clips, length: float) -> None:
-    piece = piece_of(some.features["clip_0"], 12.0, 12.0 + length)
-    both, anchor = by_both(some.view, piece, None, some.load)
+    segment = segment_of(some.features["clip_0"], 12.0, 12.0 + length)
+    both, anchor = by_both(some.view, segment, None, some.load)
     assert anchor is not None
     for found, tolerance in (
-        (both, 0.0), (by_warping(some.ids, some.seconds, piece, None, some.load), 0.0),
-        (by_windows(some.view, piece, None), 0.5),
+        (both, 0.0), (by_warping(some.ids, some.seconds, segment, None, some.load), 0.0),
+        (by_windows(some.view, segment, None), 0.5),
     ):  # fmt: skip
-        (best,), _ = places(found, 1)
+        (best,), _ = merge_overlapping(found, 1)
         assert best.clip_id == "clip_0"
         assert (best.start, best.end) == pytest.approx((12.0, 12.0 + length), abs=tolerance + 1e-6)
 
 
-def test_nothing_is_found_in_what_is_barred(some: Clips) -> None:
-    piece, barred = piece_of(some.features["clip_0"], 12, 14), Barred("clip_0", 12.0, 14.0)
+def test_nothing_is_found_in_the_excluded_interval(some: Clips) -> None:
+    segment, excluded = (
+        segment_of(some.features["clip_0"], 12, 14),
+        ExcludedInterval("clip_0", 12.0, 14.0),
+    )
     for found in (
-        by_both(some.view, piece, barred, some.load)[0],
-        by_warping(some.ids, some.seconds, piece, barred, some.load),
-        by_windows(some.view, piece, barred),
+        by_both(some.view, segment, excluded, some.load)[0],
+        by_warping(some.ids, some.seconds, segment, excluded, some.load),
+        by_windows(some.view, segment, excluded),
     ):
         own = found.owners == 0
         assert own.any()
@@ -129,13 +141,13 @@ def test_nothing_is_found_in_what_is_barred(some: Clips) -> None:
 def test_all_else_follows_behind_what_was_warped(
     some: Clips, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(in_windows, "_how_many", lambda piece: 2)
-    piece = piece_of(some.features["clip_3"], 3, 5)
-    found, anchor = by_both(some.view, piece, None, some.load)
+    monkeypatch.setattr(in_windows, "_how_many", lambda segment: 2)
+    segment = segment_of(some.features["clip_3"], 3, 5)
+    found, anchor = by_both(some.view, segment, None, some.load)
     assert anchor is not None
-    windows = len(by_windows(some.view, piece, None))
+    windows = len(by_windows(some.view, segment, None))
     warped = found.distances[:-windows]
-    assert 0 < len(warped) < len(by_warping(some.ids, some.seconds, piece, None, some.load))
+    assert 0 < len(warped) < len(by_warping(some.ids, some.seconds, segment, None, some.load))
     assert anchor.end == warped.max()
     assert (found.distances[-windows:] >= anchor.end).all()
     assert set(found.owners[-windows:]) == {0, 1, 2, 3}
@@ -144,29 +156,29 @@ def test_all_else_follows_behind_what_was_warped(
 def test_an_anchor_keeps_the_same_places_before_the_others(
     some: Clips, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(in_windows, "_how_many", lambda piece: 4)
-    piece = piece_of(some.features["clip_3"], 3, 5)
-    first, anchor = by_both(some.view, piece, None, some.load)
-    before = [(place.key, place.distance) for place in places(first, 1000)[0]]
+    monkeypatch.setattr(in_windows, "_how_many", lambda segment: 4)
+    segment = segment_of(some.features["clip_3"], 3, 5)
+    first, anchor = by_both(some.view, segment, None, some.load)
+    before = [(place.key, place.distance) for place in merge_overlapping(first, 1000)[0]]
     near = {f"new_{i}": some.features["clip_3"][25:55] + np.float32(0.01 * i) for i in range(1, 6)}
     grown = Clips({**some.features, **near})
     for given, is_kept in ((anchor, True), (None, False)):
-        found, _ = by_both(grown.view, piece, None, grown.load, given)
+        found, _ = by_both(grown.view, segment, None, grown.load, given)
         after = [
             (place.key, place.distance)
-            for place in places(found, 1000)[0]
+            for place in merge_overlapping(found, 1000)[0]
             if not place.clip_id.startswith("new")
         ]
         assert (after == before) == is_kept
 
 
 def test_matches_in_parts_of_clips_are_those_in_all_of_them(some: Clips) -> None:
-    piece = piece_of(some.features["clip_0"], 12, 14)
-    whole = by_warping(some.ids, some.seconds, piece, None, some.load)
-    parts = matches_in(some.ids, some.seconds, [Region(0, 100, 160)], piece, None, some.load)
+    segment = segment_of(some.features["clip_0"], 12, 14)
+    whole = by_warping(some.ids, some.seconds, segment, None, some.load)
+    parts = matches_in(some.ids, some.seconds, [Region(0, 100, 160)], segment, None, some.load)
     assert set(_rows(parts)) & set(_rows(whole))
     assert ((parts.starts >= 10.0) & (parts.ends <= 16.0)).all()
-    gone = matches_in(some.ids, some.seconds, [Region(0)], piece, None, lambda ids, name: {})
+    gone = matches_in(some.ids, some.seconds, [Region(0)], segment, None, lambda ids, name: {})
     assert len(gone) == 0
 
 
@@ -174,8 +186,8 @@ def test_matches_in_parts_of_clips_are_those_in_all_of_them(some: Clips) -> None
 def test_few_frames_are_held_at_a_time_and_nothing_changes(
     some: Clips, monkeypatch: pytest.MonkeyPatch, frames: int
 ) -> None:
-    piece = piece_of(some.features["clip_0"], 12, 14)
-    whole = by_warping(some.ids, some.seconds, piece, None, some.load)
+    segment = segment_of(some.features["clip_0"], 12, 14)
+    whole = by_warping(some.ids, some.seconds, segment, None, some.load)
     held: list[int] = []
 
     def load(clip_ids: Sequence[str], name: str) -> Mapping[str, FloatArray]:
@@ -183,8 +195,8 @@ def test_few_frames_are_held_at_a_time_and_nothing_changes(
         held.append(sum(len(one) for one in found.values()) if len(found) > 1 else 0)
         return found
 
-    monkeypatch.setattr(matches, "FRAMES_AT_ONCE", frames)
-    assert _rows(by_warping(some.ids, some.seconds, piece, None, load)) == _rows(whole)
+    monkeypatch.setattr(matches, "MAX_FRAMES_AT_ONCE", frames)
+    assert _rows(by_warping(some.ids, some.seconds, segment, None, load)) == _rows(whole)
     assert max(held) <= frames
 
 

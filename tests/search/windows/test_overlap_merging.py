@@ -9,9 +9,14 @@ from hypothesis import strategies as st
 
 from app.search.ranking.cursor import Position
 from app.search.windows import overlap_merging as module
-from app.search.windows.overlap_merging import MERGED, Candidates, Place, places
+from app.search.windows.overlap_merging import (
+    MAX_OVERLAP,
+    Candidates,
+    FoundInterval,
+    merge_overlapping,
+)
 
-Told = tuple[str, float, float, float]
+Listed = tuple[str, float, float, float]
 
 
 def candidates(rows: list[tuple[int, float, float, float]], clips: int = 3) -> Candidates:
@@ -21,22 +26,22 @@ def candidates(rows: list[tuple[int, float, float, float]], clips: int = 3) -> C
     return Candidates(ids, owners.astype(int), starts, ends, distances)
 
 
-def naive_places(found: Candidates) -> list[Told]:
+def naive_merging(found: Candidates) -> list[Listed]:
     rows = sorted(
         (round(float(d), 9), str(found.ids[o]), float(s), float(e))
         for o, s, e, d in zip(found.owners, found.starts, found.ends, found.distances, strict=True)
     )
-    kept: list[Told] = []
+    kept: list[Listed] = []
     for distance, clip, start, end in rows:
         if not any(
-            clip == other and min(end, e) - max(start, s) > MERGED * min(end - start, e - s)
+            clip == other and min(end, e) - max(start, s) > MAX_OVERLAP * min(end - start, e - s)
             for other, s, e, _ in kept
         ):
             kept.append((clip, start, end, distance))
     return kept
 
 
-def told(found: list[Place]) -> list[Told]:
+def listed(found: list[FoundInterval]) -> list[Listed]:
     return [(place.clip_id, place.start, place.end, place.distance) for place in found]
 
 
@@ -58,36 +63,36 @@ def _some(draw: st.DrawFn) -> Candidates:
 def test_they_are_those_of_the_greedy_loop(found: Candidates, first_look: int) -> None:
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(module, "FIRST_LOOK", first_look)
-        everything, more = places(found, 1000)
-    assert told(everything) == naive_places(found)
+        everything, more = merge_overlapping(found, 1000)
+    assert listed(everything) == naive_merging(found)
     assert not more
 
 
 @given(found=_some(), size=st.integers(1, 7))
 @settings(max_examples=30, deadline=None)
 def test_pages_put_together_are_all_of_them(found: Candidates, size: int) -> None:
-    paged: list[Place] = []
+    paged: list[FoundInterval] = []
     after: Position | None = None
     while True:
-        page, more = places(found, size, after)
+        page, more = merge_overlapping(found, size, after)
         paged += page
         if not more:
             break
         assert len(page) == size
         after = Position(len(paged), page[-1].distance, page[-1].key)
-    assert told(paged) == naive_places(found)
+    assert listed(paged) == naive_merging(found)
 
 
 def test_neighbours_that_hardly_overlap_are_two_places() -> None:
     found = candidates([(0, 0.0, 2.0, 0.1), (0, 1.7, 3.7, 0.2), (0, 3.0, 5.0, 0.3)])
-    assert [place.start for place in places(found, 9)[0]] == [0.0, 1.7]
+    assert [place.start for place in merge_overlapping(found, 9)[0]] == [0.0, 1.7]
 
 
-def test_nothing_farther_than_asked_is_told() -> None:
+def test_nothing_farther_than_asked_is_found() -> None:
     found = candidates([(0, 0.0, 1.0, 0.1), (1, 0.0, 1.0, 0.2), (2, 0.0, 1.0, 0.3)])
-    assert [p.distance for p in places(found, 9, until=0.2)[0]] == [0.1, 0.2]
+    assert [p.distance for p in merge_overlapping(found, 9, until=0.2)[0]] == [0.1, 0.2]
 
 
 def test_a_place_knows_which_candidate_it_was() -> None:
     found = candidates([(0, 5.0, 6.0, 0.9), (1, 2.0, 3.0, 0.5)])
-    assert [place.index for place in places(found, 9)[0]] == [1, 0]
+    assert [place.index for place in merge_overlapping(found, 9)[0]] == [1, 0]

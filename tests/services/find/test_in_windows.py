@@ -14,7 +14,7 @@ import pytest
 from app.demo import DemoClip
 from app.errors import BadField
 from app.numerics.arrays import FloatArray
-from app.search.windows.overlap_merging import MERGED
+from app.search.windows.overlap_merging import MAX_OVERLAP
 from app.services.clips import catalogue as clips
 from app.services.find import find
 from app.services.find.find import MotionQuery
@@ -153,7 +153,7 @@ def test_places_do_not_overlap_and_scores_fall_with_distance(hidden: Hidden, met
         of_one.sort(key=lambda hit: hit.start)
         for one, other in pairwise(of_one):
             shorter = min(one.end - one.start, other.end - other.start)
-            assert one.end - other.start <= MERGED * shorter + 1e-9
+            assert one.end - other.start <= MAX_OVERLAP * shorter + 1e-9
 
 
 @pytest.mark.parametrize("method", METHODS)

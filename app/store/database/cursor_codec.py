@@ -1,0 +1,72 @@
+"""How a position in a list becomes an opaque cursor, and comes back from whatever a client sends.
+
+A cursor is a JSON array of texts and numbers in URL-safe base64 without padding. `decode` and the
+readers of single values raise NotACursor, and nothing else, whatever they are given.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+from collections.abc import Sequence
+
+MAX_CURSOR_LENGTH = 4096
+"""Characters."""
+
+
+class NotACursor(ValueError):
+    """The text, or a value in it, is not what was written."""
+
+
+def encode(values: Sequence[str | float | None]) -> str:
+    """A cursor that holds `values`."""
+    # Not escaped: a long name of another script than Latin would outgrow MAX_CURSOR_LENGTH.
+    content = json.dumps(values, separators=(",", ":"), ensure_ascii=False)
+    return base64.urlsafe_b64encode(content.encode()).decode().rstrip("=")
+
+
+def decode(cursor: str) -> list[object]:
+    """The values in a cursor, each of them any JSON. Raises NotACursor where it is no cursor."""
+    if len(cursor) > MAX_CURSOR_LENGTH:
+        raise NotACursor("the cursor is too long")
+    padded = cursor + "=" * (-len(cursor) % 4)
+    try:
+        content = base64.b64decode(padded.encode("ascii"), altchars=b"-_", validate=True)
+        values = json.loads(content)
+    except (ValueError, RecursionError) as problem:
+        raise NotACursor("the cursor is not JSON in base64") from problem
+    if not isinstance(values, list):
+        raise NotACursor("the cursor holds no array")
+    return values
+
+
+def as_text(value: object) -> str:
+    """A text that a database takes. Raises NotACursor for any other value."""
+    if not isinstance(value, str):
+        raise NotACursor("not a text")
+    try:
+        value.encode()
+    except UnicodeEncodeError as problem:  # half of a surrogate pair, which JSON allows
+        raise NotACursor("not a text that can be stored") from problem
+    return value
+
+
+def as_number(value: object) -> float:
+    """A finite number. Raises NotACursor for any other value."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise NotACursor("not a number")
+    try:
+        number = float(value)
+    except OverflowError as problem:
+        raise NotACursor("too large a number") from problem
+    if not math.isfinite(number):
+        raise NotACursor("not a finite number")
+    return number
+
+
+def as_count(value: object, most: int) -> int:
+    """A whole number from 0 to `most`. Raises NotACursor for any other value."""
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= most:
+        raise NotACursor("not a whole number in range")
+    return value
