@@ -6,16 +6,17 @@ from typing import Literal
 
 from pydantic import ConfigDict, Field
 
-from app.api.schemas.base import Incoming, Label, Outgoing
+from app.api.schemas.base import Label, Outgoing
 from app.api.schemas.labels import WORD_SCORE
-from app.api.schemas.search import ClipId, UploadFields
+from app.api.schemas.query_source import ClipId, QueryFields, QueryForm
 from app.models.recognition.answers import Answer as FoundAnswer
-from app.services.recognition.recognise import Recognised
+from app.services.find.query_source import QuerySource
+from app.services.recognition.recognise import Recognised, RecogniseQuery
 
 _NEW = "One that the library does not know is taken to be new: its label in the answer is null."
 
 
-class _Known(Incoming):
+class _Known(QueryFields):
     method: Literal["default", "multilinear", "signatures", "perera"] = Field(
         "default",
         description="The recogniser: signatures is Vasilescu 2002 on joint angles, multilinear the "
@@ -28,6 +29,15 @@ class _Known(Incoming):
         None, description=f"Recognise the person given the task. {_NEW}"
     )
 
+    def query(self, source: QuerySource) -> RecogniseQuery:
+        """The recognition of a motion."""
+        return RecogniseQuery(
+            source=source,
+            known_person=self.known_person,
+            known_task=self.known_task,
+            method=self.method,
+        )
+
 
 class Recognize(_Known):
     """Recognise a stored clip."""
@@ -37,10 +47,8 @@ class Recognize(_Known):
     model_config = ConfigDict(json_schema_extra={"examples": [{"clip_id": "CLIP_ID"}]})
 
 
-class RecognizeForm(_Known, UploadFields):
+class RecognizeForm(_Known, QueryForm):
     """Recognise an uploaded motion (never stored), or a stored clip."""
-
-    clip_id: ClipId | None = None
 
 
 class Candidate(Outgoing):

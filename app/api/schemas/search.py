@@ -6,14 +6,17 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field, Json
 
-from app.api.schemas.base import Cursor, Id, Incoming, Limit, Outgoing, Roles, Seconds
-from app.api.schemas.clips import Clip, FrameRate, Stack
+from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, Seconds
+from app.api.schemas.clips import Clip
 from app.api.schemas.filters import Filter
+from app.api.schemas.query_source import ClipId, QueryFields, QueryForm
 from app.search.example.methods import Method
 from app.services.find import hits as services
+from app.services.find.queries import MotionQuery, WordQuery
+from app.services.find.query_source import QuerySource
 
 
-class _MotionOptions(Incoming):
+class _MotionOptions(QueryFields):
     start: Seconds | None = Field(None, description="Seconds: search by a part of the query.")
     end: Seconds | None = Field(None, description="Seconds: where that part ends.")
     method: Method = Method.FUSED
@@ -29,10 +32,21 @@ class _MotionOptions(Incoming):
         description="Whether the query clip (of windows and segments: what overlaps the queried "
         "part) may be among the hits.",
     )
+    filter: Filter | None = None
     cursor: Cursor | None = None
 
-
-ClipId = Id
+    def query(self, source: QuerySource, segment: int | None = None) -> MotionQuery:
+        """The search for a motion; segment: as in `MotionSearch`."""
+        return MotionQuery(
+            source=source,
+            method=self.method,
+            limit=self.limit,
+            filter=None if self.filter is None else self.filter.given(),
+            scope=self.scope,
+            segment=segment,
+            include_self=self.include_self,
+            cursor=self.cursor,
+        )
 
 
 class MotionSearch(_MotionOptions):
@@ -45,7 +59,6 @@ class MotionSearch(_MotionOptions):
         le=10**6,
         description="With scope segments: the clip's segment of that index is the query.",
     )
-    filter: Filter | None = None
 
     model_config = ConfigDict(
         json_schema_extra={
@@ -59,25 +72,9 @@ class MotionSearch(_MotionOptions):
     )
 
 
-class UploadFields(Incoming):
-    """What a client may say of an uploaded query."""
-
-    unit: str | None = Field(
-        None,
-        max_length=30,
-        description="m, dm, cm, mm, in, ft, cmu (of CMU's files), or metres per unit.",
-    )
-    frame_rate: FrameRate | None = Field(None, description="Overrides what the file declares.")
-    roles: Json[Roles] | None = Field(
-        None, description='JSON: joint name by role, as {"hips": "Pelvis"}.'
-    )
-    stack: Stack | None = None
-
-
-class MotionSearchForm(_MotionOptions, UploadFields):
+class MotionSearchForm(_MotionOptions, QueryForm):
     """Find motions like an uploaded one (never stored), or like a stored clip."""
 
-    clip_id: ClipId | None = None
     filter: Json[Filter] | None = Field(None, description='JSON, as {"task": ["walk", "run"]}.')
 
 
@@ -112,6 +109,16 @@ class WordSearch(Incoming):
         }
     )
 
+    def query(self) -> WordQuery:
+        """The search for words."""
+        return WordQuery(
+            words=self.words,
+            mode=self.mode,
+            limit=self.limit,
+            filter=None if self.filter is None else self.filter.given(),
+            cursor=self.cursor,
+        )
+
 
 class Hit(Outgoing):
     """One answer of a search."""
@@ -128,7 +135,7 @@ class Hit(Outgoing):
 
     @classmethod
     def of(cls, hit: services.Hit) -> Hit:
-        """A hit as it goes over the wire."""
+        """A hit as the API shows it."""
         return cls(
             rank=hit.rank,
             score=hit.score,
@@ -150,7 +157,7 @@ class MotionHits(Outgoing):
 
     @classmethod
     def of(cls, hits: services.Hits) -> MotionHits:
-        """A page as it goes over the wire."""
+        """A page as the API shows it."""
         return cls(
             method=hits.method,
             took_ms=hits.took_ms,
@@ -190,7 +197,7 @@ class WordHits(Outgoing):
 
     @classmethod
     def of(cls, hits: services.Hits) -> WordHits:
-        """A page as it goes over the wire, with what became of the words."""
+        """A page as the API shows it, with the words that were not known."""
         return cls(
             method=hits.method,
             took_ms=hits.took_ms,
