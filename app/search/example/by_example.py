@@ -7,12 +7,12 @@ from functools import partial
 import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
-from app.search.example.distances import Loader, QueryArrays, distances_to
+from app.search.example.distances import Descriptors, Loader, distances_to
 from app.search.example.fusion import SHORTLIST, Surroundings
 from app.search.example.methods import Method
 from app.search.example.reranking import ReRanked
 from app.search.index.nearest_ranking import Near
-from app.search.index.vector_index import VectorIndex
+from app.search.index.vector_index import VECTOR, VectorIndex
 from app.search.ranking.cursor import Anchor
 from app.search.ranking.lower_bounds import Bounds
 from app.search.ranking.ranking import IdArray, Page, Ranked, Ranking
@@ -30,7 +30,7 @@ SCALES = {
 
 def rank_by_example(
     index: VectorIndex,
-    query: QueryArrays,
+    query: Descriptors,
     method: Method,
     wanted: ClipFilter,
     exclude: frozenset[str],
@@ -42,7 +42,7 @@ def rank_by_example(
     anchor: of the cursor that goes on, if one does.
     """
     if method in (Method.FUSED, Method.VECTOR):
-        near = index.nearest(query.vector, wanted, exclude)
+        near = index.nearest(query[VECTOR], wanted, exclude)
         if method is Method.VECTOR:
             return near
         return ReRanked(near, partial(_fused, query, near, load), SHORTLIST, anchor)
@@ -50,10 +50,10 @@ def rank_by_example(
     return _known(ids, distances_to(query, list(ids), method, load))
 
 
-def _fused(query: QueryArrays, near: Near, load: Loader, shortlist: Page) -> Bounds:
+def _fused(query: Descriptors, near: Near, load: Loader, shortlist: Page) -> Bounds:
     """The shortlist by vectors, the graph between them, and warping, which is the dearest."""
     ids = shortlist.ids
-    known = Surroundings.of(query.vector, near.vectors(ids))
+    known = Surroundings.of(query[VECTOR], near.vectors(ids))
 
     def measure(rows: IntArray) -> FloatArray:
         warped = distances_to(query, ids[rows].tolist(), Method.DTW, load)

@@ -9,7 +9,7 @@ from functools import partial
 
 from app.models.metric.learned_metric import INPUTS
 from app.search.example.by_example import SCALES, rank_by_example
-from app.search.example.distances import EPSILON, FEATURES, RHO, QueryArrays
+from app.search.example.distances import EPSILON, FEATURES, RHO
 from app.search.example.methods import LEARNED, Method
 from app.search.index.filters import as_filter
 from app.search.index.vector_index import VECTOR
@@ -97,7 +97,7 @@ def _by_example(lib: Library, query: MotionQuery, method: Method, wanted: ClipFi
     paging = Paging.at(query.cursor, question)
     found = rank_by_example(
         lib.index,
-        QueryArrays(*(arrays[name] for name in _NAMES)),
+        arrays,
         method,
         wanted,
         query.source.excluded_clips(include_self=query.include_self),

@@ -86,25 +86,25 @@ def _stored_segment(lib: Library, source: QuerySource, segment: int) -> tuple[Fl
 
 
 def _candidates(
-    lib: Library, vector: FloatArray, wanted: ClipFilter, excluded: Barred | None
+    lib: Library, vector: FloatArray, wanted: ClipFilter, barred: Barred | None
 ) -> Candidates:
-    """All segments that pass the filter and are not excluded, with their distances."""
+    """All segments that are meant, with their distances."""
     lib.segments.catch_up(lib.store)
     spans = lib.segments.view(wanted)
     rows = spans.rows()
-    rows = rows[~_overlaps(spans, excluded)[rows]]
+    rows = rows[~_touching(spans, barred)[rows]]
     apart = distances(vector[None], spans.vectors[rows], spans.squares[rows])[0]
     return Candidates(
         spans.ids, spans.owners[rows], spans.starts[rows], spans.ends[rows], apart.astype(float)
     )
 
 
-def _overlaps(spans: Spans, excluded: Barred | None) -> BoolArray:
-    """(n,) whether a segment overlaps the excluded interval. The next segment, which only
-    touches it, does not."""
-    if excluded is None:
+def _touching(spans: Spans, barred: Barred | None) -> BoolArray:
+    """(n,) whether a segment overlaps what is barred; the next one, which only touches it, does
+    not."""
+    if barred is None:
         return np.zeros(len(spans), dtype=bool)
-    owned = (spans.ids == excluded.clip_id)[spans.owners]
-    # The ends are float32, but times that a client sends are not.
-    inside = (spans.starts + 1e-3 < excluded.end) & (spans.ends - 1e-3 > excluded.start)
+    owned = (spans.ids == barred.clip_id)[spans.owners]
+    # the ends are float32, times that a client sends are not
+    inside = (spans.starts + 1e-3 < barred.end) & (spans.ends - 1e-3 > barred.start)
     return np.asarray(owned & inside)

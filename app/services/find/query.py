@@ -113,7 +113,7 @@ def _describe_clip(
 
 
 def _describe_upload(lib: Library, source: QuerySource, names: tuple[str, ...]) -> Arrays:
-    found = lib.pool.analyse(analysis_request(source, lib.settings.max_upload_bytes))
+    found = lib.pool.analyze(analysis_request(source, lib.settings.max_upload_bytes))
     if source.is_whole:
         return found.arrays
     return _described(cut(found.motion, source.start, source.end), names)

@@ -100,7 +100,7 @@ class AnalysisPool:
         """
         return self._begin(analyze_file, request, is_alone=is_alone)
 
-    def analyse(self, request: AnalysisRequest) -> Analysis:
+    def analyze(self, request: AnalysisRequest) -> Analysis:
         """Analyze and wait; raises as `outcome` does."""
         return self._wait_for(analyze_file, request)
 
