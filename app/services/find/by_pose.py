@@ -57,18 +57,18 @@ def find_pose(lib: Library, query: PoseQuery) -> Hits:
     ClipNotReady, and BadContent for a file that cannot be used.
     """
     began = time.perf_counter()
-    wanted, places = as_filter(query.filter), _places(query.places)
+    clip_filter, places = as_filter(query.filter), _places(query.places)
     fields.limit(query.limit)
     version = lib.poses.catch_up(lib.store)
     pose = _pose(lib, query)
     exclude: frozenset[str] = frozenset()
     if query.source is not None:
         exclude = query.source.excluded_clips(include_self=query.include_self)
-    question = cursors.digest("pose", pose.tobytes().hex(), places, wanted, sorted(exclude))
+    question = cursors.digest("pose", pose.tobytes().hex(), places, clip_filter, sorted(exclude))
     paging = Paging.at(query.cursor, question)
     _, rows = lib.poses.state
     load = partial(lib.arrays.get_many, lib.store)
-    ranking = PoseRanking(rows, rows.labels.passing(wanted, exclude), pose, load, places)
+    ranking = PoseRanking(rows, rows.labels.passing(clip_filter, exclude), pose, load, places)
     found = ranking.page(paging.after, query.limit)
     matches = MatchPage([_match(hit) for hit in found.hits], found.more)
     page = paging.hits(lib, matches, partial(score, scale=SCALE))

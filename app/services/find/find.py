@@ -37,13 +37,13 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
     and ModelNotFitted for a metric that is not learned yet.
     """
     began = time.perf_counter()
-    method, wanted = _method(query.method), as_filter(query.filter)
+    method, clip_filter = _method(query.method), as_filter(query.filter)
     fields.limit(query.limit)
     if query.scope not in SCOPES:
         raise fields.bad_field("scope", f"must be one of {', '.join(SCOPES)}")
     version = lib.index.catch_up(lib.store)
     ranked_by = RANKED_BY if query.scope == "segments" else method
-    page = _search(query, method)(lib, query, method, wanted)
+    page = _search(query, method)(lib, query, method, clip_filter)
     return Hits(ranked_by.value, milliseconds_since(began), version, page.items, page.next)
 
 
@@ -54,14 +54,14 @@ def find_words(lib: Library, query: WordQuery) -> Hits:
     Raises BadField, ModelNotFitted.
     """
     began = time.perf_counter()
-    wanted = as_filter(query.filter)
+    clip_filter = as_filter(query.filter)
     texts = fields.queried_words(query.words)
     if query.mode not in WORD_MODES:
         raise fields.bad_field("mode", f"must be one of {', '.join(WORD_MODES)}")
     fields.limit(query.limit)
     version = lib.index.catch_up(lib.store)
-    found = rank_by_words(lib, texts, query.mode, wanted)
-    question = cursors.digest("words", *texts, query.mode, wanted, found.model)
+    found = rank_by_words(lib, texts, query.mode, clip_filter)
+    question = cursors.digest("words", *texts, query.mode, clip_filter, found.model)
     paging = Paging.at(query.cursor, question)
     page = _page(lib, found.ranking, paging, query.limit, found.to_score)
     return Hits(
@@ -89,17 +89,21 @@ def _search(query: MotionQuery, method: Method) -> _Search:
     return _by_metric if method in LEARNED else _by_example
 
 
-def _by_example(lib: Library, query: MotionQuery, method: Method, wanted: ClipFilter) -> HitPage:
+def _by_example(
+    lib: Library, query: MotionQuery, method: Method, clip_filter: ClipFilter
+) -> HitPage:
     arrays = describe(lib, query.source, _NAMES).arrays
     # An upload has no id: a cursor recognizes it by its descriptors.
     content = hashlib.sha256(arrays[FEATURES].tobytes()).hexdigest()
-    question = cursors.digest(query.source.clip_id, content, method, wanted, query.include_self)
+    question = cursors.digest(
+        query.source.clip_id, content, method, clip_filter, query.include_self
+    )
     paging = Paging.at(query.cursor, question)
     found = rank_by_example(
         lib.index,
         arrays,
         method,
-        wanted,
+        clip_filter,
         query.source.excluded_clips(include_self=query.include_self),
         partial(lib.arrays.get_many, lib.store),
         paging.anchor,
@@ -107,12 +111,14 @@ def _by_example(lib: Library, query: MotionQuery, method: Method, wanted: ClipFi
     return _page(lib, found, paging, query.limit, partial(score, scale=SCALES[method]))
 
 
-def _by_metric(lib: Library, query: MotionQuery, method: Method, wanted: ClipFilter) -> HitPage:
+def _by_metric(
+    lib: Library, query: MotionQuery, method: Method, clip_filter: ClipFilter
+) -> HitPage:
     arrays = describe(lib, query.source, INPUTS).arrays
     exclude = query.source.excluded_clips(include_self=query.include_self)
-    found = rank_by_metric(lib, arrays, method, wanted, exclude)
+    found = rank_by_metric(lib, arrays, method, clip_filter, exclude)
     question = cursors.digest(
-        query.source.clip_id, found.digest, method, wanted, query.include_self, found.model
+        query.source.clip_id, found.digest, method, clip_filter, query.include_self, found.model
     )
     paging = Paging.at(query.cursor, question)
     return _page(lib, found.ranking, paging, query.limit, found.to_score)

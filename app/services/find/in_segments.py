@@ -37,7 +37,7 @@ SCORE_SCALE = 1.0
 
 
 def find_in_segments(
-    lib: Library, query: MotionQuery, method: Method, wanted: ClipFilter
+    lib: Library, query: MotionQuery, method: Method, clip_filter: ClipFilter
 ) -> HitPage:
     """Segments of clips in order of their likeness to a motion, or to a segment of a stored
     clip. The index of clips must have caught up with the library.
@@ -53,9 +53,9 @@ def find_in_segments(
     else:
         vector, own = _stored_segment(lib, query.source, query.segment)
     excluded = None if query.include_self else own
-    question = cursors.digest("segments", own, vector.tobytes().hex(), wanted, excluded)
+    question = cursors.digest("segments", own, vector.tobytes().hex(), clip_filter, excluded)
     paging = Paging.at(query.cursor, question)
-    candidates = _candidates(lib, vector, wanted, excluded)
+    candidates = _candidates(lib, vector, clip_filter, excluded)
     found, more = places(candidates, query.limit, paging.after)
     to_score = partial(score, scale=SCORE_SCALE)
     return paging.hits(lib, MatchPage(matches_of(found), more), to_score)

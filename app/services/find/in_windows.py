@@ -29,7 +29,7 @@ LONGEST_SECONDS = 120.0
 
 
 def find_in_windows(
-    lib: Library, query: MotionQuery, method: Method, wanted: ClipFilter
+    lib: Library, query: MotionQuery, method: Method, clip_filter: ClipFilter
 ) -> HitPage:
     """Parts of clips in order of their likeness to a motion. The index of clips must have
     caught up with the library.
@@ -45,9 +45,11 @@ def find_in_windows(
     excluded = None if query.include_self else descriptors.interval
     # An upload has no id: a cursor recognizes it by its features.
     content = hashlib.sha256(piece.features.tobytes()).hexdigest()
-    question = cursors.digest("windows", query.source.clip_id, content, method, wanted, excluded)
+    question = cursors.digest(
+        "windows", query.source.clip_id, content, method, clip_filter, excluded
+    )
     paging = Paging.at(query.cursor, question)
-    candidates, anchor = _rank(lib, method, wanted, piece, excluded, paging.anchor)
+    candidates, anchor = _rank(lib, method, clip_filter, piece, excluded, paging.anchor)
     found, more = places(candidates, query.limit, paging.after)
     to_score = partial(score, scale=WINDOW_SCORES[method])
     return paging.hits(lib, MatchPage(matches_of(found), more, anchor), to_score)
@@ -61,16 +63,16 @@ def matches_of(found: Sequence[Place]) -> list[Match]:
 def _rank(
     lib: Library,
     method: Method,
-    wanted: ClipFilter,
+    clip_filter: ClipFilter,
     piece: Piece,
     excluded: Barred | None,
     anchor: Anchor | None,
 ) -> tuple[Candidates, Anchor | None]:
     load = partial(lib.arrays.get_many, lib.store)
     if method is Method.DTW:
-        clips = lib.index.candidates(wanted)
+        clips = lib.index.candidates(clip_filter)
         return by_warping(clips.ids, clips.seconds, piece, excluded, load), None
-    view = partial(_view, lib, wanted)
+    view = partial(_view, lib, clip_filter)
     if method is Method.VECTOR:
         return by_windows(view, piece, excluded), None
     return by_both(view, piece, excluded, load, anchor)
