@@ -29,7 +29,8 @@ def search(
     words: Annotated[
         list[str] | None,
         typer.Option(
-            "--words", help="Words or a sentence; -word leaves out; may be given several times."
+            "--words",
+            help="Words or a sentence; -word leaves out clips that carry it; can be repeated.",
         ),
     ] = None,
     method: Annotated[Method, typer.Option(help="Of a search by example.")] = Method.FUSED,

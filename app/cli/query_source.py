@@ -25,7 +25,7 @@ Skeleton = Annotated[
 Stack = Annotated[
     str | None, typer.Option(help="Of an FBX file: the animation stack; default the longest.")
 ]
-Unit = Annotated[str | None, typer.Option(help="Of a file: m, cm, mm, in, or metres per unit.")]
+Unit = Annotated[str | None, typer.Option(help="Of a file: m, cm, mm, in, or meters per unit.")]
 
 
 @contextmanager

@@ -20,5 +20,5 @@ router = APIRouter(prefix="/v1/search", tags=["search"])
     responses=refusals(400, 404, 409, 413, 415),
 )
 def search_pose(lib: Lib, sent: PoseSearch) -> PoseHits:
-    """Find the clips that take a pose, and when they do."""
+    """Find the clips that take a pose, and the times at which they do."""
     return PoseHits.of(find_pose(lib, sent.query()))

@@ -1,4 +1,4 @@
-"""Recognition: who, what, and in which words."""
+"""Recognition of persons, tasks and words."""
 
 from __future__ import annotations
 
@@ -38,6 +38,6 @@ async def _query(request: Request) -> RecogniseQuery:
     openapi_extra=body(model=Recognize, examples=_EXAMPLES, form=RecognizeForm, files=QUERY_FILES),
 )
 def recognize(lib: Lib, query: Annotated[RecogniseQuery, Depends(_query)]) -> Recognition:
-    """Say who it is, what they do and in which words; `label` is null when it is unknown."""
+    """Say who it is, what they do and in which words; `label` is null if it is unknown."""
     found = recognise.recognise(lib, query)
     return Recognition.of(found)

@@ -58,8 +58,8 @@ async def _motion_query(request: Request) -> MotionQuery:
 def search_motion(lib: Lib, query: Annotated[MotionQuery, Depends(_motion_query)]) -> MotionHits:
     """Find motions like a stored clip, a part of one, or an uploaded file.
 
-    With scope `windows`, find parts of clips, with their start and end; with scope `segments`,
-    what is danced from one keypose to the next.
+    With scope `windows`, find parts of clips, with their start and end. With scope `segments`,
+    find motions from one keypose to the next.
     """
     return MotionHits.of(find.find_motion(lib, query))
 
@@ -70,8 +70,8 @@ def search_motion(lib: Lib, query: Annotated[MotionQuery, Depends(_motion_query)
     responses=refusals(400, 409, 413, 415),
 )
 def search_words(lib: Lib, sent: WordSearch) -> WordHits:
-    """Find motions for words, phrases or sentences, the likeliest to carry them all first.
+    """Find motions for words, phrases or sentences, the most probable to carry them all first.
 
-    A hit's `score` is a probability, in both modes.
+    The `score` of a hit is a probability, in both modes.
     """
     return WordHits.of(find.find_words(lib, sent.query()))

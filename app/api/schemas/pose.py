@@ -18,7 +18,7 @@ from app.services.find.by_pose import PoseQuery
 _POINT = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
 Positions = Annotated[
     list[Any],
-    # The service reads them, no more than 13: it can name the joint that is wrong.
+    # The service checks the points, because it can name the joint that is wrong.
     WithJsonSchema(
         {"type": "array", "items": _POINT, "minItems": len(SUN_ROLES), "maxItems": len(SUN_ROLES)}
     ),
@@ -45,19 +45,20 @@ class PoseSearch(QueryFields):
     """Find a pose: that of a stored clip at a time, or one of 13 positions."""
 
     clip_id: ClipId | None = None
-    time: Seconds | None = Field(None, description="Seconds from the clip's begin.")
+    time: Seconds | None = Field(None, description="Seconds from the start of the clip.")
     positions: Positions | None = Field(
         None,
-        description=f"x, y (up) and z of {', '.join(SUN_ROLES)}, in this order, metres. "
-        "Place, heading and size do not matter.",
+        description=f"x, y (up) and z of {', '.join(SUN_ROLES)}, in this order, in meters. "
+        "Position, heading and size do not matter.",
     )
     places: Places = Field(
         Places.BEST,
-        description="best: one hit a clip, where it comes nearest; all: each place of a clip.",
+        description="best: one hit for each clip, at its nearest pose; all: one hit for each time "
+        "at which a clip takes the pose.",
     )
     limit: Limit = 10
     filter: Filter | None = None
-    include_self: bool = Field(False, description="Whether the query clip may be among the hits.")
+    include_self: bool = Field(False, description="Whether the query clip may be a hit.")
     cursor: Cursor | None = None
 
     model_config = ConfigDict(
@@ -84,9 +85,9 @@ class PoseSearch(QueryFields):
 
 
 class PoseHit(Hit):
-    """A place where a clip takes a pose; start and end are how long it stays near it."""
+    """A time at which a clip takes a pose; it stays near the pose from start to end."""
 
-    time: float = Field(description="Seconds: when it is nearest.")
+    time: float = Field(description="Seconds: when the clip is nearest to the pose.")
 
     @classmethod
     def of(cls, hit: services.Hit) -> PoseHit:

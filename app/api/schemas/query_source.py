@@ -17,12 +17,12 @@ _NAMES = {field.name for field in fields_of(QuerySource)}
 
 
 class QueryFields(Incoming):
-    """A body that asks about a motion: its fields that a `QuerySource` has describe the motion."""
+    """A body with a motion as its query: the fields that a `QuerySource` also has."""
 
     def source(
         self, content: Readable | None = None, skeleton: Readable | None = None
     ) -> QuerySource:
-        """The motion that is asked about; content, skeleton: the files that came with the body."""
+        """The motion of the query; content, skeleton: the files that were sent with the body."""
         sent = {name: getattr(self, name) for name in _NAMES & type(self).model_fields.keys()}
         return QuerySource(**sent, content=content, skeleton=skeleton)
 
@@ -34,7 +34,7 @@ class QueryForm(QueryFields):
     unit: str | None = Field(
         None,
         max_length=30,
-        description="m, dm, cm, mm, in, ft, cmu (of CMU's files), or metres per unit.",
+        description="m, dm, cm, mm, in, ft, cmu (of CMU's files), or meters per unit.",
     )
     frame_rate: FrameRate | None = Field(None, description="Overrides what the file declares.")
     roles: Json[Roles] | None = Field(

@@ -17,20 +17,21 @@ from app.services.find.query_source import QuerySource
 
 
 class _MotionOptions(QueryFields):
-    start: Seconds | None = Field(None, description="Seconds: search by a part of the query.")
+    start: Seconds | None = Field(None, description="Seconds: where the queried part begins.")
     end: Seconds | None = Field(None, description="Seconds: where that part ends.")
     method: Method = Method.FUSED
     limit: Limit = 10
     scope: Literal["clips", "windows", "segments"] = Field(
         "clips",
-        description="windows: parts of clips are found, wherever they stand in them, by the "
-        "methods fused, vector and dtw; the query is up to 120 s long. segments: what is danced "
-        "from one keypose to the next is found, by their vectors; the query counts as one.",
+        description="clips: whole clips are compared. windows: parts of clips are found, at any "
+        "time in a clip, by the methods fused, vector and dtw; the query is up to 120 s long. "
+        "segments: motions from one keypose to the next are compared by their vectors; the query "
+        "is taken as one segment.",
     )
     include_self: bool = Field(
         False,
-        description="Whether the query clip (of windows and segments: what overlaps the queried "
-        "part) may be among the hits.",
+        description="Whether the query clip may be a hit. With scope windows and segments: whether "
+        "parts that overlap the query may be hits.",
     )
     filter: Filter | None = None
     cursor: Cursor | None = None
@@ -85,15 +86,15 @@ class WordSearch(Incoming):
         min_length=1,
         max_length=100,
         description=(
-            "Words, phrases or sentences; inflected ones and words of the same meaning are "
-            "understood; one with a minus before it (-left) is to be left out."
+            "Words, phrases or sentences. Inflected forms and words of the same meaning are "
+            "understood. A word with a minus before it (-left) leaves out the clips that carry it."
         ),
     )
     mode: Literal["default", "cca"] = Field(
         "default",
         description=(
-            "How clips are ranked: by a kernel regression of words on what is measured of a "
-            "motion, or by angle in Takano's correlated space of motion symbols and words."
+            "How clips are ranked. default: by a kernel regression from motion features to words. "
+            "cca: by the angle in Takano's correlated space of motion symbols and words."
         ),
     )
     limit: Limit = 10
@@ -121,14 +122,14 @@ class WordSearch(Incoming):
 
 
 class Hit(Outgoing):
-    """One answer of a search."""
+    """One hit of a search."""
 
     rank: int = Field(ge=1)
     score: float = Field(ge=0, le=1, description="Higher is closer.")
     distance: float
     start: float = Field(
-        description="Seconds from the clip's begin, 0 with scope clips; with windows, where the "
-        "part that was found begins."
+        description="Seconds from the start of the clip: where the part that was found begins. 0 "
+        "with scope clips."
     )
     end: float = Field(description="Seconds: where it ends.")
     clip: Clip
@@ -168,15 +169,16 @@ class MotionHits(Outgoing):
 
 
 class WordHit(Hit):
-    """One answer of a search by words."""
+    """One hit of a search by words."""
 
     score: float = Field(
         ge=0,
         le=1,
         description=(
-            "Probability that the clip carries all that was asked for, learned on clips that were "
-            "held out: comparable between queries. Of the words that stand for one that no clip "
-            "carries, the likeliest counts, as far as it is near in meaning."
+            "Probability that the clip carries all words that were asked for. It is calibrated on "
+            "held-out clips, so that scores of different queries can be compared. If a word is "
+            "replaced by others because no clip carries it, the most probable of them counts, "
+            "less the farther its meaning is from the word's."
         ),
     )
     distance: float = Field(
@@ -185,7 +187,7 @@ class WordHit(Hit):
 
 
 class WordHits(Outgoing):
-    """A page of a ranking by words, the likeliest first."""
+    """A page of a ranking by words, the most probable first."""
 
     method: str
     took_ms: float
@@ -193,7 +195,7 @@ class WordHits(Outgoing):
     items: list[WordHit]
     next: str | None
     unknown_words: list[str] = Field(description="Words that no clip carries.")
-    expanded: dict[str, list[str]] = Field(description="What was used in their place.")
+    expanded: dict[str, list[str]] = Field(description="The words that were used instead of each.")
 
     @classmethod
     def of(cls, hits: services.Hits) -> WordHits:
