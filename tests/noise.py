@@ -13,12 +13,12 @@ import numpy as np
 
 from app.errors import KinedexError
 from app.json_stderr import json_stderr
-from app.services.library.analysis_pool import AnalysisPool, Limits, Order
+from app.services.library.analysis_pool import AnalysisPool, AnalysisRequest, Limits
 
 KEY = "kx_0123456789ab_" + "s" * 43
 
 
-def in_a_child(order: Order, limits: Limits) -> None:
+def in_a_child(request: AnalysisRequest, limits: Limits) -> None:
     np.array([1e30], dtype=np.float32) * np.float32(1e30)
     os.write(2, b"a child, past Python\n")
     ctypes.CDLL(None).abort()
@@ -43,7 +43,7 @@ def main() -> None:
         in_this_process()
         pool = AnalysisPool(Limits(60, 2048, 100, 100))
         try:
-            pool.outcome(pool._begin(in_a_child, Order()))
+            pool.outcome(pool._begin(in_a_child, AnalysisRequest()))
         except KinedexError as death:
             print(type(death).__name__, file=sys.stderr)
         finally:

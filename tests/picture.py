@@ -17,8 +17,10 @@ from app.config import load_settings
 from app.demo.library import write_demo
 from app.services.figures.stick_figure import TRUNK, text
 from app.services.figures.thumbnail import HEIGHT, WIDTH
-from app.services.find.find import MotionQuery, find_motion
+from app.services.find.find import find_motion
 from app.services.find.hits import Hits
+from app.services.find.queries import MotionQuery
+from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.services.views.views import thumbnail_svg
 from app.store.clips import listing as clip_listing
@@ -54,7 +56,7 @@ def search(lib: Library) -> tuple[ClipRecord, Hits]:
     with lib.store.read() as tx:
         page = clip_listing.list_clips(tx, ClipFilter(person=(PERSON,), q=NAME), limit=1)
     (query,) = page.items
-    return query, find_motion(lib, MotionQuery(clip_id=query.id, limit=HITS))
+    return query, find_motion(lib, MotionQuery(QuerySource(query.id), limit=HITS))
 
 
 def captions(query: ClipRecord, hits: Hits) -> list[str]:

@@ -7,7 +7,9 @@ from typing import BinaryIO
 
 from starlette.datastructures import UploadFile
 
+from app.api.schemas.query_source import QueryForm
 from app.errors import BadField, Place
+from app.services.find.query_source import QuerySource
 
 QUERY_FILES = {
     "file": "The query motion: BVH, AMC, C3D, FBX, NPZ or NPY. It is never stored.",
@@ -15,15 +17,19 @@ QUERY_FILES = {
 }
 
 
-def exactly_one(clip_id: str | None, uploads: Mapping[str, UploadFile]) -> None:
-    """Refuse a form with both, or neither, of `clip_id` and `file`. Raises BadField."""
-    if (clip_id is None) == ("file" not in uploads):
+def source_of(form: QueryForm, uploads: Mapping[str, UploadFile]) -> QuerySource:
+    """The query of a form and its files.
+
+    Raises BadField if both `clip_id` and `file` were sent, or neither.
+    """
+    if (form.clip_id is None) == ("file" not in uploads):
         message = "Send exactly one of clip_id and file."
         raise BadField(
             message, places=[Place("body.clip_id", message), Place("body.file", message)]
         )
+    return form.source(content=file_of(uploads, "file"), skeleton=file_of(uploads, "skeleton"))
 
 
 def file_of(uploads: Mapping[str, UploadFile], name: str) -> BinaryIO | None:
-    """The bytes of a form's file, where it came."""
+    """The bytes of a form's file, None if it was not sent."""
     return uploads[name].file if name in uploads else None

@@ -39,7 +39,7 @@ COMMANDS = {
         "app.cli.find_pose", "search_pose", "Find the clips that take a pose, and when they do."
     ),
     "recognize": CommandPlace(
-        "app.cli.find", "recognize", "Tell who it is, what they do, and in which words."
+        "app.cli.find", "recognize", "Say who it is, what they do, and in which words."
     ),
     "synthesize": CommandPlace(
         "app.cli.synthesize",

@@ -1,39 +1,24 @@
-"""Search and recognise."""
+"""Search by example and by words, and recognize."""
 
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Iterator
-from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table
+from app.cli.query_source import FrameRate, Query, Skeleton, Stack, Unit, source_of
 from app.cli.settings import open_library
-from app.errors import BadField, ClipNotFound, Place
+from app.errors import BadField, Place
 from app.search.example.methods import Method
 
 if TYPE_CHECKING:
     from app.api.schemas.recognition import Answer
     from app.services.find.hits import Hits
-    from app.store.files.files import Readable
 
-Query = Annotated[str, typer.Argument(help="A motion file, or the id of a stored clip.")]
-FrameRate = Annotated[float | None, typer.Option(help="Of a file: overrides what it declares.")]
-Skeleton = Annotated[
-    Path | None,
-    typer.Option(exists=True, dir_okay=False, help="The ASF file that an AMC file needs."),
-]
-Stack = Annotated[
-    str | None, typer.Option(help="Of an FBX file: the animation stack; default the longest.")
-]
-Unit = Annotated[str | None, typer.Option(help="Of a file: m, cm, mm, in, or metres per unit.")]
-
-ASK_BY_WORDS = " Words go behind --words."
+ADVICE = " Use --words to search by words."
 
 
 def search(
@@ -44,7 +29,8 @@ def search(
     words: Annotated[
         list[str] | None,
         typer.Option(
-            "--words", help="Words or a sentence; -word leaves out; may be given several times."
+            "--words",
+            help="Words or a sentence; -word leaves out clips that carry it; can be repeated.",
         ),
     ] = None,
     method: Annotated[Method, typer.Option(help="Of a search by example.")] = Method.FUSED,
@@ -68,6 +54,7 @@ def search(
 ) -> None:
     """Find motions like one (a file or a stored clip), or motions for words."""
     from app.services.find import find
+    from app.services.find.queries import MotionQuery, WordQuery
 
     if (query is None) == (not words):
         raise typer.BadParameter("give either a file or clip id, or --words")
@@ -76,31 +63,20 @@ def search(
     wanted = filter_of(filter_json)
     with open_library(context) as lib:
         if words:
-            asked = find.WordQuery(words, mode, limit, wanted)
-            hits = find.find_words(lib, asked)
-        else:
-            with (
-                content_of(query, ASK_BY_WORDS) as (clip_id, content),
-                companion_of(skeleton) as asf,
-            ):
-                hits = find.find_motion(
-                    lib,
-                    find.MotionQuery(
-                        clip_id=clip_id,
-                        content=content,
-                        start=start,
-                        end=end,
-                        method=method,
-                        limit=limit,
-                        filter=wanted,
-                        scope=scope,
-                        segment=segment,
-                        skeleton=asf,
-                        frame_rate=frame_rate,
-                        unit=unit,
-                        stack=stack,
-                    ),
-                )
+            hits = find.find_words(lib, WordQuery(words, mode, limit, wanted))
+        elif query is not None:
+            with source_of(
+                query,
+                start=start,
+                end=end,
+                skeleton=skeleton,
+                frame_rate=frame_rate,
+                unit=unit,
+                stack=stack,
+                advice=ADVICE,
+            ) as source:
+                sent = MotionQuery(source, method, limit, wanted, scope, segment)
+                hits = find.find_motion(lib, sent)
     _show(hits, as_json, by_words=bool(words), parts=scope != "clips")
 
 
@@ -118,39 +94,31 @@ def recognize(
     stack: Stack = None,
     as_json: AsJson = False,
 ) -> None:
-    """Tell who it is, what they do, and in which words."""
+    """Say who it is, what they do, and in which words."""
     from app.api.schemas.recognition import Recognition
     from app.services.recognition import recognise
 
     with (
         open_library(context) as lib,
-        content_of(query) as (clip_id, content),
-        companion_of(skeleton) as asf,
+        source_of(
+            query, skeleton=skeleton, frame_rate=frame_rate, unit=unit, stack=stack
+        ) as source,
     ):
-        found = recognise.recognise(
-            lib,
-            recognise.RecogniseQuery(
-                clip_id=clip_id,
-                content=content,
-                known_person=known_person,
-                known_task=known_task,
-                method=method,
-                skeleton=asf,
-                frame_rate=frame_rate,
-                unit=unit,
-                stack=stack,
-            ),
-        )
+        sent = recognise.RecogniseQuery(source, known_person, known_task, method)
+        found = recognise.recognise(lib, sent)
     answer = Recognition.of(found)
     if as_json:
         print_json(answer.model_dump(mode="json"))
         return
-    told = {"person": answer.person, "task": answer.task}
-    print_table(("", "answer", "score"), [(n, _told(a), a.score) for n, a in told.items()])
+    rows = [
+        (name, _shown(one), one.score)
+        for name, one in (("person", answer.person), ("task", answer.task))
+    ]
+    print_table(("", "answer", "score"), rows)
     print_table(("word", "score"), [(one.word, one.score) for one in answer.words])
 
 
-def _told(answer: Answer) -> str:
+def _shown(answer: Answer) -> str:
     if answer.known and answer.label is not None:
         return answer.label
     nearest = answer.candidates[0].label if answer.candidates else "nothing"
@@ -158,7 +126,7 @@ def _told(answer: Answer) -> str:
 
 
 def filter_of(text: str | None) -> dict[str, Any]:
-    """A filter as it was typed, in JSON. Raises BadField."""
+    """The filter in a JSON text; empty without a text. Raises BadField."""
     try:
         wanted = json.loads(text) if text else {}
     except ValueError as problem:
@@ -166,46 +134,6 @@ def filter_of(text: str | None) -> dict[str, Any]:
     if not isinstance(wanted, dict):
         raise BadField("The filter must be a JSON object.", places=[Place("filter", str(text))])
     return wanted
-
-
-@contextmanager
-def content_of(query: str | None, advice: str = "") -> Iterator[tuple[str | None, Readable | None]]:
-    """A file's content where there is such a file, else the query as a clip's id; advice: what
-    to say besides where it is neither.
-
-    Raises BadField for what cannot be read, ClipNotFound where it is neither.
-    """
-    if query is None or not os.path.lexists(query):
-        try:
-            yield query, None
-        except ClipNotFound as problem:
-            detail = f"There is no file {query!r}, and no clip has that id.{advice}"
-            raise ClipNotFound(detail, places=problem.places) from None
-        return
-    with opened(Path(query)) as content:
-        yield None, content
-
-
-@contextmanager
-def opened(path: Path) -> Iterator[Readable]:
-    """A file that a user named. Raises BadField where it cannot be read."""
-    try:
-        content = path.open("rb")
-    except OSError as problem:
-        message = f"{path} cannot be read: {problem.strerror}"
-        raise BadField(message, places=[Place("file", message)]) from None
-    with content:
-        yield content
-
-
-@contextmanager
-def companion_of(skeleton: Path | None) -> Iterator[Readable | None]:
-    """The content of a file that goes with another, where one is given."""
-    if skeleton is None:
-        yield None
-        return
-    with opened(skeleton) as content:
-        yield content
 
 
 def _show(hits: Hits, as_json: bool, *, by_words: bool, parts: bool) -> None:

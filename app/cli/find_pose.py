@@ -8,9 +8,10 @@ from typing import Annotated, Any
 
 import typer
 
-from app.cli.find import FrameRate, Skeleton, Stack, Unit, companion_of, content_of, filter_of
+from app.cli.find import filter_of
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table
+from app.cli.query_source import FrameRate, Skeleton, Stack, Unit, source_of
 from app.cli.settings import open_library
 from app.errors import BadField, Place
 from app.search.pose.pose_places import Places
@@ -47,27 +48,14 @@ def search_pose(
     if query is not None and time is None:
         raise typer.BadParameter("--time is needed: the seconds at which the pose is taken")
     wanted, pose = filter_of(filter_json), _read(positions)
-    with (
-        open_library(context) as lib,
-        content_of(query) as (clip_id, content),
-        companion_of(skeleton) as asf,
-    ):
-        hits = find_pose(
-            lib,
-            PoseQuery(
-                clip_id=clip_id,
-                content=content,
-                time=time,
-                positions=pose,
-                places=places,
-                limit=limit,
-                filter=wanted,
-                skeleton=asf,
-                frame_rate=frame_rate,
-                unit=unit,
-                stack=stack,
-            ),
-        )
+    with open_library(context) as lib:
+        if query is None:
+            hits = find_pose(lib, PoseQuery(None, time, pose, places, limit, wanted))
+        else:
+            with source_of(
+                query, skeleton=skeleton, frame_rate=frame_rate, unit=unit, stack=stack
+            ) as source:
+                hits = find_pose(lib, PoseQuery(source, time, None, places, limit, wanted))
     if as_json:
         from app.api.schemas.pose import PoseHits
 

@@ -50,10 +50,10 @@ class JobExecutors:
 
     def _begin_ingest(self, claimed: ClaimedJob, clip: ClipRecord) -> Running:
         try:
-            order = ingest.order_for(self.lib, clip)
+            request = ingest.analysis_request(self.lib, clip)
             # What died beside others again and again may have been killed for the others' sake.
             is_alone = claimed.kills >= outcomes.MOST_KILLS
-            future = self._analyses.submit(order, is_alone=is_alone)
+            future = self._analyses.submit(request, is_alone=is_alone)
         except KinedexError as problem:
             future = Future()
             future.set_exception(problem)

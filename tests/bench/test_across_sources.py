@@ -22,7 +22,7 @@ import pytest
 
 from app.models.held_out.ranking import average_precision
 from app.models.metric.learned_metric import Factor, fit_axes
-from app.search.example.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to
+from app.search.example.distances import distances_to
 from app.search.example.methods import Method
 from tests.bench.described_clips import RealClips, described_clips
 from tests.bench.page import Section
@@ -93,10 +93,9 @@ def by_methods(clips: RealClips, asks: np.ndarray) -> dict[str, dict[int, np.nda
     found: dict[str, dict[int, np.ndarray]] = {method: {} for method in UNLEARNED}
     for query in asks:
         own = clips.arrays[query]
-        asked = QueryArrays(own["motion_vector"], own[FEATURES], own[RHO], own[EPSILON])
         for method in (Method.DTW, Method.MSV_DTW, Method.MSV_XCORR):
             found[method][query] = distances_to(
-                asked, names, method, lambda ids, name: {i: clips.arrays[int(i)][name] for i in ids}
+                own, names, method, lambda ids, name: {i: clips.arrays[int(i)][name] for i in ids}
             )
         found[Method.VECTOR][query] = np.linalg.norm(vectors - vectors[query], axis=1)
         found[Method.FUSED][query] = fused_distances(

@@ -53,7 +53,8 @@ from app.services.clips import catalogue as clips
 from app.services.clips import jobs
 from app.services.fields import MAX_LIMIT
 from app.services.find import find
-from app.services.find.find import MotionQuery
+from app.services.find.queries import MotionQuery
+from app.services.find.query_source import QuerySource
 from app.services.imports import imports
 from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
@@ -270,7 +271,7 @@ def _ask(
 ) -> np.ndarray:
     """Of each answer, in order, whether it is relevant."""
     began = time.process_time()
-    hits = find.find_motion(lib, MotionQuery(clip_id=clip.id, method=method, limit=MAX_LIMIT))
+    hits = find.find_motion(lib, MotionQuery(QuerySource(clip.id), method=method, limit=MAX_LIMIT))
     took.append(time.process_time() - began)
     assert len(hits.items) == count - 1
     return np.array([hit.clip.task == clip.task for hit in hits.items])

@@ -38,8 +38,9 @@ from app.numerics.arrays import FloatArray, IntArray
 from app.search.windows import in_windows
 from app.search.windows.overlap_merging import Candidates, merge_overlapping
 from app.services.find import find
-from app.services.find.find import MotionQuery
 from app.services.find.hits import Hit
+from app.services.find.queries import MotionQuery
+from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from tests.bench.hidden_pieces import (
     COPIES,
@@ -114,14 +115,16 @@ def _of_pieces(hidden: Hidden, method: str) -> Figures:
     averages, errors, took = [], [], []
     for piece, truth in zip(hidden.pieces, hidden.places, strict=True):
         content = io.BytesIO(npz_of(piece, RATE))
-        asked = MotionQuery(content=content, method=method, scope="windows", limit=20)
+        asked = MotionQuery(QuerySource(content=content), method=method, scope="windows", limit=20)
         hits = find.find_motion(hidden.lib, asked)
         average, apart = _judged(_spans(hits.items), truth)
         averages.append(average)
         errors += apart
     for spans in hidden.places:
         clip_id, start, end = spans[0]
-        asked = MotionQuery(clip_id, start=start, end=end, method=method, scope="windows")
+        asked = MotionQuery(
+            QuerySource(clip_id, start=start, end=end), method=method, scope="windows"
+        )
         took.append(find.find_motion(hidden.lib, asked).took_ms)
     return Figures(np.array(averages), np.array(errors), np.array(took))
 
@@ -133,7 +136,10 @@ def _of_takes(hidden: Hidden, method: str) -> float:
             truth = [span for span in spans if span != (clip_id, start, end)]
             if truth and 0.8 <= end - start <= 10.0:
                 asked = MotionQuery(
-                    clip_id, start=start, end=end, method=method, scope="windows", limit=20
+                    QuerySource(clip_id, start=start, end=end),
+                    method=method,
+                    scope="windows",
+                    limit=20,
                 )
                 hits = find.find_motion(hidden.lib, asked).items
                 averages.append(_judged(_spans(hits), truth, least=0.4)[0])

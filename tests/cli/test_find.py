@@ -131,7 +131,7 @@ def test_a_bad_question_is_told_in_words(kinedex: Kinedex, folder: Path) -> None
     neither = "kinedex: There is no file 'missing.bvh', and no clip has that id.\n"
     for command in (("recognize",), ("search-pose", "--time", "0")):
         assert _refused(kinedex, *command, "missing.bvh") == neither
-    words_too = f"{neither[:-1]} Words go behind --words.\n"
+    words_too = f"{neither[:-1]} Use --words to search by words.\n"
     assert _refused(kinedex, "search", "missing.bvh") == words_too
     assert f"{folder} cannot be read: Is a directory" in _refused(kinedex, "search", str(folder))
     not_there = "There is no clip with the id 'missing.bvh'\n"

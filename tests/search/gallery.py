@@ -11,7 +11,7 @@ from app.analysis.analyse import describe_for_search
 from app.models.metric.learned_metric import INPUTS, Described, Factor, MetricAxes, fit_axes
 from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
-from app.search.example.distances import EPSILON, FEATURES, RHO, QueryArrays, distances_to
+from app.search.example.distances import distances_to
 from app.search.example.methods import Method
 from app.search.index.vector_index import VECTOR
 from tests.search.fused import fused_distances
@@ -34,8 +34,7 @@ class Gallery:
         def load(clip_ids: Sequence[str], name: str) -> Arrays:
             return {i: self.arrays[int(i)][name] for i in clip_ids}
 
-        asked = QueryArrays(query[VECTOR], query[FEATURES], query[RHO], query[EPSILON])
-        found = {method: distances_to(asked, names, method, load) for method in RERANKED}
+        found = {method: distances_to(query, names, method, load) for method in RERANKED}
         vectors = np.stack([arrays[VECTOR] for arrays in self.arrays]).astype(float)
         found[Method.VECTOR] = np.linalg.norm(vectors - query[VECTOR], axis=1)
         found[Method.FUSED] = fused_distances(query[VECTOR], vectors, found[Method.DTW])

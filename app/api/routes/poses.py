@@ -9,8 +9,7 @@ from app.api.deps import Lib, reads
 from app.api.guard.admission import heavy
 from app.api.openapi import refusals
 from app.api.schemas.pose import PoseHits, PoseSearch
-from app.services.find import by_pose as find_pose
-from app.services.find.by_pose import PoseQuery
+from app.services.find.by_pose import find_pose
 
 router = APIRouter(prefix="/v1/search", tags=["search"])
 
@@ -20,19 +19,6 @@ router = APIRouter(prefix="/v1/search", tags=["search"])
     dependencies=[reads, Depends(require_json), heavy],
     responses=refusals(400, 404, 409, 413, 415),
 )
-def search_pose(lib: Lib, query: PoseSearch) -> PoseHits:
-    """Find the clips that take a pose, and when they do."""
-    hits = find_pose.find_pose(
-        lib,
-        PoseQuery(
-            clip_id=query.clip_id,
-            time=query.time,
-            positions=query.positions,
-            places=query.places,
-            limit=query.limit,
-            filter={} if query.filter is None else query.filter.given(),
-            include_self=query.include_self,
-            cursor=query.cursor,
-        ),
-    )
-    return PoseHits.of(hits)
+def search_pose(lib: Lib, sent: PoseSearch) -> PoseHits:
+    """Find the clips that take a pose, and the times at which they do."""
+    return PoseHits.of(find_pose(lib, sent.query()))

@@ -1,4 +1,4 @@
-"""Recognition: who, what, and in which words."""
+"""Recognition of persons, tasks and words."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from app.api.bodies import is_multipart, read_form, read_json
 from app.api.deps import Lib, reads
 from app.api.guard.admission import heavy
 from app.api.openapi import body, refusals
-from app.api.queries import QUERY_FILES, exactly_one, file_of
+from app.api.queries import QUERY_FILES, source_of
 from app.api.schemas.recognition import Recognition, Recognize, RecognizeForm
 from app.services.recognition import recognise
 from app.services.recognition.recognise import RecogniseQuery
@@ -26,35 +26,18 @@ _EXAMPLES = {
 async def _query(request: Request) -> RecogniseQuery:
     if not is_multipart(request):
         sent = await read_json(request, Recognize)
-        return RecogniseQuery(
-            clip_id=sent.clip_id,
-            known_person=sent.known_person,
-            known_task=sent.known_task,
-            method=sent.method,
-        )
+        return sent.query(sent.source())
     form, uploads = await read_form(request, RecognizeForm, QUERY_FILES)
-    exactly_one(form.clip_id, uploads)
-    return RecogniseQuery(
-        clip_id=form.clip_id,
-        content=file_of(uploads, "file"),
-        known_person=form.known_person,
-        known_task=form.known_task,
-        method=form.method,
-        skeleton=file_of(uploads, "skeleton"),
-        frame_rate=form.frame_rate,
-        unit=form.unit,
-        roles=form.roles,
-        stack=form.stack,
-    )
+    return form.query(source_of(form, uploads))
 
 
 @router.post(
     "",
-    dependencies=[reads, Depends(_query), heavy],  # let in when a form has come
+    dependencies=[reads, Depends(_query), heavy],  # admitted after the form has arrived
     responses=refusals(400, 404, 409, 413, 415, 503, 507),
     openapi_extra=body(model=Recognize, examples=_EXAMPLES, form=RecognizeForm, files=QUERY_FILES),
 )
 def recognize(lib: Lib, query: Annotated[RecogniseQuery, Depends(_query)]) -> Recognition:
-    """Say who it is, what they do and in which words; `label` is null when it is unknown."""
+    """Say who it is, what they do and in which words; `label` is null if it is unknown."""
     found = recognise.recognise(lib, query)
     return Recognition.of(found)

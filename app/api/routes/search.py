@@ -10,10 +10,10 @@ from app.api.bodies import is_multipart, read_form, read_json, require_json
 from app.api.deps import Lib, reads
 from app.api.guard.admission import heavy
 from app.api.openapi import body, refusals
-from app.api.queries import QUERY_FILES, exactly_one, file_of
+from app.api.queries import QUERY_FILES, source_of
 from app.api.schemas.search import MotionHits, MotionSearch, MotionSearchForm, WordHits, WordSearch
 from app.services.find import find
-from app.services.find.find import MotionQuery, WordQuery
+from app.services.find.queries import MotionQuery
 
 router = APIRouter(prefix="/v1/search", tags=["search"])
 
@@ -39,47 +39,14 @@ _MOTION_EXAMPLES = {
 async def _motion_query(request: Request) -> MotionQuery:
     if not is_multipart(request):
         sent = await read_json(request, MotionSearch)
-        given = {} if sent.filter is None else sent.filter.given()
-        return MotionQuery(
-            clip_id=sent.clip_id,
-            start=sent.start,
-            end=sent.end,
-            method=sent.method,
-            limit=sent.limit,
-            filter=given,
-            scope=sent.scope,
-            segment=sent.segment,
-            include_self=sent.include_self,
-            cursor=sent.cursor,
-        )
-    return await _uploaded_query(request)
-
-
-async def _uploaded_query(request: Request) -> MotionQuery:
+        return sent.query(sent.source(), sent.segment)
     form, uploads = await read_form(request, MotionSearchForm, QUERY_FILES)
-    exactly_one(form.clip_id, uploads)
-    return MotionQuery(
-        clip_id=form.clip_id,
-        content=file_of(uploads, "file"),
-        start=form.start,
-        end=form.end,
-        method=form.method,
-        limit=form.limit,
-        filter={} if form.filter is None else form.filter.given(),
-        scope=form.scope,
-        include_self=form.include_self,
-        cursor=form.cursor,
-        skeleton=file_of(uploads, "skeleton"),
-        frame_rate=form.frame_rate,
-        unit=form.unit,
-        roles=form.roles,
-        stack=form.stack,
-    )
+    return form.query(source_of(form, uploads))
 
 
 @router.post(
     "/motion",
-    dependencies=[reads, Depends(_motion_query), heavy],  # let in when a form has come
+    dependencies=[reads, Depends(_motion_query), heavy],  # admitted after the form has arrived
     responses=refusals(400, 404, 409, 413, 415, 503, 507),
     openapi_extra=body(
         model=MotionSearch,
@@ -91,8 +58,8 @@ async def _uploaded_query(request: Request) -> MotionQuery:
 def search_motion(lib: Lib, query: Annotated[MotionQuery, Depends(_motion_query)]) -> MotionHits:
     """Find motions like a stored clip, a part of one, or an uploaded file.
 
-    With scope `windows`, find parts of clips, with their start and end; with scope `segments`,
-    what is danced from one keypose to the next.
+    With scope `windows`, find parts of clips, with their start and end. With scope `segments`,
+    find motions from one keypose to the next.
     """
     return MotionHits.of(find.find_motion(lib, query))
 
@@ -102,19 +69,9 @@ def search_motion(lib: Lib, query: Annotated[MotionQuery, Depends(_motion_query)
     dependencies=[reads, Depends(require_json), heavy],
     responses=refusals(400, 409, 413, 415),
 )
-def search_words(lib: Lib, query: WordSearch) -> WordHits:
-    """Find motions for words, phrases or sentences, the likeliest to carry them all first.
+def search_words(lib: Lib, sent: WordSearch) -> WordHits:
+    """Find motions for words, phrases or sentences, the most probable to carry them all first.
 
-    A hit's `score` is a probability, in both modes.
+    The `score` of a hit is a probability, in both modes.
     """
-    hits = find.find_words(
-        lib,
-        WordQuery(
-            words=query.words,
-            mode=query.mode,
-            limit=query.limit,
-            filter={} if query.filter is None else query.filter.given(),
-            cursor=query.cursor,
-        ),
-    )
-    return WordHits.of(hits)
+    return WordHits.of(find.find_words(lib, sent.query()))

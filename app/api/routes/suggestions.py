@@ -20,7 +20,7 @@ Mode = Annotated[
     Literal["default", "cca"],
     Query(description="As of a search by words: kernel regression, or Takano's correlated space."),
 ]
-Most = Annotated[int, Query(ge=1, le=suggestions.MOST_SUGGESTED)]
+Most = Annotated[int, Query(ge=1, le=suggestions.MAX_SUGGESTED)]
 
 
 @router.get("", dependencies=[reads, heavy], responses=refusals(404, 409))

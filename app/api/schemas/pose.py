@@ -6,17 +6,19 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, WithJsonSchema
 
-from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, Seconds
+from app.api.schemas.base import Cursor, Limit, Outgoing, Seconds
 from app.api.schemas.filters import Filter
-from app.api.schemas.search import ClipId, Hit, MotionHits
+from app.api.schemas.query_source import ClipId, QueryFields
+from app.api.schemas.search import Hit, MotionHits
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.search.pose.pose_places import Places
 from app.services.find import hits as services
+from app.services.find.by_pose import PoseQuery
 
 _POINT = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
 Positions = Annotated[
     list[Any],
-    # The service reads them, no more than 13: it can name the joint that is wrong.
+    # The service checks the points, because it can name the joint that is wrong.
     WithJsonSchema(
         {"type": "array", "items": _POINT, "minItems": len(SUN_ROLES), "maxItems": len(SUN_ROLES)}
     ),
@@ -39,23 +41,24 @@ A_POSE: Any = [
 """Arms stretched out to the sides."""
 
 
-class PoseSearch(Incoming):
+class PoseSearch(QueryFields):
     """Find a pose: that of a stored clip at a time, or one of 13 positions."""
 
     clip_id: ClipId | None = None
-    time: Seconds | None = Field(None, description="Seconds from the clip's begin.")
+    time: Seconds | None = Field(None, description="Seconds from the start of the clip.")
     positions: Positions | None = Field(
         None,
-        description=f"x, y (up) and z of {', '.join(SUN_ROLES)}, in this order, metres. "
-        "Place, heading and size do not matter.",
+        description=f"x, y (up) and z of {', '.join(SUN_ROLES)}, in this order, in meters. "
+        "Position, heading and size do not matter.",
     )
     places: Places = Field(
         Places.BEST,
-        description="best: one hit a clip, where it comes nearest; all: each place of a clip.",
+        description="best: one hit for each clip, at its nearest pose; all: one hit for each time "
+        "at which a clip takes the pose.",
     )
     limit: Limit = 10
     filter: Filter | None = None
-    include_self: bool = Field(False, description="Whether the query clip may be among the hits.")
+    include_self: bool = Field(False, description="Whether the query clip may be a hit.")
     cursor: Cursor | None = None
 
     model_config = ConfigDict(
@@ -67,15 +70,28 @@ class PoseSearch(Incoming):
         }
     )
 
+    def query(self) -> PoseQuery:
+        """The search for a pose."""
+        return PoseQuery(
+            source=None if self.clip_id is None else self.source(),
+            time=self.time,
+            positions=self.positions,
+            places=self.places,
+            limit=self.limit,
+            filter=None if self.filter is None else self.filter.given(),
+            include_self=self.include_self,
+            cursor=self.cursor,
+        )
+
 
 class PoseHit(Hit):
-    """A place where a clip takes a pose; start and end are how long it stays near it."""
+    """A time at which a clip takes a pose; it stays near the pose from start to end."""
 
-    time: float = Field(description="Seconds: when it is nearest.")
+    time: float = Field(description="Seconds: when the clip is nearest to the pose.")
 
     @classmethod
     def of(cls, hit: services.Hit) -> PoseHit:
-        """A hit as it goes over the wire."""
+        """A hit as the API shows it."""
         return cls(**dict(Hit.of(hit)), time=hit.start if hit.time is None else hit.time)
 
 
@@ -90,6 +106,6 @@ class PoseHits(Outgoing):
 
     @classmethod
     def of(cls, hits: services.Hits) -> PoseHits:
-        """A page as it goes over the wire."""
-        told = {name: value for name, value in dict(MotionHits.of(hits)).items() if name != "items"}
-        return cls(**told, items=[PoseHit.of(hit) for hit in hits.items])
+        """A page as the API shows it."""
+        shown = dict(MotionHits.of(hits))
+        return cls(**{**shown, "items": [PoseHit.of(hit) for hit in hits.items]})

@@ -1,4 +1,4 @@
-"""Who is it, what do they do, in which words."""
+"""Who it is, what they do, and in which words."""
 
 from __future__ import annotations
 
@@ -6,61 +6,71 @@ from typing import Literal
 
 from pydantic import ConfigDict, Field
 
-from app.api.schemas.base import Incoming, Label, Outgoing
+from app.api.schemas.base import Label, Outgoing
 from app.api.schemas.labels import WORD_SCORE
-from app.api.schemas.search import ClipId, UploadFields
+from app.api.schemas.query_source import ClipId, QueryFields, QueryForm
 from app.models.recognition.answers import Answer as FoundAnswer
-from app.services.recognition.recognise import Recognised
+from app.services.find.query_source import QuerySource
+from app.services.recognition.recognise import Recognised, RecogniseQuery
 
-_NEW = "One that the library does not know is taken to be new: its label in the answer is null."
+_NEW = "If the library does not know it, it counts as new, and its label in the answer is null."
 
 
-class _Known(Incoming):
+class _Known(QueryFields):
     method: Literal["default", "multilinear", "signatures", "perera"] = Field(
         "default",
-        description="The recogniser: signatures is Vasilescu 2002 on joint angles, multilinear the "
-        "same on positions, perera the weighted distances of joints of Perera 2009.",
+        description="The recognizer. signatures: Vasilescu 2002, on joint angles. multilinear: the "
+        "same on positions. perera: weighted distances of joints, Perera 2009.",
     )
     known_person: Label | None = Field(
-        None, description=f"Recognise the task given the person. {_NEW}"
+        None, description=f"Recognize the task given the person. {_NEW}"
     )
     known_task: Label | None = Field(
-        None, description=f"Recognise the person given the task. {_NEW}"
+        None, description=f"Recognize the person given the task. {_NEW}"
     )
+
+    def query(self, source: QuerySource) -> RecogniseQuery:
+        """The recognition of a motion."""
+        return RecogniseQuery(
+            source=source,
+            known_person=self.known_person,
+            known_task=self.known_task,
+            method=self.method,
+        )
 
 
 class Recognize(_Known):
-    """Recognise a stored clip."""
+    """Recognize a stored clip."""
 
     clip_id: ClipId
 
     model_config = ConfigDict(json_schema_extra={"examples": [{"clip_id": "CLIP_ID"}]})
 
 
-class RecognizeForm(_Known, UploadFields):
-    """Recognise an uploaded motion (never stored), or a stored clip."""
-
-    clip_id: ClipId | None = None
+class RecognizeForm(_Known, QueryForm):
+    """Recognize an uploaded motion (never stored), or a stored clip."""
 
 
 class Candidate(Outgoing):
-    """A label that it may be."""
+    """A possible label."""
 
     label: str
     score: float = Field(ge=0, le=1)
 
 
 class Answer(Outgoing):
-    """Who or what it is."""
+    """The person or the task."""
 
-    label: str | None = Field(description="Null when it is nobody or nothing known.")
+    label: str | None = Field(
+        description="Null if the library does not know the person or the task."
+    )
     known: bool
     score: float = Field(ge=0, le=1)
     candidates: list[Candidate]
 
     @classmethod
     def of(cls, found: FoundAnswer) -> Answer:
-        """An answer as it goes over the wire."""
+        """An answer as the API shows it."""
         return cls(
             label=found.label,
             known=found.known,
@@ -85,7 +95,7 @@ class Recognition(Outgoing):
 
     @classmethod
     def of(cls, found: Recognised) -> Recognition:
-        """A recognition as it goes over the wire."""
+        """A recognition as the API shows it."""
         return cls(
             person=Answer.of(found.person),
             task=Answer.of(found.task),

@@ -6,33 +6,48 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field, Json
 
-from app.api.schemas.base import Cursor, Id, Incoming, Limit, Outgoing, Roles, Seconds
-from app.api.schemas.clips import Clip, FrameRate, Stack
+from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, Seconds
+from app.api.schemas.clips import Clip
 from app.api.schemas.filters import Filter
+from app.api.schemas.query_source import ClipId, QueryFields, QueryForm
 from app.search.example.methods import Method
 from app.services.find import hits as services
+from app.services.find.queries import MotionQuery, WordQuery
+from app.services.find.query_source import QuerySource
 
 
-class _MotionOptions(Incoming):
-    start: Seconds | None = Field(None, description="Seconds: search by a part of the query.")
+class _MotionOptions(QueryFields):
+    start: Seconds | None = Field(None, description="Seconds: where the queried part begins.")
     end: Seconds | None = Field(None, description="Seconds: where that part ends.")
     method: Method = Method.FUSED
     limit: Limit = 10
     scope: Literal["clips", "windows", "segments"] = Field(
         "clips",
-        description="windows: parts of clips are found, wherever they stand in them, by the "
-        "methods fused, vector and dtw; the query is up to 120 s long. segments: what is danced "
-        "from one keypose to the next is found, by their vectors; the query counts as one.",
+        description="clips: whole clips are compared. windows: parts of clips are found, at any "
+        "time in a clip, by the methods fused, vector and dtw; the query is up to 120 s long. "
+        "segments: motions from one keypose to the next are compared by their vectors; the query "
+        "is taken as one segment.",
     )
     include_self: bool = Field(
         False,
-        description="Whether the query clip (of windows and segments: what overlaps the queried "
-        "part) may be among the hits.",
+        description="Whether the query clip may be a hit. With scope windows and segments: whether "
+        "parts that overlap the query may be hits.",
     )
+    filter: Filter | None = None
     cursor: Cursor | None = None
 
-
-ClipId = Id
+    def query(self, source: QuerySource, segment: int | None = None) -> MotionQuery:
+        """The search for a motion; segment: as in `MotionSearch`."""
+        return MotionQuery(
+            source=source,
+            method=self.method,
+            limit=self.limit,
+            filter=None if self.filter is None else self.filter.given(),
+            scope=self.scope,
+            segment=segment,
+            include_self=self.include_self,
+            cursor=self.cursor,
+        )
 
 
 class MotionSearch(_MotionOptions):
@@ -45,7 +60,6 @@ class MotionSearch(_MotionOptions):
         le=10**6,
         description="With scope segments: the clip's segment of that index is the query.",
     )
-    filter: Filter | None = None
 
     model_config = ConfigDict(
         json_schema_extra={
@@ -59,25 +73,9 @@ class MotionSearch(_MotionOptions):
     )
 
 
-class UploadFields(Incoming):
-    """What a client may say of an uploaded query."""
-
-    unit: str | None = Field(
-        None,
-        max_length=30,
-        description="m, dm, cm, mm, in, ft, cmu (of CMU's files), or metres per unit.",
-    )
-    frame_rate: FrameRate | None = Field(None, description="Overrides what the file declares.")
-    roles: Json[Roles] | None = Field(
-        None, description='JSON: joint name by role, as {"hips": "Pelvis"}.'
-    )
-    stack: Stack | None = None
-
-
-class MotionSearchForm(_MotionOptions, UploadFields):
+class MotionSearchForm(_MotionOptions, QueryForm):
     """Find motions like an uploaded one (never stored), or like a stored clip."""
 
-    clip_id: ClipId | None = None
     filter: Json[Filter] | None = Field(None, description='JSON, as {"task": ["walk", "run"]}.')
 
 
@@ -88,15 +86,15 @@ class WordSearch(Incoming):
         min_length=1,
         max_length=100,
         description=(
-            "Words, phrases or sentences; inflected ones and words of the same meaning are "
-            "understood; one with a minus before it (-left) is to be left out."
+            "Words, phrases or sentences. Inflected forms and words of the same meaning are "
+            "understood. A word with a minus before it (-left) leaves out the clips that carry it."
         ),
     )
     mode: Literal["default", "cca"] = Field(
         "default",
         description=(
-            "How clips are ranked: by a kernel regression of words on what is measured of a "
-            "motion, or by angle in Takano's correlated space of motion symbols and words."
+            "How clips are ranked. default: by a kernel regression from motion features to words. "
+            "cca: by the angle in Takano's correlated space of motion symbols and words."
         ),
     )
     limit: Limit = 10
@@ -112,23 +110,33 @@ class WordSearch(Incoming):
         }
     )
 
+    def query(self) -> WordQuery:
+        """The search for words."""
+        return WordQuery(
+            words=self.words,
+            mode=self.mode,
+            limit=self.limit,
+            filter=None if self.filter is None else self.filter.given(),
+            cursor=self.cursor,
+        )
+
 
 class Hit(Outgoing):
-    """One answer of a search."""
+    """One hit of a search."""
 
     rank: int = Field(ge=1)
     score: float = Field(ge=0, le=1, description="Higher is closer.")
     distance: float
     start: float = Field(
-        description="Seconds from the clip's begin, 0 with scope clips; with windows, where the "
-        "part that was found begins."
+        description="Seconds from the start of the clip: where the part that was found begins. 0 "
+        "with scope clips."
     )
     end: float = Field(description="Seconds: where it ends.")
     clip: Clip
 
     @classmethod
     def of(cls, hit: services.Hit) -> Hit:
-        """A hit as it goes over the wire."""
+        """A hit as the API shows it."""
         return cls(
             rank=hit.rank,
             score=hit.score,
@@ -150,7 +158,7 @@ class MotionHits(Outgoing):
 
     @classmethod
     def of(cls, hits: services.Hits) -> MotionHits:
-        """A page as it goes over the wire."""
+        """A page as the API shows it."""
         return cls(
             method=hits.method,
             took_ms=hits.took_ms,
@@ -161,15 +169,16 @@ class MotionHits(Outgoing):
 
 
 class WordHit(Hit):
-    """One answer of a search by words."""
+    """One hit of a search by words."""
 
     score: float = Field(
         ge=0,
         le=1,
         description=(
-            "Probability that the clip carries all that was asked for, learned on clips that were "
-            "held out: comparable between queries. Of the words that stand for one that no clip "
-            "carries, the likeliest counts, as far as it is near in meaning."
+            "Probability that the clip carries all words that were asked for. It is calibrated on "
+            "held-out clips, so that scores of different queries can be compared. If a word is "
+            "replaced by others because no clip carries it, the most probable of them counts, "
+            "less the farther its meaning is from the word's."
         ),
     )
     distance: float = Field(
@@ -178,7 +187,7 @@ class WordHit(Hit):
 
 
 class WordHits(Outgoing):
-    """A page of a ranking by words, the likeliest first."""
+    """A page of a ranking by words, the most probable first."""
 
     method: str
     took_ms: float
@@ -186,11 +195,11 @@ class WordHits(Outgoing):
     items: list[WordHit]
     next: str | None
     unknown_words: list[str] = Field(description="Words that no clip carries.")
-    expanded: dict[str, list[str]] = Field(description="What was used in their place.")
+    expanded: dict[str, list[str]] = Field(description="The words that were used instead of each.")
 
     @classmethod
     def of(cls, hits: services.Hits) -> WordHits:
-        """A page as it goes over the wire, with what became of the words."""
+        """A page as the API shows it, with the words that were not known."""
         return cls(
             method=hits.method,
             took_ms=hits.took_ms,

@@ -9,7 +9,7 @@ from pydantic import ConfigDict, Field, model_validator
 from app.api.schemas.base import Incoming, Label, Outgoing
 from app.api.schemas.clips import Clip
 from app.api.schemas.jobs import Job
-from app.api.schemas.search import ClipId
+from app.api.schemas.query_source import ClipId
 from app.api.schemas.views import Motion, plain
 from app.services.library.synthesized import SYNTHESIZED
 from app.services.synthesis.plan import SynthesisKind

@@ -12,7 +12,7 @@ from app.analysis.descriptors.motion_volume import cross_correlations, decompose
 from app.motion.frame.body_frame import body_track
 from app.numerics.tensors.rank1 import Rank1
 from app.search.example.by_example import rank_by_example
-from app.search.example.distances import EPSILON, FEATURES, RHO, QueryArrays
+from app.search.example.distances import EPSILON, FEATURES, RHO, Descriptors
 from app.search.example.methods import Method
 from app.search.index.vector_index import VECTOR
 from app.services.library.library import Library
@@ -37,10 +37,9 @@ def by_method(lib: Library, method: Method, wanted: ClipFilter | None) -> Way:
     return rank
 
 
-def _query(lib: Library, clip: ClipRecord) -> QueryArrays:
+def _query(lib: Library, clip: ClipRecord) -> Descriptors:
     with lib.store.read() as tx:
-        found = arrays.get_named(tx, clip.id, (VECTOR, FEATURES, RHO, EPSILON))
-    return QueryArrays(*found.values())
+        return arrays.get_named(tx, clip.id, (VECTOR, FEATURES, RHO, EPSILON))
 
 
 @dataclass(frozen=True, slots=True)

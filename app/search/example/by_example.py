@@ -7,12 +7,12 @@ from functools import partial
 import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
-from app.search.example.distances import Loader, QueryArrays, distances_to
+from app.search.example.distances import Descriptors, Loader, distances_to
 from app.search.example.fusion import SHORTLIST, FusedDistance
 from app.search.example.methods import Method
 from app.search.example.reranking import ReRanked
 from app.search.index.nearest_ranking import NearestRanking
-from app.search.index.vector_index import VectorIndex
+from app.search.index.vector_index import VECTOR, VectorIndex
 from app.search.ranking.cursor import Anchor
 from app.search.ranking.lower_bounds import LowerBounds
 from app.search.ranking.ranking import IdArray, Page, Ranked, Ranking
@@ -30,7 +30,7 @@ SCALES = {
 
 def rank_by_example(
     index: VectorIndex,
-    query: QueryArrays,
+    query: Descriptors,
     method: Method,
     clip_filter: ClipFilter,
     exclude: frozenset[str],
@@ -42,7 +42,7 @@ def rank_by_example(
     anchor: of the cursor whose next page is asked for, if there is one.
     """
     if method in (Method.FUSED, Method.VECTOR):
-        near = index.nearest(query.vector, clip_filter, exclude)
+        near = index.nearest(query[VECTOR], clip_filter, exclude)
         if method is Method.VECTOR:
             return near
         return ReRanked(near, partial(_fused, query, near, load), SHORTLIST, anchor)
@@ -50,10 +50,10 @@ def rank_by_example(
     return _known(ids, distances_to(query, list(ids), method, load))
 
 
-def _fused(query: QueryArrays, near: NearestRanking, load: Loader, shortlist: Page) -> LowerBounds:
+def _fused(query: Descriptors, near: NearestRanking, load: Loader, shortlist: Page) -> LowerBounds:
     """The fused distances of the shortlist; warping costs most, so it is measured last."""
     ids = shortlist.ids
-    known = FusedDistance.of(query.vector, near.vectors(ids))
+    known = FusedDistance.of(query[VECTOR], near.vectors(ids))
 
     def measure(rows: IntArray) -> FloatArray:
         warped = distances_to(query, ids[rows].tolist(), Method.DTW, load)

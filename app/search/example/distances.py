@@ -6,7 +6,6 @@ Arrays of clips are loaded and compared in batches, so memory stays bounded for 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -28,21 +27,13 @@ Loader = Callable[[Sequence[str], str], Mapping[str, FloatArray]]
 """Loads one array of many clips: (clip ids, array name) -> arrays by clip id."""
 
 
-@dataclass(frozen=True, slots=True)
-class QueryArrays:
-    """What a query is compared by.
-
-    vector: (128,); features: (m, 82) at 10 Hz; rho: (13,) and epsilon: (n,) of its volume.
-    """
-
-    vector: FloatArray
-    features: FloatArray
-    rho: FloatArray
-    epsilon: FloatArray
+Descriptors = Mapping[str, FloatArray]
+"""Descriptors of a query by name: its motion vector (128,), FEATURES (m, 82) at 10 Hz, RHO (13,)
+and EPSILON (n,) of its motion volume. A method needs only those that it compares."""
 
 
 def distances_to(
-    query: QueryArrays, clip_ids: Sequence[str], method: Method, load: Loader
+    query: Descriptors, clip_ids: Sequence[str], method: Method, load: Loader
 ) -> FloatArray:
     """(n,) distances of clips to `query` by DTW, MSV_DTW or MSV_XCORR.
 
@@ -64,20 +55,20 @@ def distances_to(
     return found
 
 
-def _by_features(query: QueryArrays, columns: list[list[FloatArray]]) -> FloatArray:
-    return dtw_distances(query.features, columns[0])
+def _by_features(query: Descriptors, columns: list[list[FloatArray]]) -> FloatArray:
+    return dtw_distances(query[FEATURES], columns[0])
 
 
-def _by_volume_dtw(query: QueryArrays, columns: list[list[FloatArray]]) -> FloatArray:
-    return warping_distances(query.rho, query.epsilon, np.stack(columns[0]), columns[1])
+def _by_volume_dtw(query: Descriptors, columns: list[list[FloatArray]]) -> FloatArray:
+    return warping_distances(query[RHO], query[EPSILON], np.stack(columns[0]), columns[1])
 
 
-def _by_volume_correlation(query: QueryArrays, columns: list[list[FloatArray]]) -> FloatArray:
-    likeness = cross_correlations(query.rho, query.epsilon, np.stack(columns[0]), columns[1])
+def _by_volume_correlation(query: Descriptors, columns: list[list[FloatArray]]) -> FloatArray:
+    likeness = cross_correlations(query[RHO], query[EPSILON], np.stack(columns[0]), columns[1])
     return np.asarray(np.maximum(LARGEST_CROSS_CORRELATION - likeness, 0.0))
 
 
-_Comparison = Callable[[QueryArrays, list[list[FloatArray]]], FloatArray]
+_Comparison = Callable[[Descriptors, list[list[FloatArray]]], FloatArray]
 _COMPARISONS: dict[Method, tuple[tuple[str, ...], _Comparison]] = {
     Method.DTW: ((FEATURES,), _by_features),
     Method.MSV_DTW: ((RHO, EPSILON), _by_volume_dtw),

@@ -23,7 +23,7 @@ from app.errors import (
     shortened,
 )
 from app.services.children.child import ChildDied
-from app.services.library.analysis_pool import Order
+from app.services.library.analysis_pool import AnalysisRequest
 from app.services.library.keypose_frames import named_keyposes
 from app.services.library.library import Library
 from app.services.library.stored_motion import motion_arrays
@@ -39,10 +39,10 @@ RETRY_DELAY_S = 5.0
 """How long to wait before a temporary failure is tried again."""
 
 
-def order_for(lib: Library, clip: ClipRecord) -> Order:
-    """What to analyse for a clip. Raises StoredFileMissing where one of its files is gone."""
+def analysis_request(lib: Library, clip: ClipRecord) -> AnalysisRequest:
+    """The analysis of a stored clip. Raises StoredFileMissing if one of its files is gone."""
     skeleton, audio, hints = clip.skeleton_sha256, clip.audio_sha256, clip.hints
-    return Order(
+    return AnalysisRequest(
         path=_place(lib, clip.sha256, "motion file"),
         skeleton_path=None if skeleton is None else _place(lib, skeleton, "skeleton file"),
         stack=hints.stack,

@@ -1,4 +1,5 @@
-"""Rank clips by what the library's labels taught: the same task, or the same person, first."""
+"""Rank clips by a metric that was learned from labels: clips of the same task, or of the same
+person, come first."""
 
 from __future__ import annotations
 
@@ -29,8 +30,11 @@ KINDS = {
 
 @dataclass(frozen=True, slots=True)
 class MetricRanking:
-    """A ranking; model: id of the model that ranked; digest: of what was asked about;
-    to_score: from a distance to the probability that the labels are the same."""
+    """A ranking by a learned metric.
+
+    model: id of the model that ranked; digest: SHA-256 of the query's descriptors; to_score: from
+    a distance to the probability that the labels are the same.
+    """
 
     ranking: NearestRanking
     model: str
@@ -40,30 +44,31 @@ class MetricRanking:
 
 def rank_by_metric(
     lib: Library,
-    asked: Arrays,
+    descriptors: Arrays,
     method: Method,
-    wanted: ClipFilter,
+    clip_filter: ClipFilter,
     exclude: frozenset[str] = frozenset(),
 ) -> MetricRanking:
-    """All clips that pass the filter and are not excluded; the index has caught up.
+    """All clips that pass the filter and are not excluded. The index must have caught up with the
+    library.
 
-    asked: the INPUTS of the query. Raises ModelNotFitted.
+    descriptors: the INPUTS of the query. Raises ModelNotFitted.
     """
     kind = KINDS[method]
     if kind is ModelKind.METRIC_PERSON and not lib.settings.recognize_persons:
-        raise ModelNotFitted("Recognising people by how they move is switched off here.")
+        raise ModelNotFitted("Recognizing people by how they move is switched off here.")
     fitted = lib.models.metric(lib.store, kind)
     model = fitted.model
-    query = model.axes.project(Described(*(asked[name][None] for name in INPUTS)))[0]
+    query = model.axes.project(Described(*(descriptors[name][None] for name in INPUTS)))[0]
     found = lib.metrics[kind].nearest(
         fitted.id,
         partial(_project, lib, model),
         query,
-        wanted,
+        clip_filter,
         exclude,
         partial(read_known, lib, fitted.id, POINTS),
     )
-    content = hashlib.sha256(b"".join(asked[name].tobytes() for name in INPUTS)).hexdigest()
+    content = hashlib.sha256(b"".join(descriptors[name].tobytes() for name in INPUTS)).hexdigest()
     return MetricRanking(found, fitted.id, content, model.calibration.probability)
 
 

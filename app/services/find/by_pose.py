@@ -1,9 +1,9 @@
-"""Find a pose (DESIGN 7, 8): which clips take it, and when."""
+"""Find a pose: which clips take it, and when."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -14,32 +14,32 @@ from app.search.index.filters import as_filter
 from app.search.pose.by_pose import POSITIONS, PoseHit, PoseRanking
 from app.search.pose.pose_places import Places
 from app.search.ranking import cursor as cursors
-from app.search.ranking.cursor import Position
 from app.search.ranking.ranking import score
 from app.services import fields
-from app.services.find.find import DEFAULT_LIMIT, Filter
-from app.services.find.hits import Hit, Hits
+from app.services.find.hits import Hits, milliseconds_since
+from app.services.find.paging import Match, MatchPage, Paging
 from app.services.find.pose_query import pose_at, pose_of
-from app.services.find.query import Question, describe
+from app.services.find.queries import DEFAULT_LIMIT, Filter
+from app.services.find.query import describe
+from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
-from app.store.clips import repository as stored
-from app.store.files.files import Readable
 
 METHOD = "pose"
 SCALE = 0.25
-"""Body lengths at which the score is one half: about that of a pose to clips that never take it."""
+"""Body lengths at which the score is one half: about the distance of a pose from clips that
+never take it."""
 
 
 @dataclass(frozen=True, slots=True)
 class PoseQuery:
-    """A search by pose: of a stored clip or a file, at `time` seconds; or 13 `positions`.
+    """A search by pose: that of `source` at `time` seconds of its motion, or 13 `positions`.
 
-    positions: (13, 3) metres in SUN_ROLES order, heading and size do not matter; places: how
-    many of a clip may be hits; skeleton, frame_rate (Hz), unit, roles, stack: of a file.
+    positions: (13, 3) meters in SUN_ROLES order; heading and size do not matter; places: how
+    many places of a clip may be hits; include_self: whether the queried clip may be a hit;
+    cursor: `next` of the page before.
     """
 
-    clip_id: str | None = None
-    content: Readable | None = None
+    source: QuerySource | None = None
     time: float | None = None
     positions: Sequence[Sequence[Any]] | None = None
     places: Places | str = Places.BEST
@@ -47,89 +47,62 @@ class PoseQuery:
     filter: Filter = None
     include_self: bool = False
     cursor: str | None = None
-    skeleton: Readable | None = None
-    frame_rate: float | str | None = None
-    unit: float | str | None = None
-    roles: Mapping[str, str] | None = None
-    stack: str | None = None
 
 
 def find_pose(lib: Library, query: PoseQuery) -> Hits:
-    """Clips in order of how near they come to a pose, with the time at which they do.
+    """Clips in order of the smallest distance of their poses to a pose, with the time of that
+    pose.
 
     The query clip is left out unless `include_self`. Raises BadField, ClipNotFound,
     ClipNotReady, and BadContent for a file that cannot be used.
     """
     began = time.perf_counter()
-    wanted, places, limit = (
-        as_filter(query.filter),
-        _places(query.places),
-        fields.limit(query.limit),
-    )
+    clip_filter, places = as_filter(query.filter), _places(query.places)
+    fields.limit(query.limit)
     version = lib.poses.catch_up(lib.store)
     pose = _pose(lib, query)
-    exclude = frozenset({query.clip_id} if query.clip_id and not query.include_self else ())
-    question = cursors.digest("pose", pose.tobytes().hex(), places, wanted, sorted(exclude))
-    after = None if query.cursor is None else cursors.decode(query.cursor, question)
+    exclude: frozenset[str] = frozenset()
+    if query.source is not None:
+        exclude = query.source.excluded_clips(include_self=query.include_self)
+    question = cursors.digest("pose", pose.tobytes().hex(), places, clip_filter, sorted(exclude))
+    paging = Paging.at(query.cursor, question)
     _, rows = lib.poses.state
     load = partial(lib.arrays.get_many, lib.store)
-    found = PoseRanking(rows, rows.labels.mask(wanted, exclude), pose, load, places)
-    page = found.page(after, limit)
-    rank = after.rank if after else 0
-    following = None
-    if page.more:
-        distance, key = page.hits[-1].key
-        following = cursors.encode(Position(rank + len(page.hits), distance, key), question)
-    hits = _hits(lib, page.hits, rank)
-    return Hits(METHOD, (time.perf_counter() - began) * 1000.0, version, hits, following)
+    ranking = PoseRanking(rows, rows.labels.mask(clip_filter, exclude), pose, load, places)
+    found = ranking.page(paging.after, query.limit)
+    matches = MatchPage([_match(hit) for hit in found.hits], found.more)
+    page = paging.hits(lib, matches, partial(score, scale=SCALE))
+    return Hits(METHOD, milliseconds_since(began), version, page.items, page.next)
 
 
 def _pose(lib: Library, query: PoseQuery) -> FloatArray:
     """(36,) vector of the pose that is asked for."""
     if query.positions is not None:
-        for name in ("clip_id", "content", "time"):
-            if getattr(query, name) is not None:
-                raise fields.bad_field(name, "does not go with positions")
-        return pose_of(query.positions)
-    if query.clip_id is None and query.content is None:
+        return _given_pose(query, query.positions)
+    if query.source is None:
         raise fields.bad_field("positions", "give a clip_id and a time, or 13 positions")
     if query.time is None:
         raise fields.bad_field("time", "must be given: the seconds at which the pose is taken")
-    asked = describe(lib, _question(query), (POSITIONS,))
-    positions = asked.arrays[POSITIONS]
-    duration = asked.clip.duration if asked.clip is not None else None
+    found = describe(lib, query.source, (POSITIONS,))
+    positions = found.arrays[POSITIONS]
+    duration = found.clip.duration if found.clip is not None else None
     return pose_at(positions, query.time, duration or len(positions) / ANALYSIS_RATE)
 
 
-def _question(query: PoseQuery) -> Question:
-    return Question(
-        clip_id=query.clip_id,
-        content=query.content,
-        skeleton=query.skeleton,
-        frame_rate=query.frame_rate,
-        unit=query.unit,
-        roles=query.roles,
-        stack=query.stack,
-    )
+def _given_pose(query: PoseQuery, positions: Sequence[Sequence[Any]]) -> FloatArray:
+    """The pose of 13 positions, which stand alone."""
+    if query.source is not None:
+        name = "content" if query.source.clip_id is None else "clip_id"
+        raise fields.bad_field(name, "does not go with positions")
+    if query.time is not None:
+        raise fields.bad_field("time", "does not go with positions")
+    return pose_of(positions)
 
 
-def _hits(lib: Library, found: Sequence[PoseHit], rank: int) -> tuple[Hit, ...]:
-    """The places with their clips as they are now; those deleted meanwhile are left out."""
-    with lib.store.read() as tx:
-        clips = stored.get_many(tx, {hit.clip_id for hit in found})
-    return tuple(
-        Hit(
-            rank=number,
-            score=score(hit.place.distance, SCALE),
-            distance=hit.place.distance,
-            start=hit.place.start,
-            end=min(hit.place.end, clip.duration or hit.place.end),
-            clip=clip,
-            time=hit.place.time,
-        )
-        for number, hit in enumerate(found, rank + 1)
-        if (clip := clips.get(hit.clip_id)) is not None
-    )
+def _match(hit: PoseHit) -> Match:
+    """A place of a clip as the match of a page."""
+    distance, key = hit.key
+    return Match(hit.clip_id, key, distance, hit.place.start, hit.place.end, hit.place.time)
 
 
 def _places(value: Places | str) -> Places:

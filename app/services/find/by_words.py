@@ -1,4 +1,4 @@
-"""Rank clips against words by the fitted word models (Takano, section 2; DESIGN 6)."""
+"""Rank clips against words by the fitted word models (Takano, section 2)."""
 
 from __future__ import annotations
 
@@ -24,15 +24,18 @@ from app.store.clips.filter import ClipFilter
 
 STATISTICS = "symbol_statistics"
 WORD_MODES = ("default", "cca")
-LIKELIER_THAN_NOT = 0.5
+MIN_PROBABILITY = 0.5
+"""Probability from which a clip without words is taken to carry a word."""
 
 Words = Fitted[LibraryWords]
 
 
 @dataclass(frozen=True, slots=True)
 class WordRanking:
-    """Clips for words; model: id of the model that ranked; asked: what it took them to mean;
-    to_score: a distance of the ranking as a score, 0..1.
+    """Clips in the order in which words describe them.
+
+    model: id of the model that ranked; asked: how the model understood the words; to_score: from
+    a distance of the ranking to a score, 0..1.
     """
 
     ranking: Ranking
@@ -41,16 +44,19 @@ class WordRanking:
     to_score: Callable[[float], float]
 
 
-def rank_by_words(lib: Library, texts: Sequence[str], mode: str, wanted: ClipFilter) -> WordRanking:
-    """All clips that pass the filter and are not excluded; none where no word is known. The
-    index has caught up. Where all that is asked is to leave words out, the clips stand in order
-    of how likely they carry none of them, by the default in either mode.
+def rank_by_words(
+    lib: Library, texts: Sequence[str], mode: str, clip_filter: ClipFilter
+) -> WordRanking:
+    """All clips that pass the filter and are not excluded; no clip if no word is known. The
+    index must have caught up with the library.
 
-    texts: words, phrases or sentences; a word with a minus leaves out what carries it, and of
-    the clips without words what the model finds likelier to carry it than not. The default
-    score is the probability that the clip carries what was asked for, its distance -ln of that;
-    of "cca" too it is a probability, its distance 1 - cosine. Raises ModelNotFitted, and
-    NotEnoughLabels where mode "cca" could not be fitted.
+    texts: words, phrases or sentences. A word with a minus leaves out the clips that carry it,
+    and clips without words that would probably carry it. If all words have a minus, clips are
+    ordered by the probability that they carry none of them, in either mode.
+
+    The score is the probability that a clip carries the words that were asked for. The distance
+    is -ln of it in mode "default", and 1 - cosine in mode "cca". Raises ModelNotFitted, and
+    NotEnoughLabels if mode "cca" could not be fitted.
     """
     fitted = lib.models.words(lib.store)
     asked = fitted.model.ask(texts)
@@ -63,10 +69,10 @@ def rank_by_words(lib: Library, texts: Sequence[str], mode: str, wanted: ClipFil
     if not asked.weights and not asked.excluded:
         nothing = Ranking(np.empty(0, dtype=object), np.zeros(0))
         return WordRanking(nothing, fitted.id, asked, to_score)
-    passing = clips.mask(wanted)
+    mask = clips.mask(clip_filter)
     if asked.excluded:
-        passing &= ~_believed_to_carry(lib, fitted, clips, asked.excluded)
-    rows, distances = measure(lib, fitted, clips, passing, asked)
+        mask &= ~_believed_to_carry(lib, fitted, clips, asked.excluded)
+    rows, distances = measure(lib, fitted, clips, mask, asked)
     return WordRanking(Ranking(clips.ids[rows], distances), fitted.id, asked, to_score)
 
 
@@ -103,50 +109,50 @@ def _angle_score(model: LibraryWords, asked: WordsAsked, angle: float) -> float:
 def _believed_to_carry(
     lib: Library, fitted: Words, clips: LabelView, words: Sequence[str]
 ) -> BoolArray:
-    """(n,) whether a clip carries any of `words`, or has none at all and likely would."""
+    """(n,) whether a clip carries any of `words`, or has no words at all and probably would."""
     vocabulary = fitted.model.vocabulary
     columns = vocabulary.columns(words)
     codes, sets = clips.word_sets()
     carried: BoolArray = vocabulary.label_matrix(sets) > 0.0
     scores = _word_scores(lib, fitted, clips).values[:, columns]
-    is_likely = (scores >= LIKELIER_THAN_NOT).any(axis=1)
-    is_labelled = np.asarray(carried.any(axis=1))[codes]
+    is_likely = (scores >= MIN_PROBABILITY).any(axis=1)
+    is_labeled = np.asarray(carried.any(axis=1))[codes]
     is_excluded = np.asarray(carried[:, columns].any(axis=1))[codes]
-    return np.where(is_labelled, is_excluded, is_likely)
+    return np.where(is_labeled, is_excluded, is_likely)
 
 
 def _by_surprise(
-    lib: Library, fitted: Words, clips: LabelView, passing: BoolArray, asked: WordsAsked
+    lib: Library, fitted: Words, clips: LabelView, mask: BoolArray, asked: WordsAsked
 ) -> tuple[IntArray, FloatArray]:
-    """Of the clips that pass and are known: their rows and distances."""
+    """Rows (k,) and distances (k,) of the clips that pass and that the model knows."""
     words = tuple(asked.weights)
-    beside = _word_scores(lib, fitted, clips)
-    rows = np.flatnonzero(passing & beside.there)
-    scores = beside.values[rows[:, None], fitted.model.vocabulary.columns(words)]
+    model_rows = _word_scores(lib, fitted, clips)
+    rows = np.flatnonzero(mask & model_rows.there)
+    scores = model_rows.values[rows[:, None], fitted.model.vocabulary.columns(words)]
     return rows, fitted.model.clip_surprises(scores, words, asked.meant)
 
 
 def _by_absence(
-    lib: Library, fitted: Words, clips: LabelView, passing: BoolArray, asked: WordsAsked
+    lib: Library, fitted: Words, clips: LabelView, mask: BoolArray, asked: WordsAsked
 ) -> tuple[IntArray, FloatArray]:
-    """As _by_surprise, that clips carry none of the excluded words."""
-    beside = _word_scores(lib, fitted, clips)
-    rows = np.flatnonzero(passing & beside.there)
-    scores = beside.values[rows[:, None], fitted.model.vocabulary.columns(asked.excluded)]
+    """As _by_surprise, but of carrying none of the excluded words."""
+    model_rows = _word_scores(lib, fitted, clips)
+    rows = np.flatnonzero(mask & model_rows.there)
+    scores = model_rows.values[rows[:, None], fitted.model.vocabulary.columns(asked.excluded)]
     return rows, -np.log1p(-scores.astype(np.float64)).sum(axis=1)
 
 
 def _by_angle(
-    lib: Library, fitted: Words, clips: LabelView, passing: BoolArray, asked: WordsAsked
+    lib: Library, fitted: Words, clips: LabelView, mask: BoolArray, asked: WordsAsked
 ) -> tuple[IntArray, FloatArray]:
-    """Of the clips that pass and are known: their rows and distances."""
-    beside = clip_points(lib, fitted, clips)
-    rows = np.flatnonzero(passing & beside.there)
-    return rows, fitted.model.clip_angles(beside.values[rows], asked)
+    """Rows (k,) and distances (k,) of the clips that pass and that the model knows."""
+    model_rows = clip_points(lib, fitted, clips)
+    rows = np.flatnonzero(mask & model_rows.there)
+    return rows, fitted.model.clip_angles(model_rows.values[rows], asked)
 
 
 def _predict(lib: Library, model: LibraryWords, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
-    """(V,) scores of the vocabulary's words by clip id."""
+    """(V,) scores of the vocabulary's words by clip id; clips that are gone are left out."""
     with lib.store.read() as tx:
         statistics = usable_arrays.get_many(tx, clip_ids, STATISTICS)
     if not statistics:
@@ -156,7 +162,7 @@ def _predict(lib: Library, model: LibraryWords, clip_ids: Sequence[str]) -> dict
 
 
 def _place(lib: Library, model: LibraryWords, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
-    """(d,) coordinates in the symbol space by clip id."""
+    """(d,) coordinates in the symbol space by clip id; clips that are gone are left out."""
     with lib.store.read() as tx:
         parts = {name: usable_arrays.get_many(tx, clip_ids, name) for name in SYMBOL_ARRAYS}
     there = [clip_id for clip_id in clip_ids if all(clip_id in part for part in parts.values())]

@@ -1,7 +1,8 @@
-"""What searches answer with (DESIGN 8, "Hits")."""
+"""What searches answer with: hits, a page at a time."""
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 
 from app.store.clips.record import ClipRecord
@@ -9,7 +10,7 @@ from app.store.clips.record import ClipRecord
 
 @dataclass(frozen=True, slots=True)
 class Hit:
-    """One clip found.
+    """One clip, or one part of a clip, that was found.
 
     rank: from 1; score: 0..1, higher is closer, falls strictly with distance;
     start, end: seconds, the part of the clip that was found (all of it with scope "clips");
@@ -29,8 +30,8 @@ class Hit:
 class Hits:
     """One page of a ranking.
 
-    method: how it was ranked; took_ms: milliseconds; library_version: what was searched;
-    next: cursor of the following page, None behind the last;
+    method: how it was ranked; took_ms: milliseconds; library_version: of the library that was
+    searched; next: cursor of the following page, None after the last one;
     unknown_words: words of a word search that the model does not know;
     expanded: known words that were used in place of unknown ones, by unknown word.
     """
@@ -42,3 +43,16 @@ class Hits:
     next: str | None = None
     unknown_words: tuple[str, ...] = ()
     expanded: dict[str, tuple[str, ...]] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class HitPage:
+    """The hits of one page, and the cursor of the next one (None after the last page)."""
+
+    items: tuple[Hit, ...]
+    next: str | None
+
+
+def milliseconds_since(began: float) -> float:
+    """Milliseconds since a reading of `time.perf_counter`."""
+    return (time.perf_counter() - began) * 1000.0

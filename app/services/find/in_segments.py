@@ -1,6 +1,8 @@
-"""Find a step among the segments of all clips (DESIGN 8): which of them is danced alike."""
+"""Find a motion among the segments of all clips: which segment is danced in the same way."""
 
 from __future__ import annotations
+
+from functools import partial
 
 import numpy as np
 
@@ -9,35 +11,35 @@ from app.numerics.arrays import BoolArray, FloatArray
 from app.search.example.distances import FEATURES
 from app.search.example.methods import Method
 from app.search.ranking import cursor as cursors
-from app.search.ranking.cursor import Position
+from app.search.ranking.ranking import score
 from app.search.windows.overlap_merging import Candidates, merge_overlapping
 from app.search.windows.parts import Parts
 from app.search.windows.proposals import ExcludedInterval
 from app.services import fields
-from app.services.find.hits import Hits
-from app.services.find.in_windows import Paging, own_place, place_hits, seconds_of
-from app.services.find.query import Question, describe
+from app.services.find.hits import HitPage
+from app.services.find.in_windows import matches_of
+from app.services.find.paging import MatchPage, Paging
+from app.services.find.queries import MotionQuery
+from app.services.find.query import describe
+from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.services.library.ready_clips import ready_clip
 from app.services.views.segments import segment_arrays
 from app.store.clips.filter import ClipFilter
 
-METHODS = (Method.FUSED, Method.VECTOR)
-"""Both compare the segments' vectors: warping what is cut at its keyposes finds no more."""
+RANKED_BY = Method.VECTOR
+METHODS = (Method.FUSED, RANKED_BY)
+"""Both compare the segments' vectors: time warping finds no more in motions that are cut at
+their keyposes."""
 SCORE_SCALE = 1.0
 """Distance at which the score is one half: about that of two segments of one task."""
 
 
 def find_in_segments(
-    lib: Library,
-    question: Question,
-    segment: int | None,
-    method: Method,
-    wanted: ClipFilter,
-    paging: Paging,
-) -> Hits:
-    """Segments of clips in order of likeness to a motion, or to a segment of a stored clip,
-    counted from 0; the index of clips has caught up.
+    lib: Library, query: MotionQuery, method: Method, clip_filter: ClipFilter
+) -> HitPage:
+    """Segments of clips in order of their likeness to a motion, or to a segment of a stored
+    clip. The index of clips must have caught up with the library.
 
     Raises BadField, ClipNotFound, ClipNotReady, and BadContent for an upload that cannot be
     used.
@@ -45,43 +47,45 @@ def find_in_segments(
     if method not in METHODS:
         known = ", ".join(METHODS)
         raise fields.bad_field("method", f"with scope segments it must be one of {known}")
-    vector, own = _of_motion(lib, question) if segment is None else _own(lib, question, segment)
-    excluded = None if paging.include_self else own
-    fingerprint = cursors.digest("segments", own, vector.tobytes().hex(), wanted, excluded)
-    after = None if paging.cursor is None else cursors.decode(paging.cursor, fingerprint)
-    told, more = merge_overlapping(_candidates(lib, vector, wanted, excluded), paging.limit, after)
-    rank = after.rank if after else 0
-    following = None
-    if more:
-        last = Position(rank + len(told), told[-1].distance, told[-1].key)
-        following = cursors.encode(last, fingerprint)
-    hits = place_hits(lib, told, rank, SCORE_SCALE)
-    return Hits(Method.VECTOR.value, 0.0, lib.index.version, hits, following)
+    if query.segment is None:
+        vector, own = _motion_as_segment(lib, query.source)
+    else:
+        vector, own = _stored_segment(lib, query.source, query.segment)
+    excluded = None if query.include_self else own
+    question = cursors.digest("segments", own, vector.tobytes().hex(), clip_filter, excluded)
+    paging = Paging.at(query.cursor, question)
+    candidates = _candidates(lib, vector, clip_filter, excluded)
+    found, more = merge_overlapping(candidates, query.limit, paging.after)
+    to_score = partial(score, scale=SCORE_SCALE)
+    return paging.hits(lib, MatchPage(matches_of(found), more), to_score)
 
 
-def _of_motion(lib: Library, question: Question) -> tuple[FloatArray, ExcludedInterval | None]:
-    """The vector of a motion taken as one segment, and its place in a stored clip."""
-    asked = describe(lib, question, (FEATURES,))
-    span = np.array([[0.0, seconds_of(asked, question)]])
-    vector = segment_vectors(asked.arrays[FEATURES], span)[0]
-    return vector, own_place(asked, question)
+def _motion_as_segment(
+    lib: Library, source: QuerySource
+) -> tuple[FloatArray, ExcludedInterval | None]:
+    """The vector of a motion taken as one segment, and where it lies in a stored clip."""
+    query = describe(lib, source, (FEATURES,))
+    span = np.array([[0.0, query.seconds]])
+    return segment_vectors(query.arrays[FEATURES], span)[0], query.interval
 
 
-def _own(lib: Library, question: Question, segment: int) -> tuple[FloatArray, ExcludedInterval]:
-    """The vector and the place of a segment of a stored clip."""
-    if question.clip_id is None:
+def _stored_segment(
+    lib: Library, source: QuerySource, segment: int
+) -> tuple[FloatArray, ExcludedInterval]:
+    """The vector of a segment of a stored clip, and where it lies."""
+    if source.clip_id is None:
         raise fields.bad_field("segment", "goes with a stored clip, not with an uploaded file")
     for name in ("start", "end"):
-        if getattr(question, name) is not None:
+        if getattr(source, name) is not None:
             raise fields.bad_field(name, "does not go with segment, which has its own")
-    found = segment_arrays(lib, ready_clip(lib, question.clip_id))
+    found = segment_arrays(lib, ready_clip(lib, source.clip_id))
     spans = found[SEGMENT_SPANS]
     if not 0 <= segment < len(spans):
         message = f"the clip has {len(spans)} segments, counted from 0"
         raise fields.bad_field("segment", message)
     start, end = spans[segment].tolist()
     vector = found[SEGMENT_VECTORS][segment].astype(np.float32)
-    return vector, ExcludedInterval(question.clip_id, start, end)
+    return vector, ExcludedInterval(source.clip_id, start, end)
 
 
 def _candidates(

@@ -1,8 +1,9 @@
-"""A map of all motions: every ready clip as a point, near to what it is like.
+"""A map of all motions: every ready clip is a point, and similar clips are near each other.
 
-space "symbols": the motion symbol space (Takano, section 2.1), its ten dimensions seen along
-the principal axes of the model's landmarks, which stay until the next fit; a new clip is
-placed at once. space "vectors": motion vectors along their own principal axes.
+Space "symbols" is the motion symbol space (Takano, section 2.1). The map shows its ten dimensions
+along the principal axes of the model's landmarks. They stay the same until the next fit, and a
+new clip is placed at once. Space "vectors" is that of the motion vectors, along their own
+principal axes.
 """
 
 from __future__ import annotations
@@ -33,9 +34,12 @@ SpaceName = Literal["symbols", "vectors"]
 
 @dataclass(frozen=True, slots=True)
 class Map:
-    """points: (n, dimensions), a row a clip; kept: share of the space's variance that the map
-    shows, 0..1; total: ready clips that pass the filter, of which n are shown; model: id of the
-    model that placed them, None for vectors."""
+    """The points of n clips.
+
+    points: (n, dimensions), one row for each clip; kept: share of the space's variance that the
+    map shows, 0..1; total: number of ready clips that pass the filter, of which n are shown;
+    model: id of the model that placed them, None for vectors.
+    """
 
     clips: tuple[ClipRecord, ...]
     points: FloatArray
@@ -49,10 +53,11 @@ def draw_map(
     lib: Library,
     space: str = "symbols",
     dimensions: int = 2,
-    wanted: ClipFilter | None = None,
+    clip_filter: ClipFilter | None = None,
     limit: int = 10_000,
 ) -> Map:
-    """The map of the clips that pass a filter; where there are too many, evenly picked by id.
+    """The map of the clips that pass a filter. If there are more than `limit`, it shows as many,
+    evenly spaced in the order of ids.
 
     Raises BadField, and ModelNotFitted for symbols before the first fit.
     """
@@ -64,8 +69,8 @@ def draw_map(
         raise fields.bad_field("limit", f"must be from 1 to {MOST_POINTS}")
     version = lib.index.catch_up(lib.store)
     every = lib.index.state[1].labels
-    passing = np.flatnonzero(every.mask(wanted or ClipFilter()))
-    by_id = passing[np.argsort(every.ids[passing].astype(str), kind="stable")]
+    passed = np.flatnonzero(every.mask(clip_filter or ClipFilter()))
+    by_id = passed[np.argsort(every.ids[passed].astype(str), kind="stable")]
     picked = by_id[_evenly(len(by_id), limit)]
     ids, points, axes, model = _placed(lib, space, every, picked, dimensions)
     seen = axes.project(points) if len(ids) else np.zeros((0, dimensions))
@@ -76,7 +81,7 @@ def draw_map(
         clips=tuple(records[ids[row]] for row in rows),
         points=_padded(seen[rows], dimensions),
         kept=_share(points - axes.centre, seen) if len(ids) else 0.0,
-        total=len(passing),
+        total=len(passed),
         library_version=version,
         model=model,
     )
@@ -85,14 +90,14 @@ def draw_map(
 def _placed(
     lib: Library, space: str, every: LabelView, picked: IntArray, dimensions: int
 ) -> tuple[list[str], FloatArray, PrincipalAxes, str | None]:
-    """The ids of the picked clips that are there still, their points (n, d), the axes to see
-    them along."""
+    """Of the picked clips that still exist: ids, points (n, d), the axes to show them along, and
+    the id of the model (None for vectors)."""
     if space == "symbols":
         fitted = lib.models.words(lib.store)
         axes = principal_axes(fitted.model.space.points, dimensions)
-        beside = clip_points(lib, fitted, every)
-        known = picked[beside.there[picked]]
-        return [str(i) for i in every.ids[known]], beside.values[known], axes, fitted.id
+        model_rows = clip_points(lib, fitted, every)
+        known = picked[model_rows.there[picked]]
+        return [str(i) for i in every.ids[known]], model_rows.values[known], axes, fitted.id
     ids = [str(i) for i in every.ids[picked]]
     with lib.store.read() as tx:
         found = usable_arrays.get_many(tx, ids, VECTOR)
@@ -113,5 +118,5 @@ def _share(centred: FloatArray, seen: FloatArray) -> float:
 
 
 def _padded(points: FloatArray, dimensions: int) -> FloatArray:
-    """With zeros for dimensions that so few clips do not span."""
+    """Zeros added for dimensions that so few clips do not span."""
     return np.pad(points, ((0, 0), (0, dimensions - points.shape[1])))

@@ -1,4 +1,4 @@
-"""The pose that a search asks for: of a motion at a time, or 13 positions that a client sends."""
+"""The pose that a search asks for: that of a motion at a time, or 13 positions from a client."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from app.motion.skeleton.resampling import sample_at
 from app.numerics.arrays import FloatArray
 from app.services import fields
 
-LARGEST = 1e6
-"""Metres; beyond, a position is a mistake."""
+MAX_COORDINATE = 1e6
+"""Meters. A coordinate beyond it is a mistake."""
 
 _WHOLE_FRAME = 1e-6
 _ORDER = ", ".join(SUN_ROLES)
@@ -27,8 +27,8 @@ _ORDER = ", ".join(SUN_ROLES)
 def pose_at(positions: FloatArray, time: float, duration: float) -> FloatArray:
     """(36,) vector of the pose at `time` seconds, of positions (n, 13, 3) at ANALYSIS_RATE.
 
-    Between frames it is read off their curve. Raises BadField outside of the motion, and
-    where its pose has no size.
+    Between frames the pose is interpolated. Raises BadField for a time outside of the motion, and
+    for a pose without a size.
     """
     if not (math.isfinite(time) and 0 <= time <= duration):
         raise fields.bad_field("time", f"must be from 0 to the duration, {duration:.3f} s")
@@ -45,7 +45,7 @@ def pose_at(positions: FloatArray, time: float, duration: float) -> FloatArray:
 def pose_of(positions: Sequence[Sequence[Any]]) -> FloatArray:
     """(36,) vector of 13 positions in SUN_ROLES order, any unit.
 
-    Raises BadField naming every joint that cannot be used.
+    Raises BadField, which names every joint that cannot be used.
     """
     if len(positions) != len(SUN_ROLES):
         message = f"expected {len(SUN_ROLES)} points ({_ORDER}), found {len(positions)}"
@@ -65,18 +65,18 @@ def pose_of(positions: Sequence[Sequence[Any]]) -> FloatArray:
 
 
 def _problem(point: Any) -> str | None:
-    expected = "expected x, y and z, finite numbers of metres"
+    expected = "expected x, y and z, finite numbers of meters"
     if not isinstance(point, list | tuple) or len(point) != 3:
         return expected
     numbers = [isinstance(n, int | float) and not isinstance(n, bool) for n in point]
-    # An int may be larger than any float, of which isfinite could not be asked.
+    # An int may be too large for a float, and isfinite would raise OverflowError.
     if not all(numbers) or not all(math.isfinite(n) for n in point if isinstance(n, float)):
         return expected
-    return f"farther than {LARGEST:g} m" if max(map(abs, point)) > LARGEST else None
+    return f"farther than {MAX_COORDINATE:g} m" if max(map(abs, point)) > MAX_COORDINATE else None
 
 
 def _without_a_body(points: FloatArray) -> list[Place]:
-    """Why a pose of good numbers is none."""
+    """Why finite positions are not a pose."""
     if (points == points[0]).all():
         return [Place("positions", "all joints are in one place: the body has no size")]
     places = []

@@ -1,7 +1,7 @@
-"""Reading and analysing files where it can be killed (DESIGN 12).
+"""Reading and analyzing files in processes that can be killed.
 
 A file from outside is parsed in a child process with a limit on time and memory, so that
-hostile or monstrous content costs a failed clip and never the service.
+hostile or huge content makes one clip fail and never stops the service.
 """
 
 from __future__ import annotations
@@ -42,18 +42,18 @@ _log = logging.getLogger(__name__)
 _Found = TypeVar("_Found")
 
 TRIES = 2
-"""Of an analysis that somebody waits for, where its process is killed from outside."""
+"""How often an analysis that somebody waits for is tried if its process is killed from outside."""
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
-    """What to analyse: `content`, or the file at `path`; and what the client says of it.
+class AnalysisRequest:
+    """What to analyze: `content`, or the file at `path`; and what the client says of it.
 
-    skeleton, skeleton_path: the ASF file of an AMC file, in the same way; stack: the animation
-    stack of an FBX file; thresholds: T1 and T2 of keyposes, the usual ones where None; roles:
-    joint names by role name; audio_path: a recording; beats, tempo, audio_offset: what the client
-    says of the rhythm (seconds, beats a minute, seconds); for_search: leave out what only
-    stored clips need.
+    skeleton, skeleton_path: content or path of the ASF file that an AMC file needs; stack: the
+    animation stack of an FBX file; thresholds: T1 and T2 of keyposes, None for the default
+    ones; frame_rate: Hz; roles: joint names by role name; audio_path: a recording of sound;
+    beats, tempo, audio_offset: the rhythm as the client gives it (seconds, beats a minute,
+    seconds); for_search: compute only what searches need.
     """
 
     content: bytes | None = None
@@ -74,7 +74,7 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What one analysis may take: seconds, MB of address space, frames, joints."""
+    """The most that one analysis may take: seconds, MB of address space, frames, joints."""
 
     seconds: float
     memory_mb: int
@@ -83,7 +83,7 @@ class Limits:
 
 
 class AnalysisPool:
-    """Child processes that analyse files, `size` at a time; they start with the first order."""
+    """Child processes that analyze files, `size` at a time; they start with the first request."""
 
     def __init__(self, limits: Limits, *, size: int = 1) -> None:
         self.limits = limits
@@ -92,47 +92,53 @@ class AnalysisPool:
         self._pool = self._new_pool()
 
     def submit(
-        self, order: Order, *, is_alone: bool = False
+        self, request: AnalysisRequest, *, is_alone: bool = False
     ) -> concurrent.futures.Future[Analysis]:
-        """Begin an analysis; `outcome` reads what came of it. Cancelling kills the child.
+        """Begin an analysis; `outcome` gives its result. Canceling the future kills the child.
 
-        is_alone: begin when no other analysis of this pool runs, and let none begin meanwhile.
+        is_alone: wait until no other analysis of this pool runs, and let none begin meanwhile.
         """
-        return self._begin(analyse_order, order, is_alone=is_alone)
+        return self._begin(analyze_file, request, is_alone=is_alone)
 
-    def analyse(self, order: Order) -> Analysis:
-        """Analyse and wait; raises as `outcome` does."""
-        return self._wait_for(analyse_order, order)
+    def analyze(self, request: AnalysisRequest) -> Analysis:
+        """Analyze and wait; raises as `outcome` does."""
+        return self._wait_for(analyze_file, request)
 
-    def read(self, order: Order) -> Recording:
+    def read(self, request: AnalysisRequest) -> Recording:
         """Only read the file, and wait; raises as `outcome` does."""
-        return self._wait_for(read_order, order)
+        return self._wait_for(read_file, request)
 
-    def _wait_for(self, work: Callable[[Order, Limits], _Found], order: Order) -> _Found:
-        """Do it and wait; once more where the process was killed from outside."""
+    def _wait_for(
+        self, work: Callable[[AnalysisRequest, Limits], _Found], request: AnalysisRequest
+    ) -> _Found:
+        """Do the work and wait; try again if the process was killed from outside."""
         for _ in range(TRIES - 1):
             try:
-                return self.outcome(self._begin(work, order))
+                return self.outcome(self._begin(work, request))
             except AnalysisInterrupted:
                 _log.warning("an analysis process was killed; trying again")
-        return self.outcome(self._begin(work, order))
+        return self.outcome(self._begin(work, request))
 
     def _begin(
-        self, work: Callable[[Order, Limits], _Found], order: Order, *, is_alone: bool = False
+        self,
+        work: Callable[[AnalysisRequest, Limits], _Found],
+        request: AnalysisRequest,
+        *,
+        is_alone: bool = False,
     ) -> concurrent.futures.Future[_Found]:
         with self._lock:
             return self._pool.submit(
-                work, order, self.limits, seconds=self.limits.seconds, is_alone=is_alone
+                work, request, self.limits, seconds=self.limits.seconds, is_alone=is_alone
             )
 
     def outcome(self, future: concurrent.futures.Future[_Found]) -> _Found:
-        """What a finished analysis, or reading, came to.
+        """The result of an analysis, or of reading a file; waits for it.
 
-        Raises BadContent (or TooLarge) for what the content deserves: AnalysisTimedOut,
-        AnalysisCrashed, and the reader's own failures; ChildDied where the child died by its
-        own work, AnalysisInterrupted where it was killed from outside, StoredFileMissing or
-        StorageError where the file cannot be read, CancelledError after `cancel`. Where the
-        work at hand should not go on (ClientLeft, DeadlineExceeded) the child is killed.
+        Raises BadContent (or TooLarge) if the content is at fault: AnalysisTimedOut,
+        AnalysisCrashed, and the failures of the readers; ChildDied if the child died by its
+        own work; AnalysisInterrupted if it was killed from outside; StoredFileMissing or
+        StorageError if the file cannot be read; CancelledError after `cancel`. If the caller's
+        own work must stop (ClientLeft, DeadlineExceeded), the child is killed.
         """
         try:
             return result_of(future)
@@ -153,14 +159,14 @@ class AnalysisPool:
         except OSError as unreadable:
             raise StorageError("The stored file cannot be read.") from unreadable
         except Exception as surprise:
-            # A defect of ours; the clip must still end, with something to report.
+            # A defect of Kinedex. The clip must still fail, with a message.
             _log.exception("analysis failed unexpectedly")
             raise AnalysisCrashed(
                 f"The analysis failed unexpectedly ({type(surprise).__name__}); see the log."
             ) from surprise
 
     def rest(self) -> None:
-        """Give back the memory of idle children; the next order starts new ones."""
+        """Give back the memory of idle children; the next request starts new ones."""
         with self._lock:
             resting, self._pool = self._pool, self._new_pool()
         resting.close()
@@ -173,10 +179,10 @@ class AnalysisPool:
         return ChildPool(self._size, _prepare, self.limits.memory_mb, level_of_process())
 
 
-def analyse_order(order: Order, limits: Limits) -> Analysis:
-    """Read, canonicalise and analyse one file, here and now (runs in the child).
+def analyze_file(request: AnalysisRequest, limits: Limits) -> Analysis:
+    """Read one file, make it canonical and analyze it, in this process (the child).
 
-    Raises BadContent for what cannot be used, TooLarge beyond the limits.
+    Raises BadContent for content that cannot be used, TooLarge beyond the limits.
     """
     from app.analysis import analyse
     from app.analysis.keyposes.keyposes import T1, T2
@@ -184,25 +190,28 @@ def analyse_order(order: Order, limits: Limits) -> Analysis:
     from app.motion.canonical.canonical import canonicalise
     from app.motion.roles.joint_roles import JointRole
 
-    recording = read_order(order, limits)
-    roles = {JointRole(role): joint for role, joint in (order.roles or {}).items()}
+    recording = read_file(request, limits)
+    roles = {JointRole(role): joint for role, joint in (request.roles or {}).items()}
     motion = canonicalise(
         recording,
-        frame_rate=order.frame_rate,
-        metres_per_unit=order.metres_per_unit,
+        frame_rate=request.frame_rate,
+        metres_per_unit=request.metres_per_unit,
         roles=roles or None,
     )
-    if order.for_search:
+    if request.for_search:
         return analyse.describe_for_search(motion)
-    t1, t2 = order.thresholds or (T1, T2)
-    told = Told(order.beats, order.tempo, order.audio_offset)
-    onsets, doubts = (None, ()) if order.audio_path is None else _listen(Path(order.audio_path))
+    t1, t2 = request.thresholds or (T1, T2)
+    told = Told(request.beats, request.tempo, request.audio_offset)
+    onsets, doubts = (None, ()) if request.audio_path is None else _listen(Path(request.audio_path))
     found = analyse.analyse(motion, t1=t1, t2=t2, told=told, onsets=onsets)
     return replace(found, cautions=(*doubts, *found.cautions))
 
 
 def _listen(path: Path) -> tuple[Onsets | None, tuple[Caution, ...]]:
-    """The onsets of a recording; none and why where it cannot be read, which stops no clip."""
+    """The onsets of a recording, and cautions.
+
+    A recording that cannot be read gives None and a caution: it must not make the clip fail.
+    """
     from app.analysis.rhythm.onsets import find_onsets
     from app.formats.audio.reader import read_audio
     from app.motion.skeleton.recording import Caution
@@ -224,18 +233,20 @@ def _listen(path: Path) -> tuple[Onsets | None, tuple[Caution, ...]]:
     return onsets, (Caution("audio_truncated", detail),)
 
 
-def read_order(order: Order, limits: Limits) -> Recording:
-    """Read one file, here and now (runs in the child).
+def read_file(request: AnalysisRequest, limits: Limits) -> Recording:
+    """Read one file in this process (the child).
 
-    Raises BadContent for what cannot be read, TooLarge beyond the limits, FileDamaged.
+    Raises BadContent for content that cannot be read, TooLarge beyond the limits, FileDamaged.
     """
     from app.formats.read import read_recording
 
-    content = order.content if order.content is not None else read_whole(Path(order.path or ""))
-    skeleton = order.skeleton
-    if order.skeleton_path is not None:
-        skeleton = read_whole(Path(order.skeleton_path))
-    recording = read_recording(content, skeleton, order.stack)
+    content = request.content
+    if content is None:
+        content = read_whole(Path(request.path or ""))
+    skeleton = request.skeleton
+    if request.skeleton_path is not None:
+        skeleton = read_whole(Path(request.skeleton_path))
+    recording = read_recording(content, skeleton, request.stack)
     _check_size(recording, limits)
     return recording
 
@@ -249,6 +260,6 @@ def _check_size(recording: Recording, limits: Limits) -> None:
 
 
 def _prepare(memory_mb: int, level: str) -> None:
-    """What each child does first."""
+    """Set up a child process before its first task."""
     log_like_parent(level)
     limit_memory(memory_mb)

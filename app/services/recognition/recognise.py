@@ -1,8 +1,7 @@
-"""Who does what, in which words (DESIGN 8, "recognize")."""
+"""Who does what, in which words."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -15,18 +14,18 @@ from app.models.recognition.recogniser import recognise as recognise_by_default
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.find.by_words import STATISTICS
-from app.services.find.query import Question, describe
+from app.services.find.query import describe
+from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
-from app.store.files.files import Readable
 
 SAMPLE = "motion_sample"
 WIDE = "wide_motion_vector"
 ANGLES = "angle_sample"
 METHODS = ("default", "multilinear", "signatures", "perera")
-"""The recogniser that does best held out; Vasilescu's model on positions and, as hers, on joint
-angles; Perera's objective."""
-LOOKED_AT = {"default": (SAMPLE, WIDE), "signatures": (ANGLES,)}
-"""Arrays that a method is given, one behind the other; the others are given motion samples."""
+"""In this order: the recognizer that does best on held-out clips; Vasilescu's model on positions;
+her model on joint angles, as she used it; Perera's objective."""
+INPUTS = {"default": (SAMPLE, WIDE), "signatures": (ANGLES,)}
+"""Arrays whose concatenation a method recognizes; the other methods recognize motion samples."""
 WORDS_SHOWN = 10
 
 WordScores = tuple[tuple[str, float], ...]
@@ -35,22 +34,12 @@ WordScores = tuple[tuple[str, float], ...]
 
 @dataclass(frozen=True, slots=True)
 class RecogniseQuery:
-    """Exactly one of `clip_id` and `content`; method: one of METHODS.
+    """The motion to recognize, and what is known of it already; method: one of METHODS."""
 
-    known_person, known_task: what is known already; skeleton, frame_rate (Hz), unit, roles,
-    stack: of an upload only.
-    """
-
-    clip_id: str | None = None
-    content: Readable | None = None
+    source: QuerySource
     known_person: str | None = None
     known_task: str | None = None
     method: str = "default"
-    skeleton: Readable | None = None
-    frame_rate: float | str | None = None
-    unit: float | str | None = None
-    roles: Mapping[str, str] | None = None
-    stack: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +52,7 @@ class Recognised:
 
 
 def recognise(lib: Library, query: RecogniseQuery) -> Recognised:
-    """Who does what in which words.
+    """Who moves, what they do, and which words describe it.
 
     Words are left out where no word model could be fitted. Raises BadField, ClipNotFound,
     ClipNotReady, ModelNotFitted, and BadContent for an upload that cannot be used.
@@ -72,27 +61,19 @@ def recognise(lib: Library, query: RecogniseQuery) -> Recognised:
         raise fields.bad_field("method", f"must be one of {', '.join(METHODS)}")
     if query.method != "default" and not lib.settings.recognize_persons:
         raise ModelNotFitted(
-            f"The method {query.method} tells tasks by the persons who did them, and recognising"
-            " people by how they move is switched off here: the default still tells the task."
+            f"The method {query.method} recognizes tasks by the persons who did them, and"
+            " recognizing people by how they move is switched off here. The default method still"
+            " recognizes the task."
         )
-    question = Question(
-        clip_id=query.clip_id,
-        content=query.content,
-        skeleton=query.skeleton,
-        frame_rate=query.frame_rate,
-        unit=query.unit,
-        roles=query.roles,
-        stack=query.stack,
-    )
-    looked_at = LOOKED_AT.get(query.method, (SAMPLE,))
-    asked = describe(lib, question, (*looked_at, STATISTICS))
-    sample = np.concatenate([asked.arrays[name] for name in looked_at])
+    names = INPUTS.get(query.method, (SAMPLE,))
+    arrays = describe(lib, query.source, (*names, STATISTICS)).arrays
+    sample = np.concatenate([arrays[name] for name in names])
     found = _who_does_what(lib, sample, query)
-    return Recognised(found.person, found.task, words_of(lib, asked.arrays[STATISTICS]))
+    return Recognised(found.person, found.task, words_of(lib, arrays[STATISTICS]))
 
 
 def _who_does_what(lib: Library, sample: FloatArray, query: RecogniseQuery) -> Recognition:
-    """Person and task of a clip by what its method is given (LOOKED_AT)."""
+    """Person and task of a clip, by its method's INPUTS."""
     person = fields.text("known_person", query.known_person)
     task = fields.text("known_task", query.known_task)
     if query.method == "multilinear":
@@ -112,7 +93,7 @@ def _who_does_what(lib: Library, sample: FloatArray, query: RecogniseQuery) -> R
 
 
 def words_of(lib: Library, statistics: FloatArray) -> WordScores:
-    """The best words for a clip's `symbol_statistics` (131,); none without a word model."""
+    """The best words for a clip's `symbol_statistics` (131,); empty without a word model."""
     try:
         model = lib.models.words(lib.store).model
     except ModelNotFitted:

@@ -1,4 +1,4 @@
-"""Words suggested for a clip by the word model, to accept; completions of a word's beginning."""
+"""Words that the word model suggests for a clip, and completions of the beginning of a word."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ from app.services.library.ready_clips import descriptors_of, ready_clip
 from app.store.clips.record import ClipRecord
 
 LIKELY = 0.5
-"""Score from which a suggestion is accepted unasked: likelier than not."""
-MOST_SUGGESTED = 100
+"""Score from which a suggestion is accepted by default: more likely than not."""
+MAX_SUGGESTED = 100
 
 Suggestions = tuple[tuple[str, float], ...]
 """(word, score 0..1), the best first."""
 
 
 def suggest(lib: Library, clip_id: str, limit: int = 10, mode: str = "default") -> Suggestions:
-    """Words that the clip does not carry and that the word model would give it.
+    """Words that the clip does not carry but that the word model predicts for it.
 
-    mode: "default", by the kernel regression, or "cca", by where its symbol lies in the
-    correlated space. Raises ClipNotFound, ClipNotReady, ModelNotFitted, BadField, and
-    NotEnoughLabels where mode "cca" could not be fitted.
+    mode: "default" predicts by kernel regression; "cca" by the position of the clip's symbol in
+    the correlated space. Raises ClipNotFound, ClipNotReady, ModelNotFitted, BadField, and
+    NotEnoughLabels if mode "cca" could not be fitted.
     """
-    if not 1 <= limit <= MOST_SUGGESTED:
-        raise fields.bad_field("limit", f"must be from 1 to {MOST_SUGGESTED}")
+    if not 1 <= limit <= MAX_SUGGESTED:
+        raise fields.bad_field("limit", f"must be from 1 to {MAX_SUGGESTED}")
     if mode not in WORD_MODES:
         raise fields.bad_field("mode", f"must be one of {', '.join(WORD_MODES)}")
     clip = ready_clip(lib, clip_id)
@@ -49,7 +49,7 @@ def suggest(lib: Library, clip_id: str, limit: int = 10, mode: str = "default") 
 
 
 def _scores(lib: Library, model: LibraryWords, clip: ClipRecord) -> FloatArray:
-    """(V,) of the vocabulary's words."""
+    """(V,) scores of the vocabulary's words by the default mode."""
     with lib.store.read() as tx:
         statistics = descriptors_of(tx, clip, (STATISTICS,))[STATISTICS]
     return np.asarray(model.word_scores(statistics[None])[0])
@@ -63,21 +63,21 @@ def _scores_cca(lib: Library, model: LibraryWords, clip: ClipRecord) -> FloatArr
 
 
 def accept(lib: Library, clip_id: str, words: Sequence[str] | None = None) -> ClipRecord:
-    """Give the clip these words besides its own; by default the suggestions that are LIKELY.
+    """Add these words to the clip's own; by default the suggestions with a score of LIKELY or more.
 
     The next fit learns from them. Raises ClipNotFound, BadField; by default also ClipNotReady
     and ModelNotFitted.
     """
     if words is None:
-        words = [word for word, score in suggest(lib, clip_id, MOST_SUGGESTED) if score >= LIKELY]
+        words = [word for word, score in suggest(lib, clip_id, MAX_SUGGESTED) if score >= LIKELY]
     new = fields.words(words) or ()
     carried = get_clip(lib, clip_id).words
     return update_clip(lib, clip_id, {"words": (*carried, *new)})
 
 
 def complete(lib: Library, beginning: str, limit: int = 10) -> list[LabelCount]:
-    """The library's words that begin with what was typed, or hold it, in that
-    order, the frequent ones first; where there is none, those that it is a form of."""
+    """The library's words that begin with `beginning`, then those that contain it, the most
+    frequent first. If there are none: the words of which it is an inflected form."""
     typed, carried = normalise_word(beginning), labels.words(lib)
     found = [word for word in carried if typed in word.name]
     if not found:

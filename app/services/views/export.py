@@ -32,7 +32,7 @@ from app.motion.skeleton.animation import Animation, animation_of_positions
 from app.motion.skeleton.resampling import resample
 from app.numerics.arrays import FloatArray, IntArray
 from app.services import fields
-from app.services.clips.ingest import order_for
+from app.services.clips.ingest import analysis_request
 from app.services.library.library import Library
 from app.services.library.ready_clips import ready_clip
 from app.services.library.stored_motion import load_motion
@@ -123,7 +123,7 @@ def own_animation(lib: Library, clip: ClipRecord, motion: Motion, rate: float) -
     their positions."""
     if clip.format not in POSITION_FORMATS:
         try:
-            recording = lib.pool.read(order_for(lib, clip))
+            recording = lib.pool.read(analysis_request(lib, clip))
         except (BadContent, FileDamaged, StoredFileMissing):
             recording = None  # the positions are what counts, and they are stored
         animation = animation_of_recording(recording, motion) if recording else None

@@ -9,7 +9,8 @@ from app import evaluate
 from app.errors import BadField, NotEnoughLabels
 from app.search.example.methods import Method
 from app.services.find import find
-from app.services.find.find import MotionQuery
+from app.services.find.queries import MotionQuery
+from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
@@ -27,7 +28,7 @@ def test_retrieval_counts_what_searches_answer(
     for way in found.ways[: len(methods)]:
         hits = 0
         for clip in ready_clips:
-            asked = MotionQuery(clip.id, method=way.figures.method, limit=1)
+            asked = MotionQuery(QuerySource(clip.id), method=way.figures.method, limit=1)
             hits += find.find_motion(ready_library, asked).items[0].clip.task == clip.task
         assert way.figures.nearest == pytest.approx(hits / 12)
         assert 0 <= way.figures.precision_at_4 <= 0.5

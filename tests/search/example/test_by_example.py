@@ -11,12 +11,12 @@ import pytest
 from app.numerics.alignment.dtw import dtw_distances
 from app.numerics.arrays import FloatArray
 from app.search.example.by_example import rank_by_example
-from app.search.example.distances import QueryArrays
+from app.search.example.distances import EPSILON, FEATURES, RHO, Descriptors
 from app.search.example.fusion import SHORTLIST
 from app.search.example.methods import Method
 from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.rows import Rows
-from app.search.index.vector_index import MOTION_VECTORS, VectorIndex
+from app.search.index.vector_index import MOTION_VECTORS, VECTOR, VectorIndex
 from app.store.clips.filter import ClipFilter
 from tests.search.fused import fused_distances
 from tests.search.indexed import indexed
@@ -50,20 +50,23 @@ class Gallery:
         self.read.extend(clip_ids)
         return {clip_id: self.features[clip_id] for clip_id in clip_ids}
 
-    def query(self) -> QueryArrays:
+    def query(self) -> Descriptors:
         rng = np.random.default_rng(9)
         vector = self.vectors[0] + 0.1 * rng.normal(size=128)
-        return QueryArrays(
-            vector.astype(np.float32), self.features["c000"][:-1], np.zeros(13), np.zeros(2)
-        )
+        return {
+            VECTOR: vector.astype(np.float32),
+            FEATURES: self.features["c000"][:-1],
+            RHO: np.zeros(13),
+            EPSILON: np.zeros(2),
+        }
 
-    def expected(self, query: QueryArrays) -> list[tuple[float, str]]:
+    def expected(self, query: Descriptors) -> list[tuple[float, str]]:
         """The shortlist's fused distances, all measured at once, in order."""
-        near = np.linalg.norm(self.vectors.astype(float) - query.vector, axis=1)
+        near = np.linalg.norm(self.vectors.astype(float) - query[VECTOR], axis=1)
         chosen = np.argsort(near, kind="stable")[:SHORTLIST]
         ids = [f"c{i:03d}" for i in chosen]
-        warped = dtw_distances(query.features, [self.features[i] for i in ids])
-        fused = fused_distances(query.vector, self.vectors[chosen], warped)
+        warped = dtw_distances(query[FEATURES], [self.features[i] for i in ids])
+        fused = fused_distances(query[VECTOR], self.vectors[chosen], warped)
         return sorted(zip(np.round(fused, 9).tolist(), ids, strict=True))
 
 

@@ -15,7 +15,7 @@ from app.search.windows.parts import NO_FILTER, Parts, parts_layout
 from app.store.clips import arrays
 from app.store.clips import repository as clips
 from app.store.clips.filter import ClipFilter
-from app.store.clips.record import ClipFacts, NewClip
+from app.store.clips.record import ClipFacts, ClipLabels, NewClip
 from app.store.database import schema
 from app.store.store import Store
 
@@ -39,7 +39,7 @@ def add(store: Store) -> Add:
     rng = np.random.default_rng(3)
 
     def ready(name: str, parts: int) -> str:
-        new = NewClip(name.encode().hex().zfill(64), f"{name}.bvh", 3, name)
+        new = NewClip(name.encode().hex().zfill(64), f"{name}.bvh", 3, ClipLabels(name))
         facts = ClipFacts("bvh", 60, 30.0, 30.0, 9.0, 22, 0.01, {}, (), (), 1)
         starts = np.arange(parts, dtype=np.float32)
         found = {

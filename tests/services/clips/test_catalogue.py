@@ -13,7 +13,8 @@ from app.search.example.methods import Method
 from app.services.clips import catalogue as clips
 from app.services.clips import jobs
 from app.services.find import find
-from app.services.find.find import MotionQuery
+from app.services.find.queries import MotionQuery
+from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.store.clips.record import ClipState, Reanalysis
 from app.store.files import id_file
@@ -112,7 +113,7 @@ def test_another_frame_rate_has_the_clip_analysed_again_under_its_id(
     other = upload(lib, some_demo_clips[1]).clip
     work(lib.settings)
     before = clips.get_clip(lib, clip.id)
-    asked = MotionQuery(other.id, method=Method.VECTOR)
+    asked = MotionQuery(QuerySource(other.id), method=Method.VECTOR)
     far = find.find_motion(lib, asked).items[0].distance
     queued = clips.update_clip(lib, clip.id, {"frame_rate": 15.0, "task": "stroll"})
     assert (queued.id, queued.state, queued.reanalysis) == (
@@ -157,9 +158,9 @@ def test_a_removed_clip_is_gone_with_its_file_from_every_search(
 ) -> None:
     one, other = (upload(lib, clip).clip for clip in some_demo_clips[:2])
     work(lib.settings)
-    assert find.find_motion(lib, MotionQuery(other.id)).items[0].clip.id == one.id
+    assert find.find_motion(lib, MotionQuery(QuerySource(other.id))).items[0].clip.id == one.id
     clips.delete_clip(lib, one.id)
-    assert find.find_motion(lib, MotionQuery(other.id)).items == ()
+    assert find.find_motion(lib, MotionQuery(QuerySource(other.id))).items == ()
     with pytest.raises(ClipNotFound):
         clips.get_clip(lib, one.id)
     with pytest.raises(NotFound):

@@ -13,7 +13,9 @@ from app.demo import DemoClip
 from app.errors import ClipNotReady, ModelNotFitted
 from app.services.clips import catalogue as clips
 from app.services.clips import reanalysis
-from app.services.find.find import MotionQuery, WordQuery, find_motion, find_words
+from app.services.find.find import find_motion, find_words
+from app.services.find.queries import MotionQuery, WordQuery
+from app.services.find.query_source import QuerySource
 from app.services.library.fitted_models import ModelShelf
 from app.services.library.library import Library
 from app.services.recognition.recognise import RecogniseQuery, recognise
@@ -47,7 +49,7 @@ def test_a_worker_that_starts_brings_old_clips_up_to_date(
     found = clips.get_clip(lib, first)
     assert found.state is ClipState.READY
     assert found.analysis_version == reanalysis.ANALYSIS_VERSION
-    hits = find_motion(lib, MotionQuery(clip_id=first))
+    hits = find_motion(lib, MotionQuery(QuerySource(first)))
     assert [hit.clip.id for hit in hits.items] == [second]
 
 
@@ -56,7 +58,9 @@ def test_searches_go_on_while_clips_wait_for_another_analysis(
 ) -> None:
     first, second = _make_ready(lib, some_demo_clips[:2])
     assert reanalysis.requeue_ready(lib) == 2
-    assert [hit.clip.id for hit in find_motion(lib, MotionQuery(clip_id=first)).items] == [second]
+    assert [hit.clip.id for hit in find_motion(lib, MotionQuery(QuerySource(first))).items] == [
+        second
+    ]
 
 
 def _remove_file(lib: Library, clip_id: str) -> Path:
@@ -79,7 +83,9 @@ def test_a_ready_clip_whose_file_is_missing_keeps_its_analysis_and_says_so(
     (told,) = [w.detail for w in kept.warnings if w.code == "file_missing"]
     assert kept.sha256 in told
     assert "kinedex reanalyze" in told
-    assert [hit.clip.id for hit in find_motion(lib, MotionQuery(clip_id=second)).items] == [first]
+    assert [hit.clip.id for hit in find_motion(lib, MotionQuery(QuerySource(second))).items] == [
+        first
+    ]
 
     lost.rename(lost.with_suffix(""))
     work(lib.settings)  # a worker that starts tries again
@@ -123,17 +129,19 @@ def test_during_an_upgrade_that_changes_shapes_searches_go_on_without_the_old_cl
 
     for scope, methods in (("clips", METHODS), ("windows", METHODS[:3]), ("segments", METHODS[:1])):
         for method in methods:
-            hits = find_motion(lib, MotionQuery(asked, method=method, scope=scope, limit=1000))
+            hits = find_motion(
+                lib, MotionQuery(QuerySource(asked), method=method, scope=scope, limit=1000)
+            )
             found = {hit.clip.id for hit in hits.items}
             assert found, (scope, method)
             assert old not in found, (scope, method)
     assert find_words(lib, WordQuery(["walk"], limit=100)).items
-    assert recognise(lib, RecogniseQuery(clip_id=asked)).words
+    assert recognise(lib, RecogniseQuery(QuerySource(asked))).words
     with pytest.raises(ClipNotReady, match="another version"):
-        find_motion(lib, MotionQuery(clip_id=old))
+        find_motion(lib, MotionQuery(QuerySource(old)))
 
     work(lib.settings)
-    hits = find_motion(lib, MotionQuery(asked, limit=1000)).items
+    hits = find_motion(lib, MotionQuery(QuerySource(asked), limit=1000)).items
     assert {hit.clip.id for hit in hits} == set(ids) - {asked}
 
 

@@ -22,7 +22,8 @@ from app.services.clips import catalogue as clips
 from app.services.clips import jobs
 from app.services.clips.catalogue import Created
 from app.services.find import find
-from app.services.find.find import MotionQuery
+from app.services.find.queries import MotionQuery
+from app.services.find.query_source import QuerySource
 from app.services.imports import imports
 from app.services.library.library import Library
 from app.services.recognition import recognise
@@ -92,7 +93,7 @@ def test_the_same_pair_again_is_the_same_clip(paired: Library) -> None:
 
 
 def test_an_uploaded_pair_finds_itself(paired: Library) -> None:
-    query = MotionQuery(content=io.BytesIO(AMC), skeleton=io.BytesIO(ASF))
+    query = MotionQuery(QuerySource(content=io.BytesIO(AMC), skeleton=io.BytesIO(ASF)))
     best = find.find_motion(paired, query).items[0]
     assert best.clip.name == "07_01"
     assert best.distance == pytest.approx(0, abs=1e-3)
@@ -110,14 +111,14 @@ def test_an_uploaded_pair_finds_itself(paired: Library) -> None:
 def test_an_upload_that_is_no_pair_is_refused_by_searches(
     paired: Library, content: bytes, skeleton: bytes | None, failure: type[Exception]
 ) -> None:
-    def sent() -> dict[str, Any]:
+    def sent() -> QuerySource:
         companion = None if skeleton is None else io.BytesIO(skeleton)
-        return {"content": io.BytesIO(content), "skeleton": companion}
+        return QuerySource(content=io.BytesIO(content), skeleton=companion)
 
     with pytest.raises(failure):
-        find.find_motion(paired, MotionQuery(**sent()))
+        find.find_motion(paired, MotionQuery(sent()))
     with pytest.raises(KinedexError):
-        recognise.recognise(paired, RecogniseQuery(**sent()))
+        recognise.recognise(paired, RecogniseQuery(sent()))
 
 
 @pytest.mark.parametrize(

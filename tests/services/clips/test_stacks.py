@@ -10,7 +10,8 @@ import pytest
 from app.errors import BadField
 from app.services.clips import catalogue as clips
 from app.services.find import find
-from app.services.find.find import MotionQuery
+from app.services.find.queries import MotionQuery
+from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.services.recognition import recognise
 from app.services.recognition.recognise import RecogniseQuery
@@ -86,15 +87,17 @@ def test_a_query_is_read_from_its_stack(lib: Library) -> None:
     clip = worked(lib, upload(lib, "bow", b"3").id)
 
     def distance(stack: str | None) -> float:
-        query = MotionQuery(content=io.BytesIO(TAKES), stack=stack, limit=100)
+        query = MotionQuery(QuerySource(content=io.BytesIO(TAKES), stack=stack), limit=100)
         hits = find.find_motion(lib, query).items
         return next(hit.distance for hit in hits if hit.clip.id == clip.id)
 
     assert distance("bow") == pytest.approx(0, abs=1e-4)
     assert distance(None) > 0.01
     with pytest.raises(BadField, match="bow, sway"):
-        find.find_motion(lib, MotionQuery(content=io.BytesIO(TAKES), stack="run"))
+        find.find_motion(lib, MotionQuery(QuerySource(content=io.BytesIO(TAKES), stack="run")))
     with pytest.raises(BadField, match="bow, sway"):
-        recognise.recognise(lib, RecogniseQuery(content=io.BytesIO(TAKES), stack="run"))
+        recognise.recognise(
+            lib, RecogniseQuery(QuerySource(content=io.BytesIO(TAKES), stack="run"))
+        )
     with pytest.raises(BadField, match="uploaded file"):
-        find.find_motion(lib, MotionQuery(clip.id, stack="bow"))
+        find.find_motion(lib, MotionQuery(QuerySource(clip.id, stack="bow")))

@@ -14,8 +14,9 @@ from app.errors import BadField, ModelNotFitted
 from app.search.example.methods import LEARNED, Method
 from app.services.clips import catalogue as clips
 from app.services.find import find
-from app.services.find.find import MotionQuery
 from app.services.find.hits import Hits
+from app.services.find.queries import MotionQuery
+from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.services.training import models
 from app.services.training.fit import fit_library
@@ -29,9 +30,13 @@ def test_the_same_task_comes_first_and_the_same_person_comes_first(
     ready_library: Library, ready_clips: list[ClipRecord]
 ) -> None:
     for clip in ready_clips:
-        tasks = find.find_motion(ready_library, MotionQuery(clip.id, method=TASK, limit=2))
+        tasks = find.find_motion(
+            ready_library, MotionQuery(QuerySource(clip.id), method=TASK, limit=2)
+        )
         assert [hit.clip.task for hit in tasks.items] == [clip.task] * 2
-        people = find.find_motion(ready_library, MotionQuery(clip.id, method=PERSON, limit=2))
+        people = find.find_motion(
+            ready_library, MotionQuery(QuerySource(clip.id), method=PERSON, limit=2)
+        )
         assert [hit.clip.person for hit in people.items] == [clip.person] * 2
 
 
@@ -39,13 +44,13 @@ def test_same_style_other_task_and_same_task_other_style(
     ready_library: Library, clip_of: FindClip
 ) -> None:
     walk = clip_of("ada", "walk")
-    style = MotionQuery(walk.id, method=PERSON, filter={"not_task": "walk"}, limit=3)
+    style = MotionQuery(QuerySource(walk.id), method=PERSON, filter={"not_task": "walk"}, limit=3)
     found = [(h.clip.person, h.clip.task) for h in find.find_motion(ready_library, style).items]
     assert {person for person, _ in found} == {"ada"}
     assert {task for _, task in found} == {"wave", "kick", "bow"}
-    one = MotionQuery(walk.id, method=PERSON, filter={"task": "kick"}, limit=1)
+    one = MotionQuery(QuerySource(walk.id), method=PERSON, filter={"task": "kick"}, limit=1)
     assert find.find_motion(ready_library, one).items[0].clip.id == clip_of("ada", "kick").id
-    task = MotionQuery(walk.id, method=TASK, filter={"not_person": "ada"}, limit=2)
+    task = MotionQuery(QuerySource(walk.id), method=TASK, filter={"not_person": "ada"}, limit=2)
     found = [(h.clip.person, h.clip.task) for h in find.find_motion(ready_library, task).items]
     assert set(found) == {("bruno", "walk"), ("chika", "walk")}
 
@@ -56,7 +61,9 @@ def test_scores_are_probabilities_and_tell_the_same_from_others(
 ) -> None:
     same, other = [], []
     for clip in ready_clips:
-        hits = find.find_motion(ready_library, MotionQuery(clip.id, method=method, limit=100))
+        hits = find.find_motion(
+            ready_library, MotionQuery(QuerySource(clip.id), method=method, limit=100)
+        )
         for hit in hits.items:
             is_same = getattr(hit.clip, method.removeprefix("metric-")) == getattr(
                 clip, method.removeprefix("metric-")
@@ -69,7 +76,7 @@ def test_scores_are_probabilities_and_tell_the_same_from_others(
 def test_there_are_no_parts_of_clips_by_learned_metrics(
     ready_library: Library, clip_of: FindClip
 ) -> None:
-    asked = MotionQuery(clip_of("ada", "walk").id, method=TASK, scope="windows")
+    asked = MotionQuery(QuerySource(clip_of("ada", "walk").id), method=TASK, scope="windows")
     with pytest.raises(BadField, match="method"):
         find.find_motion(ready_library, asked)
 
@@ -90,7 +97,7 @@ def test_new_clips_are_found_without_a_fit_and_a_fit_ends_old_cursors(growing: L
     (new,) = demo_clips(("elin",), ("kick",), takes=1)
 
     def search(limit: int = 2, cursor: str | None = None) -> Hits:
-        query = MotionQuery(content=io.BytesIO(new.content), method=TASK)
+        query = MotionQuery(QuerySource(content=io.BytesIO(new.content)), method=TASK)
         return find.find_motion(growing, replace(query, limit=limit, cursor=cursor))
 
     first = search()
@@ -120,11 +127,11 @@ def test_without_labels_there_is_no_model_and_the_reason_is_told(
     ]
     work(lib.settings)
     with pytest.raises(ModelNotFitted):
-        find.find_motion(lib, MotionQuery(made[0].id, method=method))
+        find.find_motion(lib, MotionQuery(QuerySource(made[0].id), method=method))
     models.request_fit(lib)
     work(lib.settings)
     with pytest.raises(ModelNotFitted, match="two clips each"):
-        find.find_motion(lib, MotionQuery(made[0].id, method=method))
+        find.find_motion(lib, MotionQuery(QuerySource(made[0].id), method=method))
     told = {one.kind: one.reason for one in models.list_unfitted(lib)}
     assert "two clips each" in told[method.value]
     assert "words" not in told
@@ -138,9 +145,9 @@ def test_people_are_not_told_apart_where_that_is_switched_off(
         made = [upload(lib, demo).clip for demo in some_demo_clips[:8]]
         models.request_fit(lib)
         work(lib.settings)
-        found = find.find_motion(lib, MotionQuery(made[0].id, method=TASK, limit=1))
+        found = find.find_motion(lib, MotionQuery(QuerySource(made[0].id), method=TASK, limit=1))
         assert found.items[0].clip.task == made[0].task
         with pytest.raises(ModelNotFitted, match="switched off"):
-            find.find_motion(lib, MotionQuery(made[0].id, method=PERSON))
+            find.find_motion(lib, MotionQuery(QuerySource(made[0].id), method=PERSON))
     finally:
         lib.close()

@@ -17,11 +17,13 @@ from app.search.pose.by_pose import pose_distances
 from app.services.clips import catalogue as clips
 from app.services.find.by_pose import PoseQuery, find_pose
 from app.services.find.hits import Hits
+from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.store.clips import arrays
 from app.store.clips.record import ClipRecord
 from tests.bodies import turned_about_y
 from tests.libraries import FindClip
+from tests.queries import pose_query
 
 TIME = 0.7
 
@@ -32,9 +34,9 @@ def _positions(lib: Library, clip: ClipRecord) -> np.ndarray:
 
 
 def _pages(lib: Library, size: int, **query: Any) -> list[Hits]:
-    pages = [find_pose(lib, PoseQuery(limit=size, **query))]
+    pages = [find_pose(lib, pose_query(limit=size, **query))]
     while pages[-1].next is not None:
-        pages.append(find_pose(lib, PoseQuery(limit=size, cursor=pages[-1].next, **query)))
+        pages.append(find_pose(lib, pose_query(limit=size, cursor=pages[-1].next, **query)))
     return pages
 
 
@@ -44,7 +46,7 @@ def test_the_nearest_frame_of_every_clip_is_told(
     query = clip_of("ada", "kick")
     foot = _positions(ready_library, query)[:, SUN_ROLES.index(JointRole.RIGHT_FOOT), 1]
     frame = int(np.argmax(foot))
-    hits = find_pose(ready_library, PoseQuery(query.id, time=frame / 30, limit=100))
+    hits = find_pose(ready_library, PoseQuery(QuerySource(query.id), time=frame / 30, limit=100))
     assert (hits.method, hits.next) == ("pose", None)
     assert {hit.clip.id for hit in hits.items} == {c.id for c in ready_clips} - {query.id}
     assert hits.items[0].clip.task == "kick"
@@ -59,8 +61,10 @@ def test_the_nearest_frame_of_every_clip_is_told(
 
 
 def test_a_hit_asked_for_is_found_at_no_distance(ready_library: Library, clip_of: FindClip) -> None:
-    first = find_pose(ready_library, PoseQuery(clip_of("ada", "wave").id, time=TIME)).items[0]
-    again = PoseQuery(first.clip.id, time=first.time, include_self=True)
+    first = find_pose(
+        ready_library, PoseQuery(QuerySource(clip_of("ada", "wave").id), time=TIME)
+    ).items[0]
+    again = PoseQuery(QuerySource(first.clip.id), time=first.time, include_self=True)
     (found, *_) = find_pose(ready_library, again).items
     assert (found.clip.id, found.time, found.distance) == (first.clip.id, first.time, 0.0)
     assert found.score == 1.0
@@ -71,7 +75,9 @@ def test_positions_ask_the_same_wherever_the_body_stands(
 ) -> None:
     query = clip_of("bruno", "bow")
     pose = _positions(ready_library, query)[[round(TIME * 30)]]
-    by_time = find_pose(ready_library, PoseQuery(query.id, time=TIME, include_self=True))
+    by_time = find_pose(
+        ready_library, PoseQuery(QuerySource(query.id), time=TIME, include_self=True)
+    )
     moved = 100 * turned_about_y(pose, 2.5)[0] + np.array([70.0, 5.0, -3.0])
     for positions in (pose[0], moved):
         told = find_pose(ready_library, PoseQuery(positions=positions.tolist()))
@@ -95,7 +101,7 @@ def test_pages_put_together_are_the_one_ranking(
 
 def test_a_walk_takes_its_pose_in_every_cycle(ready_library: Library, clip_of: FindClip) -> None:
     walk = clip_of("ada", "walk")
-    query = PoseQuery(walk.id, time=TIME, places="all", include_self=True, limit=1000)
+    query = PoseQuery(QuerySource(walk.id), time=TIME, places="all", include_self=True, limit=1000)
     hits = [h for h in find_pose(ready_library, query).items if h.clip.id == walk.id]
     near = sorted(h.time or 0.0 for h in hits if h.distance < 0.05)
     assert len(near) > 1
@@ -105,10 +111,12 @@ def test_a_walk_takes_its_pose_in_every_cycle(ready_library: Library, clip_of: F
 
 
 def test_a_filter_is_applied_before_the_ranking(ready_library: Library, clip_of: FindClip) -> None:
-    query = PoseQuery(clip_of("ada", "kick").id, time=TIME, limit=1, filter={"task": "bow"})
+    query = PoseQuery(
+        QuerySource(clip_of("ada", "kick").id), time=TIME, limit=1, filter={"task": "bow"}
+    )
     (hit,) = find_pose(ready_library, query).items
     assert hit.clip.task == "bow"
-    nothing = find_pose(ready_library, PoseQuery(query.clip_id, time=TIME, filter={"task": "x"}))
+    nothing = find_pose(ready_library, PoseQuery(query.source, time=TIME, filter={"task": "x"}))
     assert (nothing.items, nothing.next) == ((), None)
 
 
@@ -116,7 +124,7 @@ def test_a_file_is_asked_by_and_never_stored(
     ready_library: Library, some_demo_clips: list[DemoClip], clip_of: FindClip
 ) -> None:
     kick = next(c for c in some_demo_clips if (c.person, c.task) == ("ada", "kick"))
-    query = PoseQuery(content=io.BytesIO(kick.content), time=TIME)
+    query = PoseQuery(QuerySource(content=io.BytesIO(kick.content)), time=TIME)
     (first, *_) = find_pose(ready_library, query).items
     assert first.clip.id == clip_of("ada", "kick").id
     assert (first.distance, first.time) == (pytest.approx(0.0, abs=1e-6), pytest.approx(TIME))
@@ -180,23 +188,25 @@ def test_a_bad_query_is_refused_by_its_field(
 ) -> None:
     query = {"clip_id": clip_of("ada", "walk").id, "time": TIME} | wrong
     with pytest.raises(BadField) as refused:
-        find_pose(ready_library, PoseQuery(**query))
+        find_pose(ready_library, pose_query(**query))
     assert refused.value.places[0].location == location
 
 
 def test_a_cursor_belongs_to_its_pose(ready_library: Library, clip_of: FindClip) -> None:
     walk = clip_of("ada", "walk").id
-    page = find_pose(ready_library, PoseQuery(walk, time=TIME, limit=1))
+    page = find_pose(ready_library, PoseQuery(QuerySource(walk), time=TIME, limit=1))
     with pytest.raises(BadField, match="cursor"):
-        find_pose(ready_library, PoseQuery(walk, time=TIME + 0.5, limit=1, cursor=page.next))
+        find_pose(
+            ready_library, PoseQuery(QuerySource(walk), time=TIME + 0.5, limit=1, cursor=page.next)
+        )
 
 
 def test_a_clip_that_is_not_there_or_not_ready(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     with pytest.raises(ClipNotFound):
-        find_pose(lib, PoseQuery("clip_of_nobody", time=0.0))
+        find_pose(lib, PoseQuery(QuerySource("clip_of_nobody"), time=0.0))
     made = clips.create_clip(lib, io.BytesIO(some_demo_clips[0].content), "a.bvh")
     with pytest.raises(ClipNotReady):
-        find_pose(lib, PoseQuery(made.clip.id, time=0.0))
+        find_pose(lib, PoseQuery(QuerySource(made.clip.id), time=0.0))
     assert find_pose(lib, PoseQuery(positions=GOOD)).items == ()

@@ -12,19 +12,23 @@ from app.errors import BadField, ClipNotFound, ClipNotReady, EmptyFile, ModelNot
 from app.search.example.methods import Method
 from app.services.clips import catalogue as clips
 from app.services.find import find
-from app.services.find.find import MotionQuery, WordQuery
 from app.services.find.hits import Hits
+from app.services.find.queries import MotionQuery, WordQuery
+from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
 from tests.libraries import FindClip
+from tests.queries import motion_query
 
 METHODS = list(Method)
 
 
 def _all_pages(lib: Library, size: int, **query: Any) -> list[Hits]:
-    pages = [find.find_motion(lib, MotionQuery(limit=size, **query))]
+    pages = [find.find_motion(lib, motion_query(limit=size, **query))]
     while pages[-1].next is not None:
-        pages.append(find.find_motion(lib, MotionQuery(limit=size, cursor=pages[-1].next, **query)))
+        pages.append(
+            find.find_motion(lib, motion_query(limit=size, cursor=pages[-1].next, **query))
+        )
     return pages
 
 
@@ -33,7 +37,9 @@ def test_every_clip_is_ranked_and_scores_fall_with_distance(
     ready_library: Library, ready_clips: list[ClipRecord], method: Method
 ) -> None:
     query = ready_clips[0]
-    hits = find.find_motion(ready_library, MotionQuery(query.id, method=method, limit=100))
+    hits = find.find_motion(
+        ready_library, MotionQuery(QuerySource(query.id), method=method, limit=100)
+    )
     assert {hit.clip.id for hit in hits.items} == {c.id for c in ready_clips} - {query.id}
     assert [hit.rank for hit in hits.items] == list(range(1, len(hits.items) + 1))
     for near, far in zip(hits.items, hits.items[1:], strict=False):
@@ -49,7 +55,7 @@ def test_pages_put_together_are_the_one_ranking(
     ready_library: Library, clip_of: FindClip, method: Method
 ) -> None:
     query = {"clip_id": clip_of("ada", "walk").id, "method": method}
-    whole = find.find_motion(ready_library, MotionQuery(limit=100, **query)).items
+    whole = find.find_motion(ready_library, motion_query(limit=100, **query)).items
     paged = [hit for page in _all_pages(ready_library, 4, **query) for hit in page.items]
     assert [(h.rank, h.clip.id, h.distance) for h in paged] == [
         (h.rank, h.clip.id, h.distance) for h in whole
@@ -62,7 +68,7 @@ def test_a_filter_is_applied_before_the_ranking(
 ) -> None:
     query = {"clip_id": clip_of("ada", "walk").id, "method": method}
     wanted = {"task": ["kick", "bow"], "person": "bruno"}
-    hits = find.find_motion(ready_library, MotionQuery(limit=2, filter=wanted, **query))
+    hits = find.find_motion(ready_library, motion_query(limit=2, filter=wanted, **query))
     assert {(h.clip.person, h.clip.task) for h in hits.items} == {
         ("bruno", "kick"),
         ("bruno", "bow"),
@@ -71,7 +77,9 @@ def test_a_filter_is_applied_before_the_ranking(
 
 def test_like_motions_are_found_first(ready_library: Library, clip_of: FindClip) -> None:
     for task in ("walk", "wave", "kick", "bow"):
-        hits = find.find_motion(ready_library, MotionQuery(clip_of("bruno", task).id, limit=1))
+        hits = find.find_motion(
+            ready_library, MotionQuery(QuerySource(clip_of("bruno", task).id), limit=1)
+        )
         assert [hit.clip.task for hit in hits.items] == [task]
 
 
@@ -80,7 +88,7 @@ def test_a_clip_finds_itself_only_when_asked_to(
     ready_library: Library, clip_of: FindClip, method: Method
 ) -> None:
     query = clip_of("chika", "wave")
-    asked = MotionQuery(query.id, method=method, include_self=True, limit=1)
+    asked = MotionQuery(QuerySource(query.id), method=method, include_self=True, limit=1)
     best = find.find_motion(ready_library, asked).items[0]
     assert best.clip.id == query.id
     assert best.distance == pytest.approx(0, abs=1e-6)
@@ -92,7 +100,7 @@ def test_an_upload_finds_its_twin_and_is_not_stored(
 ) -> None:
     demo = next(c for c in some_demo_clips if (c.person, c.task) == ("ada", "kick"))
     files = set(ready_library.store.files)
-    asked = MotionQuery(content=io.BytesIO(demo.content), method=method, limit=1)
+    asked = MotionQuery(QuerySource(content=io.BytesIO(demo.content)), method=method, limit=1)
     best = find.find_motion(ready_library, asked).items[0]
     assert best.clip.id == clip_of("ada", "kick").id
     assert best.distance == pytest.approx(0, abs=1e-4)
@@ -103,13 +111,15 @@ def test_a_part_of_a_clip_is_described_by_itself(
     ready_library: Library, some_demo_clips: list[DemoClip], clip_of: FindClip
 ) -> None:
     clip = clip_of("ada", "walk")
-    whole = MotionQuery(clip.id, include_self=True, limit=1)
-    part = MotionQuery(clip.id, start=0.5, end=1.5, include_self=True, limit=100)
+    whole = MotionQuery(QuerySource(clip.id), include_self=True, limit=1)
+    part = MotionQuery(QuerySource(clip.id, start=0.5, end=1.5), include_self=True, limit=100)
     assert find.find_motion(ready_library, whole).items[0].distance == pytest.approx(0, abs=1e-6)
     found = find.find_motion(ready_library, part).items
     assert next(h for h in found if h.clip.id == clip.id).distance > 0.01
     demo = next(c for c in some_demo_clips if (c.person, c.task) == ("ada", "walk"))
-    uploaded = MotionQuery(content=io.BytesIO(demo.content), start=0.5, end=1.5, limit=100)
+    uploaded = MotionQuery(
+        QuerySource(content=io.BytesIO(demo.content), start=0.5, end=1.5), limit=100
+    )
     theirs = find.find_motion(ready_library, uploaded).items
     assert [h.distance for h in theirs] == pytest.approx([h.distance for h in found], abs=1e-4)
 
@@ -135,19 +145,19 @@ def test_a_wrong_field_is_named(
     ready_library: Library, clip_of: FindClip, query: dict[str, Any], location: str
 ) -> None:
     with pytest.raises(BadField) as refused:
-        find.find_motion(ready_library, MotionQuery(clip_of("ada", "walk").id, **query))
+        find.find_motion(ready_library, motion_query(clip_id=clip_of("ada", "walk").id, **query))
     assert [place.location for place in refused.value.places] == [location]
 
 
 def test_a_cursor_belongs_to_its_question(ready_library: Library, clip_of: FindClip) -> None:
     walk, kick = clip_of("ada", "walk").id, clip_of("ada", "kick").id
-    cursor = find.find_motion(ready_library, MotionQuery(walk, limit=2)).next
+    cursor = find.find_motion(ready_library, MotionQuery(QuerySource(walk), limit=2)).next
     for other in (
-        MotionQuery(kick, cursor=cursor),
-        MotionQuery(walk, cursor=cursor, method="vector"),
-        MotionQuery(walk, cursor=cursor, filter={"task": "walk"}),
-        MotionQuery(walk, cursor=cursor, start=0.5),
-        MotionQuery(walk, cursor=cursor, include_self=True),
+        MotionQuery(QuerySource(kick), cursor=cursor),
+        MotionQuery(QuerySource(walk), cursor=cursor, method="vector"),
+        MotionQuery(QuerySource(walk), cursor=cursor, filter={"task": "walk"}),
+        MotionQuery(QuerySource(walk, start=0.5), cursor=cursor),
+        MotionQuery(QuerySource(walk), cursor=cursor, include_self=True),
     ):
         with pytest.raises(BadField, match="cursor"):
             find.find_motion(ready_library, other)
@@ -155,18 +165,20 @@ def test_a_cursor_belongs_to_its_question(ready_library: Library, clip_of: FindC
 
 def test_queries_that_cannot_be_used_say_why(ready_library: Library) -> None:
     with pytest.raises(ClipNotFound):
-        find.find_motion(ready_library, MotionQuery("clip_none"))
+        find.find_motion(ready_library, MotionQuery(QuerySource("clip_none")))
     with pytest.raises(EmptyFile):
-        find.find_motion(ready_library, MotionQuery(content=io.BytesIO(b"")))
+        find.find_motion(ready_library, MotionQuery(QuerySource(content=io.BytesIO(b""))))
     with pytest.raises(Unreadable) as refused:
-        find.find_motion(ready_library, MotionQuery(content=io.BytesIO(b"HIERARCHY\nROOT x\n{\n")))
+        find.find_motion(
+            ready_library, MotionQuery(QuerySource(content=io.BytesIO(b"HIERARCHY\nROOT x\n{\n")))
+        )
     assert refused.value.places
 
 
 def test_a_clip_that_is_not_ready_cannot_be_asked_about(lib: Library) -> None:
     queued = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), "a.bvh").clip
     with pytest.raises(ClipNotReady):
-        find.find_motion(lib, MotionQuery(queued.id))
+        find.find_motion(lib, MotionQuery(QuerySource(queued.id)))
     with pytest.raises(ModelNotFitted):
         find.find_words(lib, WordQuery(["walk"]))
 

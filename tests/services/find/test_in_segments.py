@@ -12,13 +12,15 @@ import pytest
 from app.errors import BadField, ClipNotFound
 from app.services.clips import catalogue as clips
 from app.services.find import find
-from app.services.find.find import MotionQuery
 from app.services.find.hits import Hits
+from app.services.find.queries import MotionQuery
+from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.services.views.segments import list_segments
 from app.store.clips.record import ClipRecord
 from tests.cyclic_dances import CyclicDance, cyclic_dance
 from tests.libraries import settings_for, work
+from tests.queries import motion_query
 from tests.services.dances import dance_file, upload_dance
 
 DANCERS = ("ada", "bruno", "chika")
@@ -53,7 +55,7 @@ def clip(danced: Library) -> ClipRecord:
 
 
 def _search(lib: Library, **asked: object) -> Hits:
-    return find.find_motion(lib, MotionQuery(scope="segments", **asked))  # type: ignore[arg-type]
+    return find.find_motion(lib, motion_query(scope="segments", **asked))
 
 
 def _middle(lib: Library, clip: ClipRecord) -> int:
@@ -158,7 +160,7 @@ def test_segments_are_of_stored_clips_and_of_their_scope(danced: Library, clip: 
     with pytest.raises(BadField, match="stored clip"):
         _search(danced, content=io.BytesIO(b"x"), segment=1)
     with pytest.raises(BadField, match="scope segments"):
-        find.find_motion(danced, MotionQuery(clip_id=clip.id, segment=1))
+        find.find_motion(danced, MotionQuery(QuerySource(clip.id), segment=1))
     with pytest.raises(ClipNotFound):
         _search(danced, clip_id="clip_none", segment=1)
 

@@ -17,12 +17,12 @@ from app.numerics.arrays import FloatArray
 from app.search.windows.overlap_merging import MAX_OVERLAP
 from app.services.clips import catalogue as clips
 from app.services.find import find
-from app.services.find.find import MotionQuery
 from app.services.find.hits import Hit, Hits
 from app.services.find.in_windows import LONGEST_SECONDS
 from app.services.library.library import Library
 from tests.bodies import turned_about_y
 from tests.libraries import settings_for, work
+from tests.queries import motion_query
 from tests.streams import at_rate, body_of, joined, npz_of, of_size, warped
 
 METHODS = ["fused", "vector", "dtw"]
@@ -85,7 +85,7 @@ def hidden(
 
 
 def search(lib: Library, **query: Any) -> Hits:
-    return find.find_motion(lib, MotionQuery(scope="windows", **query))
+    return find.find_motion(lib, motion_query(scope="windows", **query))
 
 
 def sought(hidden: Hidden, piece: str, **query: Any) -> Hits:
@@ -191,7 +191,7 @@ def test_a_filter_is_applied_before_the_ranking(hidden: Hidden, method: str) -> 
 def test_a_wrong_field_is_named(hidden: Hidden, query: dict[str, Any], location: str) -> None:
     asked = {"clip_id": hidden.ids["long"], "scope": "windows"} | query
     with pytest.raises(BadField) as refused:
-        find.find_motion(hidden.lib, MotionQuery(**asked))
+        find.find_motion(hidden.lib, motion_query(**asked))
     assert [place.location for place in refused.value.places] == [location]
 
 
@@ -212,7 +212,7 @@ def test_a_cursor_belongs_to_its_question(hidden: Hidden) -> None:
                   {"include_self": True}, {"scope": "clips"}):  # fmt: skip
         query = {"scope": "windows", **asked, **other, "cursor": cursor}
         with pytest.raises(BadField, match="cursor"):
-            find.find_motion(hidden.lib, MotionQuery(**query))
+            find.find_motion(hidden.lib, motion_query(**query))
 
 
 def test_what_comes_and_goes_is_followed_while_pages_stay_in_step(

@@ -29,7 +29,7 @@ def test_every_clip_is_on_the_map_near_its_like(
 
 def test_a_filter_and_a_limit_leave_points_where_they_are(ready_library: Library) -> None:
     whole = space.draw_map(ready_library)
-    walks = space.draw_map(ready_library, wanted=ClipFilter(task=("walk",)))
+    walks = space.draw_map(ready_library, clip_filter=ClipFilter(task=("walk",)))
     place = {clip.id: point for clip, point in zip(whole.clips, whole.points, strict=True)}
     assert {clip.task for clip in walks.clips} == {"walk"}
     for clip, point in zip(walks.clips, walks.points, strict=True):

@@ -8,7 +8,8 @@ import pytest
 from app.demo import DemoClip
 from app.services.clips.catalogue import update_clip
 from app.services.find import by_words as word_ranking
-from app.services.find.find import WordQuery, find_words
+from app.services.find.find import find_words
+from app.services.find.queries import WordQuery
 from app.services.library.library import Library
 from app.services.library.precomputed_rows import OUTPUTS, POINTS, read_known
 from app.services.training.models import request_fit

@@ -10,6 +10,7 @@ import pytest
 
 from app.demo import DemoClip
 from app.errors import BadField, ModelNotFitted
+from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.services.recognition import recognise
 from app.services.recognition.recognise import METHODS, RecogniseQuery
@@ -24,7 +25,7 @@ from tests.libraries import FindClip, settings_for, upload, work
 def test_a_stored_clip_is_recognised(
     ready_library: Library, clip_of: FindClip, method: str
 ) -> None:
-    asked = RecogniseQuery(clip_of("ada", "wave").id, method=method)
+    asked = RecogniseQuery(QuerySource(clip_of("ada", "wave").id), method=method)
     found = recognise.recognise(ready_library, asked)
     assert found.task.candidates[0].label == "wave"
     assert found.person.candidates[0].label == "ada"
@@ -34,7 +35,9 @@ def test_a_stored_clip_is_recognised(
 
 
 def test_what_is_known_is_taken_as_given(ready_library: Library, clip_of: FindClip) -> None:
-    asked = RecogniseQuery(clip_of("ada", "wave").id, known_person="ada", known_task=" wave ")
+    asked = RecogniseQuery(
+        QuerySource(clip_of("ada", "wave").id), known_person="ada", known_task=" wave "
+    )
     found = recognise.recognise(ready_library, asked)
     assert (found.person.label, found.task.label) == ("ada", "wave")
 
@@ -43,15 +46,21 @@ def test_an_upload_is_recognised_as_its_stored_twin(
     ready_library: Library, some_demo_clips: list[DemoClip], clip_of: FindClip
 ) -> None:
     demo = next(c for c in some_demo_clips if (c.person, c.task) == ("chika", "bow"))
-    theirs = recognise.recognise(ready_library, RecogniseQuery(content=io.BytesIO(demo.content)))
-    ours = recognise.recognise(ready_library, RecogniseQuery(clip_of("chika", "bow").id))
+    theirs = recognise.recognise(
+        ready_library, RecogniseQuery(QuerySource(content=io.BytesIO(demo.content)))
+    )
+    ours = recognise.recognise(
+        ready_library, RecogniseQuery(QuerySource(clip_of("chika", "bow").id))
+    )
     assert theirs.task.candidates[0].label == ours.task.candidates[0].label == "bow"
     assert theirs.words[0] == pytest.approx(ours.words[0])
 
 
 def test_another_method_is_refused(ready_library: Library, clip_of: FindClip) -> None:
     with pytest.raises(BadField, match="method"):
-        recognise.recognise(ready_library, RecogniseQuery(clip_of("ada", "bow").id, method="x"))
+        recognise.recognise(
+            ready_library, RecogniseQuery(QuerySource(clip_of("ada", "bow").id), method="x")
+        )
 
 
 def test_models_tell_what_they_were_fitted_on_and_how_good_they_are(
@@ -85,7 +94,7 @@ def test_what_cannot_be_fitted_is_skipped_with_its_reason(
     assert outcomes["recogniser"]["reason"]
     clip = upload(lib, some_demo_clips[0]).clip
     with pytest.raises(ModelNotFitted):
-        recognise.recognise(lib, RecogniseQuery(clip.id))
+        recognise.recognise(lib, RecogniseQuery(QuerySource(clip.id)))
 
 
 def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
@@ -138,4 +147,6 @@ def test_methods_that_need_persons_say_so_where_persons_are_not_recognised(
         ready_library, settings=settings_for(Path("/nowhere"), recognize_persons=False)
     )
     with pytest.raises(ModelNotFitted, match="switched off"):
-        recognise.recognise(closed, RecogniseQuery(clip_of("ada", "wave").id, method=method))
+        recognise.recognise(
+            closed, RecogniseQuery(QuerySource(clip_of("ada", "wave").id), method=method)
+        )

@@ -7,7 +7,9 @@ import pytest
 
 from app.errors import ClipNotFound
 from app.services.clips import catalogue as clips
-from app.services.find.find import MotionQuery, find_motion
+from app.services.find.find import find_motion
+from app.services.find.queries import MotionQuery
+from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.services.views.keyposes import name_keyposes
 from app.services.views.segments import Segments, list_segments, segment_arrays
@@ -85,7 +87,7 @@ def test_segments_follow_the_keyposes_that_a_person_names(
     name_keyposes(lib, clip.id, [0.5, 1.5, 4.0])
     named = list_segments(lib, clip.id)
     assert [(one.start, one.end) for one in named.segments] == [(0.5, 1.5), (1.5, 4.0)]
-    asked = MotionQuery(clip_id=clip.id, segment=0, scope="segments", include_self=True)
+    asked = MotionQuery(QuerySource(clip.id), segment=0, scope="segments", include_self=True)
     hits = find_motion(lib, asked).items
     assert [(hit.start, hit.end) for hit in hits] == [(0.5, 1.5), (1.5, 4.0)]
     name_keyposes(lib, clip.id, [])

@@ -1,0 +1,84 @@
+"""The query of a command: a motion file, or the id of a stored clip."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from app.errors import BadField, ClipNotFound, Place
+
+if TYPE_CHECKING:
+    from app.services.find.query_source import QuerySource
+    from app.store.files.files import Readable
+
+Query = Annotated[str, typer.Argument(help="A motion file, or the id of a stored clip.")]
+FrameRate = Annotated[float | None, typer.Option(help="Of a file: overrides what it declares.")]
+Skeleton = Annotated[
+    Path | None,
+    typer.Option(exists=True, dir_okay=False, help="The ASF file that an AMC file needs."),
+]
+Stack = Annotated[
+    str | None, typer.Option(help="Of an FBX file: the animation stack; default the longest.")
+]
+Unit = Annotated[str | None, typer.Option(help="Of a file: m, cm, mm, in, or meters per unit.")]
+
+
+@contextmanager
+def source_of(
+    query: str,
+    *,
+    start: float | None = None,
+    end: float | None = None,
+    skeleton: Path | None = None,
+    frame_rate: float | None = None,
+    unit: str | None = None,
+    stack: str | None = None,
+    advice: str = "",
+) -> Iterator[QuerySource]:
+    """The query of a command, with its files open: a file if `query` is its path, otherwise the
+    clip with that id.
+
+    advice: a sentence for the user whose query is neither. Raises BadField for a file that
+    cannot be read, and ClipNotFound (from the search) if there is neither a file nor a clip.
+    """
+    from app.services.find.query_source import QuerySource
+
+    is_file = os.path.lexists(query)
+    with (
+        _opened(Path(query) if is_file else None) as content,
+        _opened(skeleton) as skeleton_content,
+    ):
+        source = QuerySource(
+            clip_id=None if is_file else query,
+            content=content,
+            start=start,
+            end=end,
+            skeleton=skeleton_content,
+            frame_rate=frame_rate,
+            unit=unit,
+            stack=stack,
+        )
+        try:
+            yield source
+        except ClipNotFound as problem:
+            if is_file:
+                raise
+            detail = f"There is no file {query!r}, and no clip has that id.{advice}"
+            raise ClipNotFound(detail, places=problem.places) from None
+
+
+@contextmanager
+def _opened(path: Path | None) -> Iterator[Readable | None]:
+    """The content of a file that a user named; None without one. Raises BadField."""
+    try:
+        opened = nullcontext() if path is None else path.open("rb")
+    except OSError as problem:
+        message = f"{path} cannot be read: {problem.strerror}"
+        raise BadField(message, places=[Place("file", message)]) from None
+    with opened as content:
+        yield content

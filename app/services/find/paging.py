@@ -1,0 +1,86 @@
+"""One page of a ranking: from the entries that were found to hits and the next cursor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from app.search.ranking import cursor as cursors
+from app.search.ranking.cursor import Anchor, Position
+from app.services.find.hits import Hit, HitPage
+from app.services.library.library import Library
+from app.store.clips import repository as stored
+from app.store.clips.record import ClipRecord
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """An entry of a ranking, before its clip is read.
+
+    key: orders matches of the same distance, and names one in a cursor; start, end: seconds, the
+    part that was found; end None: the clip's end; time: as in `Hit`.
+    """
+
+    clip_id: str
+    key: str
+    distance: float
+    start: float = 0.0
+    end: float | None = None
+    time: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class MatchPage:
+    """The matches of one page, in order; more: whether others follow; anchor: see `Anchor`."""
+
+    matches: Sequence[Match]
+    more: bool
+    anchor: Anchor | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Paging:
+    """Which page of a ranking is asked for.
+
+    question: digest of what is asked, which binds a cursor to it; after: the last hit of the page
+    before, None for the first page.
+    """
+
+    question: str
+    after: Position | None
+
+    @classmethod
+    def at(cls, cursor: str | None, question: str) -> Paging:
+        """The page at a client's cursor. Raises BadField where it belongs to another question."""
+        return cls(question, None if cursor is None else cursors.decode(cursor, question))
+
+    @property
+    def anchor(self) -> Anchor | None:
+        """The anchor that the cursor remembers, if any."""
+        return self.after.anchor if self.after else None
+
+    def hits(self, lib: Library, page: MatchPage, to_score: Callable[[float], float]) -> HitPage:
+        """The matches as hits, with their clips as they are now.
+
+        A match whose clip was deleted in the meantime is left out; it keeps its rank.
+        to_score: from a distance to a score, 0..1.
+        """
+        before = self.after.rank if self.after else 0
+        with lib.store.read() as tx:
+            clips = stored.get_many(tx, {match.clip_id: None for match in page.matches})
+        items = tuple(
+            _hit(rank, match, clip, to_score(match.distance))
+            for rank, match in enumerate(page.matches, before + 1)
+            if (clip := clips.get(match.clip_id)) is not None
+        )
+        if not page.more:
+            return HitPage(items, None)
+        last = page.matches[-1]
+        position = Position(before + len(page.matches), last.distance, last.key, page.anchor)
+        return HitPage(items, cursors.encode(position, self.question))
+
+
+def _hit(rank: int, match: Match, clip: ClipRecord, score: float) -> Hit:
+    duration = clip.duration or match.end or 0.0
+    end = duration if match.end is None else min(match.end, duration)
+    return Hit(rank, score, match.distance, match.start, end, clip, match.time)

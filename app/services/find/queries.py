@@ -1,0 +1,52 @@
+"""What a client asks a search for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from app.search.example.methods import Method
+from app.services.find.query_source import QuerySource
+from app.store.clips.filter import ClipFilter
+
+DEFAULT_LIMIT = 10
+SCOPES = ("clips", "windows", "segments")
+
+Filter = ClipFilter | Mapping[str, Any] | None
+"""A filter that was checked, or the conditions as a client sent them, or none."""
+
+
+@dataclass(frozen=True, slots=True)
+class MotionQuery:
+    """A search by example.
+
+    scope: "clips" compares whole clips; "windows" finds parts of clips, wherever they lie in a
+    clip; "segments" finds motions from one keypose to the next. segment: with that scope, the
+    index of the queried clip's segment that is the query. limit: 1 to 1,000 hits; include_self:
+    whether the query itself may be a hit; cursor: `next` of the page before.
+    """
+
+    source: QuerySource
+    method: Method | str = Method.FUSED
+    limit: int = DEFAULT_LIMIT
+    filter: Filter = None
+    scope: str = "clips"
+    segment: int | None = None
+    include_self: bool = False
+    cursor: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class WordQuery:
+    """A search by words: mode "default" (kernel ridge) or "cca" (Takano's correlated space).
+
+    words: words, phrases or sentences; a word with a minus before it (-left) leaves out the
+    clips that carry it.
+    """
+
+    words: Sequence[str]
+    mode: str = "default"
+    limit: int = DEFAULT_LIMIT
+    filter: Filter = None
+    cursor: str | None = None

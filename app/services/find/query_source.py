@@ -1,0 +1,44 @@
+"""The motion that a search or a recognition asks about."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from app.store.files.files import Readable
+
+UPLOAD_ONLY = ("skeleton", "frame_rate", "unit", "roles", "stack")
+"""Fields of a QuerySource that describe an uploaded file. A stored clip has its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class QuerySource:
+    """A stored clip or an uploaded file, the part of it that is meant, and the client's hints.
+
+    Exactly one of `clip_id` and `content` must be given; `describe` checks it.
+
+    start, end: seconds, the part that is meant; None is the motion's own start or end.
+    skeleton: the ASF file that an AMC file needs; frame_rate: Hz; unit: a name, or meters in one
+    unit; roles: joint names by role; stack: the animation stack of an FBX file.
+    """
+
+    clip_id: str | None = None
+    content: Readable | None = None
+    start: float | None = None
+    end: float | None = None
+    skeleton: Readable | None = None
+    frame_rate: float | str | None = None
+    unit: float | str | None = None
+    roles: Mapping[str, str] | None = None
+    stack: str | None = None
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all of the motion is meant."""
+        return self.start is None and self.end is None
+
+    def excluded_clips(self, *, include_self: bool) -> frozenset[str]:
+        """Ids of the clips that must not be hits: the queried clip, unless `include_self`."""
+        return frozenset({self.clip_id} if self.clip_id and not include_self else ())

@@ -1,0 +1,78 @@
+"""From a QuerySource to what is analyzed, and what is known of it afterwards."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+
+from app.errors import BadField, EmptyFile, TooLarge
+from app.search.windows import proposals
+from app.services.find.query import QueryDescriptors, analysis_request, describe
+from app.services.find.query_source import QuerySource
+from app.services.library.analysis_pool import AnalysisRequest
+from app.services.library.library import Library
+from app.store.clips.record import ClipRecord
+
+
+def test_an_analysis_is_asked_for_with_all_that_is_said_of_an_upload() -> None:
+    source = QuerySource(
+        content=io.BytesIO(b"motion"),
+        skeleton=io.BytesIO(b"skeleton"),
+        frame_rate="30",
+        unit="cm",
+        roles={"hips": "Pelvis"},
+        stack=" run ",
+    )
+    assert analysis_request(source, max_bytes=8) == AnalysisRequest(
+        content=b"motion",
+        skeleton=b"skeleton",
+        frame_rate=30.0,
+        metres_per_unit=0.01,
+        roles={"hips": "Pelvis"},
+        stack="run",
+        for_search=True,
+    )
+
+
+def test_each_file_of_an_upload_has_a_limit_and_is_not_empty() -> None:
+    for content, skeleton in ((b"123456789", b"1"), (b"1", b"123456789")):
+        source = QuerySource(content=io.BytesIO(content), skeleton=io.BytesIO(skeleton))
+        with pytest.raises(TooLarge):
+            analysis_request(source, max_bytes=8)
+    with pytest.raises(EmptyFile):
+        analysis_request(QuerySource(content=io.BytesIO(b"1"), skeleton=io.BytesIO()), max_bytes=8)
+
+
+@pytest.mark.parametrize("source", [QuerySource(), QuerySource("clip", io.BytesIO(b"x"))])
+def test_a_query_is_a_clip_or_a_file(ready_library: Library, source: QuerySource) -> None:
+    with pytest.raises(BadField, match="either a clip_id or a file"):
+        describe(ready_library, source, ("features_10hz",))
+
+
+def test_a_part_of_a_stored_clip_knows_where_it_lies(ready_clips: list[ClipRecord]) -> None:
+    clip = ready_clips[0]
+    duration = clip.duration or 0.0
+
+    def descriptors(**part: float) -> QueryDescriptors:
+        return QueryDescriptors(QuerySource(clip.id, **part), {}, clip)
+
+    assert descriptors().seconds == duration
+    assert descriptors(start=0.5).seconds == duration - 0.5
+    assert descriptors(start=0.5, end=0.75).seconds == 0.25
+    interval = descriptors(start=0.5, end=0.75).interval
+    assert interval == proposals.ExcludedInterval(clip.id, 0.5, 0.75)
+
+
+def test_an_upload_is_as_long_as_its_positions_and_lies_nowhere() -> None:
+    arrays = {"role_positions": np.zeros((60, 13, 3))}
+    query = QueryDescriptors(QuerySource(content=io.BytesIO(b"x"), start=1.0), arrays, None)
+    assert (query.seconds, query.interval) == (2.0, None)
+
+
+def test_the_queried_clip_is_excluded_unless_it_may_be_a_hit() -> None:
+    source = QuerySource("clip")
+    assert source.excluded_clips(include_self=False) == {"clip"}
+    assert source.excluded_clips(include_self=True) == frozenset()
+    assert QuerySource(content=io.BytesIO(b"x")).excluded_clips(include_self=False) == frozenset()
