@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from app.analysis.analyse import describe_for_search
+from app.analysis.analyze import describe_for_search
 from app.formats.read import read_recording
 from app.models.folds import recording_of
 from app.models.metric.learned_metric import INPUTS, Described

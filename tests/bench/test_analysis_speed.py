@@ -10,7 +10,7 @@ import time
 
 import pytest
 
-from app.analysis.analyse import analyse
+from app.analysis.analyze import analyze
 from app.errors import BadContent
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise
@@ -44,5 +44,5 @@ def _speed(files: list[tuple[bytes, float]], *, stored: bool) -> float:
             continue
         seconds += motion.duration
         if stored:
-            analyse(motion)
+            analyze(motion)
     return seconds / (time.process_time() - began)

@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from app.analysis.analyse import analyse
+from app.analysis.analyze import analyze
 from app.analysis.energy.energy import EnergyMethod, Weights, energies
 from app.analysis.keyposes.end_effectors import end_effector_candidates
 from app.analysis.keyposes.keyposes import T1, T2, find_candidates, find_keyposes
@@ -170,7 +170,7 @@ def test_a_minute_at_120_hz() -> None:
     motion = _minute()
     track = body_track(motion)
     for name, work in (
-        ("analysis of everything", lambda: analyse(motion)),
+        ("analysis of everything", lambda: analyze(motion)),
         ("keyposes alone", lambda: find_keyposes(track)),
     ):
         wall, cpu = _seconds(work)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.analysis.analyse import describe_for_search
+from app.analysis.analyze import describe_for_search
 from app.analysis.descriptors.motion_sample import SAMPLES
 from app.analysis.keyposes.keyposes import find_keyposes
 from app.analysis.segments.danced_cycles import DancedCycles, danced_cycles

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.analysis.analyse import describe_for_search
+from app.analysis.analyze import describe_for_search
 from app.demo import demo_clips
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalise

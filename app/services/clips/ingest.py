@@ -6,7 +6,7 @@ library's version, the job and the imports that wait: a clip is ready wholly or 
 
 from __future__ import annotations
 
-from app.analysis.analyse import ANALYSIS_VERSION, Analysis
+from app.analysis.analyze import ANALYSIS_VERSION, Analysis
 from app.analysis.energy.energy import EnergyMethod
 from app.errors import (
     MAX_MESSAGE,

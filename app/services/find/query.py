@@ -77,7 +77,7 @@ def _of_clip(lib: Library, question: Question, clip_id: str, names: tuple[str, .
 
 
 def _of_upload(lib: Library, question: Question, names: tuple[str, ...]) -> Arrays:
-    found = lib.pool.analyse(_order(lib, question))
+    found = lib.pool.analyze(_order(lib, question))
     if question.start is None and question.end is None:
         return found.arrays
     return _described(cut(found.motion, question.start, question.end), names)
@@ -86,7 +86,7 @@ def _of_upload(lib: Library, question: Question, names: tuple[str, ...]) -> Arra
 def _described(motion: Motion, names: tuple[str, ...]) -> Arrays:
     """The named descriptors of a part of a motion, computed here and now."""
     # The analysis is slow to import, and a search by a whole clip does not need it.
-    from app.analysis.analyse import describe_for_search
+    from app.analysis.analyze import describe_for_search
 
     return describe_for_search(motion, names).arrays
 

@@ -34,7 +34,7 @@ from app.services.children.processes import limit_memory, log_like_parent, stder
 from app.store.files.checked import read_whole
 
 if TYPE_CHECKING:
-    from app.analysis.analyse import Analysis
+    from app.analysis.analyze import Analysis
     from app.analysis.rhythm.onsets import Onsets
     from app.motion.skeleton.recording import Caution, Recording
 
@@ -98,11 +98,11 @@ class AnalysisPool:
 
         is_alone: begin when no other analysis of this pool runs, and let none begin meanwhile.
         """
-        return self._begin(analyse_order, order, is_alone=is_alone)
+        return self._begin(analyze_order, order, is_alone=is_alone)
 
-    def analyse(self, order: Order) -> Analysis:
+    def analyze(self, order: Order) -> Analysis:
         """Analyse and wait; raises as `outcome` does."""
-        return self._wait_for(analyse_order, order)
+        return self._wait_for(analyze_order, order)
 
     def read(self, order: Order) -> Recording:
         """Only read the file, and wait; raises as `outcome` does."""
@@ -173,12 +173,12 @@ class AnalysisPool:
         return ChildPool(self._size, _prepare, self.limits.memory_mb, level_of_process())
 
 
-def analyse_order(order: Order, limits: Limits) -> Analysis:
+def analyze_order(order: Order, limits: Limits) -> Analysis:
     """Read, canonicalise and analyse one file, here and now (runs in the child).
 
     Raises BadContent for what cannot be used, TooLarge beyond the limits.
     """
-    from app.analysis import analyse
+    from app.analysis import analyze
     from app.analysis.keyposes.keyposes import T1, T2
     from app.analysis.rhythm.rhythm import Told
     from app.motion.canonical.canonical import canonicalise
@@ -193,11 +193,11 @@ def analyse_order(order: Order, limits: Limits) -> Analysis:
         roles=roles or None,
     )
     if order.for_search:
-        return analyse.describe_for_search(motion)
+        return analyze.describe_for_search(motion)
     t1, t2 = order.thresholds or (T1, T2)
     told = Told(order.beats, order.tempo, order.audio_offset)
     onsets, doubts = (None, ()) if order.audio_path is None else _listen(Path(order.audio_path))
-    found = analyse.analyse(motion, t1=t1, t2=t2, told=told, onsets=onsets)
+    found = analyze.analyze(motion, t1=t1, t2=t2, told=told, onsets=onsets)
     return replace(found, cautions=(*doubts, *found.cautions))
 
 

@@ -88,7 +88,7 @@ def test_a_frame_rate_of_the_file_that_cannot_be_is_refused(rate: float) -> None
     assert canonicalise(person(frame_rate=rate), frame_rate=25).frame_rate == 25
 
 
-def test_no_arms_are_analysed_as_far_as_it_goes() -> None:
+def test_no_arms_are_analyzed_as_far_as_it_goes() -> None:
     armless = without(person(CONVENTIONS["MotionBuilder"]), "shoulder", "elbow", "hand")
     motion = canonicalise(armless)
     missing = {role for role in SUN_ROLES if role.endswith(("shoulder", "elbow", "hand"))}

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.analysis.analyse import analyse
+from app.analysis.analyze import analyze
 from app.errors import BadContent
 from app.motion.canonical.canonical import canonicalise
 from app.motion.skeleton.recording import Recording
@@ -75,7 +75,7 @@ def test_a_joint_that_is_no_part_of_the_body_is_only_doubted() -> None:
     motion = canonicalise(replace(plain, skeleton=skeleton, positions=positions))
     (doubt,) = [caution for caution in motion.cautions if caution.code == "position_suspect"]
     assert "frame 0, joint camera" in doubt.detail
-    _check_arrays(analyse(motion).arrays)
+    _check_arrays(analyze(motion).arrays)
 
 
 def _check_arrays(arrays: dict[str, FloatArray]) -> None:
@@ -112,7 +112,7 @@ def test_what_is_not_refused_can_be_described(
         motion = canonicalise(
             replace(plain, positions=positions), metres_per_unit=unit, frame_rate=rate
         )
-        found = analyse(motion)
+        found = analyze(motion)
     except BadContent:
         return
     _check_arrays(found.arrays)

@@ -18,7 +18,7 @@ from app.services.clips import catalogue as clips
 from app.services.clips.catalogue import Created, NewClip
 from app.services.clips.recordings import NewRecording
 from app.services.imports import imports
-from app.services.library.analysis_pool import Order, analyse_order
+from app.services.library.analysis_pool import Order, analyze_order
 from app.services.library.library import Library, ingest_limits
 from app.services.views import keyposes
 from app.store.clips.record import ClipRecord, ClipState, Reanalysis
@@ -90,7 +90,7 @@ def test_a_decoder_writes_nothing_into_our_log(
     song = tmp_path / "song.mp3"
     song.write_bytes(as_format(danced.audio, "MP3")[:2000])
     order = Order(content=danced.content, audio_path=str(song))
-    found = analyse_order(order, ingest_limits(lib.settings))  # in this process
+    found = analyze_order(order, ingest_limits(lib.settings))  # in this process
     assert "audio_truncated" in {caution.code for caution in found.cautions}
     assert capfd.readouterr() == ("", "")
 

@@ -42,19 +42,19 @@ def test_an_analysis_comes_back_with_its_arrays(
     pool: AnalysisPool, some_demo_clips: list[DemoClip], tmp_path: Path
 ) -> None:
     clip = some_demo_clips[0]
-    found = pool.analyse(Order(content=clip.content))
+    found = pool.analyze(Order(content=clip.content))
     assert found.motion.frame_rate == clip.frame_rate
     assert "symbol_means" in found.arrays
     (tmp_path / "a.bvh").write_bytes(clip.content)
     told = Order(path=str(tmp_path / "a.bvh"), frame_rate=24.0, metres_per_unit=0.02)
-    again = pool.analyse(told)
+    again = pool.analyze(told)
     assert (again.motion.frame_rate, again.motion.metres_per_unit) == (24.0, 0.02)
-    assert "symbol_means" not in pool.analyse(Order(content=clip.content, for_search=True)).arrays
+    assert "symbol_means" not in pool.analyze(Order(content=clip.content, for_search=True)).arrays
 
 
 def test_the_readers_own_failure_keeps_its_place(pool: AnalysisPool) -> None:
     with pytest.raises(Unreadable) as refused:
-        pool.analyse(Order(content=b"HIERARCHY\nROOT a\n{\n  OFSET 0 0 0\n"))
+        pool.analyze(Order(content=b"HIERARCHY\nROOT a\n{\n  OFSET 0 0 0\n"))
     assert "line" in refused.value.places[0].location
 
 
@@ -62,14 +62,14 @@ def test_a_joint_name_that_the_file_lacks_is_told(
     pool: AnalysisPool, some_demo_clips: list[DemoClip]
 ) -> None:
     with pytest.raises(KinedexError) as refused:
-        pool.analyse(Order(content=some_demo_clips[0].content, roles={"hips": "tail"}))
+        pool.analyze(Order(content=some_demo_clips[0].content, roles={"hips": "tail"}))
     assert refused.value.places[0].location == "roles.hips"
 
 
 def test_frames_and_joints_are_limited(some_demo_clips: list[DemoClip]) -> None:
     tight = AnalysisPool(Limits(60.0, 2048, frames=5, joints=100))
     with pytest.raises(TooLarge) as refused:
-        tight.analyse(Order(content=some_demo_clips[0].content))
+        tight.analyze(Order(content=some_demo_clips[0].content))
     assert refused.value.places[0].location == "frames"
     tight.close()
 
@@ -82,8 +82,8 @@ def test_an_analysis_that_nobody_waits_for_is_stopped_and_the_next_one_done(
     with within(Deadline(60.0)) as deadline:
         threading.Timer(0.3, deadline.abandon).start()
         with pytest.raises(ClientLeft):
-            pool.analyse(Order(content=content))
-    assert pool.analyse(Order(content=some_demo_clips[0].content)).motion.frames > 1
+            pool.analyze(Order(content=content))
+    assert pool.analyze(Order(content=some_demo_clips[0].content)).motion.frames > 1
     pool.close()
 
 
@@ -92,31 +92,31 @@ def test_an_analysis_over_its_time_is_stopped_and_the_next_one_done(
 ) -> None:
     hasty = AnalysisPool(Limits(0.3, 2048, 10_000_000, 100))
     with pytest.raises(AnalysisTimedOut):
-        hasty.analyse(Order(content=repeated(some_demo_clips[0], 150)))
+        hasty.analyze(Order(content=repeated(some_demo_clips[0], 150)))
     with pytest.raises(Unreadable):
-        hasty.analyse(Order(content=b"HIERARCHY\n"))
+        hasty.analyze(Order(content=b"HIERARCHY\n"))
     hasty.close()
 
 
 def test_an_analysis_over_its_memory_fails(some_demo_clips: list[DemoClip]) -> None:
     poor = AnalysisPool(Limits(60.0, 420, 10_000_000, 100))
     with pytest.raises(AnalysisCrashed, match=r"memory|died"):
-        poor.analyse(Order(content=repeated(some_demo_clips[0], 150)))
+        poor.analyze(Order(content=repeated(some_demo_clips[0], 150)))
     poor.close()
 
 
 def test_a_killed_child_is_replaced(pool: AnalysisPool, some_demo_clips: list[DemoClip]) -> None:
     small, large = Order(content=some_demo_clips[0].content), repeated(some_demo_clips[0], 150)
-    pool.analyse(small)
+    pool.analyze(small)
     _kill_children()
     working = pool.submit(Order(content=large))
     wait_until(lambda: busy_children(psutil.Process()), 60.0)
     _kill_children()
     with pytest.raises(AnalysisInterrupted):
         pool.outcome(working)
-    assert pool.analyse(small).arrays
+    assert pool.analyze(small).arrays
     _kill_children()
-    assert pool.analyse(small).arrays
+    assert pool.analyze(small).arrays
 
 
 def _kill_children() -> None:

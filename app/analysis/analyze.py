@@ -46,7 +46,7 @@ from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1
 
 ANALYSIS_VERSION = 4
-"""Raise it with every change of what an array holds; older clips are then analysed again."""
+"""Raise it with every change of what an array holds; older clips are then analyzed again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +63,7 @@ class Analysis:
     cautions: tuple[Caution, ...] = ()
 
 
-def analyse(
+def analyze(
     motion: Motion,
     *,
     t1: float = T1,
@@ -94,7 +94,7 @@ def describe_for_search(motion: Motion, names: Collection[str] | None = None) ->
     """The arrays that finding and recognizing need: no keyposes, no motion symbol (it is slow).
 
     names: only these arrays; None: all of them, in some 10 ms for 5 s of motion. Each array is
-    the same as from `analyse`. Raises KeyError for a name that `analyse` alone computes.
+    the same as from `analyze`. Raises KeyError for a name that `analyze` alone computes.
     """
     return Analysis(motion, {**_for_search(_Parts(motion, body_track(motion)), names)})
 
