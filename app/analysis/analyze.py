@@ -1,7 +1,7 @@
 """Everything that is kept of a clip's motion, by name, with its version.
 
 Arrays (float32 unless told otherwise; n frames at 30 Hz, m at 10 Hz):
-role_positions (n, 13, 3) metres, world; features_10hz (m, 82); motion_vector (128,);
+role_positions (n, 13, 3) meters, world; features_10hz (m, 82); motion_vector (128,);
 wide_motion_vector (512,); msv_lambda (1,), msv_rho (13,), msv_epsilon (n,), msv_convergence
 (i, 2), the error and the change of lambda after each of i iterations; motion_sample (1250,);
 angle_sample (642,); motion_shape (1378,); symbol_statistics (131,); window_vectors_* (w, 125)
@@ -34,7 +34,7 @@ from app.analysis.descriptors.windows import WINDOW_SCALES, window_arrays
 from app.analysis.energy.energy import energies
 from app.analysis.keyposes.keyposes import T1, T2, find_keyposes
 from app.analysis.rhythm.onsets import Onsets
-from app.analysis.rhythm.rhythm import NOTHING, Told, find_rhythm, rhythm_arrays
+from app.analysis.rhythm.rhythm import NOTHING_GIVEN, RhythmInput, find_rhythm, rhythm_arrays
 from app.analysis.segments.keypose_arrays import keypose_arrays
 from app.analysis.symbols.channels import symbol_features, symbol_statistics
 from app.analysis.symbols.symbol import describe_symbol
@@ -68,7 +68,7 @@ def analyze(
     *,
     t1: float = T1,
     t2: float = T2,
-    told: Told = NOTHING,
+    rhythm_input: RhythmInput = NOTHING_GIVEN,
     onsets: Onsets | None = None,
 ) -> Analysis:
     """All arrays of `motion`; t1, t2: thresholds of its keyposes.
@@ -81,7 +81,7 @@ def analyze(
     parts = _Parts(motion, track)
     arrays: dict[str, NDArray[Any]] = {**_for_search(parts), **describe_symbol(parts.channels)}
     plain = energies(track)
-    rhythm = find_rhythm(track, told, onsets, plain)
+    rhythm = find_rhythm(track, rhythm_input, onsets, plain)
     arrays |= rhythm_arrays(rhythm)
     keyposes = find_keyposes(track, t1=t1, t2=t2, beats=rhythm.beats, plain=plain).frames
     arrays["pose_cover"] = pose_cover(arrays["role_positions"], keyposes)

@@ -1,6 +1,6 @@
 """The shapes of the arrays that an analysis stores, by name.
 
-Clips keep the arrays of an earlier version of the analysis until they are analysed again. What
+Clips keep the arrays of an earlier version of the analysis until they are analyzed again. What
 compares clips asks here first whether an array is of the shape that this version works with.
 """
 

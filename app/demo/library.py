@@ -2,7 +2,7 @@
 
 BVH files with a manifest, and WAV files.
 
-Deterministic: the same bytes at every run. Files are in centimetres, Y up.
+Deterministic: the same bytes at every run. Files are in centimeters, Y up.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from app.formats.bvh.writer import write_bvh
 
 LICENSE = "CC0-1.0"
 SOURCE = "Kinedex demo"
-UNITS_PER_METRE = 100.0
+UNITS_PER_METER = 100.0
 MANIFEST = "manifest.csv"
 COLUMNS: tuple[str, ...] = (
     *("path", "source", "license", "person", "task", "words", "fps"),
@@ -73,9 +73,9 @@ def _clip(actor: Actor, task: str, number: int) -> DemoClip:
     done = perform(actor, task, number)
     rig = build_rig(actor)
     content = write_bvh(
-        skeleton_of(rig, actor.naming, UNITS_PER_METRE),
+        skeleton_of(rig, actor.naming, UNITS_PER_METER),
         local_rotations(done.controls, rig),
-        done.controls.root * UNITS_PER_METRE,
+        done.controls.root * UNITS_PER_METER,
         actor.frame_rate,
     )
     return DemoClip(

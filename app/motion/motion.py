@@ -1,4 +1,4 @@
-"""The canonical motion (DESIGN 4): metres, Y up, right-handed, joint roles known."""
+"""The canonical motion (DESIGN 4): meters, Y up, right-handed, joint roles known."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Motion:
     """A clip's motion in canonical form.
 
     names: (joints,); parents: (joints,) int, -1 for a root;
-    positions: (frames, joints, 3) float32, metres, Y up, world frame;
+    positions: (frames, joints, 3) float32, meters, Y up, world frame;
     roles: joint index by role, found roles only; missing_roles: those of Sun's 13 not found;
     frame_rate: Hz, the one in force; declared_frame_rate: Hz as in the file, or None;
     metres_per_unit: scale that was applied to the file's numbers.
@@ -44,9 +44,9 @@ class Motion:
         return self.frames / self.frame_rate
 
     def role_positions(self) -> FloatArray:
-        """(frames, 13, 3) float32 positions of Sun's 13 roles, metres, in SUN_ROLES order.
+        """(frames, 13, 3) float32 positions of Sun's 13 roles, meters, in SUN_ROLES order.
 
-        A missing role stands where its nearest present neighbour towards the trunk is
+        A missing role stands where its nearest present neighbor toward the trunk is
         (hand -> elbow -> shoulder -> neck), so that all arrays keep their shape.
         """
         columns = [self.roles[self._stand_in(role)] for role in SUN_ROLES]

@@ -16,7 +16,7 @@ import scipy
 
 from app.numerics.arrays import FloatArray, IntArray
 
-MOST_CLUSTERS = 12
+MAX_CLUSTERS = 12
 DRAWS = 20
 """Sets without clusters that are drawn."""
 SEED = 20090
@@ -24,7 +24,7 @@ SEED = 20090
 
 @dataclass(frozen=True, slots=True)
 class Clusters:
-    """The clusters, 2 to MOST_CLUSTERS of them, of the best silhouette (-1..1): labels (n,)."""
+    """The clusters, 2 to MAX_CLUSTERS of them, of the best silhouette (-1..1): labels (n,)."""
 
     silhouette: float
     labels: IntArray
@@ -78,7 +78,7 @@ def best_clusters(points: FloatArray) -> Clusters | None:
         scipy.spatial.distance.squareform(scipy.spatial.distance.pdist(rows)),
     )
     found = []
-    for count in range(2, min(MOST_CLUSTERS, len(rows) - 1) + 1):
+    for count in range(2, min(MAX_CLUSTERS, len(rows) - 1) + 1):
         labels = scipy.cluster.hierarchy.fcluster(tree, count, "maxclust")
         if len(np.unique(labels)) > 1:
             score = silhouette_score(distances, labels, metric="precomputed")

@@ -1,11 +1,11 @@
-"""Diffusion over a neighbourhood graph: near is what is reached through what lies between.
+"""Diffusion over a neighborhood graph: near is what is reached through what lies between.
 
 Points of one kind often lie along a bend, so that two of them are farther apart than either
-is from a point of another kind; a walk from neighbour to neighbour follows the bend (Zhou et
+is from a point of another kind; a walk from neighbor to neighbor follows the bend (Zhou et
 al. 2004, "Ranking on data manifolds", eq. 4; Donoser and Bischof 2013). Edges are weighed by
-each point's own distance to its neighbours (Zelnik-Manor and Perona 2004, section 3), so that
+each point's own distance to its neighbors (Zelnik-Manor and Perona 2004, section 3), so that
 dense and sparse places count alike. Everything is continuous in the distances: a point that
-moves a little changes its closeness a little, although neighbourhoods have ends.
+moves a little changes its closeness a little, although neighborhoods have ends.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ DAMPING = 0.8
 REACH = 2.0
 """An edge ends where its squared length is so many times the product of its ends' radii."""
 
-LEAST_DEGREE = 0.3
+DEGREE_OFFSET = 0.3
 """Added to the sum of a point's edges: one that is hardly tied to any stays so."""
 
 _SMALLEST = 1e-12
 
 
-def neighbour_radii(distances: FloatArray, neighbours: int) -> FloatArray:
-    """(n,) distance of each point to its `neighbours`-th nearest other; distances: (n, n)."""
-    count = min(neighbours, len(distances) - 1)
+def neighbor_radii(distances: FloatArray, neighbors: int) -> FloatArray:
+    """(n,) distance of each point to its `neighbors`-th nearest other; distances: (n, n)."""
+    count = min(neighbors, len(distances) - 1)
     return np.asarray(np.partition(distances, count, axis=1)[:, count])
 
 
@@ -38,11 +38,11 @@ def diffused_closeness(
     """(n,) how closely the first point is tied to each, 0..1; 1 to itself, 0 where no path is.
 
     distances: (n, n) symmetric, zeros on the diagonal; radii: (n,), as from
-    `neighbour_radii`. K = (I - damping D^-1/2 W D^-1/2)^-1 is positive definite, so a kernel;
+    `neighbor_radii`. K = (I - damping D^-1/2 W D^-1/2)^-1 is positive definite, so a kernel;
     given is its cosine K_0i / sqrt(K_00 K_ii), which a point gains nothing in by being a hub.
     """
     weights = _edges(distances, radii)
-    degrees = np.sqrt(weights.sum(axis=1) + LEAST_DEGREE)
+    degrees = np.sqrt(weights.sum(axis=1) + DEGREE_OFFSET)
     weights *= -damping / degrees
     weights /= degrees[:, None]
     np.fill_diagonal(weights, 1.0)

@@ -1,7 +1,7 @@
 """Linear discriminants with shrinkage: directions in which classes differ, from few labels.
 
 The scatter within classes, from few examples, is far too small in some directions, and dividing
-by it makes noise loud. It is pulled towards a sphere by the share that scikit-learn's Ledoit and
+by it makes noise loud. It is pulled toward a sphere by the share that scikit-learn's Ledoit and
 Wolf ("A well-conditioned estimator for large-dimensional covariance matrices", 2004) estimates.
 
 The discriminants stay ours: scikit-learn's LDA shrinks each class by a share of its own, which a
@@ -18,10 +18,10 @@ import scipy
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.signs import fix_signs
 
-SMALLEST_VARIANCE = 1e-12
+MIN_VARIANCE = 1e-12
 """Floor of the mean variance within classes: identical examples must not divide by 0."""
 
-LEAST_SHRINKAGE = 1e-6
+MIN_SHRINKAGE = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,10 +80,10 @@ def _shrunk(within: FloatArray, freedom: int, shrinkage: float) -> FloatArray:
     """(d, d) scatter of `within` (n, d), pulled to the sphere of its mean variance."""
     width = within.shape[1]
     square = within.T @ within / max(freedom, 1)
-    mean = max(float(np.trace(square)) / width, SMALLEST_VARIANCE)
+    mean = max(float(np.trace(square)) / width, MIN_VARIANCE)
     square *= 1.0 - shrinkage
     # a share of the sphere always stays, so that all can be divided by it
-    square += max(shrinkage, LEAST_SHRINKAGE) * mean * np.eye(width)
+    square += max(shrinkage, MIN_SHRINKAGE) * mean * np.eye(width)
     return np.asarray(square)
 
 

@@ -1,8 +1,8 @@
 """Kernel ridge regression with a Gaussian kernel, tuned by itself.
 
-Width and penalty minimise the leave-one-out error, which has a closed form. Above
-MAX_CENTRES rows the kernel is spanned by a random subset (Nystroem), so that cost grows
-with the number of rows, not with its cube. Shapes: rows n, inputs p, outputs q, centres m.
+Width and penalty minimize the leave-one-out error, which has a closed form. Above
+MAX_CENTERS rows the kernel is spanned by a random subset (Nystroem), so that cost grows
+with the number of rows, not with its cube. Shapes: rows n, inputs p, outputs q, centers m.
 
 scikit-learn's KernelRidge stays out: it does not tune itself, and a search over the same grid
 with only five folds takes 8 times as long (1.8 s against .22 for 500 clips, 131 inputs and 55
@@ -18,8 +18,8 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 from app.numerics.euclidean import squared_distances
 
-MAX_CENTRES = 2000
-"""Rows that may be centres of the kernel."""
+MAX_CENTERS = 2000
+"""Rows that may be centers of the kernel."""
 
 TUNING_ROWS = 1000
 """Rows on which width and penalty are chosen."""
@@ -36,11 +36,11 @@ _BLOCK = 1000
 
 @dataclass(frozen=True, slots=True)
 class KernelRidge:
-    """centres (m, p), weights (m, q), offset (q,), width in the inputs' unit, and the
-    penalty that was used. Far from all centres the prediction is the offset.
+    """centers (m, p), weights (m, q), offset (q,), width in the inputs' unit, and the
+    penalty that was used. Far from all centers the prediction is the offset.
     """
 
-    centres: FloatArray
+    centers: FloatArray
     weights: FloatArray
     offset: FloatArray
     width: float
@@ -50,7 +50,7 @@ class KernelRidge:
         """(n, q) outputs for `rows` (n, p)."""
         blocks = [
             self.offset
-            + gaussian_kernel(rows[first : first + _BLOCK], self.centres, self.width) @ self.weights
+            + gaussian_kernel(rows[first : first + _BLOCK], self.centers, self.width) @ self.weights
             for first in range(0, len(rows), _BLOCK)
         ]
         return np.concatenate([np.zeros((0, len(self.offset))), *blocks])
@@ -62,9 +62,9 @@ def fit_kernel_ridge(rows: FloatArray, outputs: FloatArray, *, seed: int = 0) ->
     offset = outputs.mean(axis=0)
     tuning = np.sort(order[:TUNING_ROWS])
     width, penalty = _tune(rows[tuning], outputs[tuning] - offset)
-    centres = rows[np.sort(order[:MAX_CENTRES])]
-    weights = _solve(rows, outputs - offset, centres, width, penalty)
-    return KernelRidge(centres, weights, offset, width, penalty)
+    centers = rows[np.sort(order[:MAX_CENTERS])]
+    weights = _solve(rows, outputs - offset, centers, width, penalty)
+    return KernelRidge(centers, weights, offset, width, penalty)
 
 
 def refit_kernel_ridge(
@@ -73,9 +73,9 @@ def refit_kernel_ridge(
     """As fit_kernel_ridge, with the width and penalty of another: cheap, for folds of its rows."""
     order = np.random.RandomState(seed).permutation(len(rows))
     offset = outputs.mean(axis=0)
-    centres = rows[np.sort(order[:MAX_CENTRES])]
-    weights = _solve(rows, outputs - offset, centres, like.width, like.penalty)
-    return KernelRidge(centres, weights, offset, like.width, like.penalty)
+    centers = rows[np.sort(order[:MAX_CENTERS])]
+    weights = _solve(rows, outputs - offset, centers, like.width, like.penalty)
+    return KernelRidge(centers, weights, offset, like.width, like.penalty)
 
 
 def gaussian_kernel(left: FloatArray, right: FloatArray, width: float) -> FloatArray:
@@ -115,16 +115,16 @@ def _tune(rows: FloatArray, outputs: FloatArray) -> tuple[float, float]:
 
 
 def _solve(
-    rows: FloatArray, outputs: FloatArray, centres: FloatArray, width: float, penalty: float
+    rows: FloatArray, outputs: FloatArray, centers: FloatArray, width: float, penalty: float
 ) -> FloatArray:
-    """(m, q) weights; with all rows as centres the exact kernel ridge solution."""
-    among = gaussian_kernel(centres, centres, width)
-    if len(centres) == len(rows):
+    """(m, q) weights; with all rows as centers the exact kernel ridge solution."""
+    among = gaussian_kernel(centers, centers, width)
+    if len(centers) == len(rows):
         return np.asarray(np.linalg.solve(among + penalty * np.eye(len(rows)), outputs))
-    normal, target = penalty * among, np.zeros((len(centres), outputs.shape[1]))
+    normal, target = penalty * among, np.zeros((len(centers), outputs.shape[1]))
     for first in range(0, len(rows), _BLOCK):
-        block = gaussian_kernel(rows[first : first + _BLOCK], centres, width)
+        block = gaussian_kernel(rows[first : first + _BLOCK], centers, width)
         normal += block.T @ block
         target += block.T @ outputs[first : first + _BLOCK]
-    jitter = 1e-8 * float(np.trace(normal)) / len(centres)
-    return np.asarray(np.linalg.solve(normal + jitter * np.eye(len(centres)), target))
+    jitter = 1e-8 * float(np.trace(normal)) / len(centers)
+    return np.asarray(np.linalg.solve(normal + jitter * np.eye(len(centers)), target))

@@ -1,7 +1,7 @@
 """Multidimensional scaling: points whose distances are given (Takano, eqs 3-4).
 
 The start is classical scaling; the paper's error T (eq. 3, the s-stress of Takane, each
-pair weighted by 1 / 4 D^2) is then minimised, by L-BFGS instead of Newton-Raphson because
+pair weighted by 1 / 4 D^2) is then minimized, by L-BFGS instead of Newton-Raphson because
 that needs no Hessian of all points. Points that come later are placed one by one against
 fixed landmarks under the same error. Shapes: points N, landmarks L, dimensions d.
 
@@ -24,7 +24,7 @@ REFINING_STEPS = 200
 PLACING_STEPS = 20
 """Levenberg-Marquardt steps for a new point."""
 
-LEAST_SHARE = 1e-3
+MIN_SHARE = 1e-3
 """Distances are floored at this share of their mean: eq. 3 divides by them."""
 
 _BLOCK = 2000
@@ -39,15 +39,15 @@ def classical_mds(distances: FloatArray, dimensions: int) -> FloatArray:
     second of loading, and has no column for a dimension beyond the number of points.
     """
     squares = np.asarray(distances, dtype=np.float64) ** 2
-    centred = squares - squares.mean(axis=0) - squares.mean(axis=1)[:, None] + squares.mean()
-    values, vectors = np.linalg.eigh(-0.5 * centred)
+    centered = squares - squares.mean(axis=0) - squares.mean(axis=1)[:, None] + squares.mean()
+    values, vectors = np.linalg.eigh(-0.5 * centered)
     order = np.argsort(values)[::-1][:dimensions]
     points = fix_signs(vectors[:, order]) * np.sqrt(np.maximum(values[order], 0.0))
     return np.pad(points, ((0, 0), (0, dimensions - len(order))))
 
 
 def metric_mds(distances: FloatArray, dimensions: int) -> FloatArray:
-    """(N, d) coordinates that minimise eq. 3 for symmetric `distances` (N, N)."""
+    """(N, d) coordinates that minimize eq. 3 for symmetric `distances` (N, N)."""
     start = classical_mds(distances, dimensions)
     if len(start) < 3:
         return start
@@ -81,7 +81,7 @@ def place(distances: FloatArray, landmarks: FloatArray) -> FloatArray:
 
 def _floored(distances: FloatArray) -> FloatArray:
     wanted = np.asarray(distances, dtype=np.float64)
-    return np.maximum(wanted, max(LEAST_SHARE * float(wanted.mean()), 1e-12))
+    return np.maximum(wanted, max(MIN_SHARE * float(wanted.mean()), 1e-12))
 
 
 def _stress_and_slope(points: FloatArray, squares: FloatArray) -> tuple[float, FloatArray]:
@@ -109,12 +109,12 @@ def _place_block(distances: FloatArray, landmarks: FloatArray) -> FloatArray:
 
 
 def _triangulate(wanted: FloatArray, landmarks: FloatArray) -> FloatArray:
-    centre = landmarks.mean(axis=0)
-    spread = landmarks - centre
+    center = landmarks.mean(axis=0)
+    spread = landmarks - center
     # |x - l|^2 = |x|^2 - 2 x.l + |l|^2: differences over landmarks are linear in x
     known = (spread**2).sum(axis=1) - wanted**2
     known = known - known.mean(axis=1, keepdims=True)
-    return np.asarray(0.5 * known @ np.linalg.pinv(spread, rcond=1e-6).T + centre)
+    return np.asarray(0.5 * known @ np.linalg.pinv(spread, rcond=1e-6).T + center)
 
 
 def _misfit(

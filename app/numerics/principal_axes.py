@@ -20,25 +20,25 @@ _RELATIVE_FLOOR = 1e-10
 
 @dataclass(frozen=True, slots=True)
 class PrincipalAxes:
-    """centre: (d,); axes: (d, k), orthonormal columns by falling variance."""
+    """center: (d,); axes: (d, k), orthonormal columns by falling variance."""
 
-    centre: FloatArray
+    center: FloatArray
     axes: FloatArray
 
     def project(self, samples: FloatArray) -> FloatArray:
         """(n, k) coordinates of `samples` (n, d)."""
-        return np.asarray((np.asarray(samples, dtype=np.float64) - self.centre) @ self.axes)
+        return np.asarray((np.asarray(samples, dtype=np.float64) - self.center) @ self.axes)
 
 
-def principal_axes(samples: FloatArray, count: int, *, centred: bool = True) -> PrincipalAxes:
+def principal_axes(samples: FloatArray, count: int, *, centered: bool = True) -> PrincipalAxes:
     """The first `count` axes of `samples` (n, d); fewer where the samples span fewer.
 
-    At least one axis is returned. With centred=False the centre is 0, so that the axes
+    At least one axis is returned. With centered=False the center is 0, so that the axes
     span the samples themselves.
     """
     rows = np.asarray(samples, dtype=np.float64)
-    centre = rows.mean(axis=0) if centred else np.zeros(rows.shape[1])
-    rows = rows - centre
+    center = rows.mean(axis=0) if centered else np.zeros(rows.shape[1])
+    rows = rows - center
     tall = rows.shape[0] > rows.shape[1]
     gram = rows.T @ rows if tall else rows @ rows.T
     count = min(count, len(gram))
@@ -47,4 +47,4 @@ def principal_axes(samples: FloatArray, count: int, *, centred: bool = True) -> 
     kept = max(int((values > _RELATIVE_FLOOR * values[0]).sum()), 1)
     axes = vectors[:, :kept] if tall else rows.T @ vectors[:, :kept]
     axes, _ = np.linalg.qr(axes)
-    return PrincipalAxes(centre, fix_signs(axes))
+    return PrincipalAxes(center, fix_signs(axes))

@@ -1,4 +1,4 @@
-"""How far a covariance of few samples must be pulled towards a sphere to be believed."""
+"""How far a covariance of few samples must be pulled toward a sphere to be believed."""
 
 from __future__ import annotations
 

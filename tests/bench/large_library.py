@@ -18,7 +18,7 @@ from sqlalchemy import insert, update
 from app.analysis.analyze import ANALYSIS_VERSION, analyze
 from app.errors import BadContent
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.store.clips.index_feed import IndexedClip
 from app.store.clips.record import ClipState
 from app.store.database import tables as t
@@ -62,7 +62,7 @@ def samples(every: int = 3) -> tuple[Sample, ...]:
     for row in manifest()[::every]:
         try:
             recording = read_recording((real_clips() / row["path"]).read_bytes())
-            motion = canonicalise(recording, frame_rate=float(row["fps"]))
+            motion = canonicalize(recording, frame_rate=float(row["fps"]))
             found.append(Sample(row["task"], motion.duration, dict(analyze(motion).arrays)))
         except BadContent:
             continue

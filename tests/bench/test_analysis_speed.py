@@ -13,7 +13,7 @@ import pytest
 from app.analysis.analyze import analyze
 from app.errors import BadContent
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from tests.real_clips import manifest, real_clips
 
 pytestmark = pytest.mark.bench
@@ -39,7 +39,7 @@ def _speed(files: list[tuple[bytes, float]], *, stored: bool) -> float:
     began, seconds = time.process_time(), 0.0
     for content, rate in files:
         try:
-            motion = canonicalise(read_recording(content), frame_rate=rate)
+            motion = canonicalize(read_recording(content), frame_rate=rate)
         except BadContent:
             continue
         seconds += motion.duration

@@ -26,7 +26,7 @@ from app.demo.dances import dance
 from app.formats.read import read_recording
 from app.models.keyposes.matching import Counts, match, total
 from app.models.keyposes.thresholds import Example, Selectable, Thresholds, lesson
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import BodyTrack, body_track
 from app.motion.motion import Motion
 from tests.bench.page import Section
@@ -64,7 +64,7 @@ def dances(first: int, count: int, noise: float) -> tuple[Danced, ...]:
 
 def _danced(seed: int, bpm: float, drift: float, noise: float) -> Danced:
     clip = dance(seed, bpm=bpm, drift=drift, noise_mm=noise)
-    motion = canonicalise(read_recording(clip.content))
+    motion = canonicalize(read_recording(clip.content))
     return Danced(body_track(motion), np.array(clip.keyposes), np.array(clip.beats))
 
 

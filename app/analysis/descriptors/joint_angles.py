@@ -20,7 +20,7 @@ import numpy as np
 import scipy
 
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
-from app.motion.skeleton.occlusion import LONGEST_GAP, runs
+from app.motion.skeleton.occlusion import MAX_GAP, runs
 from app.numerics.arrays import BoolArray, FloatArray
 
 CUT_OFF = 6.0
@@ -32,11 +32,11 @@ PASSES = 2
 PADDING = 0.75
 """Seconds by which both ends are continued, by point reflection, for the filter to settle."""
 
-LEAST_BEND = np.radians(12.0)
+MIN_BEND = np.radians(12.0)
 """Of elbow or knee; with less their plane is noise."""
 
 SHORTEST = 1e-3
-"""Metres; a limb that short has no direction, and its angles are 0."""
+"""Meters; a limb that short has no direction, and its angles are 0."""
 
 _TINY = 1e-9
 
@@ -45,7 +45,7 @@ _R = JointRole
 
 @dataclass(frozen=True, slots=True)
 class _Ball:
-    """Hip or shoulder: the limb from `start` to `middle`, that bends on towards `end`.
+    """Hip or shoulder: the limb from `start` to `middle`, that bends on toward `end`.
 
     rest: direction of the limb whose swing is 0; hinge: of the axis about which the next joint
     bends there when the turn is 0. Both in the trunk's frame (left, up, forward).
@@ -86,7 +86,7 @@ _HINGES = np.array([ball.hinge for ball in _BALLS], dtype=np.float64)[:, None]
 
 
 def joint_angles(positions: FloatArray, rate: float) -> FloatArray:
-    """(frames, 20) ANGLES, radians, of the 13 roles' positions (frames, 13, 3), metres, Y up.
+    """(frames, 20) ANGLES, radians, of the 13 roles' positions (frames, 13, 3), meters, Y up.
 
     rate: Hz of the frames. Finite for any finite positions; invariant to place, heading and size
     of the body.
@@ -98,7 +98,7 @@ def joint_angles(positions: FloatArray, rate: float) -> FloatArray:
     starts, middles, ends = zip(*((b.start, b.middle, b.end) for b in _BALLS), strict=True)
     upper = _seen_from(trunk, _limb(places, starts, middles))
     lower = _seen_from(trunk, _limb(places, middles, ends))
-    balls = _ball_angles(upper, lower, max(1, round(LONGEST_GAP * rate)))
+    balls = _ball_angles(upper, lower, max(1, round(MAX_GAP * rate)))
     swings = [_swing(limb, _UP, _LEFT)[0] for limb in (spine, head)]
     return np.hstack([*swings, *balls])
 
@@ -149,7 +149,7 @@ def _ball_angles(upper: FloatArray, lower: FloatArray, longest: int) -> FloatArr
     turns = np.arctan2(
         (np.cross(carried, axis) * upper).sum(axis=-1), (carried * axis).sum(axis=-1)
     )
-    seen = there & (sine > np.sin(LEAST_BEND))
+    seen = there & (sine > np.sin(MIN_BEND))
     turns = np.stack([spanned(*each, longest) for each in zip(turns, seen, strict=True)])
     bends = np.arctan2(sine, cosine) * there
     swings = _swing(upper, _RESTS, _HINGES)
@@ -158,7 +158,7 @@ def _ball_angles(upper: FloatArray, lower: FloatArray, longest: int) -> FloatArr
 
 def _swing(limbs: FloatArray, rest: FloatArray, about: FloatArray) -> FloatArray:
     """(k, n, 2) the way along the sphere from `rest` to the directions `limbs` (k, n, 3), radians:
-    about an axis orthogonal to it, and towards that axis."""
+    about an axis orthogonal to it, and toward that axis."""
     ahead = np.cross(about, rest)
     forward, aside = (limbs * ahead).sum(axis=-1), (limbs * about).sum(axis=-1)
     sine = np.hypot(forward, aside)

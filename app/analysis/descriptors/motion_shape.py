@@ -4,7 +4,7 @@ Like the motion sample it holds 32 moments, over the mean gait cycle where there
 else over the whole clip. Of each moment it has all that a motion is made of: the 13 joint
 roles in the body frame, the height of the hips over the floor, their velocity and the yaw
 rate; and besides how long it lasts and whether it goes round. Persons and tasks are parted in
-this space to synthesise motions (Vasilescu 2002, section 4; models.synthesis).
+this space to synthesize motions (Vasilescu 2002, section 4; models.synthesis).
 """
 
 from __future__ import annotations

@@ -132,8 +132,8 @@ def log_covariance(features: FloatArray) -> FloatArray:
     Off-diagonals carry sqrt 2, so that Euclidean distance is the matrices' Frobenius one.
     """
     count = features.shape[1]
-    centred = features - features.mean(axis=0)
-    covariance = centred.T @ centred / len(features)
+    centered = features - features.mean(axis=0)
+    covariance = centered.T @ centered / len(features)
     values, vectors = np.linalg.eigh(covariance + RIDGE * np.eye(count))
     # eigenvalues are >= RIDGE but for rounding
     logarithm = (vectors * np.log(np.maximum(values, RIDGE))) @ vectors.T

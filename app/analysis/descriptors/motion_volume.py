@@ -20,7 +20,7 @@ from app.numerics.alignment.dtw import dtw_distances
 from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1, symmetric_rank1
 
-LARGEST_CROSS_CORRELATION = 3.0
+MAX_CROSS_CORRELATION = 3.0
 """Of equation 6: three components, each of unit vectors."""
 
 

@@ -24,7 +24,7 @@ from app.numerics.arrays import FloatArray
 SMOOTHING = 1 / 30
 """Seconds (standard deviation), at least."""
 
-MOST_SMOOTHING = 3 / 30
+MAX_SMOOTHING = 3 / 30
 """Seconds; more would smear one rest into the next at dancing tempi."""
 
 NOISE_SHARE = 0.05
@@ -54,7 +54,7 @@ class Weights(StrEnum):
     """All alike, which gives the ends of the limbs a clear voice; the paper's choice."""
 
     MASS = "mass"
-    """By the mass that moves with each joint; the global sum is then the centre of mass's."""
+    """By the mass that moves with each joint; the global sum is then the center of mass's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +122,7 @@ def _smoothing(lightly: EnergyCurve) -> float:
         return SMOOTHING
     # Noise in speed falls with the power -3/2 of the smoothing.
     wanted = (lightly.noise / (NOISE_SHARE * high)) ** (2 / 3) if high > 0 else np.inf
-    return float(min(SMOOTHING * wanted, MOST_SMOOTHING))
+    return float(min(SMOOTHING * wanted, MAX_SMOOTHING))
 
 
 def _above_noise(

@@ -20,7 +20,7 @@ BAND = (8 / 15, 12 / 15)
 TAPS = 25
 """Frames that the filter sees: long enough to shut out movement, short enough to fit a rest."""
 
-LEAST_FRAMES = 2 * TAPS
+MIN_FRAMES = 2 * TAPS
 """Shorter clips show no quiet moments; their noise counts as none."""
 
 QUIET = 0.2
@@ -43,9 +43,9 @@ def noise_power(positions: FloatArray, weights: FloatArray) -> float:
     """Weighted mean over joints of the variance of white noise, x, y and z together.
 
     positions: (n, joints, 3); weights: (joints,), sum 1. In squared units of `positions`;
-    0 for fewer than LEAST_FRAMES frames.
+    0 for fewer than MIN_FRAMES frames.
     """
-    if len(positions) < LEAST_FRAMES:
+    if len(positions) < MIN_FRAMES:
         return 0.0
     reach = TAPS // 2
     band_pass = _band_pass()

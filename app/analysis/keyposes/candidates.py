@@ -11,7 +11,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from app.analysis.keyposes.rests import SURE_REST, Rest, usual_length
+from app.analysis.keyposes.energy_minima import SURE_MINIMUM, EnergyMinimum, usual_length
 from app.numerics.arrays import FloatArray
 
 REACH = 0.35
@@ -20,7 +20,7 @@ REACH = 0.35
 ALMOST = 0.4
 """Of that reach: a rest that begins so little after a beat was reached on it all the same."""
 
-LONGEST_INTERVAL = 1.5
+MAX_BEAT_INTERVAL = 1.5
 """Median intervals: between beats further apart than that some are missing."""
 
 LONE_BEAT = 15.0
@@ -61,10 +61,12 @@ class Candidate:
     frame: int
     beat: int | None
     scope: Scope
-    rest: Rest
+    minimum: EnergyMinimum
 
 
-def at_beats(rests: tuple[Rest, ...], beats: FloatArray, scope: Scope) -> tuple[Candidate, ...]:
+def at_beats(
+    minima: tuple[EnergyMinimum, ...], beats: FloatArray, scope: Scope
+) -> tuple[Candidate, ...]:
     """For each of `beats` (b,), in frames, rising, at most one rest: the lowest around it.
 
     A rest belongs to the beat it is nearest to; of several that it lasts for to the first, on
@@ -74,20 +76,22 @@ def at_beats(rests: tuple[Rest, ...], beats: FloatArray, scope: Scope) -> tuple[
     if not len(beats):
         return ()
     before, after = _reaches(beats)
-    around: dict[int, list[tuple[float, Rest]]] = {}
-    for rest in rests:
-        early = np.maximum(beats - rest.last, 0.0) / before
-        late = np.maximum(rest.first - beats, 0.0) / after
+    around: dict[int, list[tuple[float, EnergyMinimum]]] = {}
+    for minimum in minima:
+        early = np.maximum(beats - minimum.last, 0.0) / before
+        late = np.maximum(minimum.first - beats, 0.0) / after
         aside = float((early + late).min())
         lasting = np.flatnonzero(early + late <= aside + ALMOST)
-        nearest = int(lasting[-1] if rest.at_start else lasting[0])
+        nearest = int(lasting[-1] if minimum.at_start else lasting[0])
         aside = float((early + late)[nearest])
         if aside <= 1.0:
-            around.setdefault(nearest, []).append((rest.energy + ASIDE * aside, rest))
+            around.setdefault(nearest, []).append((minimum.energy + ASIDE * aside, minimum))
     lowest = {beat: min(found, key=lambda each: each[0])[1] for beat, found in around.items()}
     return tuple(
-        Candidate(round(float(np.clip(beats[beat], rest.first, rest.last))), beat, scope, rest)
-        for beat, rest in sorted(lowest.items())
+        Candidate(
+            round(float(np.clip(beats[beat], minimum.first, minimum.last))), beat, scope, minimum
+        )
+        for beat, minimum in sorted(lowest.items())
     )
 
 
@@ -97,48 +101,53 @@ def _reaches(beats: FloatArray) -> tuple[FloatArray, FloatArray]:
         alone = np.full(len(beats), REACH * LONE_BEAT)
         return alone, alone
     intervals = np.diff(beats)
-    intervals = np.minimum(intervals, LONGEST_INTERVAL * float(np.median(intervals)))
+    intervals = np.minimum(intervals, MAX_BEAT_INTERVAL * float(np.median(intervals)))
     before = REACH * np.concatenate([intervals[:1], intervals])
     return before, REACH * np.concatenate([intervals, intervals[-1:]])
 
 
-def at_rests(rests: tuple[Rest, ...], beats: FloatArray, scope: Scope) -> tuple[Candidate, ...]:
+def at_energy_minima(
+    minima: tuple[EnergyMinimum, ...], beats: FloatArray, scope: Scope
+) -> tuple[Candidate, ...]:
     """Every rest, at its middle, or at that of `beats` (b,), in frames, which lies within it.
 
     The beats are hints, as those that were estimated from the rests themselves are. A freeze
     counts when it is reached, the first pose when it is left.
     """
-    usual = usual_length(rests)
-    beats = beats if _agree(rests, beats) else beats[:0]
-    poses = (r for r in rests if not (r.at_start and (r.at_end or r.length < FIRST_POSE)))
+    usual = usual_length(minima)
+    beats = beats if _agree(minima, beats) else beats[:0]
+    poses = (r for r in minima if not (r.at_start and (r.at_end or r.length < FIRST_POSE)))
     return tuple(Candidate(round(_moment(r, usual, beats)), None, scope, r) for r in poses)
 
 
-def _agree(rests: tuple[Rest, ...], beats: FloatArray) -> bool:
-    sure = [rest for rest in rests if rest.energy < SURE_REST]
-    held = sum(len(_within(rest, beats)) > 0 for rest in sure)
+def _agree(minima: tuple[EnergyMinimum, ...], beats: FloatArray) -> bool:
+    sure = [minimum for minimum in minima if minimum.energy < SURE_MINIMUM]
+    held = sum(len(_within(minimum, beats)) > 0 for minimum in sure)
     return held >= AGREEING * len(sure)
 
 
-def _within(rest: Rest, beats: FloatArray) -> FloatArray:
-    first, stop = beats.searchsorted(rest.first - 1), beats.searchsorted(rest.last + 1, "right")
+def _within(minimum: EnergyMinimum, beats: FloatArray) -> FloatArray:
+    first, stop = (
+        beats.searchsorted(minimum.first - 1),
+        beats.searchsorted(minimum.last + 1, "right"),
+    )
     return beats[first:stop]
 
 
-def _moment(rest: Rest, usual: float, beats: FloatArray) -> float:
-    middle = _middle(rest, usual)
-    within = _within(rest, beats).tolist()
+def _moment(minimum: EnergyMinimum, usual: float, beats: FloatArray) -> float:
+    middle = _middle(minimum, usual)
+    within = _within(minimum, beats).tolist()
     if not within:
         return middle
     nearest = min(within, key=lambda beat: abs(beat - middle))
-    if not rest.at_start:
+    if not minimum.at_start:
         nearest = min(max(nearest, middle - NUDGE), middle + NUDGE)
-    return float(min(max(nearest, rest.first), rest.last))
+    return float(min(max(nearest, minimum.first), minimum.last))
 
 
-def _middle(rest: Rest, usual: float) -> float:
-    if rest.at_start:
-        return max(rest.last - usual / 2, 0.0)
-    if rest.at_end or rest.length > LONG * usual:
-        return min(rest.first + usual / 2, rest.last)
-    return 0.5 * (rest.first + rest.last)
+def _middle(minimum: EnergyMinimum, usual: float) -> float:
+    if minimum.at_start:
+        return max(minimum.last - usual / 2, 0.0)
+    if minimum.at_end or minimum.length > LONG * usual:
+        return min(minimum.first + usual / 2, minimum.last)
+    return 0.5 * (minimum.first + minimum.last)

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.energy.energy import SMOOTHING, EnergyCurve, velocities
-from app.analysis.keyposes.candidates import Candidate, Scope, at_beats, at_rests
-from app.analysis.keyposes.keyposes import LEAST_APART, T1, T2, are_law, passes
-from app.analysis.keyposes.rests import Rest, find_rests
+from app.analysis.keyposes.candidates import Candidate, Scope, at_beats, at_energy_minima
+from app.analysis.keyposes.energy_minima import EnergyMinimum, find_energy_minima
+from app.analysis.keyposes.keyposes import MIN_SEPARATION, T1, T2, are_law, passes
 from app.analysis.rhythm.beats import Beats
 from app.motion.frame.body_frame import BodyTrack
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
@@ -34,30 +34,30 @@ class EndEffectorCandidates:
 
     rate: float
     moments: tuple[Candidate, ...]
-    standing: tuple[Rest, ...]
+    standing: tuple[EnergyMinimum, ...]
 
     def times(self, t1: float = T1, t2: float = T2) -> FloatArray:
         """(k,) seconds of the keyposes, rising.
 
         t1, t2: in units of the median local maximum of each speed, as for the energies.
         """
-        planted = [rest for rest in self.standing if passes(rest, t1, t2)]
+        planted = [minimum for minimum in self.standing if passes(minimum, t1, t2)]
         frames = [
             moment.frame
             for moment in self.moments
-            if passes(moment.rest, t1, t2)
-            and (not self.standing or any(_holds(rest, moment.frame) for rest in planted))
+            if passes(moment.minimum, t1, t2)
+            and (not self.standing or any(_holds(minimum, moment.frame) for minimum in planted))
         ]
-        return _apart(frames, LEAST_APART * self.rate) / self.rate
+        return _apart(frames, MIN_SEPARATION * self.rate) / self.rate
 
 
 def end_effector_candidates(track: BodyTrack, beats: Beats | None) -> EndEffectorCandidates:
     """What the method selects from. beats: where they are known; else rests alone count."""
     hands, feet = end_effector_speeds(track)
     times = np.zeros(0) if beats is None else beats.times * track.rate
-    look = at_beats if beats is not None and are_law(beats) else at_rests
-    moments = look(find_rests(hands), times, Scope.LOCAL)
-    return EndEffectorCandidates(track.rate, moments, find_rests(feet))
+    look = at_beats if beats is not None and are_law(beats) else at_energy_minima
+    moments = look(find_energy_minima(hands), times, Scope.LOCAL)
+    return EndEffectorCandidates(track.rate, moments, find_energy_minima(feet))
 
 
 def end_effector_speeds(track: BodyTrack) -> tuple[EnergyCurve, EnergyCurve]:
@@ -74,8 +74,8 @@ def _speed(positions: FloatArray, rate: float) -> EnergyCurve:
     return EnergyCurve(speeds.mean(axis=1), 0.0, SMOOTHING)
 
 
-def _holds(rest: Rest, frame: int) -> bool:
-    return rest.first - TOGETHER <= frame <= rest.last + TOGETHER
+def _holds(minimum: EnergyMinimum, frame: int) -> bool:
+    return minimum.first - TOGETHER <= frame <= minimum.last + TOGETHER
 
 
 def _apart(frames: list[int], least: float) -> IntArray:

@@ -18,8 +18,8 @@ from itertools import pairwise
 import numpy as np
 
 from app.analysis.energy.energy import Energies, EnergyMethod, Weights, energies
-from app.analysis.keyposes.candidates import Candidate, Scope, at_beats, at_rests
-from app.analysis.keyposes.rests import Rest, find_rests
+from app.analysis.keyposes.candidates import Candidate, Scope, at_beats, at_energy_minima
+from app.analysis.keyposes.energy_minima import EnergyMinimum, find_energy_minima
 from app.analysis.rhythm.beats import Beats, BeatSource, find_beats, given_beats
 from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray, IntArray
@@ -30,7 +30,7 @@ T1 = 0.25
 T2 = 0.8
 """A minimum is deep if it lies this share of the median local maximum below the maxima."""
 
-LEAST_APART = 0.2
+MIN_SEPARATION = 0.2
 """Seconds between keyposes."""
 
 GOES_ON = 2.0
@@ -97,11 +97,11 @@ class Candidates:
         """The keyposes under thresholds in units of each curve's median local maximum."""
         chosen: list[Candidate] = []
         for scope in Scope:
-            fresh = [c for c in self.found if c.scope is scope and passes(c.rest, t1, t2)]
+            fresh = [c for c in self.found if c.scope is scope and passes(c.minimum, t1, t2)]
             chosen += _not_there_yet(fresh, chosen)
         if not self.on_beats:
             chosen += self._where_it_goes_on(chosen, SLOWEST * t1)
-        return _apart(chosen, LEAST_APART * self.rate)
+        return _apart(chosen, MIN_SEPARATION * self.rate)
 
     def times(self, t1: float = T1, t2: float = T2) -> FloatArray:
         """(k,) seconds of the keyposes under these thresholds."""
@@ -111,7 +111,7 @@ class Candidates:
         """The slow poses between keyposes that are further apart than GOES_ON."""
         last = len(self.energies.local_energy) - 1
         walls = [0, *sorted(c.frame for c in chosen), last]
-        local = [c for c in self.found if c.scope is Scope.LOCAL and c.rest.energy < slow]
+        local = [c for c in self.found if c.scope is Scope.LOCAL and c.minimum.energy < slow]
         found: list[Candidate] = []
         for left, right in pairwise(walls):
             between = [c for c in local if left < c.frame < right]
@@ -169,11 +169,11 @@ def find_candidates(
         curves = energies(track, method, weights)
     # Beats are sought in the plain energy, whatever keyposes are sought in.
     used = _used(beats) or find_beats((plain or energies(track)).global_energy, track.rate)
-    look = at_beats if are_law(used) else at_rests
+    look = at_beats if are_law(used) else at_energy_minima
     found = (
         candidate
         for curve, scope in ((curves.whole, Scope.GLOBAL), (curves.own, Scope.LOCAL))
-        for candidate in look(find_rests(curve), used.times * track.rate, scope)
+        for candidate in look(find_energy_minima(curve), used.times * track.rate, scope)
     )
     return Candidates(track.rate, curves, used, tuple(found))
 
@@ -189,23 +189,23 @@ def are_law(beats: Beats) -> bool:
     return beats.source in KNOWN and len(beats.times) > 0
 
 
-def passes(rest: Rest, t1: float, t2: float) -> bool:
+def passes(minimum: EnergyMinimum, t1: float, t2: float) -> bool:
     """Whether a rest's energy is small enough, or far enough below the maxima beside it."""
-    return rest.energy < t1 or rest.drop > t2
+    return minimum.energy < t1 or minimum.drop > t2
 
 
 def _not_there_yet(fresh: list[Candidate], chosen: list[Candidate]) -> list[Candidate]:
     """Those of `fresh` whose beat, or rest where there are no beats, is not chosen yet."""
     beats = {candidate.beat for candidate in chosen} - {None}
-    rests = [candidate.rest for candidate in chosen if candidate.beat is None]
-    starts = [rest.first - OVERLAP for rest in rests]
+    minima = [candidate.minimum for candidate in chosen if candidate.beat is None]
+    starts = [minimum.first - OVERLAP for minimum in minima]
 
-    def overlaps(rest: Rest) -> bool:
+    def overlaps(minimum: EnergyMinimum) -> bool:
         # Rests of one curve are in order and apart: only the last that starts before can do.
-        before = bisect_right(starts, rest.last)
-        return before > 0 and rests[before - 1].last + OVERLAP >= rest.first
+        before = bisect_right(starts, minimum.last)
+        return before > 0 and minima[before - 1].last + OVERLAP >= minimum.first
 
-    return [each for each in fresh if each.beat not in beats and not overlaps(each.rest)]
+    return [each for each in fresh if each.beat not in beats and not overlaps(each.minimum)]
 
 
 def _apart(chosen: Iterable[Candidate], least: float) -> tuple[Candidate, ...]:
@@ -213,7 +213,7 @@ def _apart(chosen: Iterable[Candidate], least: float) -> tuple[Candidate, ...]:
     kept: list[Candidate] = []
     for candidate in sorted(chosen, key=lambda each: each.frame):
         if kept and candidate.frame - kept[-1].frame < least:
-            kept[-1] = min(kept[-1], candidate, key=lambda each: each.rest.energy)
+            kept[-1] = min(kept[-1], candidate, key=lambda each: each.minimum.energy)
         else:
             kept.append(candidate)
     return tuple(kept)

@@ -130,7 +130,7 @@ def low_dimensional(model: EigenModel, track: BodyTrack, dimensions: int) -> Bod
 
 
 def reconstruction_errors(model: EigenModel, track: BodyTrack) -> FloatArray:
-    """(K,) metres: how far joints are from the original's at K' = 1..K dimensions.
+    """(K,) meters: how far joints are from the original's at K' = 1..K dimensions.
 
     The root of the mean, over frames and all 13 joints, of the squared distance.
     """

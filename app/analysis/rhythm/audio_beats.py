@@ -14,7 +14,7 @@ import numpy as np
 import scipy
 
 from app.analysis.rhythm.beat_tracking import (
-    LEAST_BEATS,
+    MIN_BEATS,
     MULTIPLES,
     autocorrelation,
     likely_periods,
@@ -60,7 +60,7 @@ root of the number of windows."""
 CLEAR = 0.16
 """So far above chance the pulse is beyond doubt."""
 
-LEAST_CONFIDENCE = 0.5
+MIN_CONFIDENCE = 0.5
 """Below, no beats are reported."""
 
 
@@ -70,10 +70,10 @@ def find_audio_beats(onsets: Onsets, tempo: float | None = None) -> Beats:
     tempo: beats per minute where it is known; then only their places are sought.
     """
     period, confidence = (60.0 * RATE / tempo, 1.0) if tempo else _choose(onsets)
-    if confidence < LEAST_CONFIDENCE:
+    if confidence < MIN_CONFIDENCE:
         return no_beats(confidence)
     beats = _tracked(onsets.strength, period)
-    if len(beats) < LEAST_BEATS:
+    if len(beats) < MIN_BEATS:
         return no_beats()
     found = 60.0 * RATE / float(np.median(np.diff(beats)))
     source = BeatSource.TEMPO if tempo else BeatSource.AUDIO
@@ -88,7 +88,7 @@ def _choose(onsets: Onsets) -> tuple[float, float]:
     shortest, longest = 60.0 * RATE / FASTEST, 60.0 * RATE / SLOWEST
     for period in likely_periods(part.strength, shortest, longest, CANDIDATES):
         beats = _tracked(part.strength, period)
-        if len(beats) < LEAST_BEATS:
+        if len(beats) < MIN_BEATS:
             continue
         pulse = hearing.pulse(beats)
         score = PULSE * pulse + _plausibility(part, beats)

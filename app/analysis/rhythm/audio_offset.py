@@ -17,7 +17,7 @@ from app.analysis.rhythm.beats import FINE, WIDTH, Stops
 from app.analysis.rhythm.onsets import RATE, Onsets
 from app.numerics.arrays import FloatArray, IntArray
 
-LEAST_COVERED = 0.6
+MIN_COVERED = 0.6
 """Of the motion or the recording, whichever is shorter, that the two must share."""
 
 AS_GOOD = 0.35
@@ -29,7 +29,7 @@ share of the motion that is recorded, of how much more begins while the motion l
 and after, and of each second from 0. A multinomial logit on 108 of the demo's dances with clicks,
 arranged music, and music that is the same throughout, a third each."""
 
-LEAST_SPREAD = 0.015
+MIN_SPREAD = 0.015
 """Seconds (standard deviation) that dancers miss a beat by at least."""
 
 NEAR = 0.3
@@ -41,7 +41,7 @@ SMOOTH = 0.75
 TRIALS = 10.0
 """Phases of a beat that may meet the stops by accident, about."""
 
-LEAST_CONFIDENCE = 0.9
+MIN_CONFIDENCE = 0.9
 """Below, the offset is not known."""
 
 
@@ -54,7 +54,7 @@ class Offset:
 
     seconds: float
     confidence: float
-    is_told: bool
+    is_given: bool
     beat: float
     beat_confidence: float
 
@@ -78,7 +78,7 @@ def estimate_offset(stops: Stops, beats: FloatArray, onsets: Onsets) -> Offset |
     same = np.abs(met.lags - met.lags[best]) < 0.5 * beat * FINE
     seconds = round(float(met.lags[best] / FINE), 3)
     confidence = _confidence(stops, beats + seconds)
-    if confidence < LEAST_CONFIDENCE:
+    if confidence < MIN_CONFIDENCE:
         return None
     return Offset(seconds, confidence, False, beat, float(likely[same].sum() / likely.sum()))
 
@@ -100,7 +100,7 @@ def _met(stops: Stops, beats: FloatArray, duration: float) -> _Met:
     share = scipy.signal.fftconvolve(moved, heard[::-1]) / max(float(np.square(moved).sum()), 1e-9)
     lags = np.arange(-len(heard) + 1, len(moved))
     shared = np.minimum(len(moved), lags + len(heard)) - np.maximum(0, lags)
-    share[shared < LEAST_COVERED * min(len(moved), len(heard))] = 0.0
+    share[shared < MIN_COVERED * min(len(moved), len(heard))] = 0.0
     inner = (share[1:-1] >= share[:-2]) & (share[1:-1] > share[2:])
     tops = np.flatnonzero(inner) + 1
     tops = tops[share[tops] > max(float(share.max()) - AS_GOOD, 0.0)]
@@ -128,7 +128,7 @@ def _fit(stops: Stops, beats: FloatArray, beat: float) -> float:
     if not len(off):
         return 0.0
     spread = float(np.average(np.square(off - np.average(off, weights=weights)), weights=weights))
-    return -0.5 * max(float(weights.sum()), 1.0) * float(np.log(spread + LEAST_SPREAD**2))
+    return -0.5 * max(float(weights.sum()), 1.0) * float(np.log(spread + MIN_SPREAD**2))
 
 
 def _fuller(met: _Met, onsets: Onsets, beat: float) -> FloatArray:

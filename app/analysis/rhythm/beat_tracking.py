@@ -13,7 +13,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from app.numerics.arrays import FloatArray, IntArray
 
-LEAST_BEATS = 4
+MIN_BEATS = 4
 """Fewer are no rhythm."""
 
 RATIOS = (1 / 3, 1 / 2, 2 / 3, 1.0, 3 / 2, 2.0, 3.0)
@@ -45,7 +45,7 @@ def likely_periods(
     strength: FloatArray, shortest: float, longest: float, count: int
 ) -> list[float]:
     """Frames that a beat may last: the `count` strongest periods and their ratios, each once."""
-    longest = min(longest, len(strength) / LEAST_BEATS)
+    longest = min(longest, len(strength) / MIN_BEATS)
     if longest <= shortest:
         return []
     grid = np.exp(np.arange(np.log(shortest / 1.5), np.log(longest), STEP))

@@ -4,7 +4,7 @@ Dancers come to rest on beats, though not on every one. The logarithm of energy 
 as strong as bursts; where its deep minima repeat, their period is the beat or a simple ratio
 of it. Each such tempo is followed through its drift (`beat_tracking`), and the one is taken
 whose beats are mostly rested on, and that most rests are on (the octave check). Where rests
-keep no common beat there is none. Steps are rests, too: a walk's beats are its steps.
+keep no common beat there is none. Steps are stops, too: a walk's beats are its steps.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 import scipy
 from numpy.polynomial.legendre import legvander
 
-from app.analysis.rhythm.beat_tracking import LEAST_BEATS, likely_periods, track
+from app.analysis.rhythm.beat_tracking import MIN_BEATS, likely_periods, track
 from app.numerics.arrays import FloatArray
 
 SLOWEST, FASTEST = 40.0, 200.0
@@ -55,7 +55,7 @@ HEIGHT, TIGHTNESS = 4.0, 300.0
 REACH = 1.25
 """Factor on the beat that any interval keeps within: further off costs more than a rest gains."""
 
-BEATS_PER_BEND, MOST_BENDS = 12, 5
+BEATS_PER_BEND, MAX_BENDS = 12, 5
 """A tempo may change its course once in so many beats, and so often in all."""
 
 STIFFNESS = 0.3
@@ -73,12 +73,12 @@ rests that are beats, and of the length of the rests' mean phase vector: a multi
 on 160 of the demo's dances by seed, of noise up to 25 mm."""
 
 CONFIDENCE = (5.9, 0.7, 5.2, 0.6, -12.0)
-"""A logit of those three, of Rayleigh's statistic (the number of rests, MOST_RESTS at most, times
+"""A logit of those three, of Rayleigh's statistic (the number of rests, MAX_STOPS at most, times
 the squared length of the vector) and 1: the same dances, and parts of them, against 600 motions
 that stop at random, wander or tremble, both weighted alike."""
 
-MOST_RESTS = 24
-LEAST_CONFIDENCE = 0.45
+MAX_STOPS = 24
+MIN_CONFIDENCE = 0.45
 """Below, no beats are reported: of a hundred aimless motions five have more, of a hundred that
 stop at random twelve, of a hundred dances 97."""
 
@@ -129,28 +129,28 @@ def given_beats(times: FloatArray) -> Beats:
 
 def find_beats(energy: FloatArray, rate: float) -> Beats:
     """The beats of an energy curve (n,) of `rate` Hz; none where its rests keep no beat."""
-    rests = find_stops(energy, rate)
+    stops = find_stops(energy, rate)
     shortest, longest = 60.0 * FINE / FASTEST, 60.0 * FINE / SLOWEST
     best, found = None, -np.inf
-    for period in likely_periods(rests.curve, shortest, longest, CANDIDATES):
-        followed = _follow(rests, period)
+    for period in likely_periods(stops.curve, shortest, longest, CANDIDATES):
+        followed = _follow(stops, period)
         if followed is not None and followed.plausibility > found:
             best, found = followed, followed.plausibility
-    if best is None or best.confidence < LEAST_CONFIDENCE:
+    if best is None or best.confidence < MIN_CONFIDENCE:
         return no_beats(0.0 if best is None else best.confidence)
-    times = through(best.beats, rests.duration)
+    times = through(best.beats, stops.duration)
     return Beats(times, best.tempo, best.confidence, BeatSource.MOTION)
 
 
 def beats_of_tempo(energy: FloatArray, rate: float, tempo: float) -> Beats:
     """Beats of a `tempo` that is told, placed where the motion rests, from its first frame if
     it does not; confidence: that of their places."""
-    rests = find_stops(energy, rate)
-    followed = _follow(rests, 60.0 * FINE / tempo)
+    stops = find_stops(energy, rate)
+    followed = _follow(stops, 60.0 * FINE / tempo)
     if followed is None:
-        times = np.arange(0.0, max(rests.duration, 1e-9), 60.0 / tempo)
+        times = np.arange(0.0, max(stops.duration, 1e-9), 60.0 / tempo)
         return Beats(times, tempo, 0.0, BeatSource.TEMPO)
-    times = through(followed.beats, rests.duration)
+    times = through(followed.beats, stops.duration)
     return Beats(times, tempo, followed.confidence, BeatSource.TEMPO)
 
 
@@ -220,44 +220,44 @@ class _Followed:
         return 60.0 / float(np.median(np.diff(self.beats)))
 
 
-def _follow(rests: Stops, period: float) -> _Followed | None:
+def _follow(stops: Stops, period: float) -> _Followed | None:
     """The beats of about `period` frames of `rests.curve`; None where there are too few."""
-    tracked = track(HEIGHT * rests.curve, period, TIGHTNESS, REACH) / FINE
-    if len(rests.times) < LEAST_BEATS or len(tracked) < LEAST_BEATS:
+    tracked = track(HEIGHT * stops.curve, period, TIGHTNESS, REACH) / FINE
+    if len(stops.times) < MIN_BEATS or len(tracked) < MIN_BEATS:
         return None
-    beats = _evened(tracked, rests)
+    beats = _evened(tracked, stops)
     if not (np.diff(beats) > 0).all():
         return None
     beat = float(np.median(np.diff(beats)))
-    off = (rests.times[:, None] - beats) / beat
+    off = (stops.times[:, None] - beats) / beat
     nearest = off[np.arange(len(off)), np.abs(off).argmin(axis=1)]
-    weights, total = rests.weights, float(rests.weights.sum())
+    weights, total = stops.weights, float(stops.weights.sum())
     rested = float((weights[:, None] * (np.abs(off) < NEAR)).max(axis=0).mean())
     explained = float(weights[np.abs(nearest) < NEAR].sum()) / total
     together = float(np.abs((weights * np.exp(2j * np.pi * nearest)).sum())) / total
     octaves = np.log2(60.0 / beat / USUAL)
     plausibility = RESTED * rested + EXPLAINED * explained + TOGETHER * together
-    evidence = (rested, explained, together, min(len(weights), MOST_RESTS) * together**2, 1.0)
+    evidence = (rested, explained, together, min(len(weights), MAX_STOPS) * together**2, 1.0)
     logit = float(np.dot(CONFIDENCE, evidence))
     return _Followed(
         beats, float(plausibility + UNUSUAL * octaves**2), float(1.0 / (1.0 + np.exp(-logit)))
     )
 
 
-def _evened(beats: FloatArray, rests: Stops) -> FloatArray:
+def _evened(beats: FloatArray, stops: Stops) -> FloatArray:
     """Beats (b,) on a smooth course through the rests near them: musicians drift, they do not
     jump. A polynomial of few degrees over the beats' numbers, by least squares."""
-    nearest = np.abs(rests.times[:, None] - beats).argmin(axis=1)
+    nearest = np.abs(stops.times[:, None] - beats).argmin(axis=1)
     beat = float(np.median(np.diff(beats)))
-    near = np.abs(rests.times - beats[nearest]) < 0.25 * beat
-    degree = min(1 + len(beats) // BEATS_PER_BEND, MOST_BENDS)
+    near = np.abs(stops.times - beats[nearest]) < 0.25 * beat
+    degree = min(1 + len(beats) // BEATS_PER_BEND, MAX_BENDS)
     if int(near.sum()) < degree + 2:
         return beats
     numbers = 2.0 * np.arange(len(beats)) / (len(beats) - 1) - 1.0
-    basis, weights = legvander(numbers[nearest[near]], degree), rests.weights[near]
+    basis, weights = legvander(numbers[nearest[near]], degree), stops.weights[near]
     stiff = np.diag([0.0, 0.0, *[STIFFNESS] * (degree - 1)])
     left = (basis * weights[:, None]).T @ basis + stiff
-    right = (basis * weights[:, None]).T @ rests.times[near]
+    right = (basis * weights[:, None]).T @ stops.times[near]
     return np.asarray(legvander(numbers, degree) @ np.linalg.solve(left, right))
 
 

@@ -2,7 +2,7 @@
 
 The spectral flux of Bock & Widmer 2013 ("Maximum filter vibrato suppression for onset
 detection"): the rise of the level in narrow bands, each compared with the loudest of its
-neighbours a moment before, so that a gliding tone is no onset. What librosa's
+neighbors a moment before, so that a gliding tone is no onset. What librosa's
 `onset_strength` computes, in numpy alone: librosa compiles for 20 s and more when first
 used, in every analysis process where its cache cannot be written.
 """
@@ -35,7 +35,7 @@ QUIETEST = 60.0
 PARTS: tuple[tuple[float, float], ...] = ((200.0, 1.5), (2000.0, 1.0), (np.inf, 0.6))
 """Upper edge in Hz, and weight: drums and bass mark beats, cymbals fill what is between."""
 
-LEAST_RISE = 5.0
+MIN_RISE = 5.0
 """dB, weighted, that the loudest hundredths of all moments bring at least where anything begins
 at all; held chords and humming machines stay below it."""
 
@@ -63,14 +63,14 @@ class Onsets:
 
 def find_onsets(samples: FloatArray, rate: float) -> Onsets:
     """Onsets of a mono recording (samples,) at `rate` Hz."""
-    centres, power = _band_power(samples, rate)
-    loudest, bass = float(power.max(initial=0.0)), centres < PARTS[0][0]
+    centers, power = _band_power(samples, rate)
+    loudest, bass = float(power.max(initial=0.0)), centers < PARTS[0][0]
     curves = np.zeros((4, len(power)))
     for first in range(0, len(power), FRAMES_AT_ONCE):
         start = max(0, first - BEFORE)
         some = power[start : first + FRAMES_AT_ONCE].astype(np.float64)
         rise = _rise(np.sqrt(some))
-        found = [_flux(some, loudest) @ _weights(centres), rise.sum(axis=1)]
+        found = [_flux(some, loudest) @ _weights(centers), rise.sum(axis=1)]
         found += [rise[:, bass].sum(axis=1), np.sqrt(some.sum(axis=1))]
         curves[:, first : first + FRAMES_AT_ONCE] = np.array(found)[:, first - start :]
     flux, rise, low, loudness = curves
@@ -78,9 +78,9 @@ def find_onsets(samples: FloatArray, rate: float) -> Onsets:
 
 
 def _band_power(samples: FloatArray, rate: float) -> tuple[FloatArray, FloatArray]:
-    """Centres (BANDS,) in Hz, and power (frames, BANDS), float32, around each frame."""
+    """Centers (BANDS,) in Hz, and power (frames, BANDS), float32, around each frame."""
     width = int(2 ** round(np.log2(max(WINDOW * rate, 16.0))))
-    centres, bank = _filters(rate, width)
+    centers, bank = _filters(rate, width)
     frames = int(len(samples) * RATE / rate) + 1
     padded = np.pad(samples, (width // 2, width))
     starts = np.round(np.arange(frames) * rate / RATE).astype(np.int64)
@@ -89,11 +89,11 @@ def _band_power(samples: FloatArray, rate: float) -> tuple[FloatArray, FloatArra
         some = slice(first, first + FRAMES_AT_ONCE)
         pieces = padded[starts[some, None] + np.arange(width)] * window
         power[some] = np.square(np.abs(np.fft.rfft(pieces, axis=1))) @ bank.T
-    return centres, power
+    return centers, power
 
 
 def _filters(rate: float, width: int) -> tuple[FloatArray, FloatArray]:
-    """Centres (BANDS,) Hz, and triangles (BANDS, width // 2 + 1) over the spectrum's lines."""
+    """Centers (BANDS,) Hz, and triangles (BANDS, width // 2 + 1) over the spectrum's lines."""
     lines = np.fft.rfftfreq(width, 1.0 / rate)
     edges = _hertz(np.linspace(_mel(LOWEST), _mel(min(HIGHEST, 0.475 * rate)), BANDS + 2))
     # A low band may be narrower than the lines are apart: each gets one line at least.
@@ -122,7 +122,7 @@ def _rise(level: FloatArray) -> FloatArray:
 
 
 def _flux(power: FloatArray, loudest: float) -> FloatArray:
-    """(frames, BANDS) rise in dB over the loudest neighbouring band BEFORE frames ago."""
+    """(frames, BANDS) rise in dB over the loudest neighboring band BEFORE frames ago."""
     flux: FloatArray = np.zeros_like(power)
     if loudest > 0:
         level = 10.0 * np.log10(np.maximum(power / loudest, 10.0 ** (-QUIETEST / 10.0)))
@@ -131,16 +131,16 @@ def _flux(power: FloatArray, loudest: float) -> FloatArray:
     return flux
 
 
-def _weights(centres: FloatArray) -> FloatArray:
+def _weights(centers: FloatArray) -> FloatArray:
     """(BANDS,) so that each part has its weight, whatever the number of its bands."""
-    part = np.searchsorted([upper for upper, _ in PARTS], centres, side="right")
+    part = np.searchsorted([upper for upper, _ in PARTS], centers, side="right")
     counts = np.bincount(part, minlength=len(PARTS))
     return np.array([PARTS[index][1] / counts[index] for index in part])
 
 
 def _levelled(curve: FloatArray) -> FloatArray:
     """Above its local mean, in units of its spread; zeros where nothing begins."""
-    if len(curve) < RATE or float(np.percentile(curve, 98)) < LEAST_RISE:
+    if len(curve) < RATE or float(np.percentile(curve, 98)) < MIN_RISE:
         return np.zeros(len(curve))
     smooth = scipy.ndimage.gaussian_filter1d(curve, 1.0)
     above = np.maximum(smooth - scipy.ndimage.uniform_filter1d(smooth, round(LEVELLED * RATE)), 0.0)

@@ -1,6 +1,6 @@
 """The beats of a clip from all that is known: what a client says, a recording, the motion.
 
-Beats that are listed go before a tempo that is told, that before what is heard, that before
+Beats that are listed go before a tempo that is given, that before what is heard, that before
 what the motion shows. A recording's beats become the clip's by the offset between the two.
 """
 
@@ -36,7 +36,7 @@ SOURCES = tuple(BeatSource)
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class RhythmInput:
     """What a client says: beats, seconds of the motion; tempo, beats a minute; audio_offset,
     the time of the motion at which the recording begins."""
 
@@ -45,7 +45,7 @@ class Told:
     audio_offset: float | None = None
 
 
-NOTHING = Told()
+NOTHING_GIVEN = RhythmInput()
 
 BEAT_ARRAYS = ("beat_times", "beat_facts")
 
@@ -61,7 +61,7 @@ class Rhythm:
 
 def find_rhythm(
     track: BodyTrack,
-    told: Told = NOTHING,
+    given: RhythmInput = NOTHING_GIVEN,
     onsets: Onsets | None = None,
     plain: Energies | None = None,
 ) -> Rhythm:
@@ -70,17 +70,17 @@ def find_rhythm(
     duration = (len(energy) - 1) / track.rate
     heard, offset = no_beats(), None
     if onsets is not None:
-        heard = find_audio_beats(onsets, told.tempo)
-        # By the beats that are heard freely: stops are on every beat, a told tempo may be half.
-        free = find_audio_beats(onsets) if told.tempo and told.audio_offset is None else heard
-        offset = _offset(told, energy, track.rate, free, onsets)
+        heard = find_audio_beats(onsets, given.tempo)
+        # The offset needs every beat: a given tempo may be half of that at which people stop.
+        free = find_audio_beats(onsets) if given.tempo and given.audio_offset is None else heard
+        offset = _offset(given, energy, track.rate, free, onsets)
     shifted = None if offset is None else _shifted(heard, offset, duration)
-    cautions = [] if onsets is None else _doubts(told, heard, offset, shifted)
-    if told.beats and not _within(told.beats, duration):
+    cautions = [] if onsets is None else _doubts(given, heard, offset, shifted)
+    if given.beats and not _within(given.beats, duration):
         detail = f"None of the beats that were given lies within the {duration:.2f} s of motion."
         cautions.append(Caution("beats_outside_motion", detail))
-        told = replace(told, beats=None)
-    return Rhythm(_first(told, energy, track.rate, shifted), offset, tuple(cautions))
+        given = replace(given, beats=None)
+    return Rhythm(_first(given, energy, track.rate, shifted), offset, tuple(cautions))
 
 
 def _within(times: Sequence[float] | FloatArray, duration: float) -> bool:
@@ -88,21 +88,21 @@ def _within(times: Sequence[float] | FloatArray, duration: float) -> bool:
     return any(0.0 <= time <= duration for time in times)
 
 
-def _first(told: Told, energy: FloatArray, rate: float, shifted: Beats | None) -> Beats:
-    if told.beats:
-        return given_beats(np.array(told.beats))
+def _first(given: RhythmInput, energy: FloatArray, rate: float, shifted: Beats | None) -> Beats:
+    if given.beats:
+        return given_beats(np.array(given.beats))
     if shifted is not None:
         return shifted
-    if told.tempo:
-        return beats_of_tempo(energy, rate, told.tempo)
+    if given.tempo:
+        return beats_of_tempo(energy, rate, given.tempo)
     return find_beats(energy, rate)
 
 
 def _offset(
-    told: Told, energy: FloatArray, rate: float, heard: Beats, onsets: Onsets
+    given: RhythmInput, energy: FloatArray, rate: float, heard: Beats, onsets: Onsets
 ) -> Offset | None:
-    if told.audio_offset is not None:
-        return Offset(told.audio_offset, 1.0, True, 0.0, 1.0)
+    if given.audio_offset is not None:
+        return Offset(given.audio_offset, 1.0, True, 0.0, 1.0)
     return estimate_offset(find_stops(energy, rate), heard.times, onsets)
 
 
@@ -111,17 +111,17 @@ def _shifted(heard: Beats, offset: Offset, duration: float) -> Beats | None:
     times = heard.times + offset.seconds
     if len(times) < 2 or not _within(times, duration):
         return None
-    told_tempo = heard.source is BeatSource.TEMPO
+    is_tempo_given = heard.source is BeatSource.TEMPO
     return Beats(
         through(times, duration),
         heard.tempo,
         min(heard.confidence, offset.confidence),
-        BeatSource.TEMPO if told_tempo else BeatSource.AUDIO,
+        BeatSource.TEMPO if is_tempo_given else BeatSource.AUDIO,
     )
 
 
 def _doubts(
-    told: Told, heard: Beats, offset: Offset | None, shifted: Beats | None
+    given: RhythmInput, heard: Beats, offset: Offset | None, shifted: Beats | None
 ) -> list[Caution]:
     if not len(heard.times):
         return [Caution("audio_without_beats", "No beat was heard in the recording.")]
@@ -131,7 +131,7 @@ def _doubts(
     if shifted is None:
         detail = "By its audio_offset no beat of the recording falls into the motion."
         return [Caution("audio_apart", detail)]
-    if not offset.is_told and told.beats is None:
+    if not offset.is_given and given.beats is None:
         detail = (
             f"The recording's beginning was estimated as {offset.seconds:.2f} s: right but for"
             f" whole beats of {offset.beat:.2f} s, and right in those too with probability"

@@ -21,13 +21,13 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray
 
-MOST_SEGMENTS = 32
+MAX_SEGMENTS = 32
 """In one cycle."""
 SAMPLES = 32
 """Times at which two parts are compared."""
-LEAST_CONCORDANCE = 0.6
+MIN_CONCORDANCE = 0.6
 """Of two cycles: 1 where they are the same, 0 where they have nothing in common."""
-MOST_STRETCH = 1.3
+MAX_STRETCH = 1.3
 """Between the durations of a cycle and of the next."""
 MISSED = 1
 """A cycle may have so many segments more or fewer than the one before."""
@@ -77,14 +77,14 @@ class _Link:
 
 def _linked(poses: FloatArray, bounds: FloatArray) -> dict[_Part, _Link]:
     """The links of the parts that have one."""
-    longest = min(MOST_SEGMENTS, len(bounds) - 2)
+    longest = min(MAX_SEGMENTS, len(bounds) - 2)
     links: dict[_Part, _Link] = {}
     near: dict[int, _Parts] = {}
     for length in range(1, longest + 1):
         others = range(max(length - MISSED, 1), min(length + MISSED, longest) + 1)
         # only those of about this length are kept: all together would be large
         near = {other: near.get(other) or _Parts(poses, bounds, other) for other in others}
-        best = np.full(len(bounds), LEAST_CONCORDANCE)
+        best = np.full(len(bounds), MIN_CONCORDANCE)
         for other in others:
             likeness = near[length].concordance(near[other])
             for first in np.flatnonzero(likeness > best[: len(likeness)]):
@@ -116,7 +116,7 @@ class _Parts:
         apart = _mean_squares(self.poses[one] - other.poses[two])
         both = self.variances[one] + other.variances[two]
         stretch = other.durations[two] / self.durations[one]
-        near = (stretch <= MOST_STRETCH) & (stretch >= 1 / MOST_STRETCH) & (both > _SMALLEST)
+        near = (stretch <= MAX_STRETCH) & (stretch >= 1 / MAX_STRETCH) & (both > _SMALLEST)
         return np.where(near, 1 - apart / np.maximum(both, _SMALLEST), -1.0)
 
 

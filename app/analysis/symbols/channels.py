@@ -62,13 +62,13 @@ rounded; part of the descriptor's definition, never refitted."""
 EXTREMES = (0.02, 0.98)
 """Quantiles that stand for the extremes of a channel; a single bad frame moves them little."""
 
-MOST_YAW_RATE = 10.0
+MAX_YAW_RATE = 10.0
 """Radians per second; a faster turn of the shoulders' line (a roll, a fall) saturates."""
 
 FLOOR_QUANTILE = 0.01
 """Height is over the level that the lowest joint goes under in this share of frames."""
 
-SHORTEST_LIMB = 0.02
+MIN_LIMB_LENGTH = 0.02
 """Body lengths; a shorter limb (its joint is missing) has no direction: it fades to zero."""
 
 
@@ -129,7 +129,7 @@ def _trunk_channels(track: BodyTrack) -> FloatArray:
     """(n, 6) height (body lengths), roll and pitch (cosines), speeds, yaw rate."""
     spine = _direction(track.local, _R.HIPS, _R.NECK)
     velocity = track.velocity()
-    yaw_rate = MOST_YAW_RATE * np.tanh(track.yaw_rate() / MOST_YAW_RATE)
+    yaw_rate = MAX_YAW_RATE * np.tanh(track.yaw_rate() / MAX_YAW_RATE)
     posture = [_height(track), spine[:, 0], spine[:, 2]]
     return np.stack([*posture, velocity[:, 0], velocity[:, 2], yaw_rate], axis=1)
 
@@ -145,7 +145,7 @@ def _direction(local: FloatArray, start: JointRole, end: JointRole) -> FloatArra
     """(n, 3) unit vector from one joint to another; shorter for limbs of hardly any length."""
     line = local[:, SUN_ROLES.index(end)] - local[:, SUN_ROLES.index(start)]
     length = np.linalg.norm(line, axis=1, keepdims=True)
-    return np.asarray(line / np.maximum(length, SHORTEST_LIMB))
+    return np.asarray(line / np.maximum(length, MIN_LIMB_LENGTH))
 
 
 def _flexion(upper: FloatArray, lower: FloatArray) -> FloatArray:

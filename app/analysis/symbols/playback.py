@@ -44,7 +44,7 @@ class SymbolMotion:
 
     means, spreads: (n, 26) the channels (CHANNELS) in their units (cosines, body lengths,
     body lengths / s, radians / s) and their standard deviations; positions: (n, 13, 3)
-    metres, world, Y up, floor at 0, starting over the origin and looking along Z.
+    meters, world, Y up, floor at 0, starting over the origin and looking along Z.
     """
 
     means: FloatArray
@@ -107,7 +107,7 @@ def _with_lengths(poses: FloatArray, like: FloatArray) -> FloatArray:
 def _in_the_world(
     local: FloatArray, channels: FloatArray, body_length: float, rate: float
 ) -> FloatArray:
-    """(n, 13, 3) metres of body-frame poses, carried by the generated speeds and turns."""
+    """(n, 13, 3) meters of body-frame poses, carried by the generated speeds and turns."""
     heading = _summed(channels[:, _YAW]) / rate
     sideways = np.zeros(len(channels))
     speeds = np.stack([channels[:, _LEFT], sideways, channels[:, _FORWARD]], axis=1)

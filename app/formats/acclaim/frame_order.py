@@ -13,7 +13,7 @@ from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 USUAL_RATE = 120.0
 """Hz of CMU's and of most AMC files, whose format has no obligatory place for it."""
-MOST_MISSING = 0.5
+MAX_MISSING = 0.5
 """More missing frames than this part of those that are there are no gaps but a lie."""
 
 
@@ -49,7 +49,7 @@ def in_order(frames: AmcFrames) -> OrderedFrames:
     if (steps % step).any():
         step = 1
     missing = int((steps // step - 1).sum())
-    if missing > MOST_MISSING * len(numbering):
+    if missing > MAX_MISSING * len(numbering):
         wide = steps == steps.max()
         raise unreadable(
             int(lines[1:][wide][0]), f"expected frames without gaps, found {_at(numbering, wide)}"

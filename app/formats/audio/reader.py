@@ -24,12 +24,12 @@ SAMPLE_RATES = (2000, 400_000)
 """Hz; anything else is no recording."""
 
 ENOUGH = 22_050
-"""Hz; of faster recordings neighbouring samples are averaged, down to not less than this."""
+"""Hz; of faster recordings neighboring samples are averaged, down to not less than this."""
 
 MAX_SECONDS = 1800.0
-LONGEST_TOLD = 24 * 3600.0
+MAX_DECLARED_SECONDS = 24 * 3600.0
 """Seconds; a header that promises more does not know."""
-MOST_OF = 0.95
+MIN_SHARE = 0.95
 """Share of what is promised that must be there: MP3 is estimated, and comes in whole frames."""
 
 MAX_CHANNELS = 32
@@ -150,7 +150,7 @@ def _missing(content: bytes, file: Any, seconds: float) -> str | None:
     if promised is not None and promised > len(content):
         return f"its header promises {promised} bytes, {len(content)} are there"
     told = file.frames / file.samplerate
-    if told <= LONGEST_TOLD and seconds < MOST_OF * told:
+    if told <= MAX_DECLARED_SECONDS and seconds < MIN_SHARE * told:
         return f"its header promises {told:.2f} s, {seconds:.2f} s could be decoded"
     return None
 

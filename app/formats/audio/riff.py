@@ -8,7 +8,7 @@ _FIRST_CHUNK = 12
 _CHUNK_HEAD = 8
 _UNKNOWN_FROM = 0x7FFF0000
 """Sizes from here on are what programs write that do not know the length yet."""
-_MOST_CHUNKS = 100
+_MAX_CHUNKS = 100
 """Before the samples; a file with more is not looked through."""
 
 
@@ -21,7 +21,7 @@ def promised_bytes(content: bytes) -> int | None:
         return None
     order = ">" if content[:4] == b"RIFX" else "<"
     at, long_size = _FIRST_CHUNK, None
-    for _ in range(_MOST_CHUNKS):
+    for _ in range(_MAX_CHUNKS):
         name, head = content[at : at + 4], content[at + 4 : at + _CHUNK_HEAD]
         if len(head) < 4:
             return None

@@ -1,4 +1,4 @@
-"""The markers of a C3D file that count: labelled, of one subject, each once, while seen."""
+"""The markers of a C3D file that count: labeled, of one subject, each once, while seen."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Markers:
     cautions: tuple[Caution, ...] = ()
 
 
-def labelled_markers(points: Points) -> Markers:
+def labeled_markers(points: Points) -> Markers:
     """The markers of one subject that were seen, each label once, from the first frame that
     shows any of them to the last. Raises Unreadable where there are none."""
     split = [subject_and_label(label) for label in points.labels]
@@ -46,7 +46,7 @@ def labelled_markers(points: Points) -> Markers:
     seen = np.isfinite(points.positions[..., 0])
     named = [index for index in named if seen[:, index].any()]
     if not named:
-        message = "expected labelled markers, found none that is seen"
+        message = "expected labeled markers, found none that is seen"
         raise Unreadable(message, places=[Place("POINT:LABELS", message)])
     subject, cautions = _main_subject([split[index] for index in named])
     mine = [index for index in named if split[index][0] == subject]

@@ -23,14 +23,14 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 
-def canonicalise(
+def canonicalize(
     recording: Recording,
     *,
     frame_rate: float | None = None,
     metres_per_unit: float | None = None,
     roles: Mapping[JointRole, str] | Mapping[str, str] | None = None,
 ) -> Motion:
-    """The motion in metres, Y up, right-handed, with roles, rate and unit settled.
+    """The motion in meters, Y up, right-handed, with roles, rate and unit settled.
 
     frame_rate (Hz), metres_per_unit and roles (role -> joint name) are what the client
     says; it wins over the file. Raises BadField where that cannot be, NotHuman where
@@ -111,7 +111,7 @@ def _unit_in_force(
     recording: Recording, roles: Mapping[JointRole, int], said: float | None
 ) -> Unit:
     if said is not None:
-        return Unit(_within("unit", said, SCALES, "metres per unit"))
+        return Unit(_within("unit", said, SCALES, "meters per unit"))
     if recording.metres_per_unit is not None:
         return confirm_unit(recording.metres_per_unit, recording.positions, roles)
     return judge_unit(recording.positions, roles)

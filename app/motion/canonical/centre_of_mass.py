@@ -1,7 +1,7 @@
-"""The body's centre of mass from Sun's 13 roles.
+"""The body's center of mass from Sun's 13 roles.
 
 Source: Dempster (1955) as tabled by Winter, "Biomechanics and motor control of human
-movement", table 4.1: each segment's share of the mass and where along it its own centre
+movement", table 4.1: each segment's share of the mass and where along it its own center
 lies. Feet and hands are points at ankle and wrist.
 """
 
@@ -29,7 +29,7 @@ _SEGMENTS: tuple[tuple[JointRole, JointRole, float, float], ...] = (
     (_R.LEFT_HAND, _R.LEFT_HAND, 0.006, 0.0),
     (_R.RIGHT_HAND, _R.RIGHT_HAND, 0.006, 0.0),
 )
-"""From, to, share of the body's mass, and how far along the segment's centre lies."""
+"""From, to, share of the body's mass, and how far along the segment's center lies."""
 
 
 def _weights() -> FloatArray:
@@ -44,7 +44,7 @@ ROLE_MASSES = _weights()
 """(13,) share of the body's mass that each of SUN_ROLES stands for; the sum is 1."""
 
 
-def centre_of_mass(role_positions: FloatArray) -> FloatArray:
+def center_of_mass(role_positions: FloatArray) -> FloatArray:
     """(frames, 3) of role positions (frames, 13, 3) in SUN_ROLES order, same unit."""
     positions = np.asarray(role_positions, dtype=np.float64)
     return np.asarray(np.einsum("r,frc->fc", ROLE_MASSES, positions))

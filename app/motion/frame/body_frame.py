@@ -29,7 +29,7 @@ SHIN_PER_TORSO = 0.85
 MIN_AXIS_SHARE = 0.2
 """Where less than this share of the left-right line is horizontal it gives no heading."""
 
-SMALLEST_BODY = 1e-6
+MIN_BODY_SIZE = 1e-6
 
 _LEFT_RIGHT: tuple[tuple[JointRole, JointRole], ...] = (
     (JointRole.LEFT_SHOULDER, JointRole.RIGHT_SHOULDER),
@@ -42,9 +42,9 @@ _LEFT_RIGHT: tuple[tuple[JointRole, JointRole], ...] = (
 class BodyTrack:
     """A body through time at ANALYSIS_RATE; n frames, 13 joints in SUN_ROLES order, float64.
 
-    positions: (n, 13, 3) metres, world, Y up; local: (n, 13, 3) body lengths, body frame;
-    origin: (n, 3) metres, the hips in the world; heading: (n,) radians, unwrapped, turn
-    about Y that takes world Z to the body's forward; body_length: metres; rate: Hz.
+    positions: (n, 13, 3) meters, world, Y up; local: (n, 13, 3) body lengths, body frame;
+    origin: (n, 3) meters, the hips in the world; heading: (n,) radians, unwrapped, turn
+    about Y that takes world Z to the body's forward; body_length: meters; rate: Hz.
     """
 
     positions: FloatArray
@@ -107,7 +107,7 @@ def body_track(motion: Motion) -> BodyTrack:
 
 
 def body_length(motion: Motion) -> float:
-    """Torso + neck to head + shin, metres: medians over the frames of `motion`.
+    """Torso + neck to head + shin, meters: medians over the frames of `motion`.
 
     A missing head or foot counts with its usual proportion to the torso.
     """
@@ -121,14 +121,14 @@ def body_length(motion: Motion) -> float:
     has_head = r.HEAD in roles and r.NECK in roles
     head = _distance(motion, r.NECK, r.HEAD) if has_head else torso * NECK_TO_HEAD_PER_TORSO
     length = torso + head + (float(np.mean(shins)) if shins else torso * SHIN_PER_TORSO)
-    if not length > SMALLEST_BODY:
+    if not length > MIN_BODY_SIZE:
         message = "hips, neck, head, knees and feet are all in one place"
         raise NotHuman(f"The body has no size: {message}.", places=[Place("joints", message)])
     return length
 
 
 def turned(points: FloatArray, angles: FloatArray) -> FloatArray:
-    """`points` (n, joints, 3) turned about Y by `angles` (n,), radians, Z towards X."""
+    """`points` (n, joints, 3) turned about Y by `angles` (n,), radians, Z toward X."""
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
     x, y, z = np.moveaxis(points, -1, 0)
     return np.stack([cos * x + sin * z, y, cos * z - sin * x], axis=-1)
@@ -159,7 +159,7 @@ def _left_axis(motion: Motion) -> FloatArray | None:
 
 def _gives_heading(line: FloatArray) -> BoolArray:
     across = np.hypot(line[:, 0], line[:, 2])
-    least = np.maximum(MIN_AXIS_SHARE * np.linalg.norm(line, axis=1), SMALLEST_BODY)
+    least = np.maximum(MIN_AXIS_SHARE * np.linalg.norm(line, axis=1), MIN_BODY_SIZE)
     return np.asarray(across > least)
 
 

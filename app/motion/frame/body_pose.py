@@ -11,9 +11,9 @@ import numpy as np
 
 from app.motion.frame.body_frame import (
     MIN_AXIS_SHARE,
+    MIN_BODY_SIZE,
     NECK_TO_HEAD_PER_TORSO,
     SHIN_PER_TORSO,
-    SMALLEST_BODY,
 )
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
@@ -35,7 +35,7 @@ _TIPS, _STARTS = ([SUN_ROLES.index(pair[end]) for pair in (*_LENGTHS, *SIDES)] f
 def body_poses(positions: FloatArray) -> FloatArray:
     """(n, 13, 3) float64 poses in the body frame, body lengths, from positions (n, 13, 3).
 
-    positions: SUN_ROLES order, any unit, Y up. A joint that is where its neighbour towards
+    positions: SUN_ROLES order, any unit, Y up. A joint that is where its neighbor toward
     the trunk is stands in for one that is missing (see `Motion.role_positions`). The heading
     is that of the shoulders where their line is level enough, else of the knees, or of what
     is more level. A pose of no size, or with no left and right, is NaN.
@@ -46,7 +46,7 @@ def body_poses(positions: FloatArray) -> FloatArray:
     lengths = np.sqrt(np.square(lines).sum(axis=0))
     size = _body_lengths(lengths[: len(_LENGTHS)])
     across, along, width = _left_lines(lines[:, len(_LENGTHS) :], lengths[len(_LENGTHS) :])
-    size[(size <= SMALLEST_BODY) | (width <= SMALLEST_BODY)] = np.nan
+    size[(size <= MIN_BODY_SIZE) | (width <= MIN_BODY_SIZE)] = np.nan
     planes -= planes[:, _HIPS, None]
     planes /= size
     x, y, z = planes
@@ -70,9 +70,9 @@ def _left_lines(
     lines: (3, 2, n) of the SIDES, from right to left; lengths: (2, n).
     """
     widths = np.hypot(lines[0], lines[2])
-    shares = widths / np.maximum(lengths, SMALLEST_BODY)
+    shares = widths / np.maximum(lengths, MIN_BODY_SIZE)
     second = (shares[0] <= MIN_AXIS_SHARE) & (shares[1] > shares[0])
     x, _, z = np.where(second, lines[:, 1], lines[:, 0])
     width = np.where(second, widths[1], widths[0])
-    held = np.maximum(width, SMALLEST_BODY)
+    held = np.maximum(width, MIN_BODY_SIZE)
     return x / held, z / held, width

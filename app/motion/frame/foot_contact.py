@@ -11,13 +11,13 @@ from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import BoolArray, FloatArray
 
 LOW = 0.03
-"""Metres: a foot that is no higher above where it stands is on the floor."""
+"""Meters: a foot that is no higher above where it stands is on the floor."""
 
 LEVEL_PERCENTILE = 5.0
 """Of a foot's heights: where it stands."""
 
 SLOW = 0.5
-"""Metres per second: a foot that is faster swings, however low."""
+"""Meters per second: a foot that is faster swings, however low."""
 
 REACH = 0.15
 """Seconds over which a foot is led to where it is to stand, and away from it."""
@@ -29,7 +29,7 @@ FEET = (SUN_ROLES.index(JointRole.LEFT_FOOT), SUN_ROLES.index(JointRole.RIGHT_FO
 
 
 def is_low(feet: FloatArray) -> BoolArray:
-    """(n, 2) whether feet (n, 2, 3), metres, Y up, are as low as when they stand."""
+    """(n, 2) whether feet (n, 2, 3), meters, Y up, are as low as when they stand."""
     heights = feet[:, :, 1]
     level = np.percentile(heights, LEVEL_PERCENTILE, axis=0)
     return np.asarray(heights <= level + LOW)
@@ -38,7 +38,7 @@ def is_low(feet: FloatArray) -> BoolArray:
 def skating(feet: FloatArray, rate: float) -> float:
     """Mean horizontal speed, m/s, of feet (n, 2, 3) while they are low; 0 where they never are.
 
-    A foot that rolls from heel to toe moves too: real walks have some tenths of a metre per
+    A foot that rolls from heel to toe moves too: real walks have some tenths of a meter per
     second.
     """
     if len(feet) < 2:

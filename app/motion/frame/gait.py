@@ -19,14 +19,14 @@ from app.numerics.arrays import FloatArray
 SMOOTHING = 0.05
 """Seconds (standard deviation)."""
 
-SHORTEST_CYCLE = 0.4
-LONGEST_CYCLE = 2.0
+MIN_CYCLE = 0.4
+MAX_CYCLE = 2.0
 """Seconds for both steps, from a sprint to a stroll."""
 
-LEAST_SWING = 0.15
+MIN_SWING = 0.15
 """Body lengths that the feet must part, to each side, in a cycle."""
 
-LEAST_TRAVEL = 0.3
+MIN_TRAVEL = 0.3
 """Body lengths that the hips must travel in a cycle: kicks and dances on the spot do not."""
 
 LACKING = 0.15
@@ -97,9 +97,9 @@ def _is_stride(track: BodyTrack, split: FloatArray, first: int, stop: int) -> bo
     """Whether frames first..stop-1 last, swing and travel as two steps do."""
     within = split[first:stop]
     seconds = (stop - first) / track.rate
-    if not SHORTEST_CYCLE <= seconds <= LONGEST_CYCLE:
+    if not MIN_CYCLE <= seconds <= MAX_CYCLE:
         return False
     last = min(stop, track.frames - 1)
     travel = np.linalg.norm((track.origin[last] - track.origin[first])[[0, FORWARD]])
-    parted = min(within.max(), -within.min()) >= LEAST_SWING
-    return bool(parted and travel / track.body_length >= LEAST_TRAVEL)
+    parted = min(within.max(), -within.min()) >= MIN_SWING
+    return bool(parted and travel / track.body_length >= MIN_TRAVEL)

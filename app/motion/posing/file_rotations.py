@@ -1,6 +1,6 @@
 """The rotations that a file had, brought to the canonical form that its positions have.
 
-A canonical motion is the recording turned to Y up and scaled to metres. Turn and scale are
+A canonical motion is the recording turned to Y up and scaled to meters. Turn and scale are
 found again by holding the recording against the stored positions, so that a file that is
 now read otherwise is noticed rather than exported wrongly.
 """
@@ -19,9 +19,9 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 SAME_PLACE = 5e-5
-"""Metres; a joint that the file's own offsets bring so near is where it was stored."""
+"""Meters; a joint that the file's own offsets bring so near is where it was stored."""
 SAME_READING = 1e-3
-"""Metres, of the first frame; more and the recording is not what was stored."""
+"""Meters, of the first frame; more and the recording is not what was stored."""
 UP_AXES = ("y", "z", "x", "-z", "-x", "-y")
 
 
@@ -70,7 +70,7 @@ def _turned(skeleton: Skeleton, turn: FloatArray, scale: float) -> Skeleton:
 
 
 def _translations(recording: Recording, turn: FloatArray, motion: Motion) -> FloatArray:
-    """(frames, joints, 3) local translations, metres, in the turned frame."""
+    """(frames, joints, 3) local translations, meters, in the turned frame."""
     local = recording.translations
     if local is None:
         local = local_translations(recording.skeleton, recording.positions[:, 0])

@@ -16,7 +16,7 @@ from app.motion.skeleton.kinematics import joints_by_depth
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray, IntArray
 
-LEAST_JOINTS = 8
+MIN_JOINTS = 8
 """A tree of fewer joints is a prop or markers, no person."""
 
 Roles = dict[JointRole, int]
@@ -52,7 +52,7 @@ def _bodies(names: Sequence[str], parents: IntArray, positions: FloatArray) -> l
         return []
     root_of = _roots(parents)
     trees = [np.flatnonzero(root_of == root) for root in np.flatnonzero(parents < 0)]
-    large = [tree for tree in trees if len(tree) >= LEAST_JOINTS]
+    large = [tree for tree in trees if len(tree) >= MIN_JOINTS]
     if len(large) < 2:
         return []
     return [tree for tree in large if _is_body(_roles_in(tree, names, parents, positions))]

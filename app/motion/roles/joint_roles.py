@@ -28,7 +28,7 @@ class JointRole(StrEnum):
     RIGHT_UPPER_LEG = "right_upper_leg"
 
     def towards_trunk(self) -> JointRole:
-        """The neighbour one link nearer to the hips; the hips are their own."""
+        """The neighbor one link nearer to the hips; the hips are their own."""
         return _TOWARDS_TRUNK[self]
 
     def mirrored(self) -> JointRole:
@@ -78,4 +78,4 @@ SUN_PARENTS: tuple[int, ...] = tuple(
     -1 if (nearer := role.towards_trunk()) is role else SUN_ROLES.index(nearer)
     for role in SUN_ROLES
 )
-"""Each of SUN_ROLES' neighbour towards the trunk, as an index; the hips are the root."""
+"""Each of SUN_ROLES' neighbor toward the trunk, as an index; the hips are the root."""

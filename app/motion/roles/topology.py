@@ -1,6 +1,6 @@
 """Joint roles from a skeleton's shape, where its names say nothing.
 
-Legs and arms are the two mirrored pairs of chains with the longest two neighbouring
+Legs and arms are the two mirrored pairs of chains with the longest two neighboring
 bones: thigh and shank make .49 of stature, upper arm and forearm .33 (Drillis and
 Contini 1966, as tabled by Winter, "Biomechanics and motor control", fig. 4.1). Left is
 told from right by geometry: up the trunk x forward, forward being where the toes point
@@ -25,7 +25,7 @@ SAME_LENGTH = 0.85
 NEAR_LONGEST = 0.85
 NO_LENGTH = 0.02
 """A bone below this part of its chain only doubles a joint."""
-SHORTEST_ARM = 0.35
+MIN_ARM_SHARE = 0.35
 """Upper arm and forearm are at least this part of thigh and shank; fingers are not."""
 CLEAR_SIDE = 0.02
 """Sides are told only where the evidence is this part of its possible size."""
@@ -45,7 +45,7 @@ class _Chain:
     lengths: tuple[float, ...]
 
     def main_bones(self) -> int:
-        """Index of the first of the two main bones: neighbours that are longest together.
+        """Index of the first of the two main bones: neighbors that are longest together.
 
         A collar bone can be as long as a forearm, so the outermost of near equals is it.
         """
@@ -124,7 +124,7 @@ class _Tree:
 
     def could_be_arms(self, legs: _Pair, arms: _Pair) -> bool:
         """Whether the pair is long enough, and apart from the legs' chains."""
-        if arms[1].reach() < SHORTEST_ARM * legs[1].reach():
+        if arms[1].reach() < MIN_ARM_SHARE * legs[1].reach():
             return False
         taken = {joint for chain in legs[1:] for joint in chain.joints if joint != legs[0]}
         others = {joint for chain in arms[1:] for joint in chain.joints if joint != arms[0]}

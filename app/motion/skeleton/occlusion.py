@@ -13,7 +13,7 @@ import scipy
 
 from app.numerics.arrays import BoolArray, FloatArray
 
-LONGEST_GAP = 0.25
+MAX_GAP = 0.25
 """Seconds; a limb turns back within half a second, so that a longer gap may hide it."""
 
 
@@ -37,8 +37,8 @@ class Filled:
 
 
 def fill_gaps(positions: FloatArray, frame_rate: float) -> Filled:
-    """Fill what is NaN in positions (frames, markers, 3) for up to LONGEST_GAP seconds."""
-    longest = max(1, round(LONGEST_GAP * frame_rate))
+    """Fill what is NaN in positions (frames, markers, 3) for up to MAX_GAP seconds."""
+    longest = max(1, round(MAX_GAP * frame_rate))
     unseen: BoolArray = np.asarray(np.isnan(positions).any(axis=-1))
     filled = positions.copy()
     long_gaps: list[Gap] = []

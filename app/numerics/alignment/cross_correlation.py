@@ -17,7 +17,7 @@ from app.numerics.arrays import FloatArray, IntArray
 
 CELLS_AT_ONCE = 1 << 16
 """Numbers transformed at once (half a megabyte): they stay in the processor's cache."""
-LARGEST_WASTE = 1.25
+MAX_WASTE = 1.25
 """Candidates share a batch while the longest transform is this times the shortest at most."""
 
 
@@ -60,7 +60,7 @@ def _batches(lengths: IntArray, n: int) -> Iterator[IntArray]:
     ordered = lengths[order]
     first = int(np.searchsorted(ordered, 0, side="right"))
     while first < len(order):
-        longest = int(LARGEST_WASTE * (n + ordered[first])) - n
+        longest = int(MAX_WASTE * (n + ordered[first])) - n
         alike = int(np.searchsorted(ordered, max(longest, ordered[first]), side="right")) - first
         count = min(alike, max(1, CELLS_AT_ONCE // (n + longest)))
         yield order[first : first + count]

@@ -31,7 +31,7 @@ from app.numerics.euclidean import squared_distances, squared_lengths
 CELLS_AT_ONCE = 4_000_000
 """Cells (query frames x stream frames) of one table; two bytes each."""
 
-MOST_FRAMES_AT_ONCE = 20_000
+MAX_FRAMES_AT_ONCE = 20_000
 """Frames of one table: its rows stay near the caches."""
 
 COSTS_AT_ONCE = 250_000
@@ -40,7 +40,7 @@ COSTS_AT_ONCE = 250_000
 STILL = 1e-9
 """Squared length below which a line between two frames is a point."""
 
-LONGEST_MATCH = 2
+MAX_MATCH_LENGTH = 2
 """Of the query's length: the slope constraint."""
 
 WALL = 2
@@ -85,10 +85,10 @@ def subsequence_dtw(query: FloatArray, streams: Sequence[FloatArray]) -> Matches
     if not len(query):
         raise ValueError("cannot look for an empty sequence")
     # differences of small numbers keep more digits
-    centre = np.asarray(query.mean(axis=0, dtype=np.float64), dtype=np.float32)
-    wanted = np.asarray(query, dtype=np.float32) - centre
-    at_once = max(min(MOST_FRAMES_AT_ONCE, CELLS_AT_ONCE // len(query)), 4 * len(query) + 8)
-    found = [_in_pieces(wanted, some, centre) for some in _batches(streams, len(query), at_once)]
+    center = np.asarray(query.mean(axis=0, dtype=np.float64), dtype=np.float32)
+    wanted = np.asarray(query, dtype=np.float32) - center
+    at_once = max(min(MAX_FRAMES_AT_ONCE, CELLS_AT_ONCE // len(query)), 4 * len(query) + 8)
+    found = [_in_pieces(wanted, some, center) for some in _batches(streams, len(query), at_once)]
     if not found:
         nothing = np.zeros(0, dtype=np.int64)
         return Matches(nothing, nothing, nothing, np.zeros(0, dtype=np.float32))
@@ -121,7 +121,7 @@ def _pieces(stream: int, whole: FloatArray, query_frames: int, at_once: int) -> 
     A piece's first and last frames stand for less than they do in the stream, as they lack the
     line to the frame beside them: no match that counts touches them.
     """
-    overlap = LONGEST_MATCH * query_frames + 3
+    overlap = MAX_MATCH_LENGTH * query_frames + 3
     first, valid = 0, 0
     while len(whole) - first > at_once:
         yield _Piece(stream, first, whole[first : first + at_once], valid, is_last=False)
@@ -131,8 +131,8 @@ def _pieces(stream: int, whole: FloatArray, query_frames: int, at_once: int) -> 
         yield _Piece(stream, first, whole[first:], valid, is_last=True)
 
 
-def _in_pieces(query: FloatArray, pieces: Sequence[_Piece], centre: FloatArray) -> _Columns:
-    laid, firsts = _end_to_end(pieces, centre)
+def _in_pieces(query: FloatArray, pieces: Sequence[_Piece], center: FloatArray) -> _Columns:
+    laid, firsts = _end_to_end(pieces, center)
     costs, skips, stays = _accumulate(query, laid, firsts)
     ends = np.concatenate([_ends(costs, p, f) for p, f in zip(pieces, firsts, strict=True)])
     starts = _starts(skips, stays, ends)
@@ -142,13 +142,13 @@ def _in_pieces(query: FloatArray, pieces: Sequence[_Piece], centre: FloatArray) 
     return streams, starts + offset, ends + 1 + offset, costs[ends] / len(query)
 
 
-def _end_to_end(pieces: Sequence[_Piece], centre: FloatArray) -> tuple[FloatArray, IntArray]:
-    """((k, d) float32 pieces less `centre`, zeros for walls), and their first columns."""
+def _end_to_end(pieces: Sequence[_Piece], center: FloatArray) -> tuple[FloatArray, IntArray]:
+    """((k, d) float32 pieces less `center`, zeros for walls), and their first columns."""
     lengths = np.array([len(piece.frames) for piece in pieces])
     firsts = np.cumsum(lengths + WALL) - lengths
-    laid = np.zeros((int(firsts[-1] + lengths[-1]), len(centre)), dtype=np.float32)
+    laid = np.zeros((int(firsts[-1] + lengths[-1]), len(center)), dtype=np.float32)
     for first, piece in zip(firsts, pieces, strict=True):
-        np.subtract(piece.frames, centre, out=laid[first : first + len(piece.frames)])
+        np.subtract(piece.frames, center, out=laid[first : first + len(piece.frames)])
     return laid, firsts
 
 

@@ -27,7 +27,7 @@ ITERATIONS = 3
 """The most iterations. On the real clips, divergences after 3 rank as after 5 (Spearman .9999),
 and words are found as well."""
 
-LEAST_GAIN = 1e-3
+MIN_GAIN = 1e-3
 """Stop when an iteration gains less log likelihood per frame than this."""
 
 FRAMES_PER_STATE = 3
@@ -138,7 +138,7 @@ def _improve(
     start: GaussianHMM, data: FloatArray, floor: FloatArray, iterations: int
 ) -> GaussianHMM:
     """The model after `iterations` of EM at most, from `start`."""
-    limits = {"n_iter": iterations, "tol": LEAST_GAIN * len(data)}
+    limits = {"n_iter": iterations, "tol": MIN_GAIN * len(data)}
     learner = _LeftToRight(start, floor, **limits)
     try:
         # Plain probabilities are fast. Under a frame far from every state they vanish, or the

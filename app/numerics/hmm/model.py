@@ -16,10 +16,10 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
 
-MOST_EMISSIONS = 2_000_000
+MAX_EMISSIONS = 2_000_000
 """Log densities (frames x states x models) computed at once; bounds memory to some 50 MB."""
 
-LEAST_PROBABILITY = 1e-10
+MIN_PROBABILITY = 1e-10
 """Transitions are floored here before their logarithm is taken, so that none is -inf."""
 
 
@@ -41,12 +41,12 @@ class GaussianHMM:
     def log_stay(self) -> FloatArray:
         """(K,) log probability of staying in each state."""
         stay = np.diagonal(self.transitions).astype(np.float64)
-        return np.asarray(np.log(np.maximum(stay, LEAST_PROBABILITY)))
+        return np.asarray(np.log(np.maximum(stay, MIN_PROBABILITY)))
 
     def log_move(self) -> FloatArray:
         """(K - 1,) log probability of moving from each state to the next."""
         move = np.diagonal(self.transitions, offset=1).astype(np.float64)
-        return np.asarray(np.log(np.maximum(move, LEAST_PROBABILITY)))
+        return np.asarray(np.log(np.maximum(move, MIN_PROBABILITY)))
 
     def dwell(self) -> FloatArray:
         """(K,) expected frames in each state, 1 / (1 - stay), at least one.
@@ -104,7 +104,7 @@ def log_likelihoods(models: Sequence[GaussianHMM], sequence: FloatArray) -> Floa
     if not models:
         return np.zeros(0)
     states = max(model.states for model in models)
-    at_once = max(1, MOST_EMISSIONS // (len(sequence) * states))
+    at_once = max(1, MAX_EMISSIONS // (len(sequence) * states))
     parts = [
         _log_likelihoods(models[first : first + at_once], sequence, states)
         for first in range(0, len(models), at_once)

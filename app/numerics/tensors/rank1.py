@@ -15,9 +15,9 @@ from app.deadline import check
 from app.numerics.arrays import FloatArray
 
 MAX_ITERATIONS = 200
-"""Sun saw 5 to 10 suffice on motion volumes; to SMALLEST_CHANGE it takes some 20."""
+"""Sun saw 5 to 10 suffice on motion volumes; to MIN_CHANGE it takes some 20."""
 
-SMALLEST_CHANGE = 1e-12
+MIN_CHANGE = 1e-12
 """Stop when lambda changes by less, as a share of it, and rho's square by as little.
 
 Lambda errs with the square of rho, which is then good to a millionth. The paper's 1e-10 is
@@ -51,7 +51,7 @@ def symmetric_rank1(
     volume: FloatArray,
     *,
     max_iterations: int = MAX_ITERATIONS,
-    smallest_change: float = SMALLEST_CHANGE,
+    smallest_change: float = MIN_CHANGE,
 ) -> Rank1:
     """Alternating least squares from a constant start, so that it always ends alike.
 

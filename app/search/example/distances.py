@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.descriptors.motion_volume import (
-    LARGEST_CROSS_CORRELATION,
+    MAX_CROSS_CORRELATION,
     cross_correlations,
     warping_distances,
 )
@@ -75,7 +75,7 @@ def _by_volume_dtw(query: QueryArrays, columns: list[list[FloatArray]]) -> Float
 
 def _by_volume_correlation(query: QueryArrays, columns: list[list[FloatArray]]) -> FloatArray:
     likeness = cross_correlations(query.rho, query.epsilon, np.stack(columns[0]), columns[1])
-    return np.asarray(np.maximum(LARGEST_CROSS_CORRELATION - likeness, 0.0))
+    return np.asarray(np.maximum(MAX_CROSS_CORRELATION - likeness, 0.0))
 
 
 _Comparison = Callable[[QueryArrays, list[list[FloatArray]]], FloatArray]

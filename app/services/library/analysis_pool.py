@@ -174,19 +174,19 @@ class AnalysisPool:
 
 
 def analyze_order(order: Order, limits: Limits) -> Analysis:
-    """Read, canonicalise and analyse one file, here and now (runs in the child).
+    """Read, canonicalize and analyse one file, here and now (runs in the child).
 
     Raises BadContent for what cannot be used, TooLarge beyond the limits.
     """
     from app.analysis import analyze
     from app.analysis.keyposes.keyposes import T1, T2
-    from app.analysis.rhythm.rhythm import Told
-    from app.motion.canonical.canonical import canonicalise
+    from app.analysis.rhythm.rhythm import RhythmInput
+    from app.motion.canonical.canonical import canonicalize
     from app.motion.roles.joint_roles import JointRole
 
     recording = read_order(order, limits)
     roles = {JointRole(role): joint for role, joint in (order.roles or {}).items()}
-    motion = canonicalise(
+    motion = canonicalize(
         recording,
         frame_rate=order.frame_rate,
         metres_per_unit=order.metres_per_unit,
@@ -195,9 +195,9 @@ def analyze_order(order: Order, limits: Limits) -> Analysis:
     if order.for_search:
         return analyze.describe_for_search(motion)
     t1, t2 = order.thresholds or (T1, T2)
-    told = Told(order.beats, order.tempo, order.audio_offset)
+    given = RhythmInput(order.beats, order.tempo, order.audio_offset)
     onsets, doubts = (None, ()) if order.audio_path is None else _listen(Path(order.audio_path))
-    found = analyze.analyze(motion, t1=t1, t2=t2, told=told, onsets=onsets)
+    found = analyze.analyze(motion, t1=t1, t2=t2, rhythm_input=given, onsets=onsets)
     return replace(found, cautions=(*doubts, *found.cautions))
 
 

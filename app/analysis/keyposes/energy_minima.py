@@ -22,10 +22,10 @@ STANDS_OUT = 0.25
 HIGH = 0.9
 """Quantile of a curve that serves as its unit until its median maximum is known."""
 
-NEAR_REST = 0.045
+NEAR_MINIMUM = 0.045
 """Units above a valley's least energy that still belong to the rest."""
 
-NOISE_NEAR_REST = 0.6
+NOISE_NEAR_MINIMUM = 0.6
 """Share of the noise taken off that is left as ripple."""
 
 END_OF_CLIP = 0.35
@@ -34,7 +34,7 @@ END_OF_CLIP = 0.35
 STILL = 0.03
 """Body lengths per second: a body whose maxima are lower only breathes and sways."""
 
-SURE_REST = 0.25
+SURE_MINIMUM = 0.25
 """Units of least energy below which a valley tells how long rests last."""
 
 USUAL_LENGTH = 4.0
@@ -42,7 +42,7 @@ USUAL_LENGTH = 4.0
 
 
 @dataclass(frozen=True, slots=True)
-class Rest:
+class EnergyMinimum:
     """A valley of an energy curve; frames, and energies in units of the median maximum.
 
     lowest: frame of least energy; first, last: frames between which energy stays near it;
@@ -64,15 +64,15 @@ class Rest:
         return self.last - self.first
 
 
-def find_rests(curve: EnergyCurve) -> tuple[Rest, ...]:
+def find_energy_minima(curve: EnergyCurve) -> tuple[EnergyMinimum, ...]:
     """The rests of an energy curve, in order; none of what does not move."""
     values = curve.values
     unit, maxima = median_maximum(values)
     if not len(maxima) or unit < max(STILL, curve.noise):
         return ()
-    near = max(NEAR_REST * unit, NOISE_NEAR_REST * curve.noise)
+    near = max(NEAR_MINIMUM * unit, NOISE_NEAR_MINIMUM * curve.noise)
     walls = [None, *(int(frame) for frame in maxima), None]
-    return tuple(_rest(values, left, right, near, unit) for left, right in pairwise(walls))
+    return tuple(_minimum(values, left, right, near, unit) for left, right in pairwise(walls))
 
 
 def median_maximum(values: FloatArray) -> tuple[float, FloatArray]:
@@ -86,19 +86,19 @@ def median_maximum(values: FloatArray) -> tuple[float, FloatArray]:
     return unit, standing
 
 
-def usual_length(rests: tuple[Rest, ...]) -> float:
+def usual_length(minima: tuple[EnergyMinimum, ...]) -> float:
     """Frames that a rest lasts: the median of those within the clip that are sure."""
     lengths = [
-        rest.length
-        for rest in rests
-        if rest.energy < SURE_REST and not rest.at_start and not rest.at_end
+        minimum.length
+        for minimum in minima
+        if minimum.energy < SURE_MINIMUM and not minimum.at_start and not minimum.at_end
     ]
     return float(np.median(lengths)) if lengths else USUAL_LENGTH
 
 
-def _rest(
+def _minimum(
     values: FloatArray, left: int | None, right: int | None, near: float, unit: float
-) -> Rest:
+) -> EnergyMinimum:
     """The rest between maxima at frames `left` and `right`, None where the clip ends."""
     start, stop = left or 0, len(values) if right is None else right + 1
     lowest = start + int(np.argmin(values[start:stop]))
@@ -109,7 +109,7 @@ def _rest(
     at_start = left is None and bool(values[:first].max(initial=0.0) <= quiet)
     at_end = right is None and bool(values[last:].max(initial=0.0) <= quiet)
     beside = min(float(values[wall]) for wall in (left, right) if wall is not None)
-    return Rest(
+    return EnergyMinimum(
         lowest=lowest,
         first=0 if at_start else first,
         last=len(values) - 1 if at_end else last,
