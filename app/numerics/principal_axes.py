@@ -1,7 +1,8 @@
-"""Principal axes of a set of samples: PCA by the smaller Gram matrix, signs fixed.
+"""Principal axes of a set of samples: PCA by the smaller Gram matrix, with fixed signs.
 
-scikit-learn's PCA takes twice as long (124 ms against 62 for 160 axes of 500 rows of 1509), always
-centers, and lets rounding choose the sign where two entries of an axis are equally large.
+scikit-learn's PCA is not used. It takes twice as long (124 ms against 62 for 160 axes of 500 rows
+of 1509), and it always centers. If two entries of an axis are equally large, rounding decides its
+sign.
 """
 
 from __future__ import annotations
@@ -15,26 +16,31 @@ from app.numerics.arrays import FloatArray
 from app.numerics.signs import fix_signs
 
 _RELATIVE_FLOOR = 1e-10
-"""Axes with a smaller share of the largest variance hold only rounding."""
+"""Axes with a smaller share of the largest variance hold only rounding errors."""
 
 
 @dataclass(frozen=True, slots=True)
 class PrincipalAxes:
-    """center: (d,); axes: (d, k), orthonormal columns by falling variance."""
+    """The axes along which samples vary most.
+
+    center: (d,) the mean of the samples, or 0. axes: (d, k) orthonormal columns, by falling
+    variance; in each column the entry of largest magnitude is positive.
+    """
 
     center: FloatArray
     axes: FloatArray
 
     def project(self, samples: FloatArray) -> FloatArray:
-        """(n, k) coordinates of `samples` (n, d)."""
+        """(n, k) the coordinates of `samples` (n, d) along the axes, float64."""
         return np.asarray((np.asarray(samples, dtype=np.float64) - self.center) @ self.axes)
 
 
 def principal_axes(samples: FloatArray, count: int, *, centered: bool = True) -> PrincipalAxes:
-    """The first `count` axes of `samples` (n, d); fewer where the samples span fewer.
+    """The first `count` principal axes of `samples` (n, d).
 
-    At least one axis is returned. With centered=False the center is 0, so that the axes
-    span the samples themselves.
+    There are fewer if the samples span fewer dimensions, but at least one. centered: whether the
+    mean is subtracted first; without it the center is 0, and the axes span the samples
+    themselves.
     """
     rows = np.asarray(samples, dtype=np.float64)
     center = rows.mean(axis=0) if centered else np.zeros(rows.shape[1])
