@@ -1,7 +1,7 @@
-"""Candidates for keyposes: rests at beats, or all rests where no beat is known (Perera 3.1).
+"""Candidates for keyposes: energy minima at beats, or all minima without beats (Perera 3.1).
 
-What makes a candidate a keypose, the thresholds T1 and T2, comes later: the same candidates
-serve every pair of thresholds, so that these can be learned.
+Later, the thresholds T1 and T2 select the keyposes. The candidates do not depend on the
+thresholds, so that thresholds can be learned.
 """
 
 from __future__ import annotations
@@ -15,48 +15,46 @@ from app.analysis.keyposes.energy_minima import SURE_MINIMUM, EnergyMinimum, usu
 from app.numerics.arrays import FloatArray
 
 REACH = 0.35
-"""How far from its beat a rest may be, in beats."""
+"""How far from its beat a minimum may be, in beats."""
 
 ALMOST = 0.4
-"""Of that reach: a rest that begins so little after a beat was reached on it all the same."""
+"""A share of REACH. A minimum that begins at most this much after a beat still belongs to it."""
 
 MAX_BEAT_INTERVAL = 1.5
-"""Median intervals: between beats further apart than that some are missing."""
+"""In median intervals. If two beats are farther apart, beats are missing between them."""
 
 LONE_BEAT = 15.0
-"""Frames; taken for the interval where only one beat is given."""
+"""Frames: the interval that is assumed if only one beat is given."""
 
 ASIDE = 0.5
-"""Units of energy that a rest at its beat's furthest reach must lie lower to be preferred."""
+"""Units of energy. A minimum at the far end of its beat's reach counts as this much higher."""
 
 LONG = 2.5
-"""Usual lengths beyond which a rest is a freeze: its moment is its arrival, not its middle."""
+"""In usual lengths. A longer minimum is a freeze: its keypose is at its start, not its middle."""
 
 FIRST_POSE = 7.0
-"""Frames: a clip that begins with a shorter rest just begins; a longer one is a pose."""
-
+"""Frames. If a clip begins with a shorter minimum, that is no pose, but the start of the clip."""
 
 NUDGE = 5.0
-"""Frames by which an estimated beat may move the moment of a rest from its middle."""
-
+"""Frames by which an estimated beat may move a keypose from the middle of its minimum."""
 
 AGREEING = 0.85
-"""Share of the sure rests that must hold a beat, for estimated beats to be believed."""
+"""The share of the certain minima that must contain a beat; else estimated beats are ignored."""
 
 
 class Scope(StrEnum):
-    """Which energy tells of a rest."""
+    """Which energy has the minimum."""
 
     GLOBAL = "global"
-    """The whole body comes to rest on the floor."""
+    """The global energy: the whole body comes to rest."""
 
     LOCAL = "local"
-    """The body comes to rest as seen from the waist, while that is carried on."""
+    """The local energy: the body comes to rest as seen from the waist, which may travel on."""
 
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A rest that may be a keypose: at `frame`, on `beat` (its index; None without beats)."""
+    """A minimum that may be a keypose at `frame`; beat: the index of its beat, None without."""
 
     frame: int
     beat: int | None
@@ -67,11 +65,12 @@ class Candidate:
 def at_beats(
     minima: tuple[EnergyMinimum, ...], beats: FloatArray, scope: Scope
 ) -> tuple[Candidate, ...]:
-    """For each of `beats` (b,), in frames, rising, at most one rest: the lowest around it.
+    """For each beat at most one candidate: the lowest minimum around it.
 
-    A rest belongs to the beat it is nearest to; of several that it lasts for to the first, on
-    which it was reached, or for the first rest of a clip to the last, on which it is left. Its
-    frame is the one nearest to the beat.
+    beats: (b,) in frames, rising. A minimum belongs to the nearest beat. If it lasts for several
+    beats, it belongs to the first one, on which it is reached. But the minimum at the start of
+    the clip belongs to the last one, on which it is left. The frame of a candidate is the frame
+    of its minimum that is nearest to the beat.
     """
     if not len(beats):
         return ()
@@ -96,7 +95,7 @@ def at_beats(
 
 
 def _reaches(beats: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(b,) frames before and after each beat that are its own."""
+    """Two arrays (b,): how many frames before and after each beat belong to it."""
     if len(beats) < 2:
         alone = np.full(len(beats), REACH * LONE_BEAT)
         return alone, alone
@@ -109,10 +108,11 @@ def _reaches(beats: FloatArray) -> tuple[FloatArray, FloatArray]:
 def at_energy_minima(
     minima: tuple[EnergyMinimum, ...], beats: FloatArray, scope: Scope
 ) -> tuple[Candidate, ...]:
-    """Every rest, at its middle, or at that of `beats` (b,), in frames, which lies within it.
+    """A candidate for each minimum: at its middle, or at a beat within it.
 
-    The beats are hints, as those that were estimated from the rests themselves are. A freeze
-    counts when it is reached, the first pose when it is left.
+    beats: (b,) in frames, rising. They are hints, because they may be estimated from the minima
+    themselves. The candidate of a freeze is near its start, that of the clip's first pose near
+    its end.
     """
     usual = usual_length(minima)
     beats = beats if _agree(minima, beats) else beats[:0]

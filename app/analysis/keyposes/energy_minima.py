@@ -1,8 +1,8 @@
-"""Rests: the valleys of an energy curve, one between any two maxima that stand out.
+"""The minima of an energy curve: one between any two clear maxima.
 
-A dancer who holds a pose shakes, breathes and lets a hand play: energy then has many small
-minima, all in one valley. Energies are told in units of the curve's median maximum, so that
-thresholds on them need no unit and fit calm and wild dances alike.
+A dancer who holds a pose shakes, breathes and moves a hand. So the energy has many small local
+minima in one valley; here a valley is one minimum. Energies are given in units of the curve's
+median maximum. So one threshold fits calm and wild dances.
 """
 
 from __future__ import annotations
@@ -17,37 +17,38 @@ from app.analysis.energy.energy import EnergyCurve
 from app.numerics.arrays import FloatArray
 
 STANDS_OUT = 0.25
-"""Units by which a maximum must rise above the valleys beside it to part them."""
+"""Units by which a maximum must rise above the minima on both sides to separate them."""
 
 HIGH = 0.9
-"""Quantile of a curve that serves as its unit until its median maximum is known."""
+"""The quantile of a curve that is its unit until its median maximum is known."""
 
 NEAR_MINIMUM = 0.045
-"""Units above a valley's least energy that still belong to the rest."""
+"""Units above the least energy that still belong to the minimum."""
 
 NOISE_NEAR_MINIMUM = 0.6
-"""Share of the noise taken off that is left as ripple."""
+"""The share of the subtracted noise that may still be in the curve."""
 
 END_OF_CLIP = 0.35
-"""Units: a clip whose energy from its beginning to a rest is lower begins at rest."""
+"""Units. If the energy between an end of the clip and a minimum is lower, the minimum reaches to
+that end."""
 
 STILL = 0.03
-"""Body lengths per second: a body whose maxima are lower only breathes and sways."""
+"""Body lengths per second. A body whose maxima are lower only breathes and sways."""
 
 SURE_MINIMUM = 0.25
-"""Units of least energy below which a valley tells how long rests last."""
+"""Units. A minimum with a lower energy certainly is a rest of the body."""
 
 USUAL_LENGTH = 4.0
-"""Frames that a rest lasts where none is sure."""
+"""Frames: the usual length if no minimum is certain."""
 
 
 @dataclass(frozen=True, slots=True)
 class EnergyMinimum:
-    """A valley of an energy curve; frames, and energies in units of the median maximum.
+    """A minimum of an energy curve; energies are in units of the median maximum.
 
-    lowest: frame of least energy; first, last: frames between which energy stays near it;
-    energy: at `lowest`; drop: from the lower of the maxima beside it down to `lowest`;
-    at_start, at_end: whether the clip begins or ends at this rest.
+    lowest: the frame of least energy. first, last: the frames between which the energy stays
+    near it. energy: that at `lowest`. drop: from the lower of the two neighboring maxima down to
+    `lowest`. at_start, at_end: whether the clip begins or ends at this minimum.
     """
 
     lowest: int
@@ -60,12 +61,12 @@ class EnergyMinimum:
 
     @property
     def length(self) -> int:
-        """Frames from first to last."""
+        """The frames from first to last."""
         return self.last - self.first
 
 
 def find_energy_minima(curve: EnergyCurve) -> tuple[EnergyMinimum, ...]:
-    """The rests of an energy curve, in order; none of what does not move."""
+    """The minima of an energy curve in order of time; none if the body does not move."""
     values = curve.values
     unit, maxima = median_maximum(values)
     if not len(maxima) or unit < max(STILL, curve.noise):
@@ -76,7 +77,10 @@ def find_energy_minima(curve: EnergyCurve) -> tuple[EnergyMinimum, ...]:
 
 
 def median_maximum(values: FloatArray) -> tuple[float, FloatArray]:
-    """The median of the maxima that stand out, and their frames; its maximum where none do."""
+    """The median of the clear maxima of `values` (n,), and their frames.
+
+    Without a clear maximum, the largest value and no frames are returned.
+    """
     high = float(np.quantile(values, HIGH))
     maxima, _ = scipy.signal.find_peaks(values, prominence=max(STANDS_OUT * high, 1e-12))
     if not len(maxima):
@@ -87,7 +91,7 @@ def median_maximum(values: FloatArray) -> tuple[float, FloatArray]:
 
 
 def usual_length(minima: tuple[EnergyMinimum, ...]) -> float:
-    """Frames that a rest lasts: the median of those within the clip that are sure."""
+    """The frames that a minimum usually lasts: the median of the certain ones within the clip."""
     lengths = [
         minimum.length
         for minimum in minima
@@ -99,7 +103,10 @@ def usual_length(minima: tuple[EnergyMinimum, ...]) -> float:
 def _minimum(
     values: FloatArray, left: int | None, right: int | None, near: float, unit: float
 ) -> EnergyMinimum:
-    """The rest between maxima at frames `left` and `right`, None where the clip ends."""
+    """The minimum between maxima at frames `left` and `right`; None stands for an end of the clip.
+
+    near: how far above the least energy the minimum reaches. unit: the median maximum.
+    """
     start, stop = left or 0, len(values) if right is None else right + 1
     lowest = start + int(np.argmin(values[start:stop]))
     least = float(values[lowest])
