@@ -214,4 +214,4 @@ ACTORS: tuple[Actor, ...] = (
         beats_per_minute=92.0,
     ),
 )
-"""Six people who can be told apart by how they move, not by how large they are."""
+"""Six people who differ in how they move, not in their size."""

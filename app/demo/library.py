@@ -54,8 +54,8 @@ def demo_clips(
                     yield _clip(actor, task, number)
 
 
-def _check(wanted: Collection[str], known: Collection[str], kind: str) -> None:
-    for name in wanted:
+def _check(chosen: Collection[str], known: Collection[str], kind: str) -> None:
+    for name in chosen:
         if name not in known:
             raise NotFound(f"the demo library has no {kind} {name!r}, only {', '.join(known)}")
 
@@ -130,5 +130,5 @@ def _write(target: Path, content: bytes) -> None:
 def _row(clip: DemoClip) -> list[str]:
     keyposes = " ".join(f"{time:.3f}" for time in clip.keyposes)
     offset = "" if clip.audio_offset is None else f"{clip.audio_offset:g}"
-    told = [clip.person, clip.task, " ".join(clip.words), f"{clip.frame_rate:g}", keyposes]
-    return [clip.path, SOURCE, LICENSE, *told, clip.audio_path, offset]
+    facts = [clip.person, clip.task, " ".join(clip.words), f"{clip.frame_rate:g}", keyposes]
+    return [clip.path, SOURCE, LICENSE, *facts, clip.audio_path, offset]

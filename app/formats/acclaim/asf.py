@@ -233,7 +233,7 @@ class _Reader:
         return order
 
     def _axes(self, bone: _Bone) -> FloatArray:
-        """C (4,): turns about fixed axes in the order told."""
+        """C (4,): the product of turns about fixed axes, in the given order."""
         angles = np.radians(bone.angles) if self.in_degrees else bone.angles
         by_axis = dict(zip("XYZ", angles, strict=True))
         outermost_first = bone.order[::-1]

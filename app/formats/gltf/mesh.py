@@ -1,7 +1,7 @@
-"""A body of sticks to be seen: what a GLB file shows of a skeleton.
+"""A body of sticks, which makes the skeleton of a GLB file visible.
 
-Every joint is a small octahedron and every bone a long one, whose tip goes with the joint
-at its end, so that sticks follow bones that stretch. Triangles, meters, in the rest pose.
+Every joint is a small octahedron, every bone a long one. The tip of a bone follows the joint at its
+end, so sticks also follow bones that stretch. Triangles in the rest pose, in meters.
 """
 
 from __future__ import annotations

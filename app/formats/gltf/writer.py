@@ -24,7 +24,7 @@ _FLOAT, _USHORT, _UINT = 5126, 5123, 5125
 _ARRAY_BUFFER, _INDEX_BUFFER = 34962, 34963
 _COLOR = (0.23, 0.42, 0.65, 1.0)
 _SAME = 1e-7
-"""What varies by less over a clip is not animated."""
+"""A value that varies by less over a clip is not animated."""
 _Json = dict[str, Any]
 
 
@@ -66,7 +66,7 @@ def write_glb(animation: Animation, name: str = "motion", license: str | None = 
 
 
 class _Blob:
-    """The block of numbers, and the accessors and views that tell where each array is."""
+    """The block of numbers, and the accessors and views that say where each array is."""
 
     def __init__(self) -> None:
         self.parts: list[bytes] = []

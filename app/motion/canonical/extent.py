@@ -1,10 +1,10 @@
-"""Positions beyond any human measure: refused before anything is computed from them.
+"""Refuses positions that no human body can have, before anything is computed from them.
 
-Files that are damaged, or read in a wrong unit, hold positions that no body takes. They would end
-as infinities in descriptors of small floats, or as nonsense among the hits. Each limit is far
-beyond what people do, and holds both in meters and by the body's own length, since the client may
-give any unit. Measured on 501 real clips: joints at most 1.5 m from the hips, steps of at most
-.4 m in 1/30 s, 9 m from the origin.
+Damaged files, and files read in a wrong unit, hold impossible positions. They would cause
+infinities in descriptors of small floats, or useless hits. Each limit is far beyond what people
+do. It is given both in meters and in lengths of the body, because a client may give any unit. In
+501 real clips, joints are at most 1.5 m from the hips, the hips move at most .4 m in 1/30 s, and
+joints are at most 9 m from the origin.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from app.numerics.arrays import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class _Limit:
-    """The largest length: in meters, and in lengths of the body."""
+    """The largest length, in meters and in lengths of the body; the smaller one counts."""
 
     meters: float
     bodies: float
@@ -43,9 +43,9 @@ FARTHEST = _Limit(10_000.0, 10_000.0)
 
 
 def check_extent(motion: Motion) -> tuple[Caution, ...]:
-    """Cautions about joints far away that are no part of the body.
+    """Cautions about far joints that do not belong to the body.
 
-    Raises BadContent, naming the joint and the frame, where the body itself is beyond a limit.
+    Raises BadContent, with the joint and the frame, if the body itself exceeds a limit.
     """
     size = _size(motion)
     own = sorted(set(motion.roles.values()))
@@ -65,7 +65,7 @@ def check_extent(motion: Motion) -> tuple[Caution, ...]:
 
 
 def _size(motion: Motion) -> float:
-    """Length of the body in meters; endless where it has none, which the analysis refuses."""
+    """The body length in meters; infinite for a body without size, which the analysis refuses."""
     try:
         return body_length(motion)
     except NotHuman:
@@ -74,7 +74,7 @@ def _size(motion: Motion) -> float:
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """Where a limit is passed, and by a coordinate of how many meters."""
+    """Where a limit is exceeded, and the length there in meters."""
 
     frame: int
     joint: int
@@ -82,9 +82,9 @@ class _Found:
 
 
 def _first_beyond(positions: FloatArray, limit: float, joints: Iterable[int]) -> _Found | None:
-    """The first of `joints` that has a coordinate beyond `limit`, in its first such frame.
+    """The first of `joints` with a coordinate beyond `limit`, and its first such frame.
 
-    positions: (frames, joints, 3). Joint by joint, so that no copy of a long clip is made.
+    positions: (frames, joints, 3). Joints are checked one by one, to avoid a copy of a long clip.
     """
     if max(positions.max(), -positions.min()) <= limit:
         return None

@@ -1,25 +1,25 @@
-"""Whether a frame rate is plausible for a human body, by physics.
+"""Checks by physics whether a frame rate is plausible for a human body.
 
-A clip told k times too fast shows speeds k times and accelerations k^2 times the true
-ones. Five laws are asked, none of which a body can break:
+If the declared rate is k times the true one, speeds seem k times and accelerations k^2 times too
+large. Five laws are checked that no body can break:
 
-1. Free fall. With both feet clear of the floor, the height of the center of mass is a
-   parabola of curvature g, so that flights tell the true rate, both ways.
-2. Ground friction. Only friction moves a body sideways, and a foot slips that asks for
-   more than about the weight on it (coefficient of friction .5 to 1). Demand is the
-   horizontal acceleration of the center of mass over (g + the vertical one). Ballet,
-   fights and sprints ask for much in moments only; nobody does a quarter of the time.
-3. Support. Nothing but its weight pulls a body down: it does not fall faster than g.
+1. Free fall. While both feet are off the floor, the height of the center of mass is a parabola of
+   curvature g. So flights show rates that are too high and rates that are too low.
+2. Ground friction. Only friction moves a body sideways. A foot slips if it needs a force larger
+   than about the weight on it (coefficient of friction .5 to 1). The demand is the horizontal
+   acceleration of the center of mass divided by (g + its vertical acceleration). Ballet, fights
+   and sprints have a high demand for moments; nobody has it for a quarter of the time.
+3. Support. Only its weight pulls a body down, so it does not fall faster than g.
 4. Speed. Nobody travels faster than a sprinter (Bolt 2009: 12.4 m/s).
-5. Steps. The leg is a pendulum: step frequency x sqrt(leg length / g) stays below the
-   fastest sprinters' (about 5 steps/s on legs of .9 m: 1.5).
+5. Steps. The leg is a pendulum: step frequency x sqrt(leg length / g) is below that of the
+   fastest sprinters (about 5 steps/s with legs of .9 m: 1.5).
 
-Too slow a rate is told by flights alone: slow motion breaks no other law.
+A rate that is too low only shows in flights, because slow motion breaks no other law.
 
-Measured on real clips at their true rates: demand .39 at most (n = 372), support -1.33 g,
-flights .81 to 1.26 g, steps 1.09. Of the same clips at twice their rate, a third of those
-that still last 3 s is found out, of walks nine in ten (standing gestures obey every law at
-twice their speed).
+Real clips at their true rates have a demand of at most .39 (n = 372), a support of -1.33 g, flights
+of .81 to 1.26 g, and steps of 1.09. At twice their rate, a third of the clips that still last 3 s
+are detected, and nine of ten walks. (Gestures of a standing person obey every law at twice their
+speed.)
 """
 
 from __future__ import annotations
@@ -40,15 +40,15 @@ from app.numerics.arrays import FloatArray
 GRAVITY = 9.81
 """m/s2."""
 CUTOFF = 4.0
-"""Hz; faster changes of the center of mass are mostly noise."""
+"""Hz. Faster changes of the center of mass are mostly noise."""
 SHORTEST = 3.0
-"""Seconds by the rate in question; a shorter clip may be one start, stop or leap."""
+"""Seconds at the checked rate. A shorter clip may be a single start, stop or leap."""
 MIN_FRAMES = 30
 EDGE = 0.25
-"""Seconds at each end that the filter disturbs."""
+"""Seconds at each end that are left out, because the filter is not exact there."""
 FRICTION_QUANTILE, FRICTION_LIMIT = 75.0, 0.45
 MIN_WEIGHT = 0.5
-"""Part of the weight that friction demand is at least divided by, for moments of flight."""
+"""The smallest share of the weight by which friction demand is divided, for moments of flight."""
 SUPPORT_QUANTILE, SUPPORT_LIMIT = 2.0, -1.7
 """In g."""
 SPEED_QUANTILE, SPEED_LIMIT = 95.0, 12.5
@@ -72,18 +72,19 @@ _ROLE = {role: index for index, role in enumerate(SUN_ROLES)}
 
 @dataclass(frozen=True, slots=True)
 class _Finding:
-    """A broken law: how many times too fast at least (below 1: too slow), and why."""
+    """A broken law. factor: by how much the rate is at least too high (below 1: too low)."""
 
     factor: float
     reason: str
 
 
 def judge_frame_rate(role_positions: FloatArray, rate: float) -> list[Caution]:
-    """Cautions about a rate in Hz for role positions (frames, 13, 3), meters, Y up.
+    """Check a frame rate in Hz against the laws of this module.
 
-    None, or one `frame_rate_suspect` with the likely rate.
+    role_positions: (frames, 13, 3) in SUN_ROLES order, meters, Y up. The result is empty, or one
+    caution `frame_rate_suspect` with the likely rate.
     """
-    # Converters put a frame of rest pose first.
+    # Converters often insert a rest pose as the first frame.
     positions = np.asarray(role_positions[1:], dtype=np.float64)
     finding = next(_findings(positions, rate), None)
     if finding is None:
@@ -94,7 +95,10 @@ def judge_frame_rate(role_positions: FloatArray, rate: float) -> list[Caution]:
 
 
 def _likely_rate(positions: FloatArray, rate: float, factor: float) -> float:
-    """Too slow: by the nearest usual factor; too fast: by the first that breaks no law."""
+    """The likely rate, by one of FACTORS.
+
+    For a rate that is too low it is the nearest factor; else the first one that breaks no law.
+    """
     if factor < 1:
         return rate * min(FACTORS, key=lambda usual: abs(np.log(usual * factor)))
     lawful = (
@@ -106,7 +110,7 @@ def _likely_rate(positions: FloatArray, rate: float, factor: float) -> float:
 
 
 def _findings(positions: FloatArray, rate: float) -> Iterator[_Finding]:
-    """What speaks against the rate, the most telling law first."""
+    """The laws that the rate breaks, the most reliable law first."""
     if len(positions) < FLIGHT_FRAMES:
         return
     center = center_of_mass(positions)

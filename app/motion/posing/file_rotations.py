@@ -36,9 +36,9 @@ def animation_of_recording(recording: Recording, motion: Motion) -> Animation | 
     turn = _turn_between(recording, motion)
     if turn is None or recording.rotations.shape[:2] != motion.positions.shape[:2]:
         return None
-    told = recording.rotations.astype(np.float64)
-    told /= np.linalg.norm(told, axis=-1, keepdims=True)  # float32 is short of unit length
-    rotations = multiply(multiply(turn, told), conjugate(turn))
+    local = recording.rotations.astype(np.float64)
+    local /= np.linalg.norm(local, axis=-1, keepdims=True)  # float32 is short of unit length
+    rotations = multiply(multiply(turn, local), conjugate(turn))
     skeleton = _turned(recording.skeleton, turn, motion.metres_per_unit)
     as_told = _translations(recording, turn, motion)
     reached = forward_kinematics(skeleton, rotations, as_told)

@@ -14,7 +14,7 @@ THROWN = 2.0
 all but one begin with more, of 97 by Bandai-Namco none with more than 1.05."""
 
 MIN_FRAMES = 10
-"""Of fewer the first step cannot be told from the others."""
+"""The fewest frames. With fewer, the first step cannot be compared with the others."""
 
 
 def without_posed_start(motion: Motion) -> Motion:

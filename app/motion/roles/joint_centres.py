@@ -19,7 +19,7 @@ from app.numerics.arrays import FloatArray
 
 _R = JointRole
 Recipe = tuple[str, ...]
-"""Places of markers whose mean is a joint's center."""
+"""Names of marker places. The mean of these markers is a joint's center."""
 
 _SIDED: dict[str, tuple[Recipe, ...]] = {
     "knee": (("?KJC",), ("?KNE", "?KNM"), ("?KNE",)),
@@ -60,7 +60,10 @@ class Center:
 
 
 def joint_centers(markers: Mapping[str, FloatArray]) -> dict[JointRole, Center]:
-    """The centers that markers (frames, 3) by place tell, in the markers' unit and axes."""
+    """The joint centers that can be computed from `markers`, in their unit and axes.
+
+    markers: (frames, 3) for each marker place.
+    """
     found: dict[JointRole, Center] = {}
     for role, recipes in RECIPES.items():
         recipe = chosen(recipes, markers.__contains__)
@@ -73,7 +76,7 @@ def joint_centers(markers: Mapping[str, FloatArray]) -> dict[JointRole, Center]:
 
 
 def chosen(recipes: tuple[Recipe, ...], has: Callable[[str], bool]) -> Recipe | None:
-    """The first recipe all of whose places there are."""
+    """The first recipe for which all markers exist; None if there is none."""
     return next((recipe for recipe in recipes if all(map(has, recipe))), None)
 
 
