@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from sqlalchemy import insert, update
 
-from app.analysis.analyse import ANALYSIS_VERSION
+from app.analysis.analyze import ANALYSIS_VERSION
 from app.config import Settings
 from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.store import identity

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import body_length, body_track
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.resampling import sample_at
@@ -93,7 +93,7 @@ def _bridge(before: FloatArray, after: FloatArray, frames: int) -> FloatArray:
 
 def body_of(content: bytes, frame_rate: float | None = None) -> FloatArray:
     """(frames, 13, 3) of a motion file at 30 Hz, of the usual size."""
-    motion = canonicalise(read_recording(content), frame_rate=frame_rate)
+    motion = canonicalize(read_recording(content), frame_rate=frame_rate)
     return of_size(body_track(motion).positions)
 
 

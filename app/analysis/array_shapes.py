@@ -1,7 +1,7 @@
 """The shapes of the arrays that an analysis stores, by name.
 
-Clips keep the arrays of an earlier version of the analysis until they are analysed again. What
-compares clips asks here first whether an array is of the shape that this version works with.
+Clips keep the arrays of an earlier version of the analysis until they are analyzed again. Code
+that compares clips first asks here whether an array has the shape that this version uses.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ SHAPES: Mapping[str, tuple[int | None, ...]] = {
     "segment_vectors": (None, 185),
     "segment_cycles": (None, 3),
 }
-"""None: as many as the motion has, or its symbol."""
+"""The shape of each array. None stands for a size that differs from motion to motion."""
 
 
 def is_usable(name: str, array: NDArray[Any]) -> bool:
-    """Whether an array has the shape that this version of the analysis gives to its name."""
+    """Whether an array has the shape that this version expects; true for unknown names."""
     expected = SHAPES.get(name)
     if expected is None:
         return True
     return len(expected) == array.ndim and all(
-        wanted in (None, found) for wanted, found in zip(expected, array.shape, strict=True)
+        size in (None, found) for size, found in zip(expected, array.shape, strict=True)
     )

@@ -1,6 +1,6 @@
 """The actors of the demo library: a body, a style and habits, each consistent over all tasks.
 
-Lengths in metres, angles in radians, factors without unit (1 = ordinary).
+Lengths in meters, angles in radians, factors without unit (1 = ordinary).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class Naming(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """Proportions: `stature` in metres, the rest factors on an average body's fractions."""
+    """Proportions: `stature` in meters, the rest factors on an average body's fractions."""
 
     stature: float
     legs: float = 1.0
@@ -214,4 +214,4 @@ ACTORS: tuple[Actor, ...] = (
         beats_per_minute=92.0,
     ),
 )
-"""Six people who can be told apart by how they move, not by how large they are."""
+"""Six people who differ in how they move, not in their size."""

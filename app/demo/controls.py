@@ -1,6 +1,6 @@
 """What a performer does, as curves: the pelvis, spine, head, arms and planted feet.
 
-All arrays are (frames,) unless said; radians and metres; the performer faces Z, left is X.
+All arrays are (frames,) unless said; radians and meters; the performer faces Z, left is X.
 Left and right stand in pairs `(left, right)`, so that a left-hander is a mirror away.
 """
 
@@ -20,7 +20,7 @@ class Arm:
     """One arm, from hanging straight down.
 
     flex: forward and up; abduct: out to the side; twist: inwards about its own axis;
-    elbow: bend, never negative; wrist: bend towards the palm's side of the elbow's hinge.
+    elbow: bend, never negative; wrist: bend toward the palm's side of the elbow's hinge.
     """
 
     flex: FloatArray
@@ -55,7 +55,7 @@ class Turn:
 
 @dataclass(frozen=True, slots=True)
 class Controls:
-    """All curves of one performance; `root` (frames, 3) is the pelvis in the world, metres."""
+    """All curves of one performance; `root` (frames, 3) is the pelvis in the world, meters."""
 
     root: FloatArray
     pelvis: Turn

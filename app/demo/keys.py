@@ -1,6 +1,6 @@
 """Poses of parts at times, and curves through them on top of an actor's own posture.
 
-Keys are (time s, pose); a pose of None is the actor's posture at ease. Radians and metres.
+Keys are (time s, pose); a pose of None is the actor's posture at ease. Radians and meters.
 """
 
 from __future__ import annotations
@@ -85,6 +85,6 @@ def turned(times: FloatArray, rest: Turn, keys: Sequence[TurnKey], soften: float
 def placed(
     times: FloatArray, rest: FloatArray, keys: Sequence[PlaceKey], soften: float
 ) -> FloatArray:
-    """`rest` (frames, 3) and, added to it, offsets (x, y, z) in metres through `keys`."""
+    """`rest` (frames, 3) and, added to it, offsets (x, y, z) in meters through `keys`."""
     axes = [keyed(times, [(t, pose[axis]) for t, pose in keys], soften) for axis in range(3)]
     return rest + np.stack(axes, axis=-1)

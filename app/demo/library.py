@@ -2,7 +2,7 @@
 
 BVH files with a manifest, and WAV files.
 
-Deterministic: the same bytes at every run. Files are in centimetres, Y up.
+Deterministic: the same bytes at every run. Files are in centimeters, Y up.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from app.formats.bvh.writer import write_bvh
 
 LICENSE = "CC0-1.0"
 SOURCE = "Kinedex demo"
-UNITS_PER_METRE = 100.0
+UNITS_PER_METER = 100.0
 MANIFEST = "manifest.csv"
 COLUMNS: tuple[str, ...] = (
     *("path", "source", "license", "person", "task", "words", "fps"),
@@ -54,8 +54,8 @@ def demo_clips(
                     yield _clip(actor, task, number)
 
 
-def _check(wanted: Collection[str], known: Collection[str], kind: str) -> None:
-    for name in wanted:
+def _check(chosen: Collection[str], known: Collection[str], kind: str) -> None:
+    for name in chosen:
         if name not in known:
             raise NotFound(f"the demo library has no {kind} {name!r}, only {', '.join(known)}")
 
@@ -73,9 +73,9 @@ def _clip(actor: Actor, task: str, number: int) -> DemoClip:
     done = perform(actor, task, number)
     rig = build_rig(actor)
     content = write_bvh(
-        skeleton_of(rig, actor.naming, UNITS_PER_METRE),
+        skeleton_of(rig, actor.naming, UNITS_PER_METER),
         local_rotations(done.controls, rig),
-        done.controls.root * UNITS_PER_METRE,
+        done.controls.root * UNITS_PER_METER,
         actor.frame_rate,
     )
     return DemoClip(
@@ -130,5 +130,5 @@ def _write(target: Path, content: bytes) -> None:
 def _row(clip: DemoClip) -> list[str]:
     keyposes = " ".join(f"{time:.3f}" for time in clip.keyposes)
     offset = "" if clip.audio_offset is None else f"{clip.audio_offset:g}"
-    told = [clip.person, clip.task, " ".join(clip.words), f"{clip.frame_rate:g}", keyposes]
-    return [clip.path, SOURCE, LICENSE, *told, clip.audio_path, offset]
+    facts = [clip.person, clip.task, " ".join(clip.words), f"{clip.frame_rate:g}", keyposes]
+    return [clip.path, SOURCE, LICENSE, *facts, clip.audio_path, offset]

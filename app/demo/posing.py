@@ -1,6 +1,6 @@
 """From controls to joint rotations: legs by two-link inverse kinematics, the rest direct.
 
-Matrices are (frames, 3, 3), mapping a joint's rest frame to the world; metres.
+Matrices are (frames, 3, 3), mapping a joint's rest frame to the world; meters.
 """
 
 from __future__ import annotations
@@ -197,7 +197,7 @@ def about_z(angle: FloatArray) -> FloatArray:
 
 
 def _about(angle: FloatArray, first: int, second: int) -> FloatArray:
-    """Rotations that turn axis `first` towards axis `second`."""
+    """Rotations that turn axis `first` toward axis `second`."""
     matrices = np.zeros((len(angle), 3, 3))
     third = 3 - first - second
     matrices[:, third, third] = 1.0

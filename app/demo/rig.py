@@ -1,4 +1,4 @@
-"""The demo actors' skeleton: 22 joints and 5 end sites, metres, Y up, facing Z, left is X.
+"""The demo actors' skeleton: 22 joints and 5 end sites, meters, Y up, facing Z, left is X.
 
 Segment lengths follow the fractions of stature of Drillis & Contini (in Winter 2009,
 Biomechanics and Motor Control of Human Movement, fig. 4.1), slightly rounded.
@@ -28,9 +28,9 @@ PARENTS = (-1, 0, 1, 2, 3, 4, 3, 6, 7, 8, 3, 10, 11, 12, 0, 14, 15, 16, 0, 18, 1
 
 @dataclass(frozen=True, slots=True)
 class Rig:
-    """Lengths in metres that posing needs, and the offsets of the whole skeleton.
+    """Lengths in meters that posing needs, and the offsets of the whole skeleton.
 
-    offsets: (22, 3) from parent to joint at rest, metres; ends: (5, 3) of head, hands, toes;
+    offsets: (22, 3) from parent to joint at rest, meters; ends: (5, 3) of head, hands, toes;
     hip_offset: (3,) from the hips to the left thigh; ball, heel: distances before and behind
     the ankle; ankle, ball_height: heights of a flat foot's joints; toes: length of the toes.
     """
@@ -49,12 +49,12 @@ class Rig:
 
     @property
     def leg(self) -> float:
-        """Length of the straight leg from hip joint to ankle, metres."""
+        """Length of the straight leg from hip joint to ankle, meters."""
         return self.thigh + self.shin
 
     @property
     def standing(self) -> float:
-        """Height of the hips (root) over the ground with straight legs, metres."""
+        """Height of the hips (root) over the ground with straight legs, meters."""
         return self.leg + self.ankle - float(self.hip_offset[1])
 
 
@@ -104,15 +104,15 @@ def _ends(offsets: FloatArray, unit: float) -> FloatArray:
     return np.array([[0.0, 0.105 * unit, 0.0], *hands, *toes])
 
 
-def skeleton_of(rig: Rig, naming: Naming, units_per_metre: float = 100.0) -> Skeleton:
-    """The rig as a skeleton with the names of a convention, in centimetres by default."""
+def skeleton_of(rig: Rig, naming: Naming, units_per_meter: float = 100.0) -> Skeleton:
+    """The rig as a skeleton with the names of a convention, in centimeters by default."""
     ends = [HEAD, HAND[LEFT], HAND[RIGHT], TOES[LEFT], TOES[RIGHT]]
     return Skeleton(
         names=NAMES[naming],
         parents=np.array(PARENTS, dtype=np.int64),
-        offsets=rig.offsets * units_per_metre,
+        offsets=rig.offsets * units_per_meter,
         end_parents=np.array(ends, dtype=np.int64),
-        end_offsets=rig.ends * units_per_metre,
+        end_offsets=rig.ends * units_per_meter,
     )
 
 

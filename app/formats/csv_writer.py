@@ -11,15 +11,15 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 
 DECIMALS = 6
-"""Of seconds and metres."""
+"""Of seconds and meters."""
 BLOCK_FRAMES = 1024
 _FORMULA_STARTS = ("=", "+", "-", "@")
 
 
 def write_csv(names: Sequence[str], positions: FloatArray, frame_rate: float) -> Iterator[bytes]:
-    """`time` in seconds, then x, y and z of each joint in metres, Y up, piece by piece.
+    """`time` in seconds, then x, y and z of each joint in meters, Y up, piece by piece.
 
-    positions: (frames, joints, 3). The first row tells the columns, as `Hips_x`.
+    positions: (frames, joints, 3). The first row names the columns, as `Hips_x`.
     """
     head = io.StringIO()
     columns = [f"{_harmless(name)}_{axis}" for name in names for axis in "xyz"]

@@ -38,8 +38,8 @@ def read_recording(
 
     skeleton: the ASF file that an AMC file needs; stack: the animation stack of an FBX file,
     by default its longest. Raises EmptyFile, UnknownFormat, FormatNotSupported (a ZIP that
-    is no clip), SkeletonNeeded, MotionNeeded, SkeletonNotNeeded, BadField for a stack that is
-    not there, and what the reader raises: Unreadable with places, TooLarge.
+    is no clip), SkeletonNeeded, MotionNeeded, SkeletonNotNeeded, BadField for a stack that does
+    not exist, and the errors of the reader: Unreadable with places, and TooLarge.
     """
     name = sniff(content)
     if skeleton is not None and name not in ("amc", "asf"):
@@ -58,7 +58,7 @@ def read_recording(
 
 
 def _no_clip(archive: bytes) -> FormatNotSupported:
-    """What a ZIP without the arrays of a clip is told."""
+    """The error for a ZIP archive that has no arrays of a clip."""
     found = ", ".join(name[:60] for name in archive_names(archive)[:10])
     message = f"expected an array of positions, or of SMPL poses; found {found}"
     return FormatNotSupported(

@@ -1,4 +1,4 @@
-"""What format some bytes are of, by their first bytes; a file's name is never asked.
+"""Finds the format of a file by its first bytes. The name of a file is never used.
 
 Sources: C3D user manual (parameter block key 0x50 in the second byte), the FBX binary
 header, NumPy's format specification, PKWARE's APPNOTE 4.3.7, Acclaim's ASF and AMC.
@@ -13,7 +13,7 @@ from app.errors import EmptyFile, UnknownFormat
 from app.formats.npz.keys import is_known
 
 HEAD_BYTES = 4096
-"""The head that text formats are recognised in."""
+"""The first bytes, in which text formats are recognized."""
 TAIL_BYTES = 64 * 2**10
 """The end of an archive, where its directory is: more than NPZ files need for theirs."""
 HEAD_LINES = 50
@@ -81,7 +81,7 @@ def _holds_arrays(archive: bytes) -> bool:
 
 
 def archive_names(archive: bytes) -> list[str]:
-    """The names of a ZIP's entries, as far as the end of its directory tells them."""
+    """The names of a ZIP's entries, as far as the end of its directory contains them."""
     return list(_entries(archive[-TAIL_BYTES:])) or [_first_entry(archive)]
 
 

@@ -1,4 +1,4 @@
-"""The canonical motion (DESIGN 4): metres, Y up, right-handed, joint roles known."""
+"""The canonical motion: meters, Y up, right-handed, with known joint roles."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from app.numerics.arrays import FloatArray, IntArray
 class Motion:
     """A clip's motion in canonical form.
 
-    names: (joints,); parents: (joints,) int, -1 for a root;
-    positions: (frames, joints, 3) float32, metres, Y up, world frame;
-    roles: joint index by role, found roles only; missing_roles: those of Sun's 13 not found;
-    frame_rate: Hz, the one in force; declared_frame_rate: Hz as in the file, or None;
-    metres_per_unit: scale that was applied to the file's numbers.
+    names: (joints,). parents: (joints,) int, -1 for a root. positions: (frames, joints, 3)
+    float32, in the world, meters, Y up. roles: the joint of each role that was found.
+    missing_roles: those of Sun's 13 roles that were not found. frame_rate: Hz, the one that is
+    used. declared_frame_rate: Hz as in the file, or None. metres_per_unit: the scale that was
+    applied to the numbers of the file.
     """
 
     format: str
@@ -44,10 +44,10 @@ class Motion:
         return self.frames / self.frame_rate
 
     def role_positions(self) -> FloatArray:
-        """(frames, 13, 3) float32 positions of Sun's 13 roles, metres, in SUN_ROLES order.
+        """(frames, 13, 3) float32 positions of Sun's 13 roles, in meters, in SUN_ROLES order.
 
-        A missing role stands where its nearest present neighbour towards the trunk is
-        (hand -> elbow -> shoulder -> neck), so that all arrays keep their shape.
+        A missing role gets the position of its nearest neighbor toward the trunk that is there
+        (hand -> elbow -> shoulder -> neck), so that all arrays have the same shape.
         """
         columns = [self.roles[self._stand_in(role)] for role in SUN_ROLES]
         return np.ascontiguousarray(self.positions[:, columns])

@@ -6,14 +6,15 @@ scipy computes both. Here they are also defined without votes, which scipy refus
 from __future__ import annotations
 
 CONFIDENCE = 0.95
-"""That the true share lies within the interval."""
+"""The probability that the interval holds the true share."""
 
 
 def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
-    """The range, within 0..1, in which the true share lies with 95 % confidence (Wilson 1927).
+    """The lower and upper end, each 0..1, of Wilson's 95 % interval around a share.
 
-    It is right for few trials and for shares near the ends too. It is (0, 1) without trials.
-    Raises ValueError where there are more successes than trials.
+    successes: 0..trials. The interval (Wilson 1927) also holds for few trials and for shares
+    near 0 or 1. Without trials it is (0, 1). Raises ValueError if `successes` is negative or
+    larger than `trials`.
     """
     from scipy.stats import binomtest  # slow to load
 
@@ -24,10 +25,10 @@ def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
 
 
 def fair_coin_probability(successes: int, trials: int) -> float:
-    """The probability that a fair coin gives a share at least this far from one half.
+    """The probability, 0..1, that a fair coin gives a share at least this far from one half.
 
-    This is the exact two-sided binomial test. It is 1 without trials.
-    Raises ValueError where there are more successes than trials.
+    This is the p-value of the exact two-sided binomial test. Without trials it is 1.
+    Raises ValueError if `successes` is negative or larger than `trials`.
     """
     from scipy.stats import binomtest  # slow to load
 
@@ -35,7 +36,7 @@ def fair_coin_probability(successes: int, trials: int) -> float:
 
 
 def _has_none(successes: int, trials: int) -> bool:
-    """Whether there are no trials. Raises ValueError where the counts cannot be."""
+    """Whether there are no trials. Raises ValueError if the counts are impossible."""
     if not 0 <= successes <= trials:
         raise ValueError(f"expected 0 to {trials} successes, found {successes}")
     return trials == 0

@@ -16,43 +16,54 @@ import scipy
 
 from app.numerics.arrays import FloatArray, IntArray
 
-MOST_CLUSTERS = 12
+MAX_CLUSTERS = 12
+"""The largest number of clusters that is tried."""
+
 DRAWS = 20
-"""Sets without clusters that are drawn."""
+"""How many sets of points without clusters are drawn."""
+
 SEED = 20090
+"""Seed of these draws."""
 
 
 @dataclass(frozen=True, slots=True)
 class Clusters:
-    """The clusters, 2 to MOST_CLUSTERS of them, of the best silhouette (-1..1): labels (n,)."""
+    """The 2 to MAX_CLUSTERS clusters that have the best silhouette.
+
+    silhouette: their mean silhouette, -1..1. labels: (n,) the number of each point's cluster.
+    """
 
     silhouette: float
     labels: IntArray
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """The number of clusters."""
         return len(np.unique(self.labels))
 
 
 @dataclass(frozen=True, slots=True)
 class Clusteredness:
-    """The best clusters of points, and unclustered: the mean best silhouette of as many points
-    without clusters."""
+    """How well points fall into clusters, compared with points that have none.
+
+    clusters: the best clusters. unclustered: the mean, over DRAWS sets of as many points without
+    clusters, of the best silhouette.
+    """
 
     clusters: Clusters
     unclustered: float
 
     @property
     def gap(self) -> float:
-        """How much more clustered than by chance."""
+        """By how much the silhouette is above that of points without clusters."""
         return self.clusters.silhouette - self.unclustered
 
 
 def clusteredness(points: FloatArray) -> Clusteredness | None:
-    """Of points (n, d); None for fewer than three, or where all are one.
+    """Compare the best clusters of `points` (n, d) with those of points without clusters.
 
-    Deterministic: the draws are seeded.
+    Returns None for fewer than three points, or if all points are equal. The result is
+    deterministic, because the draws have a fixed seed.
     """
     best = best_clusters(points)
     if best is None:
@@ -66,8 +77,11 @@ def clusteredness(points: FloatArray) -> Clusteredness | None:
 
 
 def best_clusters(points: FloatArray) -> Clusters | None:
-    """Ward's clusters of points (n, d), as many as have the best silhouette; None for fewer
-    than three points, or where all are one."""
+    """Ward's clusters of `points` (n, d), cut where the mean silhouette is largest.
+
+    Of equally good cuts the one with fewer clusters is taken. Returns None for fewer than three
+    points, or if all points are equal.
+    """
     from sklearn.metrics import silhouette_score  # slow to load
 
     rows = np.asarray(points, dtype=np.float64)
@@ -78,7 +92,7 @@ def best_clusters(points: FloatArray) -> Clusters | None:
         scipy.spatial.distance.squareform(scipy.spatial.distance.pdist(rows)),
     )
     found = []
-    for count in range(2, min(MOST_CLUSTERS, len(rows) - 1) + 1):
+    for count in range(2, min(MAX_CLUSTERS, len(rows) - 1) + 1):
         labels = scipy.cluster.hierarchy.fcluster(tree, count, "maxclust")
         if len(np.unique(labels)) > 1:
             score = silhouette_score(distances, labels, metric="precomputed")

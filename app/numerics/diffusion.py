@@ -1,11 +1,11 @@
-"""Diffusion over a neighbourhood graph: near is what is reached through what lies between.
+"""Diffusion over a neighborhood graph: how closely points are connected through other points.
 
-Points of one kind often lie along a bend, so that two of them are farther apart than either
-is from a point of another kind; a walk from neighbour to neighbour follows the bend (Zhou et
-al. 2004, "Ranking on data manifolds", eq. 4; Donoser and Bischof 2013). Edges are weighed by
-each point's own distance to its neighbours (Zelnik-Manor and Perona 2004, section 3), so that
-dense and sparse places count alike. Everything is continuous in the distances: a point that
-moves a little changes its closeness a little, although neighbourhoods have ends.
+Points of one kind often lie along a curve. Then two of them can be farther apart than either is
+from a point of another kind. A random walk from neighbor to neighbor follows the curve (Zhou et
+al. 2004, "Ranking on data manifolds", eq. 4; Donoser and Bischof 2013). The weight of an edge
+depends on the distances of its two ends to their own neighbors (Zelnik-Manor and Perona 2004,
+section 3), so that dense and sparse regions count alike. The result is continuous in the
+distances: if a point moves a little, its closeness changes a little.
 """
 
 from __future__ import annotations
@@ -15,46 +15,54 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 
 DAMPING = 0.8
-"""Share of each step that goes on; the rest stays at the start."""
+"""The share of a walk that goes on at each step. The other share returns to the start."""
 
 REACH = 2.0
-"""An edge ends where its squared length is so many times the product of its ends' radii."""
+"""Two points have no edge if their squared distance exceeds this multiple of the product of
+their radii."""
 
-LEAST_DEGREE = 0.3
-"""Added to the sum of a point's edges: one that is hardly tied to any stays so."""
+DEGREE_OFFSET = 0.3
+"""Added to the sum of a point's edge weights. It keeps a point with weak edges weakly connected."""
 
 _SMALLEST = 1e-12
 
 
-def neighbour_radii(distances: FloatArray, neighbours: int) -> FloatArray:
-    """(n,) distance of each point to its `neighbours`-th nearest other; distances: (n, n)."""
-    count = min(neighbours, len(distances) - 1)
+def neighbor_radii(distances: FloatArray, neighbors: int) -> FloatArray:
+    """(n,) the distance of each point to its `neighbors`-th nearest other point.
+
+    distances: (n, n) symmetric, zeros on the diagonal. With fewer other points, the farthest
+    one is taken. The unit is that of `distances`.
+    """
+    count = min(neighbors, len(distances) - 1)
     return np.asarray(np.partition(distances, count, axis=1)[:, count])
 
 
 def diffused_closeness(
     distances: FloatArray, radii: FloatArray, damping: float = DAMPING
 ) -> FloatArray:
-    """(n,) how closely the first point is tied to each, 0..1; 1 to itself, 0 where no path is.
+    """(n,) how closely the first point is connected to each point, 0..1.
 
-    distances: (n, n) symmetric, zeros on the diagonal; radii: (n,), as from
-    `neighbour_radii`. K = (I - damping D^-1/2 W D^-1/2)^-1 is positive definite, so a kernel;
-    given is its cosine K_0i / sqrt(K_00 K_ii), which a point gains nothing in by being a hub.
+    The first point has closeness 1 to itself, and 0 to points that no path reaches.
+    distances: (n, n) symmetric, zeros on the diagonal. radii: (n,) in the same unit, as from
+    `neighbor_radii`. damping: 0 to less than 1, the share of a walk that goes on at each step.
+
+    K = (I - damping D^-1/2 W D^-1/2)^-1 is positive definite, so it is a kernel. The result is
+    its cosine K_0i / sqrt(K_00 K_ii). The cosine gives no advantage to points with many edges.
     """
     weights = _edges(distances, radii)
-    degrees = np.sqrt(weights.sum(axis=1) + LEAST_DEGREE)
+    degrees = np.sqrt(weights.sum(axis=1) + DEGREE_OFFSET)
     weights *= -damping / degrees
     weights /= degrees[:, None]
     np.fill_diagonal(weights, 1.0)
-    # Not by SciPy, which has a triangular inverse: importing it costs a command more than the
-    # whole search, and the inverse of some hundred rows takes a millisecond.
+    # SciPy has an inverse for symmetric matrices, but importing it takes a command longer than
+    # the whole search, and this inverse of a few hundred rows takes a millisecond.
     kernel = np.linalg.inv(weights)
     first, own = kernel[0], np.diagonal(kernel)
     return np.asarray(np.clip(first / np.sqrt(own[0] * own), 0.0, 1.0))
 
 
 def _edges(distances: FloatArray, radii: FloatArray) -> FloatArray:
-    """(n, n) Gaussian weights, lowered so that they are 0 from REACH on."""
+    """(n, n) Gaussian edge weights, lowered by a constant so that they reach 0 at REACH."""
     scales = np.maximum(np.outer(radii, radii), _SMALLEST)
     weights = np.maximum(np.exp(-np.square(distances) / scales) - np.exp(-REACH), 0.0)
     np.fill_diagonal(weights, 0.0)

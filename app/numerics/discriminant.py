@@ -1,11 +1,15 @@
 """Linear discriminants with shrinkage: directions in which classes differ, from few labels.
 
-The scatter within classes, from few examples, is far too small in some directions, and dividing
-by it makes noise loud. It is pulled towards a sphere by the share that scikit-learn's Ledoit and
-Wolf ("A well-conditioned estimator for large-dimensional covariance matrices", 2004) estimates.
+With few examples, the scatter within classes is far too small in some directions. Dividing by it
+would amplify noise. So it is shrunk toward a sphere. scikit-learn estimates how much, by the
+method of Ledoit and Wolf ("A well-conditioned estimator for large-dimensional covariance
+matrices", 2004).
 
-The discriminants stay ours: scikit-learn's LDA shrinks each class by a share of its own, which a
-class of two examples cannot give, and it has no directions beyond the C - 1 that part C classes.
+The discriminants themselves are our own code. scikit-learn's LDA estimates a share for each
+class, which two examples of a class do not allow. It also finds no directions beyond the C - 1
+that separate C classes.
+
+Shapes: examples n, dimensions d, classes C, directions k.
 """
 
 from __future__ import annotations
@@ -18,18 +22,20 @@ import scipy
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.signs import fix_signs
 
-SMALLEST_VARIANCE = 1e-12
-"""Floor of the mean variance within classes: identical examples must not divide by 0."""
+MIN_VARIANCE = 1e-12
+"""The smallest mean variance within classes. It avoids a division by 0 for equal examples."""
 
-LEAST_SHRINKAGE = 1e-6
+MIN_SHRINKAGE = 1e-6
+"""The smallest share of the sphere. It keeps the scatter invertible."""
 
 
 @dataclass(frozen=True, slots=True)
 class Discriminants:
     """Directions in which classes differ, in units of their spread within classes.
 
-    axes: (d, k), what parts classes best comes first: `points @ axes` has unit variance
-    within classes; between: (k,) variance of the class means along each; shrinkage: 0..1.
+    axes: (d, k), the direction that separates the classes best first; `points @ axes` has unit
+    variance within classes. between: (k,) the variance of the class means along each axis, 0
+    for axes beyond the first C - 1. shrinkage: the share of the sphere, 0..1.
     """
 
     axes: FloatArray
@@ -40,11 +46,12 @@ class Discriminants:
 def discriminants(
     points: FloatArray, labels: IntArray, count: int, shrinkage: float | None = None
 ) -> Discriminants:
-    """The first `count` discriminants of `points` (n, d) in classes `labels` (n,), 0..C-1.
+    """The first `count` discriminants of `points` (n, d), at most d.
 
-    At most d are returned. C-1 of them part the classes; the others follow by their variance
-    within classes. Each class must have an example; without two of any the sphere is all.
-    shrinkage: 0..1, in place of Ledoit and Wolf's.
+    labels: (n,) the class of each point, 0..C-1; each class needs at least one example. The
+    first C - 1 directions separate the classes. The others are ordered by falling variance
+    within classes. If no class has two examples, only the sphere is used (shrinkage 1).
+    shrinkage: the share of the sphere, 0..1; None estimates it (see `shrinkage_within`).
     """
     rows = np.asarray(points, dtype=np.float64)
     means, sizes = _class_means(rows, labels)
@@ -62,12 +69,13 @@ def discriminants(
 
 
 def shrinkage_within(within: FloatArray) -> float:
-    """Ledoit and Wolf's share, 0..1, for the scatter of `within` (n, d); 1 where nothing varies.
+    """The share of the sphere, 0..1, by Ledoit and Wolf; 1 if nothing varies.
 
-    within: deviations from the means of the rows' classes. They are counted as they are. A
-    correction for what small classes cannot tell was tried and made the learned metrics worse:
-    with two labeled clips a task, precision at 20 was .846 with it and is .903 without; with two
-    a person .489 and .570; with eight or more there was no difference.
+    within: (n, d) deviations of the points from the means of their classes. All n rows count,
+    although small classes leave fewer degrees of freedom. A correction for that was tried. It
+    made the learned metrics worse: with two labeled clips for each task, precision at 20 was
+    .846 with it and is .903 without it; with two clips for each person, .489 and .570. With
+    eight clips or more there was no difference.
     """
     from sklearn.covariance import ledoit_wolf_shrinkage  # slow to load
 
@@ -77,17 +85,21 @@ def shrinkage_within(within: FloatArray) -> float:
 
 
 def _shrunk(within: FloatArray, freedom: int, shrinkage: float) -> FloatArray:
-    """(d, d) scatter of `within` (n, d), pulled to the sphere of its mean variance."""
+    """(d, d) the scatter of `within` (n, d), mixed with the sphere of its mean variance.
+
+    freedom: the degrees of freedom of the scatter, n - C. shrinkage: the share of the sphere.
+    """
     width = within.shape[1]
     square = within.T @ within / max(freedom, 1)
-    mean = max(float(np.trace(square)) / width, SMALLEST_VARIANCE)
+    mean = max(float(np.trace(square)) / width, MIN_VARIANCE)
     square *= 1.0 - shrinkage
-    # a share of the sphere always stays, so that all can be divided by it
-    square += max(shrinkage, LEAST_SHRINKAGE) * mean * np.eye(width)
+    # a share of the sphere always stays, so that the result is invertible
+    square += max(shrinkage, MIN_SHRINKAGE) * mean * np.eye(width)
     return np.asarray(square)
 
 
 def _class_means(rows: FloatArray, labels: IntArray) -> tuple[FloatArray, FloatArray]:
+    """The means (C, d) of the classes, and how many rows each class has, (C,)."""
     sizes = np.bincount(labels).astype(np.float64)
     means = np.zeros((len(sizes), rows.shape[1]))
     np.add.at(means, labels, rows)
@@ -95,16 +107,19 @@ def _class_means(rows: FloatArray, labels: IntArray) -> tuple[FloatArray, FloatA
 
 
 def _parting(deviations: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Directions (d, C-1) and variances (C-1,) of whitened class deviations (C, d)."""
+    """The directions (d, C-1) that separate classes, and the variances (C-1,) along them.
+
+    deviations: (C, d) class means less the total mean, whitened, weighted by class size.
+    """
     most = min(len(deviations) - 1, deviations.shape[1])
     _, lengths, directions = np.linalg.svd(deviations, full_matrices=False)
     return directions[:most].T, lengths[:most] ** 2
 
 
 def _by_variance(parting: FloatArray, values: FloatArray) -> FloatArray:
-    """(d, d-C+1) what is orthogonal to `parting` (d, C-1), by falling variance before whitening.
+    """(d, d-C+1) the directions orthogonal to `parting` (d, C-1), by falling variance.
 
-    values: (d,) the variances within classes that were divided by.
+    values: (d,) the variances within classes before whitening, one for each whitened dimension.
     """
     beside = np.linalg.svd(parting, full_matrices=True)[0][:, parting.shape[1] :]
     _, turn = scipy.linalg.eigh((beside.T * values) @ beside)

@@ -1,10 +1,10 @@
-"""Euclidean distances of all pairs of rows, by one matrix product and without its rounding.
+"""Euclidean distances of all pairs of rows, by one matrix product but without its rounding error.
 
-|a - b|^2 = |a|^2 + |b|^2 - 2 a.b loses its digits where a and b are close: rows that are equal
-would have a distance. These few pairs are subtracted and squared instead, so that the result is
-as exact as that of `scipy.spatial.distance.cdist`, which subtracts all pairs. cdist takes 3 to 5
-times as long where rows have 39 numbers or more (257 x 257 rows of 128: 2.4 ms against 0.5), and
-has no single precision; it is faster for one row or for points of the plane, by microseconds.
+|a - b|^2 = |a|^2 + |b|^2 - 2 a.b loses digits if a and b are close: equal rows would have a
+distance above 0. These few pairs are computed again by subtraction. So the result is as exact as
+that of `scipy.spatial.distance.cdist`, which subtracts all pairs. cdist has no single precision,
+and takes 3 to 5 times as long for rows of 39 numbers or more (257 x 257 rows of 128: 2.4 ms
+against 0.5). It is faster, by microseconds, for one row or for points of the plane.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ import numpy as np
 from app.numerics.arrays import FloatArray, IntArray
 
 TOO_CLOSE_SINGLE = 1e-4
-"""Float32: squared distances up to this share of the squared lengths are computed again."""
+"""float32: squared distances up to this share of the squared length are computed again."""
 
 TOO_CLOSE_DOUBLE = 1e-8
-"""Float64: the same."""
+"""float64: the same."""
 
 RETAKEN_AT_ONCE = 10_000
-"""Pairs that are computed again at a time: bounds memory."""
+"""How many pairs are computed again at a time. It bounds the memory."""
 
 
 def squared_lengths(rows: FloatArray) -> FloatArray:
-    """(..., k) squared Euclidean lengths of `rows` (..., k, d), of the same precision."""
+    """(..., k) squared Euclidean lengths of `rows` (..., k, d), in the precision of `rows`."""
     return np.asarray(np.einsum("...d,...d->...", rows, rows))
 
 
@@ -36,7 +36,10 @@ def distances(
     squares: FloatArray | None = None,
     parts: Sequence[slice] = (slice(None),),
 ) -> FloatArray:
-    """(..., n, k) Euclidean distances of all pairs; parameters as of `squared_distances`."""
+    """(..., n, k) Euclidean distances of `rows` (..., n, d) to `others` (..., k, d).
+
+    The parameters, precision and exactness are those of `squared_distances`.
+    """
     apart = squared_distances(rows, others, squares, parts)
     return np.asarray(np.sqrt(apart, out=apart))
 
@@ -49,11 +52,11 @@ def squared_distances(
 ) -> FloatArray:
     """(..., n, k) squared Euclidean distances of `rows` (..., n, d) to `others` (..., k, d).
 
-    rows, others: float32 or float64, in one unit; their leading axes are broadcast. The result
-    has the wider of both types. Equal rows have the distance 0, and none is below 0.
-    squares: (..., k) `squared_lengths(others)`, for callers that need them more than once.
-    parts: slices of the k that are multiplied one by one. The last bits of a matrix product may
-    depend on its size; with parts, those of a distance depend on its part alone.
+    rows, others: float32 or float64, in the same unit; their leading axes are broadcast. The
+    result has the wider of the two types. Equal rows have distance 0, and no distance is
+    negative. squares: (..., k) `squared_lengths(others)`, if the caller has them. parts: slices
+    that cover the k others; each is multiplied alone. The last bits of a matrix product can
+    depend on its size. With parts, the last bits of a distance depend only on its own part.
     """
     squares = squared_lengths(others) if squares is None else squares
     twice = -2.0 * rows
@@ -72,9 +75,10 @@ def squared_distances(
 
 
 def _subtract(apart: FloatArray, rows: FloatArray, others: FloatArray, pairs: IntArray) -> None:
-    """Compute by subtraction, in place, the squared distances `apart` (..., n, k) of `pairs`.
+    """Compute the squared distances of `pairs` again by subtraction, in place in `apart`.
 
-    pairs: (p,) positions in the flat array, which numpy finds many times faster than indices.
+    apart: (..., n, k). pairs: (p,) positions in the flat array; numpy finds these many times
+    faster than indices.
     """
     *lead, row, other = np.unravel_index(pairs, apart.shape)
     rows = np.broadcast_to(rows, (*apart.shape[:-2], *rows.shape[-2:]))

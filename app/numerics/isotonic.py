@@ -1,4 +1,4 @@
-"""Isotonic regression: the rising curve nearest to points, by pooling neighbors that fall."""
+"""Isotonic regression: the rising curve that is nearest to given points."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ from app.numerics.arrays import FloatArray
 
 
 def rising_means(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Mean x (k,), strictly rising, and mean y (k,), rising, of the pools of points (n,), n >= 1.
+    """The mean x (k,) and mean y (k,) of the k pools of an isotonic regression of y on x.
 
-    scipy pools adjacent violators. A caller interpolates between the pools.
+    x, y: (n,) the points, at least one, in any order. Points of equal x are averaged first; then
+    scipy pools adjacent points whose y falls (least squares). Mean x rises strictly, mean y
+    rises. A caller interpolates between the pools.
     """
     values, member, counts = np.unique(x, return_inverse=True, return_counts=True)
     weights = counts.astype(np.float64)

@@ -1,12 +1,13 @@
-"""Kernel ridge regression with a Gaussian kernel, tuned by itself.
+"""Kernel ridge regression with a Gaussian kernel that tunes itself.
 
-Width and penalty minimise the leave-one-out error, which has a closed form. Above
-MAX_CENTRES rows the kernel is spanned by a random subset (Nystroem), so that cost grows
-with the number of rows, not with its cube. Shapes: rows n, inputs p, outputs q, centres m.
+Width and penalty are chosen to minimize the leave-one-out error, which has a closed form. With
+more than MAX_CENTERS rows, a random subset of them spans the kernel (Nystroem's method). Then the
+cost grows with the number of rows, not with its cube.
+Shapes: rows n, inputs p, outputs q, centers m.
 
-scikit-learn's KernelRidge stays out: it does not tune itself, and a search over the same grid
-with only five folds takes 8 times as long (1.8 s against .22 for 500 clips, 131 inputs and 55
-outputs; tests/bench/test_libraries.py).
+scikit-learn's KernelRidge is not used, because it does not tune itself. A search over the same
+grid with only five folds takes 8 times as long (1.8 s against .22 for 500 clips, 131 inputs and
+55 outputs; tests/bench/test_libraries.py).
 """
 
 from __future__ import annotations
@@ -18,76 +19,91 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 from app.numerics.euclidean import squared_distances
 
-MAX_CENTRES = 2000
-"""Rows that may be centres of the kernel."""
+MAX_CENTERS = 2000
+"""The largest number of rows that are centers of the kernel."""
 
 TUNING_ROWS = 1000
-"""Rows on which width and penalty are chosen."""
+"""The largest number of rows on which width and penalty are chosen."""
 
 WIDTHS = (0.125, 0.25, 0.5, 0.75, 1.0, 1.5, 2.5)
-"""Candidates, as multiples of the median distance between rows."""
+"""Candidates for the width, as multiples of the median distance between rows."""
 
 PENALTIES = (1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0, 3.0)
 """Candidates for the ridge penalty."""
 
 _BLOCK = 1000
-"""Rows handled at once: bounds memory to _BLOCK * m floats."""
+"""Rows that are computed at once. It bounds the memory to _BLOCK * m floats."""
 
 
 @dataclass(frozen=True, slots=True)
 class KernelRidge:
-    """centres (m, p), weights (m, q), offset (q,), width in the inputs' unit, and the
-    penalty that was used. Far from all centres the prediction is the offset.
+    """A fitted regression: offset + kernel(rows, centers) @ weights.
+
+    centers: (m, p). weights: (m, q). offset: (q,) the mean output, which is also the prediction
+    far from all centers. width: of the kernel, in the unit of the inputs. penalty: the ridge
+    penalty of the fit.
     """
 
-    centres: FloatArray
+    centers: FloatArray
     weights: FloatArray
     offset: FloatArray
     width: float
     penalty: float
 
     def predict(self, rows: FloatArray) -> FloatArray:
-        """(n, q) outputs for `rows` (n, p)."""
+        """(n, q) the predicted outputs for `rows` (n, p); n may be 0."""
         blocks = [
             self.offset
-            + gaussian_kernel(rows[first : first + _BLOCK], self.centres, self.width) @ self.weights
+            + gaussian_kernel(rows[first : first + _BLOCK], self.centers, self.width) @ self.weights
             for first in range(0, len(rows), _BLOCK)
         ]
         return np.concatenate([np.zeros((0, len(self.offset))), *blocks])
 
 
 def fit_kernel_ridge(rows: FloatArray, outputs: FloatArray, *, seed: int = 0) -> KernelRidge:
-    """Fit `outputs` (n, q) on `rows` (n, p), n >= 1; deterministic for a seed."""
+    """Fit `outputs` (n, q) to `rows` (n, p), at least one; choose width and penalty.
+
+    seed: of the random choice of TUNING_ROWS and MAX_CENTERS rows, if there are more than these.
+    The result is deterministic for a seed.
+    """
     order = np.random.RandomState(seed).permutation(len(rows))
     offset = outputs.mean(axis=0)
     tuning = np.sort(order[:TUNING_ROWS])
     width, penalty = _tune(rows[tuning], outputs[tuning] - offset)
-    centres = rows[np.sort(order[:MAX_CENTRES])]
-    weights = _solve(rows, outputs - offset, centres, width, penalty)
-    return KernelRidge(centres, weights, offset, width, penalty)
+    centers = rows[np.sort(order[:MAX_CENTERS])]
+    weights = _solve(rows, outputs - offset, centers, width, penalty)
+    return KernelRidge(centers, weights, offset, width, penalty)
 
 
 def refit_kernel_ridge(
     like: KernelRidge, rows: FloatArray, outputs: FloatArray, *, seed: int = 0
 ) -> KernelRidge:
-    """As fit_kernel_ridge, with the width and penalty of another: cheap, for folds of its rows."""
+    """Fit `outputs` (n, q) to `rows` (n, p) with the width and penalty of `like`.
+
+    As `fit_kernel_ridge` without its tuning, which takes most of the time. Cross-validation uses
+    it for each fold.
+    """
     order = np.random.RandomState(seed).permutation(len(rows))
     offset = outputs.mean(axis=0)
-    centres = rows[np.sort(order[:MAX_CENTRES])]
-    weights = _solve(rows, outputs - offset, centres, like.width, like.penalty)
-    return KernelRidge(centres, weights, offset, like.width, like.penalty)
+    centers = rows[np.sort(order[:MAX_CENTERS])]
+    weights = _solve(rows, outputs - offset, centers, like.width, like.penalty)
+    return KernelRidge(centers, weights, offset, like.width, like.penalty)
 
 
 def gaussian_kernel(left: FloatArray, right: FloatArray, width: float) -> FloatArray:
-    """(n, m) exp(-|l - r|^2 / (2 width^2)) of `left` (n, p) and `right` (m, p)."""
+    """(n, m) exp(-|l - r|^2 / (2 width^2)) for rows l of `left` (n, p) and r of `right` (m, p).
+
+    width: above 0, in the unit of the rows.
+    """
     return np.asarray(np.exp(squared_distances(left, right) / (-2.0 * width**2)))
 
 
 def leave_one_out_errors(kernel: FloatArray, outputs: FloatArray) -> FloatArray:
-    """(penalties,) mean squared error of predicting each row from all others.
+    """(len(PENALTIES),) the mean squared error if each row is predicted from all others.
 
-    kernel: (n, n); outputs: (n, q) without their mean. One eigendecomposition serves all
-    PENALTIES: the residual of row i is alpha_i / [(K + penalty)^-1]_ii.
+    kernel: (n, n) the Gaussian kernel of the rows. outputs: (n, q) less their mean. One
+    eigendecomposition serves all PENALTIES: the residual of row i is
+    alpha_i / [(K + penalty I)^-1]_ii, with alpha = (K + penalty I)^-1 outputs.
     """
     values, vectors = np.linalg.eigh(kernel)
     turned = vectors.T @ outputs
@@ -101,7 +117,10 @@ def leave_one_out_errors(kernel: FloatArray, outputs: FloatArray) -> FloatArray:
 
 
 def _tune(rows: FloatArray, outputs: FloatArray) -> tuple[float, float]:
-    """Width and penalty of least leave-one-out error; the widest, stiffest of equals."""
+    """The width and penalty with the smallest leave-one-out error.
+
+    Of equally good widths the largest is taken.
+    """
     squares = squared_distances(rows, rows)
     apart = np.sqrt(squares[np.triu_indices(len(rows), 1)])
     unit = float(np.median(apart)) if apart.size and np.median(apart) > 0.0 else 1.0
@@ -115,16 +134,16 @@ def _tune(rows: FloatArray, outputs: FloatArray) -> tuple[float, float]:
 
 
 def _solve(
-    rows: FloatArray, outputs: FloatArray, centres: FloatArray, width: float, penalty: float
+    rows: FloatArray, outputs: FloatArray, centers: FloatArray, width: float, penalty: float
 ) -> FloatArray:
-    """(m, q) weights; with all rows as centres the exact kernel ridge solution."""
-    among = gaussian_kernel(centres, centres, width)
-    if len(centres) == len(rows):
+    """(m, q) the weights of the centers; the exact solution if all rows are centers."""
+    among = gaussian_kernel(centers, centers, width)
+    if len(centers) == len(rows):
         return np.asarray(np.linalg.solve(among + penalty * np.eye(len(rows)), outputs))
-    normal, target = penalty * among, np.zeros((len(centres), outputs.shape[1]))
+    normal, target = penalty * among, np.zeros((len(centers), outputs.shape[1]))
     for first in range(0, len(rows), _BLOCK):
-        block = gaussian_kernel(rows[first : first + _BLOCK], centres, width)
+        block = gaussian_kernel(rows[first : first + _BLOCK], centers, width)
         normal += block.T @ block
         target += block.T @ outputs[first : first + _BLOCK]
-    jitter = 1e-8 * float(np.trace(normal)) / len(centres)
-    return np.asarray(np.linalg.solve(normal + jitter * np.eye(len(centres)), target))
+    jitter = 1e-8 * float(np.trace(normal)) / len(centers)
+    return np.asarray(np.linalg.solve(normal + jitter * np.eye(len(centers)), target))

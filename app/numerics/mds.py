@@ -1,12 +1,12 @@
 """Multidimensional scaling: points whose distances are given (Takano, eqs 3-4).
 
-The start is classical scaling; the paper's error T (eq. 3, the s-stress of Takane, each
-pair weighted by 1 / 4 D^2) is then minimised, by L-BFGS instead of Newton-Raphson because
-that needs no Hessian of all points. Points that come later are placed one by one against
-fixed landmarks under the same error. Shapes: points N, landmarks L, dimensions d.
+Classical scaling gives the start. Then the paper's error T is minimized (eq. 3: the s-stress of
+Takane, each pair weighted by 1 / 4 D^2). We use L-BFGS instead of the paper's Newton-Raphson,
+because it needs no Hessian of all points. A point that comes later is placed alone, against fixed
+landmarks, under the same error. Shapes: points N, landmarks L, dimensions d.
 
-scikit-learn minimizes only the raw stress (app.numerics.smacof), which leaves more of eq. 3:
-.229 a pair against .216 here, for 166 real symbols in 10 dimensions, in the same time.
+scikit-learn minimizes only the raw stress (app.numerics.smacof). That leaves a larger error T:
+.229 for each pair against .216 here, for 166 real symbols in 10 dimensions, in the same time.
 """
 
 from __future__ import annotations
@@ -19,35 +19,40 @@ from app.numerics.euclidean import squared_distances
 from app.numerics.signs import fix_signs
 
 REFINING_STEPS = 200
-"""L-BFGS iterations; the error is flat long before on real libraries."""
+"""The largest number of L-BFGS iterations. On real libraries the error settles long before."""
 
 PLACING_STEPS = 20
 """Levenberg-Marquardt steps for a new point."""
 
-LEAST_SHARE = 1e-3
-"""Distances are floored at this share of their mean: eq. 3 divides by them."""
+MIN_SHARE = 1e-3
+"""The smallest distance, as a share of the mean distance. Eq. 3 divides by distances."""
 
 _BLOCK = 2000
-"""New points placed at once: bounds memory to _BLOCK * L * d floats."""
+"""New points that are placed at once. It bounds the memory to _BLOCK * L * d floats."""
 
 
 def classical_mds(distances: FloatArray, dimensions: int) -> FloatArray:
-    """(N, d) coordinates by double centring of the squared `distances` (N, N).
+    """(N, d) coordinates by double centering of the squared `distances` (N, N), symmetric.
 
-    Dimensions beyond the rank are zero; signs are fixed. scikit-learn's ClassicalMDS gives the
-    same points in 1.4 to 2.3 times the time (4.1 ms against 3.0 for 200 points), after half a
-    second of loading, and has no column for a dimension beyond the number of points.
+    dimensions: d, the number of columns. Columns beyond the rank are zero. In each column the
+    entry of largest magnitude is positive, so the result is deterministic. scikit-learn's
+    ClassicalMDS gives the same points in 1.4 to 2.3 times the time (4.1 ms against 3.0 for 200
+    points), takes half a second to load, and has no column for a dimension beyond N.
     """
     squares = np.asarray(distances, dtype=np.float64) ** 2
-    centred = squares - squares.mean(axis=0) - squares.mean(axis=1)[:, None] + squares.mean()
-    values, vectors = np.linalg.eigh(-0.5 * centred)
+    centered = squares - squares.mean(axis=0) - squares.mean(axis=1)[:, None] + squares.mean()
+    values, vectors = np.linalg.eigh(-0.5 * centered)
     order = np.argsort(values)[::-1][:dimensions]
     points = fix_signs(vectors[:, order]) * np.sqrt(np.maximum(values[order], 0.0))
     return np.pad(points, ((0, 0), (0, dimensions - len(order))))
 
 
 def metric_mds(distances: FloatArray, dimensions: int) -> FloatArray:
-    """(N, d) coordinates that minimise eq. 3 for symmetric `distances` (N, N)."""
+    """(N, d) coordinates that minimize eq. 3 for `distances` (N, N), symmetric, of any unit.
+
+    The coordinates have the unit of the distances. Fewer than three points keep their classical
+    coordinates.
+    """
     start = classical_mds(distances, dimensions)
     if len(start) < 3:
         return start
@@ -63,14 +68,15 @@ def metric_mds(distances: FloatArray, dimensions: int) -> FloatArray:
 
 
 def stress(points: FloatArray, distances: FloatArray) -> float:
-    """The error T of eq. 3, over pairs i < j, of `points` (N, d) for `distances` (N, N)."""
+    """The error T of eq. 3 of `points` (N, d) for `distances` (N, N), summed over pairs i < j."""
     return _stress_and_slope(points, _floored(distances) ** 2)[0]
 
 
 def place(distances: FloatArray, landmarks: FloatArray) -> FloatArray:
-    """(N, d) coordinates of new points by their `distances` (N, L) to `landmarks` (L, d).
+    """(N, d) coordinates of new points, from their `distances` (N, L) to `landmarks` (L, d).
 
-    Starts from the triangulation of landmark MDS (de Silva and Tenenbaum 2004).
+    Each point is placed alone; N may be 0. The start is the triangulation of landmark MDS (de
+    Silva and Tenenbaum 2004). Levenberg-Marquardt steps then lower the error of eq. 3.
     """
     blocks = [
         _place_block(distances[first : first + _BLOCK], landmarks)
@@ -80,12 +86,13 @@ def place(distances: FloatArray, landmarks: FloatArray) -> FloatArray:
 
 
 def _floored(distances: FloatArray) -> FloatArray:
+    """The distances, of any shape, none smaller than MIN_SHARE of their mean."""
     wanted = np.asarray(distances, dtype=np.float64)
-    return np.maximum(wanted, max(LEAST_SHARE * float(wanted.mean()), 1e-12))
+    return np.maximum(wanted, max(MIN_SHARE * float(wanted.mean()), 1e-12))
 
 
 def _stress_and_slope(points: FloatArray, squares: FloatArray) -> tuple[float, FloatArray]:
-    """T and its flat gradient; squares: (N, N) wanted squared distances."""
+    """The error T and its gradient (N d,); squares: (N, N) the given squared distances."""
     excess = squares - squared_distances(points, points)
     np.fill_diagonal(excess, 0.0)
     pull = excess / squares
@@ -109,18 +116,21 @@ def _place_block(distances: FloatArray, landmarks: FloatArray) -> FloatArray:
 
 
 def _triangulate(wanted: FloatArray, landmarks: FloatArray) -> FloatArray:
-    centre = landmarks.mean(axis=0)
-    spread = landmarks - centre
+    center = landmarks.mean(axis=0)
+    spread = landmarks - center
     # |x - l|^2 = |x|^2 - 2 x.l + |l|^2: differences over landmarks are linear in x
     known = (spread**2).sum(axis=1) - wanted**2
     known = known - known.mean(axis=1, keepdims=True)
-    return np.asarray(0.5 * known @ np.linalg.pinv(spread, rcond=1e-6).T + centre)
+    return np.asarray(0.5 * known @ np.linalg.pinv(spread, rcond=1e-6).T + center)
 
 
 def _misfit(
     points: FloatArray, wanted: FloatArray, landmarks: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Residuals (N, L), whose squares sum to eq. 3, and their derivatives (N, L, d)."""
+    """The residuals (N, L) and their derivatives (N, L, d) by the coordinates of `points`.
+
+    wanted: (N, L) the given distances. The squared residuals sum to the error of eq. 3.
+    """
     offsets = points[:, None] - landmarks
     residuals = (wanted**2 - (offsets**2).sum(axis=2)) / (2.0 * wanted)
     return residuals, -offsets / wanted[:, :, None]

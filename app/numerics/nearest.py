@@ -1,12 +1,16 @@
-"""The nearest of very many vectors, exactly: one float32 product, then a few true distances.
+"""The nearest of very many vectors, exactly: one float32 product, then a few float64 distances.
 
-|q - x|^2 = |q|^2 - 2 q.x + |x|^2 costs one pass over the vectors but loses digits. How many
-is bounded (Higham 2002, section 3.1: a sum of d products errs by at most d u |q| |x|, in any
-order), so whatever could be among the nearest is kept, and measured again in float64.
+|q - x|^2 = |q|^2 - 2 q.x + |x|^2 needs one pass over the vectors but loses digits. The error has
+a bound (Higham 2002, section 3.1: a sum of d products errs by at most d u |q| |x|, in any order).
+So every vector that could be among the nearest is kept, and its distance is computed again in
+float64.
 
-scikit-learn's NearestNeighbors stays out: it knows no masks, no blocks that grow, and no pages
+scikit-learn's NearestNeighbors is not used. It has no masks, no blocks that grow, and no pages
 beyond a distance. Its brute force takes 3 times as long (11.5 ms against 3.8 for the 10 nearest
 of 100,000 x 128, 13 against 4.2 among half of them; tests/bench/test_libraries.py).
+
+Shapes: vectors n, dimensions d, results m. A row is the number of a vector, counted through all
+blocks.
 """
 
 from __future__ import annotations
@@ -20,23 +24,26 @@ from app.deadline import check
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 DECIMALS = 9
-"""Distances are rounded to so many decimals; those closer than that are equal."""
+"""Distances are rounded to this many decimals, so that rounding errors do not order them."""
 
 UNIT = 2.0**-24
-"""Largest relative error of one float32 operation."""
+"""The largest relative error of one float32 operation (u)."""
 
 FEW = 16
-"""Vectors are gathered where less than one in so many is asked for; else all are multiplied."""
+"""If a mask selects less than one in FEW vectors, only these are multiplied, else all are."""
 
 _ROUNDING = 10.0**-DECIMALS
 _HELD = 4096
-"""Rows that are held before their number is looked at."""
+"""Rows that a search holds, besides 4 times the count, before it drops the far ones."""
 _LARGEST = float(np.finfo(np.float32).max)
 
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Vectors (n, d) float32 C-contiguous, and the squares (n,) float32 of their lengths."""
+    """Some of the vectors to search.
+
+    vectors: (n, d) float32, C-contiguous. squares: (n,) float32, their squared lengths.
+    """
 
     vectors: FloatArray
     squares: FloatArray
@@ -46,13 +53,13 @@ class Block:
 
     @classmethod
     def of(cls, vectors: FloatArray) -> Block:
-        """A block of any vectors (n, d)."""
+        """A block of `vectors` (n, d) of any float type; float32 C-contiguous ones are shared."""
         rows = np.ascontiguousarray(vectors, dtype=np.float32)
         return cls(rows, squared_lengths(rows))
 
 
 def squared_lengths(vectors: FloatArray) -> FloatArray:
-    """(n,) float32 squared lengths of `vectors` (n, d), summed in float64."""
+    """(n,) float32 squared Euclidean lengths of `vectors` (n, d), summed in float64."""
     return np.asarray(np.einsum("ij,ij->i", vectors, vectors, dtype=np.float64), dtype=np.float32)
 
 
@@ -63,12 +70,16 @@ def nearest(
     count: int,
     least: float | None = None,
 ) -> tuple[IntArray, FloatArray]:
-    """Rows (m,) and rounded Euclidean distances (m,) float64 of the vectors nearest to `query`.
+    """The rows (m,) and the rounded float64 Euclidean distances (m,) of the nearest vectors.
 
-    Rows count through all blocks; masks: (n,) of each block, the rows that are meant, or None
-    for all. query: (d,), taken as float32. Given are, in no order, the `count` nearest and
-    whatever is as far as the last of them; with `least`, a rounded distance, the `count`
-    nearest of those that are farther, and all that are exactly so far.
+    masks: for each block (n,) which vectors may be found, None for all. query: (d,), used as
+    float32. count: at least 1.
+
+    The result holds the `count` nearest and all that are as far as the last of them. It can hold
+    some that are farther, and has no order: the caller sorts. least: a rounded distance, to get
+    the next page; then vectors nearer than it are left out, all at this distance are in the
+    result, and the `count` nearest are counted among those beyond it.
+    Raises DeadlineExceeded or ClientLeft (app.deadline).
     """
     query = np.asarray(query, dtype=np.float32)
     search = _Search(query, count, least, _longest(blocks))
@@ -85,9 +96,9 @@ def nearest(
 
 
 def squared_distances(blocks: Sequence[Block], query: FloatArray) -> tuple[FloatArray, float]:
-    """(n,) float32 squared distances of `query` (d,) to all vectors, and their largest error.
+    """(n,) float32 squared distances of `query` (d,) to all vectors, and a bound of their error.
 
-    Some may be below zero, by rounding.
+    The query is used as float32. By rounding, some squared distances can be negative.
     """
     query = np.asarray(query, dtype=np.float32)
     length = float(np.linalg.norm(query.astype(np.float64)))
@@ -106,7 +117,10 @@ def squared_distances(blocks: Sequence[Block], query: FloatArray) -> tuple[Float
 
 
 def distances_to(blocks: Sequence[Block], rows: IntArray, query: FloatArray) -> FloatArray:
-    """(m,) float64 rounded distances of `query` (d,) to the vectors of ascending `rows` (m,)."""
+    """(m,) float64 distances of `query` (d,) to the vectors of `rows` (m,), to DECIMALS places.
+
+    rows: ascending. The query is used as float32.
+    """
     exact = np.asarray(query, dtype=np.float32).astype(np.float64)
     distances = np.empty(len(rows))
     first = start = 0
@@ -121,7 +135,7 @@ def distances_to(blocks: Sequence[Block], rows: IntArray, query: FloatArray) -> 
 
 
 def gather(blocks: Sequence[Block], rows: IntArray) -> FloatArray:
-    """(m, d) float32 vectors of `rows` (m,), in any order."""
+    """(m, d) float32 the vectors of `rows` (m,), in the order of `rows`, which may be any."""
     order = np.argsort(rows, kind="stable")
     ends = np.cumsum([len(block) for block in blocks])
     parts = np.split(rows[order], np.searchsorted(rows[order], ends[:-1]))
@@ -136,13 +150,14 @@ def gather(blocks: Sequence[Block], rows: IntArray) -> FloatArray:
 
 
 def _longest(blocks: Sequence[Block]) -> float:
+    """The largest length of a vector; 0 if there are none."""
     return float(np.sqrt(max((float(b.squares.max()) for b in blocks if len(b)), default=0.0)))
 
 
 class _Search:
-    """What may be among the nearest, block after block.
+    """Collects, block after block, the rows that can be among the nearest.
 
-    A row's value is |x|^2 - 2 q.x, as float32 sees it: its squared distance less |q|^2.
+    The value of a row is |x|^2 - 2 q.x in float32, which is its squared distance less |q|^2.
     """
 
     def __init__(self, query: FloatArray, count: int, least: float | None, longest: float) -> None:
@@ -160,7 +175,7 @@ class _Search:
         self._held = 0
 
     def look(self, block: Block, mask: BoolArray | None, first: int) -> None:
-        """Keep what may be among the nearest of a block whose first row is row `first`."""
+        """Keep the rows of a block that can be among the nearest; `first` is its first row."""
         if mask is not None and np.count_nonzero(mask) * FEW < len(mask):
             chosen = np.flatnonzero(mask)
             values = block.squares[chosen] - 2.0 * (
@@ -178,7 +193,7 @@ class _Search:
         self._hold(first + kept, values[kept])
 
     def found(self) -> IntArray:
-        """Ascending rows of all that may be among the nearest."""
+        """All rows that can be among the nearest, ascending."""
         self._narrow()
         return self._rows[0] if self._rows else np.zeros(0, dtype=np.int64)
 
@@ -186,7 +201,7 @@ class _Search:
         return max(distance, 0.0) ** 2 - self._square
 
     def _may_be(self, values: FloatArray) -> IntArray:
-        """Indices of the `values` (n,) that are within the bounds, ascending."""
+        """The ascending indices of the `values` (n,) that are within the bounds."""
         if self._bound == np.inf:
             self._bound = self._bound_of(values)
         keep = values <= self._bound
@@ -202,7 +217,7 @@ class _Search:
             self._narrow()
 
     def _narrow(self) -> None:
-        """Drop what `count` others, farther than `least`, are surely nearer than."""
+        """Drop the rows that cannot be among the `count` nearest beyond `least`."""
         if len(self._rows) < 2:
             return
         rows, values = np.concatenate(self._rows), np.concatenate(self._values)
@@ -211,9 +226,10 @@ class _Search:
         self._rows, self._values, self._held = [rows[kept]], [values[kept]], len(kept)
 
     def _bound_of(self, values: FloatArray) -> float:
-        """Above it, no value is among the `count` nearest beyond `least`, whatever the rounding.
+        """A bound: no larger value is among the `count` nearest beyond `least`.
 
-        A value of infinity stands for a row that is not meant.
+        The bound allows for all rounding errors. A row that the mask leaves out has the value
+        infinity.
         """
         beyond = values[values > self._high] if self._high > -np.inf else values
         if len(beyond) <= self._count:
@@ -226,6 +242,10 @@ class _Search:
 
 
 def _largest_error(width: int, query: float, longest: float) -> float:
-    """Of a row's value: the product's, the square's, the subtraction's and the bound's rounding."""
+    """A bound of the rounding error of a row's value.
+
+    width: d; query: the query's length; longest: the largest length of a vector. The error comes
+    from the product, the squares, the subtraction, and from computing this bound (1 %).
+    """
     product = 2.0 * (width + 2) * UNIT * query * longest
     return 1.01 * (product + 4.0 * UNIT * (longest**2 + query**2))

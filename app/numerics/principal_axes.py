@@ -1,7 +1,8 @@
-"""Principal axes of a set of samples: PCA by the smaller Gram matrix, signs fixed.
+"""Principal axes of a set of samples: PCA by the smaller Gram matrix, with fixed signs.
 
-scikit-learn's PCA takes twice as long (124 ms against 62 for 160 axes of 500 rows of 1509), always
-centers, and lets rounding choose the sign where two entries of an axis are equally large.
+scikit-learn's PCA is not used. It takes twice as long (124 ms against 62 for 160 axes of 500 rows
+of 1509), and it always centers. If two entries of an axis are equally large, rounding decides its
+sign.
 """
 
 from __future__ import annotations
@@ -15,30 +16,35 @@ from app.numerics.arrays import FloatArray
 from app.numerics.signs import fix_signs
 
 _RELATIVE_FLOOR = 1e-10
-"""Axes with a smaller share of the largest variance hold only rounding."""
+"""Axes with a smaller share of the largest variance hold only rounding errors."""
 
 
 @dataclass(frozen=True, slots=True)
 class PrincipalAxes:
-    """centre: (d,); axes: (d, k), orthonormal columns by falling variance."""
+    """The axes along which samples vary most.
 
-    centre: FloatArray
+    center: (d,) the mean of the samples, or 0. axes: (d, k) orthonormal columns, by falling
+    variance; in each column the entry of largest magnitude is positive.
+    """
+
+    center: FloatArray
     axes: FloatArray
 
     def project(self, samples: FloatArray) -> FloatArray:
-        """(n, k) coordinates of `samples` (n, d)."""
-        return np.asarray((np.asarray(samples, dtype=np.float64) - self.centre) @ self.axes)
+        """(n, k) the coordinates of `samples` (n, d) along the axes, float64."""
+        return np.asarray((np.asarray(samples, dtype=np.float64) - self.center) @ self.axes)
 
 
-def principal_axes(samples: FloatArray, count: int, *, centred: bool = True) -> PrincipalAxes:
-    """The first `count` axes of `samples` (n, d); fewer where the samples span fewer.
+def principal_axes(samples: FloatArray, count: int, *, centered: bool = True) -> PrincipalAxes:
+    """The first `count` principal axes of `samples` (n, d).
 
-    At least one axis is returned. With centred=False the centre is 0, so that the axes
-    span the samples themselves.
+    There are fewer if the samples span fewer dimensions, but at least one. centered: whether the
+    mean is subtracted first; without it the center is 0, and the axes span the samples
+    themselves.
     """
     rows = np.asarray(samples, dtype=np.float64)
-    centre = rows.mean(axis=0) if centred else np.zeros(rows.shape[1])
-    rows = rows - centre
+    center = rows.mean(axis=0) if centered else np.zeros(rows.shape[1])
+    rows = rows - center
     tall = rows.shape[0] > rows.shape[1]
     gram = rows.T @ rows if tall else rows @ rows.T
     count = min(count, len(gram))
@@ -47,4 +53,4 @@ def principal_axes(samples: FloatArray, count: int, *, centred: bool = True) -> 
     kept = max(int((values > _RELATIVE_FLOOR * values[0]).sum()), 1)
     axes = vectors[:, :kept] if tall else rows.T @ vectors[:, :kept]
     axes, _ = np.linalg.qr(axes)
-    return PrincipalAxes(centre, fix_signs(axes))
+    return PrincipalAxes(center, fix_signs(axes))

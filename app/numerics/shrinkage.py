@@ -1,4 +1,4 @@
-"""How far a covariance of few samples must be pulled towards a sphere to be believed."""
+"""How far a covariance matrix of few samples must be shrunk toward a sphere."""
 
 from __future__ import annotations
 
@@ -8,13 +8,15 @@ from app.numerics.arrays import FloatArray
 
 
 def oracle_share(covariance: FloatArray, freedom: float) -> float:
-    """The share, 0..1, of the sphere of the same mean variance that is best mixed into a sample
-    covariance (d, d) of so many degrees of freedom: near 1 where its shape is no more than
-    chance, small where few directions hold all variance.
+    """The best share, 0..1, of a sphere in a mixture with a sample covariance (d, d).
 
-    Oracle approximating shrinkage: Chen, Wiesel, Eldar, Hero 2010, eq. 23. scikit-learn's OAS
-    takes the samples and counts each of them; a scatter within classes has fewer degrees of
-    freedom, which only this formula takes.
+    The sphere has the same mean variance. freedom: the degrees of freedom of the covariance. The
+    share is near 1 if the shape of the covariance can be chance, and small if few directions
+    hold all the variance.
+
+    Source: oracle approximating shrinkage (Chen, Wiesel, Eldar and Hero 2010, eq. 23).
+    scikit-learn's OAS takes the samples and counts each of them. A scatter within classes has
+    fewer degrees of freedom than samples, which this formula allows.
     """
     size = len(covariance)
     of_squares, square = float((covariance**2).sum()), float(np.trace(covariance)) ** 2

@@ -1,8 +1,7 @@
-"""Signs of singular vectors and eigenvectors, fixed once and for all.
+"""Fixed signs for singular vectors and eigenvectors.
 
-A singular vector is known only up to its sign, which differs between LAPACK builds.
-What we store is compared for years, so each column is turned such that its entry of
-largest magnitude is positive.
+The sign of a singular vector is arbitrary and differs between LAPACK builds. Stored vectors are
+compared for years. So the sign is chosen such that the entry of largest magnitude is positive.
 """
 
 from __future__ import annotations
@@ -12,12 +11,15 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 
 _TIE = 1e-9
-"""Entries this close to the largest magnitude (relative) count as equal to it: rounding
-must not decide between two that are equal by symmetry. The first of them is taken."""
+"""Relative difference up to which an entry counts as equal to the largest magnitude. Rounding
+must not decide between two entries that are equal by symmetry: the first of them is taken."""
 
 
 def column_signs(columns: FloatArray) -> FloatArray:
-    """The factor +1 or -1 for each column of (rows, k), as (k,); +1 for a zero column."""
+    """(k,) the factor, +1 or -1, that makes the largest entry of each column positive.
+
+    columns: (rows, k); rows may be 0. A zero column has the factor +1.
+    """
     if columns.shape[0] == 0:
         return np.ones(columns.shape[1])
     magnitudes = np.abs(columns)
@@ -27,5 +29,5 @@ def column_signs(columns: FloatArray) -> FloatArray:
 
 
 def fix_signs(columns: FloatArray) -> FloatArray:
-    """(rows, k) with each column turned so that its largest entry is positive."""
+    """`columns` (rows, k), each multiplied by its factor of `column_signs`."""
     return columns * column_signs(columns)

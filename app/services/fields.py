@@ -15,7 +15,7 @@ from typing import Any
 from app.errors import BadField, Place
 from app.formats.common.names import MAX_NAME_LENGTH
 from app.models.words.language.normalise import normalise_word, normalise_words
-from app.motion.canonical.units import METRES_PER_UNIT, SCALES
+from app.motion.canonical.units import METERS_PER_UNIT, SCALES
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.recording import FRAME_RATES
 from app.store.clips.record import AnalysisHints, ClipChanges, ClipLabels
@@ -95,12 +95,12 @@ def frame_rate(value: float | str | None) -> float | None:
 
 def metres_per_unit(value: float | str | None) -> float | None:
     """Metres in one unit of the file, from a number or a name (m, cm, mm, in, ...)."""
-    if isinstance(value, str) and value.strip().lower() in METRES_PER_UNIT:
-        return METRES_PER_UNIT[value.strip().lower()]
+    if isinstance(value, str) and value.strip().lower() in METERS_PER_UNIT:
+        return METERS_PER_UNIT[value.strip().lower()]
     try:
         number = _number("unit", value)
     except BadField as problem:
-        known = ", ".join(METRES_PER_UNIT)
+        known = ", ".join(METERS_PER_UNIT)
         raise bad_field("unit", f"must be one of {known}, or metres per unit") from problem
     if number is not None and not SCALES[0] <= number <= SCALES[1]:
         raise bad_field("unit", "must be between 0.000001 and 1000 metres")

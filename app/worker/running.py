@@ -12,7 +12,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from app.analysis.analyse import Analysis
+from app.analysis.analyze import Analysis
 from app.errors import AnalysisInterrupted, Canceled, ClipNotFound, KinedexError, StorageError
 from app.services.children.child import ChildDied, ChildEnded
 from app.services.clips import ingest

@@ -7,11 +7,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from app.analysis.analyse import describe_for_search
+from app.analysis.analyze import describe_for_search
 from app.formats.read import read_recording
 from app.models.folds import recording_of
 from app.models.metric.learned_metric import INPUTS, Described
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from tests.real_clips import manifest, real_clips
 
 
@@ -61,4 +61,4 @@ def described_clips() -> RealClips:
 
 def _arrays(path: str, fps: float) -> dict[str, np.ndarray]:
     recording = read_recording((real_clips() / path).read_bytes())
-    return dict(describe_for_search(canonicalise(recording, frame_rate=fps)).arrays)
+    return dict(describe_for_search(canonicalize(recording, frame_rate=fps)).arrays)

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 from sqlalchemy import insert, update
 
-from app.analysis.analyse import ANALYSIS_VERSION, analyse
+from app.analysis.analyze import ANALYSIS_VERSION, analyze
 from app.errors import BadContent
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.store.clips.index_feed import IndexedClip
 from app.store.clips.record import ClipState
 from app.store.database import tables as t
@@ -62,8 +62,8 @@ def samples(every: int = 3) -> tuple[Sample, ...]:
     for row in manifest()[::every]:
         try:
             recording = read_recording((real_clips() / row["path"]).read_bytes())
-            motion = canonicalise(recording, frame_rate=float(row["fps"]))
-            found.append(Sample(row["task"], motion.duration, dict(analyse(motion).arrays)))
+            motion = canonicalize(recording, frame_rate=float(row["fps"]))
+            found.append(Sample(row["task"], motion.duration, dict(analyze(motion).arrays)))
         except BadContent:
             continue
     return tuple(found)

@@ -10,10 +10,10 @@ import time
 
 import pytest
 
-from app.analysis.analyse import analyse
+from app.analysis.analyze import analyze
 from app.errors import BadContent
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from tests.bench.page import Section
 from tests.real_clips import manifest, real_clips
 
@@ -46,10 +46,10 @@ def _speed(files: list[tuple[bytes, float]], *, stored: bool) -> float:
     began, seconds = time.process_time(), 0.0
     for content, rate in files:
         try:
-            motion = canonicalise(read_recording(content), frame_rate=rate)
+            motion = canonicalize(read_recording(content), frame_rate=rate)
         except BadContent:
             continue
         seconds += motion.duration
         if stored:
-            analyse(motion)
+            analyze(motion)
     return seconds / (time.process_time() - began)

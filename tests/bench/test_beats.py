@@ -28,7 +28,7 @@ from app.demo.dances.music import STYLES
 from app.demo.dances.sounds import SAMPLE_RATE
 from app.formats.audio.reader import read_audio
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import body_track
 from tests.bench.page import Section
 from tests.recordings import CLICKS, WITHOUT_BEAT, f_score, piece, without_beat
@@ -134,7 +134,7 @@ def _hears(samples: np.ndarray) -> bool:
 
 
 def _energy(clip: DemoClip) -> np.ndarray:
-    return energies(body_track(canonicalise(read_recording(clip.content)))).global_energy
+    return energies(body_track(canonicalize(read_recording(clip.content)))).global_energy
 
 
 def test_tempo_from_motion() -> None:

@@ -23,7 +23,7 @@ import pytest
 from app.errors import KinedexError
 from app.formats.read import read_recording
 from app.formats.sniff import sniff
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.motion import Motion
 from tests.bench.page import Section
 from tests.real_clips import manifest, real_clips
@@ -76,7 +76,7 @@ def _judge(tally: Tally, path: Path, content: bytes, true_rate: float) -> None:
         tally.refused.append(f"{path.name}: {problem.detail}")
         return
     tally.seconds += time.process_time() - began
-    motion = canonicalise(recording)
+    motion = canonicalize(recording)
     tally.read += 1
     tally.missing_roles += len(motion.missing_roles)
     _judge_rate(tally, path.name, motion, true_rate)

@@ -25,7 +25,7 @@ from app.analysis.symbols.channels import symbol_features, symbol_statistics
 from app.analysis.symbols.symbol import describe_symbol
 from app.errors import BadContent
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import body_track
 from tests.bench.page import Section
 from tests.bench.processes import MB, Meter, Tree
@@ -196,7 +196,7 @@ def test_where_the_time_goes() -> None:
             continue
         rate = float(row["fps"])
         motion = _timed(
-            took, "canonicalise", lambda r=recording, f=rate: canonicalise(r, frame_rate=f)
+            took, "canonicalize", lambda r=recording, f=rate: canonicalize(r, frame_rate=f)
         )
         seconds += motion.duration
         track = _timed(took, "body track", lambda m=motion: body_track(m))

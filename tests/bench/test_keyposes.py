@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from app.analysis.analyse import analyse
+from app.analysis.analyze import analyze
 from app.analysis.energy.energy import EnergyMethod, Weights, energies
 from app.analysis.keyposes.end_effectors import end_effector_candidates
 from app.analysis.keyposes.keyposes import T1, T2, find_candidates, find_keyposes
@@ -26,7 +26,7 @@ from app.demo.dances import dance
 from app.formats.read import read_recording
 from app.models.keyposes.matching import Counts, match, total
 from app.models.keyposes.thresholds import Example, Selectable, Thresholds, lesson
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import BodyTrack, body_track
 from app.motion.motion import Motion
 from tests.bench.page import Section
@@ -64,7 +64,7 @@ def dances(first: int, count: int, noise: float) -> tuple[Danced, ...]:
 
 def _danced(seed: int, bpm: float, drift: float, noise: float) -> Danced:
     clip = dance(seed, bpm=bpm, drift=drift, noise_mm=noise)
-    motion = canonicalise(read_recording(clip.content))
+    motion = canonicalize(read_recording(clip.content))
     return Danced(body_track(motion), np.array(clip.keyposes), np.array(clip.beats))
 
 
@@ -170,7 +170,7 @@ def test_a_minute_at_120_hz() -> None:
     motion = _minute()
     track = body_track(motion)
     for name, work in (
-        ("analysis of everything", lambda: analyse(motion)),
+        ("analysis of everything", lambda: analyze(motion)),
         ("keyposes alone", lambda: find_keyposes(track)),
     ):
         wall, cpu = _seconds(work)

@@ -26,7 +26,7 @@ from app.analysis.low_dimensional.eigen_motion import (
 )
 from app.analysis.low_dimensional.plausibility import judge_poses
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import BodyTrack, body_track
 from app.numerics.arrays import FloatArray
 from app.numerics.clusteredness import clusteredness
@@ -55,7 +55,7 @@ def _stem(row: dict[str, str]) -> str:
 def _track(path: str, fps: str) -> BodyTrack:
     """fps: of the manifest; some files lie."""
     recording = read_recording((real_clips() / path).read_bytes())
-    return body_track(canonicalise(recording, frame_rate=float(fps) if fps else None))
+    return body_track(canonicalize(recording, frame_rate=float(fps) if fps else None))
 
 
 def _readable() -> list[dict[str, str]]:

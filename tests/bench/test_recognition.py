@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.analysis.analyse import describe_for_search
+from app.analysis.analyze import describe_for_search
 from app.analysis.descriptors.motion_sample import SAMPLES
 from app.analysis.keyposes.keyposes import find_keyposes
 from app.analysis.segments.danced_cycles import DancedCycles, danced_cycles
@@ -30,7 +30,7 @@ from app.models.recognition.perera import fit_tensor_recogniser, recognise_by_te
 from app.models.recognition.recogniser import fit_recogniser, recognise, recognise_many
 from app.models.recognition.task_model import Reading
 from app.models.recognition.views import full_samples
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import body_track
 from app.numerics.area_under_curve import area_under_curve
 from tests.bench.page import Section
@@ -92,7 +92,7 @@ def library() -> Library:
 
 def _arrays(path: str, fps: float) -> dict[str, np.ndarray]:
     recording = read_recording((real_clips() / path).read_bytes())
-    motion = canonicalise(recording, frame_rate=fps)
+    motion = canonicalize(recording, frame_rate=fps)
     arrays = describe_for_search(motion).arrays
     return arrays | keypose_arrays(
         find_keyposes(body_track(motion)).frames, arrays["features_10hz"]

@@ -43,7 +43,7 @@ from app.config import Settings
 from app.demo import demo_clips
 from app.formats.read import read_recording
 from app.models.held_out.ranking import average_precision
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import body_track
 from app.numerics import diffusion
 from app.numerics.alignment.dtw import dtw_distances
@@ -167,11 +167,11 @@ def _choice_clips() -> Iterator[tuple[str, str, np.ndarray]]:
         if is_reported or not row["path"].endswith(".bvh"):
             continue
         recording = read_recording((real_clips() / row["path"]).read_bytes())
-        motion = canonicalise(recording, frame_rate=float(row["fps"]))
+        motion = canonicalize(recording, frame_rate=float(row["fps"]))
         name = "cmu" if folder.startswith("cmu") else f"dataset {folder[-1]}"
         yield name, row["task"], frame_features(body_track(motion))
     for clip in demo_clips():
-        motion = canonicalise(read_recording(clip.content))
+        motion = canonicalize(read_recording(clip.content))
         yield "demo", clip.task, frame_features(body_track(motion))
 
 

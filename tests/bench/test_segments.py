@@ -21,7 +21,7 @@ from app.analysis.keyposes.keyposes import find_keyposes
 from app.analysis.segments.cycles import find_cycles
 from app.analysis.segments.segments import describe_segments, segment_spans, segment_vectors
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import BodyTrack, body_track
 from app.motion.frame.gait import gait_cycles
 from app.numerics.arrays import FloatArray
@@ -48,7 +48,7 @@ DANCES = 40
 def _track(path: str, fps: str) -> BodyTrack:
     """fps: of the manifest; some files lie."""
     recording = read_recording((real_clips() / path).read_bytes())
-    return body_track(canonicalise(recording, frame_rate=float(fps) if fps else None))
+    return body_track(canonicalize(recording, frame_rate=float(fps) if fps else None))
 
 
 def _rows() -> list[dict[str, str]]:

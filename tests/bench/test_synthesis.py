@@ -32,7 +32,7 @@ from app.models.held_out.synthesis import (
 from app.models.synthesis.body import Donor, embody, same_body
 from app.models.synthesis.model import Synthesis, fit_synthesis
 from app.models.synthesis.motion import course_of
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import ANALYSIS_RATE, BodyTrack, body_track
 from app.motion.frame.foot_contact import FEET, skating
 from app.motion.motion import Motion
@@ -72,7 +72,7 @@ class Clip:
 
 def _clip(path: str, person: str, task: str, content: bytes, fps: float | None = None) -> Clip:
     recording = read_recording(content)
-    motion = canonicalise(recording, frame_rate=fps)
+    motion = canonicalize(recording, frame_rate=fps)
     track = body_track(motion)
     return Clip(person, task, path, motion, track, motion_shape(track), recording)
 

@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.analysis.analyse import analyse
+from app.analysis.analyze import analyze
 from app.analysis.descriptors.frame_features import features_at_10hz, frame_features
 from app.analysis.descriptors.motion_vector import motion_vector
 from app.analysis.descriptors.windows import (
@@ -284,7 +284,7 @@ def test_what_windows_add_to_an_analysis(chosen: Hidden) -> None:
     took = {"windows": 0.0, "analysis": 0.0}
     for stream in chosen.streams.values():
         began = time.process_time()
-        analysis = analyse(motion_of(stream))
+        analysis = analyze(motion_of(stream))
         took["analysis"] += time.process_time() - began
         began = time.process_time()
         window_arrays(analysis.arrays["features_10hz"])

@@ -19,7 +19,7 @@ from app.formats.read import read_recording
 from app.models.folds import recording_of
 from app.models.held_out.words import WordFigures, held_out_word_figures
 from app.models.words.symbol_space import symbol_distances
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import BodyTrack, body_track
 from app.numerics.arrays import FloatArray
 from tests.bench.page import Section
@@ -41,7 +41,7 @@ def tracks() -> list[tuple[dict[str, str], BodyTrack]]:
     for row in manifest():
         try:
             recording = read_recording((real_clips() / row["path"]).read_bytes())
-            motion = canonicalise(recording, frame_rate=float(row["fps"]))
+            motion = canonicalize(recording, frame_rate=float(row["fps"]))
         except BadContent:
             continue  # a format of a later issue
         found.append((row, body_track(motion)))

@@ -20,7 +20,7 @@ import psutil
 import pytest
 from sqlalchemy import delete, insert
 
-from app.analysis.analyse import ANALYSIS_VERSION
+from app.analysis.analyze import ANALYSIS_VERSION
 from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.config import Settings
 from app.models.words.symbol_space import LANDMARKS, symbol_distances

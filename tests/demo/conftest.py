@@ -6,7 +6,7 @@ import pytest
 
 from app.demo import DemoClip, demo_clips
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.motion import Motion
 
 
@@ -19,4 +19,4 @@ def clips() -> dict[tuple[str, str], DemoClip]:
 @pytest.fixture(scope="session")
 def motions(clips: dict[tuple[str, str], DemoClip]) -> dict[tuple[str, str], Motion]:
     """The same clips as canonical motion."""
-    return {key: canonicalise(read_recording(clip.content)) for key, clip in clips.items()}
+    return {key: canonicalize(read_recording(clip.content)) for key, clip in clips.items()}

@@ -11,7 +11,7 @@ from app.analysis.energy.energy import energies
 from app.demo import DemoClip
 from app.demo.dances import dance
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import body_track
 from app.motion.motion import Motion
 
@@ -22,7 +22,7 @@ SEEDS = {0: 60.0, 1: 85.0, 2: 110.0, 3: 140.0}
 @lru_cache
 def made(seed: int) -> tuple[DemoClip, Motion]:
     clip = dance(seed, bpm=SEEDS[seed], seconds=16.0, drift=0.03)
-    return clip, canonicalise(read_recording(clip.content))
+    return clip, canonicalize(read_recording(clip.content))
 
 
 def test_the_same_bytes_for_the_same_seed_and_others_for_another() -> None:

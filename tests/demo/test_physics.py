@@ -32,7 +32,7 @@ def clips_of(*tasks: str) -> pytest.MarkDecorator:
 
 
 def place(motion: Motion, role: str) -> np.ndarray:
-    """(frames, 3) metres."""
+    """(frames, 3) meters."""
     return motion.positions[:, motion.roles[Role(role)]].astype(np.float64)
 
 

@@ -1,4 +1,4 @@
-"""CSV: time and metres that any program reads, and names that no spreadsheet runs."""
+"""CSV: time and meters that any program reads, and names that no spreadsheet runs."""
 
 from __future__ import annotations
 

@@ -11,9 +11,9 @@ from app.numerics.clusteredness import best_clusters, clusteredness
 
 def _clusters(count: int, each: int, spread: float, seed: int = 1) -> tuple[FloatArray, IntArray]:
     draw = np.random.default_rng(seed)
-    centres = draw.normal(size=(count, 3))
+    centers = draw.normal(size=(count, 3))
     labels = np.repeat(np.arange(count), each)
-    return centres[labels] + spread * draw.normal(size=(count * each, 3)), labels
+    return centers[labels] + spread * draw.normal(size=(count * each, 3)), labels
 
 
 def _slow_silhouette(points: FloatArray, labels: IntArray) -> float:

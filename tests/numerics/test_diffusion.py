@@ -1,4 +1,4 @@
-"""Diffusion over a neighbourhood graph: against its slow twin, and what it is for."""
+"""Diffusion over a neighborhood graph: against its slow twin, and what it is for."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.numerics.arrays import FloatArray
-from app.numerics.diffusion import DAMPING, LEAST_DEGREE, REACH, diffused_closeness, neighbour_radii
+from app.numerics.diffusion import DAMPING, DEGREE_OFFSET, REACH, diffused_closeness, neighbor_radii
 
 
 def between(points: FloatArray) -> FloatArray:
@@ -24,7 +24,7 @@ def naive_closeness(distances: FloatArray, radii: FloatArray) -> FloatArray:
             if i != j:
                 edge = np.exp(-(distances[i, j] ** 2) / max(radii[i] * radii[j], 1e-12))
                 weights[i, j] = max(edge - np.exp(-REACH), 0.0)
-    degrees = weights.sum(axis=1) + LEAST_DEGREE
+    degrees = weights.sum(axis=1) + DEGREE_OFFSET
     step = DAMPING * weights / np.sqrt(degrees[:, None] * degrees[None])
     walks, power = np.eye(n), np.eye(n)
     for _ in range(300):
@@ -37,7 +37,7 @@ def naive_closeness(distances: FloatArray, radii: FloatArray) -> FloatArray:
 @settings(max_examples=40, deadline=None)
 def test_it_equals_the_sum_over_all_walks(n: int, k: int, seed: int) -> None:
     distances = between(np.random.default_rng(seed).normal(size=(n, 3)))
-    radii = neighbour_radii(distances, k)
+    radii = neighbor_radii(distances, k)
     for row, radius in enumerate(radii):
         assert radius == np.sort(distances[row])[min(k, n - 1)]
     found = diffused_closeness(distances, radii)
@@ -53,7 +53,7 @@ def test_what_is_reached_by_small_steps_is_closer_than_what_is_nearer_beyond_a_g
     other = np.column_stack([1 - np.cos(angles), 0.4 - np.sin(angles)])
     distances = between(np.vstack([own, other]))
     assert distances[0, 40:].min() < distances[0, 39]
-    found = diffused_closeness(distances, neighbour_radii(distances, 5))
+    found = diffused_closeness(distances, neighbor_radii(distances, 5))
     assert found[1:40].min() > found[40:].max()
 
 
@@ -65,7 +65,7 @@ def test_a_small_move_changes_little() -> None:
         moved = points.copy()
         moved[0] += 1e-6 * rng.normal(size=4)
         one, other = (
-            diffused_closeness(d, neighbour_radii(d, 5)) for d in (between(points), between(moved))
+            diffused_closeness(d, neighbor_radii(d, 5)) for d in (between(points), between(moved))
         )
         worst = max(worst, float(np.abs(one - other).max()))
     assert worst < 1e-4
@@ -73,8 +73,8 @@ def test_a_small_move_changes_little() -> None:
 
 def test_points_in_one_place_and_two_points_alone_are_no_trouble() -> None:
     same = np.zeros((4, 4))
-    found = diffused_closeness(same, neighbour_radii(same, 2))
+    found = diffused_closeness(same, neighbor_radii(same, 2))
     assert np.isfinite(found).all()
     assert np.ptp(found[1:]) == pytest.approx(0.0)
     two = np.array([[0.0, 3.0], [3.0, 0.0]])
-    assert 0.0 < diffused_closeness(two, neighbour_radii(two, 1))[1] < 1.0
+    assert 0.0 < diffused_closeness(two, neighbor_radii(two, 1))[1] < 1.0

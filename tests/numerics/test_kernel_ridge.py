@@ -41,15 +41,15 @@ def test_learns_what_it_has_not_seen(data) -> None:  # type: ignore[no-untyped-d
     assert error < 0.5 * outputs[90:].var(axis=0).mean()
 
 
-def test_a_subset_of_centres_predicts_nearly_the_same(  # type: ignore[no-untyped-def]
+def test_a_subset_of_centers_predicts_nearly_the_same(  # type: ignore[no-untyped-def]
     data, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rows, outputs = data
     whole = fit_kernel_ridge(rows, outputs).predict(rows)
-    monkeypatch.setattr(kernel_ridge, "MAX_CENTRES", 80)
+    monkeypatch.setattr(kernel_ridge, "MAX_CENTERS", 80)
     monkeypatch.setattr(kernel_ridge, "_BLOCK", 50)
     part = fit_kernel_ridge(rows, outputs)
-    assert len(part.centres) == 80
+    assert len(part.centers) == 80
     assert np.abs(part.predict(rows) - whole).mean() < 0.05
 
 

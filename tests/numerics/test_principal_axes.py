@@ -15,9 +15,9 @@ def test_axes_are_those_of_the_svd(shape: tuple[int, int]) -> None:
     np.testing.assert_allclose(found.project(samples).mean(axis=0), 0, atol=1e-12)
 
 
-def test_uncentred_axes_span_the_samples() -> None:
+def test_uncentered_axes_span_the_samples() -> None:
     samples = 5 + np.random.default_rng(1).normal(size=(4, 20))
-    found = principal_axes(samples, 10, centred=False)
+    found = principal_axes(samples, 10, centered=False)
     np.testing.assert_allclose(found.project(samples) @ found.axes.T, samples, atol=1e-10)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.analyse import describe_for_search
+from app.analysis.analyze import describe_for_search
 from app.models.metric.learned_metric import INPUTS, Described, Factor, MetricAxes, fit_axes
 from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray

@@ -12,10 +12,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.analysis.analyse import describe_for_search
+from app.analysis.analyze import describe_for_search
 from app.demo import demo_clips
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.motion import Motion
 from app.motion.skeleton.recording import Recording
 from app.motion.skeleton.resampling import resample
@@ -52,7 +52,7 @@ class Known:
 def demo() -> Known:
     clips = list(demo_clips(("ada", "bruno", "chika"), ("walk", "kick", "wave"), takes=1))
     recordings = [read_recording(clip.content) for clip in clips]
-    motions = [canonicalise(recording) for recording in recordings]
+    motions = [canonicalize(recording) for recording in recordings]
     persons, tasks = [clip.person for clip in clips], [clip.task for clip in clips]
     return Known(recordings, motions, gallery(motions, persons, tasks))
 
@@ -117,7 +117,7 @@ def test_the_unit_does_not_matter_whether_it_is_said_or_guessed(
             skeleton=replace(recording.skeleton, offsets=offsets),
             metres_per_unit=None,
         )
-        motion = canonicalise(told, metres_per_unit=UNITS[unit] if is_said else None)
+        motion = canonicalize(told, metres_per_unit=UNITS[unit] if is_said else None)
         changed = describe_for_search(motion).arrays
         assert_nothing_changed(demo.gallery, which, distances[which], changed)
 
@@ -150,7 +150,7 @@ def test_the_same_movement_recorded_at_another_rate_is_the_same(rate: float) -> 
 def test_real_clips_do_not_change_either() -> None:
     rows = [row for row in manifest() if row["path"].endswith(".bvh")][::REAL_EVERY]
     motions = [
-        canonicalise(
+        canonicalize(
             read_recording((real_clips() / row["path"]).read_bytes()), frame_rate=float(row["fps"])
         )
         for row in rows

@@ -74,7 +74,7 @@ def test_an_archive_goes_when_the_api_cancels_its_import(
     assert stored(lib) == set()
 
 
-def test_a_damaged_file_is_not_analysed(lib: Library, some_demo_clips: list[DemoClip]) -> None:
+def test_a_damaged_file_is_not_analyzed(lib: Library, some_demo_clips: list[DemoClip]) -> None:
     """A number that changed would make another motion, and nobody would know."""
     clip = upload(lib, some_demo_clips[0]).clip
     path = lib.store.files.path(clip.sha256)

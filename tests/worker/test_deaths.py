@@ -194,7 +194,7 @@ def test_a_fit_whose_child_is_killed_is_done_again(lib: Library, kicks: list[Dem
 
 
 @pytest.mark.parametrize("jump", [timedelta(hours=1), timedelta(hours=-1)], ids=str)
-def test_a_clock_that_jumps_while_clips_are_analysed_fails_none(
+def test_a_clock_that_jumps_while_clips_are_analyzed_fails_none(
     lib: Library,
     kicks: list[DemoClip],
     long_clip: DemoClip,

@@ -176,7 +176,7 @@ def test_sigterm_ends_a_worker_process_cleanly(lib: Library, kicks: list[DemoCli
     assert open_states <= {JobState.QUEUED}
 
 
-def test_a_clip_deleted_while_it_is_analysed_stays_deleted(
+def test_a_clip_deleted_while_it_is_analyzed_stays_deleted(
     lib: Library, kicks: list[DemoClip]
 ) -> None:
     clip = upload(lib, kicks[0]).clip

@@ -1,7 +1,7 @@
 """The angle sample: a clip's joint angles as one vector, Vasilescu's T time samples.
 
-As the motion sample, of which it is the twin: over the mean gait cycle where there are cycles,
-else over the whole clip; then the net turn and the mean speed, which no joint tells.
+Like the motion sample, it covers the mean gait cycle if there are gait cycles, else the whole
+clip. The net turn and the mean speed follow, because joint angles do not contain them.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ def angle_sample(
 ) -> FloatArray:
     """(642,) float32: 32 x 20 angles (radians), net turn, mean speed, as in the motion sample.
 
-    Positions are filtered at the clip's own rate; what is left can be read at the analysis
-    rate, and at 32 phases of a gait cycle, as it is. track: of the same motion;
-    cycles: `exact_gait_cycles(track)`, where the caller has them.
+    track: the body track of the same motion. cycles: `exact_gait_cycles(track)`, if the caller
+    has them. Positions are low-pass filtered at the clip's own rate. So they can be sampled at
+    the analysis rate, and at 32 phases of a gait cycle, without another filter.
     """
     smooth = filtered(motion.role_positions().astype(np.float64), motion.frame_rate)
     times = np.arange(track.frames) * (motion.frame_rate / track.rate)

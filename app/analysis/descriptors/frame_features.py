@@ -1,4 +1,4 @@
-"""What the body does in each frame, free of place, heading, size, unit and rate (DESIGN 13).
+"""What the body does in each frame, independent of place, heading, size, unit and frame rate.
 
 82 features at 30 Hz: positions of Sun's 13 joints in the body frame (39, body lengths),
 their velocities (39, change in 1/3 s, halved), the hips' velocity in the body frame
@@ -15,23 +15,23 @@ from app.numerics.arrays import FloatArray
 
 FEATURES = 82
 VELOCITY_STEP = 1 / 3
-"""Seconds; velocities are told as the change in this time."""
+"""Seconds. A velocity is given as the change in this time."""
 
 VELOCITY_WEIGHT = 0.5
-"""How much the joints' velocities count beside their positions."""
+"""The weight of the joints' velocities; their positions have weight 1."""
 
 WARPING_RATE = 10.0
-"""Hz; the rate at which motions are warped onto each other."""
+"""Hz: the rate at which motions are warped onto each other."""
 
 TRAVEL_WEIGHT = 2.0
-"""How much more the hips' velocity and the yaw rate count in warping."""
+"""The weight of the hips' velocity and the yaw rate in warping."""
 
 TRAVEL = slice(78, 82)
 """The columns of the hips' velocity and the yaw rate."""
 
 
 def frame_features(track: BodyTrack) -> FloatArray:
-    """(n, 82) float64 features of each frame of `track`."""
+    """(n, 82) float64 features of each frame of `track`, in the order and units of the module."""
     places = track.local.reshape(track.frames, -1)
     changes = np.asarray(np.gradient(places, axis=0))
     changes *= track.rate * VELOCITY_STEP * VELOCITY_WEIGHT
@@ -39,9 +39,9 @@ def frame_features(track: BodyTrack) -> FloatArray:
 
 
 def features_at_10hz(features: FloatArray, rate: float) -> FloatArray:
-    """(m, 82) float32: `features` (n, 82) of `rate` Hz, ready to be warped.
+    """(m, 82) float32: `features` (n, 82) of `rate` Hz, resampled to WARPING_RATE for warping.
 
-    At WARPING_RATE, with travel weighted, so that the Euclidean distance of two rows is
+    The columns of TRAVEL are multiplied by TRAVEL_WEIGHT. The Euclidean distance of two rows is
     the cost of matching them.
     """
     slow = resample(features, rate, WARPING_RATE)

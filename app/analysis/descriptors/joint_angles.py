@@ -1,14 +1,14 @@
-"""The angles of the joints over time, as gait laboratories take them (Vasilescu 2002, section 6).
+"""The angles of the joints over time, as gait laboratories measure them (Vasilescu 2002, sec. 6).
 
-Of positions that are low-pass filtered at 6 Hz (`filtered`) each limb gets a frame, and its
-orientation relative to the one before it in the chain gives the joint's angles. They are taken
-from positions by role, not from a file's rotations: these are missing in some formats, and relative
-to a rest pose that each skeleton chooses for itself, so that they do not agree across libraries.
+The positions are low-pass filtered at 6 Hz (`filtered`). Each limb gets a coordinate frame, and its
+orientation relative to the limb before it gives the joint's angles. The angles are computed from
+positions by role, not from the file's rotations. Some formats have no rotations, and rotations
+depend on the rest pose of each skeleton, so they do not agree across libraries.
 
-A ball joint has three angles that are smooth wherever limbs go: the swing of its limb from a
-resting direction, as a vector along the sphere (two), and the turn of the limb about its length
-(one), which is seen from where the next joint bends to. A straight limb does not show it: such
-frames are missing, and spanned by a cubic spline as the paper's are.
+A ball joint has three angles that are smooth for all directions of a limb. Two are the swing of
+the limb from a resting direction, as a vector along the sphere. The third is the turn of the limb
+about its length, which shows in the direction to which the next joint bends. A straight limb does
+not show it. Such frames count as missing and are filled by a cubic spline, as in the paper.
 """
 
 from __future__ import annotations
@@ -20,23 +20,23 @@ import numpy as np
 import scipy
 
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
-from app.motion.skeleton.occlusion import LONGEST_GAP, runs
+from app.motion.skeleton.occlusion import MAX_GAP, runs
 from app.numerics.arrays import BoolArray, FloatArray
 
 CUT_OFF = 6.0
-"""Hz, where power is halved."""
+"""Hz: the frequency at which the filter halves the power."""
 
 PASSES = 2
-"""Forward and backward, so that nothing is delayed: a second-order filter becomes a fourth."""
+"""Forward and backward, so that there is no delay. The filter's order doubles from 2 to 4."""
 
 PADDING = 0.75
-"""Seconds by which both ends are continued, by point reflection, for the filter to settle."""
+"""Seconds by which both ends are continued, by point reflection, so that the filter settles."""
 
-LEAST_BEND = np.radians(12.0)
-"""Of elbow or knee; with less their plane is noise."""
+MIN_BEND = np.radians(12.0)
+"""Radians. With a smaller bend of elbow or knee, the plane of the limb is noise."""
 
 SHORTEST = 1e-3
-"""Metres; a limb that short has no direction, and its angles are 0."""
+"""Meters. A limb that is not longer has no direction, and its angles are 0."""
 
 _TINY = 1e-9
 
@@ -45,10 +45,11 @@ _R = JointRole
 
 @dataclass(frozen=True, slots=True)
 class _Ball:
-    """Hip or shoulder: the limb from `start` to `middle`, that bends on towards `end`.
+    """A hip or shoulder: the limb goes from `start` to `middle`, and the next limb to `end`.
 
-    rest: direction of the limb whose swing is 0; hinge: of the axis about which the next joint
-    bends there when the turn is 0. Both in the trunk's frame (left, up, forward).
+    rest: the direction of the limb whose swing is 0. hinge: the axis about which the next joint
+    bends if the limb is at rest and its turn is 0. Both are unit vectors in the trunk's frame
+    (left, up, forward).
     """
 
     name: str
@@ -64,7 +65,7 @@ _BALLS = (
     _Ball("left_hip", _R.HIPS, _R.LEFT_KNEE, _R.LEFT_FOOT, (0, -1, 0), (1, 0, 0)),
     _Ball("right_hip", _R.HIPS, _R.RIGHT_KNEE, _R.RIGHT_FOOT, (0, -1, 0), (1, 0, 0)),
     # Arms hang, reach forward and go up, but never point behind the back to the other side.
-    # Held forward, their elbows usually bend inward and up.
+    # If an arm is held forward, its elbow usually bends inward and up.
     _Ball("left_arm", _R.LEFT_SHOULDER, _R.LEFT_ELBOW, _R.LEFT_HAND, (_H, 0, _H), (-_Q, -_S, _Q)),
     _Ball(
         "right_arm", _R.RIGHT_SHOULDER, _R.RIGHT_ELBOW, _R.RIGHT_HAND, (-_H, 0, _H), (-_Q, _S, -_Q)
@@ -78,7 +79,7 @@ ANGLES: tuple[str, ...] = (
     "head_roll",
     *(f"{ball.name}_{angle}" for ball in _BALLS for angle in ("flexion", "aside", "turn", "bend")),
 )
-"""Names of the angles, radians, in their order: 20."""
+"""The names of the 20 angles (radians), in their order."""
 
 _UP, _LEFT = np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])
 _RESTS = np.array([ball.rest for ball in _BALLS], dtype=np.float64)[:, None]
@@ -86,10 +87,10 @@ _HINGES = np.array([ball.hinge for ball in _BALLS], dtype=np.float64)[:, None]
 
 
 def joint_angles(positions: FloatArray, rate: float) -> FloatArray:
-    """(frames, 20) ANGLES, radians, of the 13 roles' positions (frames, 13, 3), metres, Y up.
+    """(frames, 20) ANGLES, radians, of the 13 roles' positions (frames, 13, 3), meters, Y up.
 
-    rate: Hz of the frames. Finite for any finite positions; invariant to place, heading and size
-    of the body.
+    rate: frames per second. The angles are finite for all finite positions. They do not depend on
+    the place, the heading or the size of the body.
     """
     places = np.asarray(positions, dtype=np.float64)
     trunk, heading = _trunk_frame(places), _heading_frame(places)
@@ -98,16 +99,17 @@ def joint_angles(positions: FloatArray, rate: float) -> FloatArray:
     starts, middles, ends = zip(*((b.start, b.middle, b.end) for b in _BALLS), strict=True)
     upper = _seen_from(trunk, _limb(places, starts, middles))
     lower = _seen_from(trunk, _limb(places, middles, ends))
-    balls = _ball_angles(upper, lower, max(1, round(LONGEST_GAP * rate)))
+    balls = _ball_angles(upper, lower, max(1, round(MAX_GAP * rate)))
     swings = [_swing(limb, _UP, _LEFT)[0] for limb in (spine, head)]
     return np.hstack([*swings, *balls])
 
 
 def filtered(samples: FloatArray, rate: float) -> FloatArray:
-    """`samples` (frames, ...) at `rate` Hz through the fourth-order Butterworth of the paper.
+    """`samples` (frames, ...) at `rate` Hz, filtered by the paper's fourth-order Butterworth.
 
-    Two passes of the second-order filter, its cut-off raised so that both together halve the
-    power at CUT_OFF. A rate that carries no more than that is left alone.
+    This is two passes of a second-order filter. Its cut-off is higher, so that both passes
+    together halve the power at CUT_OFF. If the rate is too low to contain such frequencies, or
+    there is only one frame, the samples are returned unchanged.
     """
     cut_off = CUT_OFF / (2.0 ** (1.0 / PASSES) - 1.0) ** 0.25
     if cut_off >= rate / 2 or len(samples) < 2:
@@ -120,9 +122,12 @@ def filtered(samples: FloatArray, rate: float) -> FloatArray:
 
 
 def spanned(values: FloatArray, seen: BoolArray, longest: int) -> FloatArray:
-    """`values` (frames,) where not `seen` from those that are: by the cubic spline through them
-    in gaps of at most `longest` frames, by a straight line in longer ones, in which a spline
-    would swing, and by the nearest one at the ends; 0 where nothing was seen."""
+    """`values` (frames,) with the frames that are not `seen` (frames,) filled from the others.
+
+    Gaps of at most `longest` frames are filled by a cubic spline, longer ones by a straight line,
+    because a spline would overshoot there. Gaps at the ends get the nearest seen value. If nothing
+    is seen, all values are 0.
+    """
     at = np.flatnonzero(seen)
     if not len(at):
         return np.zeros(len(values))
@@ -140,8 +145,10 @@ def spanned(values: FloatArray, seen: BoolArray, longest: int) -> FloatArray:
 
 
 def _ball_angles(upper: FloatArray, lower: FloatArray, longest: int) -> FloatArray:
-    """(4, n, 4) of each of _BALLS flexion, aside, turn, and the bend of the joint behind it, by
-    the directions of both limbs (4, n, 3) in the trunk's frame."""
+    """(4, n, 4) for each of _BALLS the flexion, aside and turn, and the bend of the next joint.
+
+    upper, lower: (4, n, 3) the directions of both limbs in the trunk's frame.
+    """
     axis = np.cross(upper, lower)
     sine, cosine = np.linalg.norm(axis, axis=-1), (upper * lower).sum(axis=-1)
     there = _has_direction(upper) & _has_direction(lower)
@@ -149,7 +156,7 @@ def _ball_angles(upper: FloatArray, lower: FloatArray, longest: int) -> FloatArr
     turns = np.arctan2(
         (np.cross(carried, axis) * upper).sum(axis=-1), (carried * axis).sum(axis=-1)
     )
-    seen = there & (sine > np.sin(LEAST_BEND))
+    seen = there & (sine > np.sin(MIN_BEND))
     turns = np.stack([spanned(*each, longest) for each in zip(turns, seen, strict=True)])
     bends = np.arctan2(sine, cosine) * there
     swings = _swing(upper, _RESTS, _HINGES)
@@ -157,8 +164,11 @@ def _ball_angles(upper: FloatArray, lower: FloatArray, longest: int) -> FloatArr
 
 
 def _swing(limbs: FloatArray, rest: FloatArray, about: FloatArray) -> FloatArray:
-    """(k, n, 2) the way along the sphere from `rest` to the directions `limbs` (k, n, 3), radians:
-    about an axis orthogonal to it, and towards that axis."""
+    """(k, n, 2) the path along the sphere from `rest` to the directions `limbs` (k, n, 3), radians.
+
+    The first component is the turn about the axis `about`, which is orthogonal to `rest`. The
+    second is the part toward that axis.
+    """
     ahead = np.cross(about, rest)
     forward, aside = (limbs * ahead).sum(axis=-1), (limbs * about).sum(axis=-1)
     sine = np.hypot(forward, aside)
@@ -168,8 +178,8 @@ def _swing(limbs: FloatArray, rest: FloatArray, about: FloatArray) -> FloatArray
 
 
 def _carried(vectors: FloatArray, starts: FloatArray, ends: FloatArray) -> FloatArray:
-    """(k, n, 3) `vectors` (k, 1, 3) carried along by the smallest turns from `starts` (k, 1, 3) to
-    `ends` (k, n, 3)."""
+    """(k, n, 3) `vectors` (k, 1, 3) turned by the smallest rotations that bring `starts`
+    (k, 1, 3) to `ends` (k, n, 3)."""
     axis = np.cross(starts, ends)
     cosine = (ends * starts).sum(axis=-1, keepdims=True)
     share = (axis * vectors).sum(axis=-1, keepdims=True) / np.maximum(1.0 + cosine, _TINY)
@@ -179,7 +189,7 @@ def _carried(vectors: FloatArray, starts: FloatArray, ends: FloatArray) -> Float
 def _limb(
     positions: FloatArray, starts: Sequence[JointRole], ends: Sequence[JointRole]
 ) -> FloatArray:
-    """(k, n, 3) unit directions from joints to others, 0 where they are in one place."""
+    """(k, n, 3) unit vectors from k joints to k others; 0 where both are at the same place."""
     first, last = ([SUN_ROLES.index(role) for role in roles] for roles in (starts, ends))
     line = np.moveaxis(positions[:, last] - positions[:, first], 1, 0)
     length = np.linalg.norm(line, axis=-1, keepdims=True)

@@ -1,8 +1,8 @@
-"""The motion sample: a clip as one vector of fixed length, for person and task (DESIGN 13).
+"""The motion sample: a clip as one vector of fixed length, to recognize person and task.
 
-32 poses in the body frame, over the mean gait cycle where there are cycles (they start at
-the left foot's forward swing, so that phases agree), else over the whole clip; then the net
-turn and the mean speed of the whole clip.
+It holds 32 poses in the body frame. They cover the mean gait cycle if there are gait cycles, else
+the whole clip. Cycles start at the forward swing of the left foot, so that phases agree. The net
+turn and the mean speed of the whole clip follow.
 """
 
 from __future__ import annotations
@@ -15,21 +15,21 @@ from app.motion.skeleton.resampling import low_pass, resample_to, sample_at
 from app.numerics.arrays import FloatArray
 
 SAMPLES = 32
-"""Poses in a sample."""
+"""The number of poses in a sample."""
 
 AROUND = 12
-"""Frames kept on both sides of a cycle; more than a low-pass at its ends looks at."""
+"""Frames that are kept on both sides of a cycle. The low-pass filter needs fewer."""
 
 SAMPLE_LENGTH = SAMPLES * 13 * 3 + 2
-"""Numbers in a motion sample: 1250."""
+"""The length of a motion sample: 1250."""
 
 
 def motion_sample(track: BodyTrack, cycles: list[tuple[float, float]] | None = None) -> FloatArray:
     """(1250,) float32: 32 x 13 x 3 positions (body lengths), net turn, mean speed.
 
-    The net turn is asinh of radians: near its true value up to a quarter turn, while a
-    dance of many turns does not outweigh everything else. Speed is horizontal, of the hips,
-    body lengths per second. cycles: `exact_gait_cycles(track)`, where the caller has them.
+    The net turn is the asinh of radians: close to the true value up to a quarter turn, while many
+    turns do not outweigh all other numbers. The speed is the horizontal speed of the hips, in
+    body lengths per second. cycles: `exact_gait_cycles(track)`, if the caller has them.
     """
     cycles = exact_gait_cycles(track) if cycles is None else cycles
     poses = mean_cycle(track, cycles) if cycles else resample_to(track.local, SAMPLES)
@@ -44,19 +44,24 @@ def turn_and_speed(track: BodyTrack) -> FloatArray:
 
 
 def mean_cycle(track: BodyTrack, cycles: list[tuple[float, float]]) -> FloatArray:
-    """(32, 13, 3) mean over `cycles` of the body-frame positions at 32 phases of each."""
+    """(32, 13, 3) the mean over `cycles` of the body-frame positions at 32 phases of each cycle.
+
+    cycles: start and end in frames, at least one.
+    """
     return mean_over_cycles(track.local, cycles)[:-1]
 
 
 def mean_over_cycles(values: FloatArray, cycles: list[tuple[float, float]]) -> FloatArray:
-    """(33, ...) mean over `cycles` (start and end in frames) of `values` (n, ...), at 32 phases
-    of each and at its end."""
+    """(33, ...) the mean over `cycles` of `values` (n, ...), at 32 phases of each and at its end.
+
+    cycles: start and end in frames, at least one.
+    """
     return np.asarray(np.mean([_phases(values, *cycle) for cycle in cycles], axis=0))
 
 
 def _phases(values: FloatArray, start: float, end: float) -> FloatArray:
     """(33, ...) `values` (n, ...) at 33 phases from `start` to `end`, in frames."""
-    # filtering the whole clip for each of its cycles would cost their product
+    # to filter the whole clip for each cycle would take time in proportion to clip and cycles
     first = max(0, int(start) - AROUND)
     smooth = low_pass(values[first : int(end) + AROUND + 1], (end - start) / SAMPLES)
     return sample_at(smooth, start - first + (end - start) * np.arange(SAMPLES + 1) / SAMPLES)

@@ -1,10 +1,10 @@
-"""The motion shape: a clip as one vector from which a motion can be made again.
+"""The motion shape: a clip as one vector from which a motion can be reconstructed.
 
-Like the motion sample it holds 32 moments, over the mean gait cycle where there are cycles,
-else over the whole clip. Of each moment it has all that a motion is made of: the 13 joint
-roles in the body frame, the height of the hips over the floor, their velocity and the yaw
-rate; and besides how long it lasts and whether it goes round. Persons and tasks are parted in
-this space to synthesise motions (Vasilescu 2002, section 4; models.synthesis).
+Like the motion sample, it holds 32 moments of the mean gait cycle if there are gait cycles, else
+of the whole clip. Each moment has the 13 joint roles in the body frame, the height of the hips
+above the floor, their velocity and the yaw rate. Two more numbers are the duration and whether the
+motion is cyclic. Synthesis separates persons and tasks in this space (Vasilescu 2002, section 4;
+app.models.synthesis).
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from app.motion.skeleton.resampling import resample_to
 from app.numerics.arrays import FloatArray
 
 CHANNELS = 13 * 3 + 4
-"""Of a moment: positions (39, body lengths), height (1, body lengths), velocity to the left and
-forward (2, body lengths / s), yaw rate (1, rad / s)."""
+"""Numbers of a moment, 43: positions (39, body lengths), height (1, body lengths), velocity to
+the left and forward (2, body lengths / s), yaw rate (1, rad / s)."""
 
 SHAPE_LENGTH = SAMPLES * CHANNELS + 2
-"""Numbers in a motion shape: 1378."""
+"""The length of a motion shape: 1378."""
 
 FLOOR_QUANTILE = 0.01
-"""The floor is the level that the lowest joint goes under in this share of frames."""
+"""The lowest joint is below the floor in this share of the frames."""
 
 _LOG_SECONDS = (-3.0, 6.0)
 _OTHER_SIDE = [SUN_ROLES.index(role.mirrored()) for role in SUN_ROLES]
@@ -36,12 +36,12 @@ _OTHER_SIDE = [SUN_ROLES.index(role.mirrored()) for role in SUN_ROLES]
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """A motion shape taken apart; 32 moments.
+    """The parts of a motion shape, with 32 moments.
 
-    poses: (32, 13, 3) body lengths, body frame; heights: (32,) body lengths, of the hips over
-    the floor; velocities: (32, 2) body lengths / s, to the left and forward; yaw_rates: (32,)
-    rad / s; seconds: of the cycle, or of the whole; is_cyclic: whether the last moment is
-    followed by the first.
+    poses: (32, 13, 3) in the body frame, body lengths. heights: (32,) of the hips above the
+    floor, body lengths. velocities: (32, 2) to the left and forward, body lengths / s.
+    yaw_rates: (32,) rad / s. seconds: the duration of the cycle, or of the whole motion.
+    is_cyclic: whether the first moment follows the last one.
     """
 
     poses: FloatArray
@@ -53,9 +53,9 @@ class Shape:
 
 
 def motion_shape(track: BodyTrack, cycles: list[tuple[float, float]] | None = None) -> FloatArray:
-    """(1378,) float32: 32 x 43 channels, log seconds, 1.0 where cyclic and 0.0 where not.
+    """(1378,) float32: 32 x 43 channels, the log of the seconds, and 1 if cyclic, else 0.
 
-    cycles: `exact_gait_cycles(track)`, where the caller has them.
+    cycles: `exact_gait_cycles(track)`, if the caller has them.
     """
     moments = moments_of(track)
     cycles = exact_gait_cycles(track) if cycles is None else cycles
@@ -69,7 +69,7 @@ def motion_shape(track: BodyTrack, cycles: list[tuple[float, float]] | None = No
 
 
 def moments_of(track: BodyTrack) -> FloatArray:
-    """(n, 43) the channels of every frame."""
+    """(n, 43) the CHANNELS of each frame of `track`."""
     lowest = track.positions[:, :, 1].min(axis=1)
     floor = np.quantile(lowest, FLOOR_QUANTILE)
     return np.column_stack(
@@ -83,9 +83,9 @@ def moments_of(track: BodyTrack) -> FloatArray:
 
 
 def mirrored(shapes: FloatArray) -> FloatArray:
-    """(n, 1378) the same motions by bodies whose left and right are changed.
+    """(n, 1378) the motion shapes `shapes` (n, 1378) with left and right exchanged.
 
-    A cycle starts at the left foot's swing: what is mirrored starts half a cycle later.
+    A cycle starts at the swing of the left foot, so a mirrored cycle is shifted by half a cycle.
     """
     moments = shapes[:, :-2].reshape(-1, SAMPLES, CHANNELS)
     turned = np.empty_like(moments)
@@ -98,21 +98,23 @@ def mirrored(shapes: FloatArray) -> FloatArray:
 
 
 def clearance(moments: FloatArray) -> FloatArray:
-    """(...,) of moments (..., 43): how high the lowest joint is over the floor, body lengths."""
+    """(...,) the height of the lowest joint above the floor, body lengths; moments: (..., 43)."""
     poses = moments[..., :39].reshape(*moments.shape[:-1], 13, 3)
     return np.asarray(moments[..., 39] + poses[..., 1].min(axis=-1))
 
 
 def closed(cycle: FloatArray) -> FloatArray:
-    """(32, ...) of a cycle (33, ...) whose end is not quite its start: the difference is spread
-    over the whole cycle, so that no jump is left where it goes round."""
+    """(32, ...) a cycle (33, ...) changed so that its end meets its start.
+
+    Their difference is distributed over the whole cycle, so that no jump is left.
+    """
     drift = cycle[-1] - cycle[0]
     phase = np.arange(SAMPLES) / SAMPLES - 0.5
     return np.asarray(cycle[:-1] - phase.reshape(-1, *(1,) * drift.ndim) * drift)
 
 
 def parts_of(shape: FloatArray) -> Shape:
-    """A motion shape (1378,) taken apart."""
+    """The parts of a motion shape (1378,)."""
     moments = np.asarray(shape[:-2], dtype=np.float64).reshape(SAMPLES, CHANNELS)
     return Shape(
         poses=moments[:, :39].reshape(SAMPLES, 13, 3),

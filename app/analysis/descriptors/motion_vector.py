@@ -1,18 +1,21 @@
-"""The motion vector (DESIGN 5 and 13): a clip as 128 floats, compared by Euclidean distance.
+"""The motion vector: a clip as 128 floats, compared by Euclidean distance.
 
-What two people do alike when they do the same, whatever their style: how the body is held on
-the whole (means), how far each joint moves around where it is at the time (a wave) and how
-that place itself wanders (an arm that is raised), the order of things (the first two cosines
-over the clip), how the body travels, sways and turns. Beside these the features' covariance
-as a matrix logarithm (where such matrices have a Euclidean geometry: Arsigny et al. 2006),
-which tells more of manner. All through one fixed random projection: nothing is fitted on a
-library, so vectors stay comparable for years. The wide motion vector is the same through a
-projection of 512: slower to search by, it keeps finer differences, by which the recogniser
-tells whom and what it knows (app.models.recognition.recogniser).
+The first part describes what people have in common when they do the same, whatever their style:
+- how the body is held (means);
+- how far each joint moves around its slowly changing place, for example in a wave;
+- how this place changes, for example when an arm is raised;
+- the order of events (the first two cosines over the clip);
+- how the body travels, sways and turns.
+
+The second part is the logarithm of the features' covariance matrix, which says more about the
+style. (Logarithms of such matrices have a Euclidean geometry: Arsigny et al. 2006.) A fixed random
+projection maps both parts to 128 numbers. Nothing is fitted to a library, so vectors stay
+comparable for years. The wide motion vector uses a projection to 512 numbers. It is slower to
+search, but keeps smaller differences, which recognition needs (app.models.recognition).
 
 The weights were chosen by hand on half of dataset 2's styles, dataset 1, CMU's clips and the
-demo library (`tests/bench/test_retrieval.py` has the curve). None of it depends on the phase
-of a gait, on which a clip's start and end would otherwise tell.
+demo library (`tests/bench/test_retrieval.py` has the curve). No number depends on the phase of the
+gait at which a clip starts or ends.
 """
 
 from __future__ import annotations
@@ -30,44 +33,44 @@ from app.numerics.arrays import FloatArray
 DIMENSIONS = 128
 WIDE_DIMENSIONS = 512
 RIDGE = 1e-3
-"""Added to the covariance's diagonal: the logarithm's floor for what stands still."""
+"""Added to the diagonal of the covariance, so that the logarithm of a still feature is finite."""
 
 COVARIANCE_SCALE = 1 / 20
-"""Brings the logarithm's entries to the size of the rest."""
+"""The weight of the logarithm's entries."""
 
 SLOW = 1.0
-"""Seconds (standard deviation): what lasts longer is a place, what does not is movement."""
+"""Seconds (standard deviation). Slower changes are changes of place, faster ones movement."""
 
 PLACE_WEIGHT = 0.75
 MOVEMENT_WEIGHT = 1.3
 WANDERING_WEIGHT = 2.5
-"""Of mean places, of movement about them, of how they wander; per body length."""
+"""The weights of mean places, of movement around them, and of their change, per body length."""
 
 TRAVEL_WEIGHTS = (2.0, 1.0, 1.0)
-"""Of the mean velocity to the left, up and forward: people walk at many speeds, and sideways
-only when they mean to."""
+"""The weights of the mean velocity to the left, up and forward. People walk forward at many
+speeds, but sideways only on purpose."""
 
 SWAY_WEIGHT = 0.7
-"""Of the velocity's standard deviation."""
+"""The weight of the velocity's standard deviation."""
 
 TURNING = 0.3
-"""Radians per second: mean yaw rates count in proportion below, by their logarithm above."""
+"""Radians per second. Below, a mean yaw rate counts linearly; above, by its logarithm."""
 
 TURNS_WEIGHT = 0.5
-"""Of the slow yaw rate's standard deviation, per radian per second."""
+"""The weight of the standard deviation of the slow yaw rate, per radian per second."""
 
 SEED = 20111
-"""Of the projections; changing it changes every stored vector."""
+"""The seed of the projections. If it changes, every stored vector changes."""
 
 PLACES, VELOCITY, YAW_RATE = slice(0, 39), slice(78, 81), 81
 """Columns of the frame features."""
 
 DESCRIBED = 5 * 39 + 3 + 3 + 1 + 1 + FEATURES * (FEATURES + 1) // 2
-"""Numbers of a motion before the projection: 3606."""
+"""How many numbers describe a motion before the projection: 3606."""
 
 
 def motion_vector(features: FloatArray) -> FloatArray:
-    """(128,) float32 motion vector of frame features (n, 82) at ANALYSIS_RATE, n >= 1."""
+    """(128,) float32 the motion vector of frame features (n, 82) at ANALYSIS_RATE, n >= 1."""
     return narrow(describe(features))
 
 
@@ -87,7 +90,10 @@ def wide(described: FloatArray) -> FloatArray:
 
 
 def course(features: FloatArray) -> FloatArray:
-    """(203,) weighted means, movement, wandering, order, travel, sway and turning; see above."""
+    """(203,) the first part, weighted: means, movement, change, order, travel, sway, turning.
+
+    features: (n, 82). The module describes these numbers.
+    """
     places, velocity, yaw = features[:, PLACES], features[:, VELOCITY], features[:, YAW_RATE]
     slow = _slowly(places)
     about = np.sqrt(np.maximum(_slowly(np.square(places - slow)), 0.0))
@@ -106,10 +112,10 @@ def course(features: FloatArray) -> FloatArray:
 
 
 def _slowly(values: FloatArray, seconds: float = SLOW) -> FloatArray:
-    """`values` (n, ...) without what is faster than `seconds`; held at the ends.
+    """`values` (n, ...) at ANALYSIS_RATE, smoothed; beyond the ends they are constant.
 
-    Three running means of 2 `seconds` have the standard deviation of a Gaussian of `seconds`,
-    nearly its shape, and cost the same however slow they are.
+    Three running means over 2 `seconds` have nearly the shape, and the standard deviation, of a
+    Gaussian of `seconds`. Their cost does not depend on `seconds`.
     """
     width = 2 * round(seconds * ANALYSIS_RATE) + 1
     for _ in range(3):
@@ -118,7 +124,8 @@ def _slowly(values: FloatArray, seconds: float = SLOW) -> FloatArray:
 
 
 def _first_cosines(values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(d,) each: how `values` (n, d) go from start to end, and at both ends from the middle."""
+    """Two arrays (d,): how `values` (n, d) differ between start and end, and between both ends
+    and the middle."""
     angles = np.pi * (np.arange(len(values)) + 0.5) / len(values)
     first, second = (
         np.sqrt(2.0) * (np.cos(order * angles) @ values) / len(values) for order in (1, 2)
@@ -127,13 +134,14 @@ def _first_cosines(values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def log_covariance(features: FloatArray) -> FloatArray:
-    """(3403,): the upper triangle of log(cov + RIDGE I), scaled; features (n, 82).
+    """(3403,) the upper triangle of log(covariance + RIDGE I), scaled; features: (n, 82).
 
-    Off-diagonals carry sqrt 2, so that Euclidean distance is the matrices' Frobenius one.
+    Entries off the diagonal are multiplied by sqrt(2). So the Euclidean distance of two results
+    is the Frobenius distance of the matrices.
     """
     count = features.shape[1]
-    centred = features - features.mean(axis=0)
-    covariance = centred.T @ centred / len(features)
+    centered = features - features.mean(axis=0)
+    covariance = centered.T @ centered / len(features)
     values, vectors = np.linalg.eigh(covariance + RIDGE * np.eye(count))
     # eigenvalues are >= RIDGE but for rounding
     logarithm = (vectors * np.log(np.maximum(values, RIDGE))) @ vectors.T
@@ -143,15 +151,15 @@ def log_covariance(features: FloatArray) -> FloatArray:
 
 @lru_cache(maxsize=1)
 def _wide_projection() -> NDArray[np.float32]:
-    """(3606, 512); half the precision, since all of it is read for each clip."""
+    """(3606, 512) in float32, because all of it is read for each clip."""
     return projection(WIDE_DIMENSIONS).astype(np.float32)
 
 
 @lru_cache(maxsize=1)
 def projection(dimensions: int = DIMENSIONS) -> FloatArray:
-    """(3606, dimensions) Gaussian, of variance 1 over `dimensions`; the same for ever.
+    """(3606, dimensions) Gaussian numbers of variance 1 / dimensions, always the same ones.
 
-    `RandomState` because its stream is frozen by numpy's policy; `Generator`'s is not.
+    numpy guarantees that the stream of `RandomState` never changes; that of `Generator` may.
     """
     stream = np.random.RandomState(SEED)
     drawn: FloatArray = stream.standard_normal((DESCRIBED, dimensions)) / np.sqrt(dimensions)

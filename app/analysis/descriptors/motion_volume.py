@@ -1,8 +1,8 @@
 """The motion sequence volume and its rank-1 factors (Sun 2011, sections 3 and 4).
 
-A pose's self-similarity matrix holds the distances between its 13 joints; stacked over
-time they make a volume (13, 13, frames), which is told by lambda, the primary vector rho
-(13,) and the secondary vector epsilon (frames,).
+The self-similarity matrix of a pose holds the distances between its 13 joints. Stacked over time,
+these matrices make a volume (13, 13, frames). Three factors approximate it: lambda, the primary
+vector rho (13,) and the secondary vector epsilon (frames,).
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from app.numerics.alignment.dtw import dtw_distances
 from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1, symmetric_rank1
 
-LARGEST_CROSS_CORRELATION = 3.0
-"""Of equation 6: three components, each of unit vectors."""
+MAX_CROSS_CORRELATION = 3.0
+"""The largest value of equation 6: rho counts twice, epsilon once, each at most 1."""
 
 
 def self_similarity(points: FloatArray, *, q: int = 2, threshold: float = 0.0) -> FloatArray:
     """(frames, joints, joints) self-similarity matrices of `points` (frames, joints, 3).
 
-    Equations 1 and 2: distances by the q-norm, q = 1 or 2, in the unit of `points`. With a
-    threshold eta > 0, 1 where the distance is at most eta and 0 elsewhere; eta = 0, the
-    paper's choice, keeps the distances. Raises ValueError for another q.
+    Equations 1 and 2: distances by the q-norm, q = 1 or 2, in the unit of `points`. threshold:
+    eta of the paper. With eta > 0 the result is 1 where the distance is at most eta, else 0. With
+    eta = 0, the paper's choice, the result is the distance. Raises ValueError for another q.
     """
     if q not in (1, 2):
         raise ValueError("q must be 1 or 2")
@@ -43,24 +43,25 @@ def self_similarity(points: FloatArray, *, q: int = 2, threshold: float = 0.0) -
 
 
 def motion_volume(track: BodyTrack, *, q: int = 2, threshold: float = 0.0) -> FloatArray:
-    """(13, 13, frames) volume of `track` (equation 3), in body lengths.
+    """(13, 13, frames) the volume of `track` (equation 3), in body lengths.
 
-    Joints are taken in the body frame, so that q = 1 does not depend on the heading.
+    q, threshold: as of `self_similarity`. The joints are in the body frame, so that the 1-norm
+    does not depend on the heading.
     """
     return np.moveaxis(self_similarity(track.local, q=q, threshold=threshold), 0, -1)
 
 
 def decompose(track: BodyTrack, *, q: int = 2, threshold: float = 0.0) -> Rank1:
-    """Lambda, rho (13,) and epsilon (frames,) of `track`'s volume (algorithm 1)."""
+    """Lambda, rho (13,) and epsilon (frames,) of the volume of `track` (algorithm 1)."""
     return symmetric_rank1(motion_volume(track, q=q, threshold=threshold))
 
 
 def cross_correlations(
     rho: FloatArray, epsilon: FloatArray, rhos: FloatArray, epsilons: Sequence[FloatArray]
 ) -> FloatArray:
-    """(c,) D_xcorr of equation 6, 0..3, larger for more alike: rho counts twice.
+    """(c,) D_xcorr of equation 6, 0..3, larger for more similar motions; rho counts twice.
 
-    One motion's rho (13,), epsilon (n,) against rhos (c, 13), epsilons of (m,) each.
+    rho: (13,) and epsilon: (n,) of one motion. rhos: (c, 13) and epsilons: c of (m,) of others.
     """
     spatial = max_cross_correlations_of_rows(rho, rhos)
     return 2.0 * spatial + max_cross_correlations(epsilon, epsilons)
@@ -69,16 +70,20 @@ def cross_correlations(
 def warping_distances(
     rho: FloatArray, epsilon: FloatArray, rhos: FloatArray, epsilons: Sequence[FloatArray]
 ) -> FloatArray:
-    """(c,) D_dtw of equation 7, smaller for more alike: rho counts twice; shapes as above."""
+    """(c,) D_dtw of equation 7, smaller for more similar motions; rho counts twice.
+
+    The parameters are those of `cross_correlations`.
+    """
     spatial = dtw_distances(rho, list(rhos), per_step=False)
     return 2.0 * spatial + dtw_distances(epsilon, epsilons, per_step=False)
 
 
 def compression_ratio(frames: Sequence[int], joints: int = 13) -> float:
-    """Size of the factors of clips of these lengths, as a share of their joints' positions.
+    """The size of the factors of clips, as a share of the size of their joint positions.
 
-    Section 5.3: R = m / (3 sum T) + 1 / (3 h), of m clips of T frames and h joints: rho is
-    kept once, not twice. Raises ValueError without a frame.
+    frames: the length of each clip. Section 5.3: R = m / (3 sum T) + 1 / (3 h) for m clips of T
+    frames and h joints; rho is stored once, not twice. Raises ValueError if there are no frames
+    or no joints.
     """
     total = sum(frames)
     if total < 1 or joints < 1:

@@ -1,9 +1,9 @@
-"""Few poses of a clip that stand for all of them: the coarse index of pose search.
+"""A few poses of a clip that represent all of its poses: the coarse index of pose search.
 
-Starting from the keyposes, the pose that is farthest from all that were chosen is chosen
-next, until none is farther than TOLERANCE (farthest-point traversal: Gonzalez 1985, at most
-twice the poses that the best choice would need). Each keeps how far the poses that it
-stands for may be from it, so that a search can tell which clips it need not look into.
+The keyposes are chosen first. Then the pose that is farthest from all chosen poses is chosen,
+until none is farther than TOLERANCE (farthest-point traversal, Gonzalez 1985). Each chosen pose
+has a radius: the largest distance of the poses that it represents. So a search can skip clips that
+cannot contain a near pose.
 """
 
 from __future__ import annotations
@@ -15,29 +15,29 @@ from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray, IntArray
 
 POSE_WIDTH = 36
-"""Numbers of a pose: 12 joints in the body frame, without the hips, which are its origin."""
+"""Numbers of a pose: 12 joints in the body frame. The hips are its origin and are left out."""
 
 TOLERANCE = 0.05
-"""Body lengths: how far a pose may be from the one that stands for it."""
+"""Body lengths: how far a pose may be from the pose that represents it."""
 
 FRAMES_PER_POSE = 8
-"""At most one pose in so many frames is chosen: fast movement is covered more coarsely."""
+"""At most one pose in this many frames is chosen. So fast movement is covered more coarsely."""
 
 CHUNK = 1800
-"""Frames that are covered together: the cost grows with their number times that of the poses."""
+"""Frames that are covered together. The cost grows with frames times chosen poses."""
 
 _MARGIN = 1e-6
-"""Added to radii, for float32's rounding."""
+"""Added to the radii, for the rounding of float32."""
 
 _JOINTS = [index for index, role in enumerate(SUN_ROLES) if role is not JointRole.HIPS]
 
 
 def pose_vectors(positions: FloatArray) -> FloatArray:
-    """(n, 36) float32: poses whose Euclidean distance is the RMS distance of their joints.
+    """(n, 36) float32 vectors; the Euclidean distance of two is the RMS distance of their joints.
 
-    positions: (n, 13, 3) in SUN_ROLES order, any unit, Y up. Distances are body lengths, in
-    each pose's own body frame. Joints weigh alike: on 228 clips heavier hands, feet or trunk
-    moved the precision at 5 by less than .02 either way. A pose of no size is NaN.
+    positions: (n, 13, 3) in SUN_ROLES order, any unit, Y up. Each pose is in its own body frame,
+    in body lengths. A pose without size is NaN. All joints have the same weight: on 228 clips,
+    larger weights of hands, feet or trunk changed the precision at 5 by less than .02.
     """
     planes = body_poses(positions).T[:, _JOINTS]  # (3, 12, n), contiguous
     planes /= np.sqrt(len(_JOINTS))
@@ -45,10 +45,11 @@ def pose_vectors(positions: FloatArray) -> FloatArray:
 
 
 def pose_cover(positions: FloatArray, keyposes: IntArray) -> FloatArray:
-    """(k, 38) float32: frame, radius (body lengths) and vector of each chosen pose.
+    """(k, 38) float32: the frame, the radius (body lengths) and the vector of each chosen pose.
 
-    positions: (n, 13, 3); keyposes: (m,) frames, all of which are chosen. Rows rise by frame.
-    Every pose of the clip is within the radius of one of them; poses of no size are left out.
+    positions: (n, 13, 3) as in `pose_vectors`. keyposes: (m,) frames that are all chosen. Rows
+    are in order of time. Every pose of the clip is within the radius of a chosen pose, except
+    poses without size, which are left out.
     """
     vectors = pose_vectors(positions)
     sound = np.flatnonzero(np.isfinite(vectors).all(axis=1))
@@ -63,7 +64,7 @@ def pose_cover(positions: FloatArray, keyposes: IntArray) -> FloatArray:
 
 
 def _cover(vectors: FloatArray, frames: IntArray, keyposes: IntArray) -> FloatArray:
-    """(k, 38): the cover of some `frames` (m,) of `vectors` (n, 36); keyposes among the m."""
+    """(k, 38) the cover of `frames` (m,) of `vectors` (n, 36); keyposes: indices of `frames`."""
     poses = vectors[frames].astype(np.float64)
     squares = np.vecdot(poses, poses)
     apart = np.full(len(poses), np.inf)
@@ -86,7 +87,7 @@ def _cover(vectors: FloatArray, frames: IntArray, keyposes: IntArray) -> FloatAr
 
 
 def _radii(poses: FloatArray, chosen: list[int], stands_for: IntArray) -> FloatArray:
-    """(k,) how far the farthest of the `poses` that each chosen one stands for is from it."""
+    """(k,) the largest distance of each chosen pose to the `poses` that it represents."""
     apart = poses - poses[chosen][stands_for]
     radii = np.zeros(len(chosen))
     np.maximum.at(radii, stands_for, np.sqrt(np.vecdot(apart, apart)))

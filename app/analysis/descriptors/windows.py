@@ -1,11 +1,11 @@
-"""Windows: a motion in overlapping pieces of 1, 2 and 4 s, so that its parts are found (DESIGN 7).
+"""Windows: a motion in overlapping pieces of 1, 2 and 4 s, so that parts of it can be found.
 
-A window's vector is what of the motion vector is cheap: how the body is held and travels
-(means) and how much each feature moves (logarithms of variances: the diagonal of what the
-motion vector takes whole). From running sums all windows of a second of motion cost some 0.05 ms,
-where the eigendecompositions of their covariances would cost 6, and all other analysis 9.
-It ranks a little worse (AP@5 of hidden pieces .71 for .80, `tests/bench/test_windows.py`), but
-is only the first stage: what it proposes is warped onto the query frame by frame.
+The vector of a window holds the cheap parts of the motion vector: how the body is held and travels
+(means), and how much each feature varies (logarithms of variances, without covariances). With
+running sums, all windows of a second of motion take 0.05 ms; eigendecompositions of covariances
+would take 6 ms, and the rest of the analysis takes 9 ms. The ranking is a little worse (AP@5 of
+hidden pieces .71 instead of .80, `tests/bench/test_windows.py`). But this is only the first stage
+of a search: the proposed windows are then warped onto the query frame by frame.
 """
 
 from __future__ import annotations
@@ -22,21 +22,25 @@ POSITIONS = slice(0, 3 * len(SUN_ROLES))
 """The columns of the joints' positions in the frame features."""
 
 LEVELS = np.r_[POSITIONS, TRAVEL]
-"""Whose mean tells something; that of a joint's velocity is near 0 for all motions."""
+"""The features whose means are used. The mean velocity of a joint is near 0 for all motions."""
 
 WIDTH = len(LEVELS) + FEATURES
-"""Numbers of a window vector: 125."""
+"""The length of a window vector: 125."""
 
 RIDGE = 1e-3
-"""Added to variances: the logarithm's floor for what stands still."""
+"""Added to variances, so that the logarithm of a still feature is finite."""
 
 VARIANCE_SCALE = 1 / 8
-"""Brings the logarithms to the size of the means."""
+"""The weight of the logarithms, which makes them about as large as the means."""
 
 
 @dataclass(frozen=True, slots=True)
 class WindowScale:
-    """Windows of one length. name: as in the arrays' names; frames, hop: at WARPING_RATE."""
+    """Windows of one length.
+
+    name: as in the names of the arrays. frames: the length, and hop: the distance between the
+    starts of two windows, both in frames at WARPING_RATE.
+    """
 
     name: str
     frames: int
@@ -54,13 +58,13 @@ class WindowScale:
 
 
 WINDOW_SCALES = (WindowScale("1s", 10, 3), WindowScale("2s", 20, 5), WindowScale("4s", 40, 10))
-"""From short to long. With hops of half a window, a piece between two of them is often missed."""
+"""From short to long. With hops of half a window, pieces between two windows are often missed."""
 
 
 def window_arrays(features_10hz: FloatArray) -> dict[str, FloatArray]:
-    """The arrays of all scales by name, of features (m, 82) at WARPING_RATE.
+    """The arrays of all WINDOW_SCALES by name, for features (m, 82) at WARPING_RATE.
 
-    window_vectors_*: (w, 125) float16; window_spans_*: (w, 2) float32 seconds.
+    window_vectors_*: (w, 125) float16. window_spans_*: (w, 2) float32, start and end in seconds.
     """
     arrays: dict[str, FloatArray] = {}
     sums = RunningSums(features_10hz)
@@ -72,9 +76,10 @@ def window_arrays(features_10hz: FloatArray) -> dict[str, FloatArray]:
 
 
 def window_frames(count: int, scale: WindowScale) -> IntArray:
-    """(w, 2) first frame and frame behind the last, of each window of `count` frames.
+    """(w, 2) the first frame, and the frame after the last, of each window.
 
-    The last window ends where the motion ends; a motion shorter than a window is one.
+    count: the frames of the motion. The last window ends with the motion. A motion that is
+    shorter than a window is one window.
     """
     last = max(count - scale.frames, 0)
     firsts = np.arange(0, last + 1, scale.hop)
@@ -84,7 +89,10 @@ def window_frames(count: int, scale: WindowScale) -> IntArray:
 
 
 class RunningSums:
-    """Sums of frame features and of their squares up to each frame: any window in two reads."""
+    """Sums of frame features and of their squares up to each frame.
+
+    The sum over any window is the difference of two of them.
+    """
 
     def __init__(self, features: FloatArray) -> None:
         """`features`: (m, 82)."""
@@ -97,13 +105,13 @@ class RunningSums:
         counts = (stop - first)[:, None]
         means = (self._sums[stop] - self._sums[first]) / counts
         variances = (self._squares[stop] - self._squares[first]) / counts - means**2
-        # below 0 only by rounding
+        # only rounding makes variances negative
         logarithms = np.log(np.maximum(variances, 0.0) + RIDGE) * VARIANCE_SCALE
         return np.hstack([means[:, LEVELS], logarithms]).astype(np.float16)
 
 
 def _running(values: FloatArray) -> FloatArray:
-    """(m + 1, d) float64 sums of the rows before each row of `values` (m, d)."""
+    """(m + 1, d) float64: row i is the sum of the first i rows of `values` (m, d)."""
     sums = np.zeros((len(values) + 1, values.shape[1]))
     np.cumsum(values, axis=0, dtype=np.float64, out=sums[1:])
     return sums

@@ -1,11 +1,11 @@
 """How much a body moves, seen from the floor and from the waist (Perera 2009, section 3.1).
 
-Global energy sees the joints' velocities in the world, local energy in the body frame.
-Both in body lengths per second, so that thresholds need no unit. Joints weigh alike, or by
-the mass that moves with them (section 3.4, fig. 6).
+Global energy uses the joints' velocities in the world, local energy those in the body frame. Both
+are in body lengths per second, so thresholds do not depend on the body's size. All joints have the
+same weight, or they are weighted by the mass that moves with them (section 3.4, fig. 6).
 
-Speed magnifies the shaking of markers: positions are smoothed first, and for the RMS the
-more the more they shake; what noise is still expected to add is taken off.
+Differentiation amplifies the noise of markers. So positions are smoothed first; the RMS method
+smooths noisy positions more. The energy that the remaining noise is expected to add is subtracted.
 """
 
 from __future__ import annotations
@@ -22,45 +22,48 @@ from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray
 
 SMOOTHING = 1 / 30
-"""Seconds (standard deviation), at least."""
+"""Seconds (standard deviation): the weakest smoothing."""
 
-MOST_SMOOTHING = 3 / 30
-"""Seconds; more would smear one rest into the next at dancing tempi."""
+MAX_SMOOTHING = 3 / 30
+"""Seconds: the strongest smoothing. More would merge neighboring minima of a dance."""
 
 NOISE_SHARE = 0.05
-"""Of the high energies: noise is smoothed until it adds no more than that, where it can be."""
+"""Smoothing grows until the noise adds at most this share of the high energies."""
 
 UNSURE = 0.1
-"""Share of the noise below which nothing is told: rest is never quite 0 in what shakes."""
+"""The smallest energy, as a share of the noise. Smaller values of a noisy motion mean nothing."""
 
 HIGH = 0.9
-"""Quantile over time of an energy that counts as high."""
+"""The quantile of an energy over time that counts as high."""
 
 
 class EnergyMethod(StrEnum):
-    """How joints' velocities become one number."""
+    """How the velocities of all joints become one number."""
 
     RMS = "rms"
-    """Root mean square of the joints' speeds: limbs that move against each other add up."""
+    """The root mean square of the joints' speeds. Limbs that move in opposite directions add up."""
 
     PRINTED = "printed"
-    """Equations 1 and 2 as printed, the length of the weighted sum of the velocities."""
+    """Equations 1 and 2 as printed: the length of the weighted sum of the velocities."""
 
 
 class Weights(StrEnum):
-    """How joints are weighted; weights sum to 1."""
+    """How the joints are weighted. The weights sum to 1."""
 
     UNIFORM = "uniform"
-    """All alike, which gives the ends of the limbs a clear voice; the paper's choice."""
+    """All joints have the same weight, so the ends of the limbs count much (as in the paper)."""
 
     MASS = "mass"
-    """By the mass that moves with each joint; the global sum is then the centre of mass's."""
+    """By the mass that moves with each joint. PRINTED then gives the center of mass's speed."""
 
 
 @dataclass(frozen=True, slots=True)
 class EnergyCurve:
-    """values: (n,) body lengths per second; noise: what noise alone had added to rest, taken
-    off; smoothing: seconds (standard deviation) by which positions were smoothed."""
+    """An energy over time.
+
+    values: (n,) body lengths per second. noise: the energy of noise alone, which was subtracted
+    (its square, from the square). smoothing: seconds (standard deviation) of the smoothing.
+    """
 
     values: FloatArray
     noise: float
@@ -69,7 +72,8 @@ class EnergyCurve:
 
 @dataclass(frozen=True, slots=True)
 class Energies:
-    """Energy over time as seen from the floor and from the waist: F^G and F^L of the paper."""
+    """The energies of a motion in the world (whole, F^G of the paper) and in the body frame
+    (own, F^L)."""
 
     whole: EnergyCurve
     own: EnergyCurve
@@ -90,7 +94,10 @@ def energies(
     method: EnergyMethod = EnergyMethod.RMS,
     weights: Weights = Weights.UNIFORM,
 ) -> Energies:
-    """Global and local energy of each frame of `track`."""
+    """The global and the local energy of each frame of `track`.
+
+    method: how velocities become one number. weights: of the joints.
+    """
     world = (track.positions - track.origin[:1, None]) / track.body_length
     shares = _shares(weights, world.shape[1])
     curve = _printed if method is EnergyMethod.PRINTED else _rms
@@ -116,13 +123,13 @@ def _rms(positions: FloatArray, rate: float, shares: FloatArray) -> EnergyCurve:
 
 
 def _smoothing(lightly: EnergyCurve) -> float:
-    """Seconds of smoothing that the noise asks for, from the curve under the least."""
+    """The seconds of smoothing that the noise requires; lightly: the curve with the weakest."""
     high = float(np.quantile(lightly.values, HIGH))
     if not lightly.noise > NOISE_SHARE * high:
         return SMOOTHING
-    # Noise in speed falls with the power -3/2 of the smoothing.
-    wanted = (lightly.noise / (NOISE_SHARE * high)) ** (2 / 3) if high > 0 else np.inf
-    return float(min(SMOOTHING * wanted, MOST_SMOOTHING))
+    # The noise of a speed falls with the power -3/2 of the smoothing.
+    factor = (lightly.noise / (NOISE_SHARE * high)) ** (2 / 3) if high > 0 else np.inf
+    return float(min(SMOOTHING * factor, MAX_SMOOTHING))
 
 
 def _above_noise(
@@ -135,12 +142,18 @@ def _above_noise(
 
 
 def velocities(positions: FloatArray, rate: float, smoothing: float) -> FloatArray:
-    """Of joints at `positions` (n, joints, 3), smoothed by `smoothing` s before; per second."""
+    """(n, joints, 3) the velocities, per second, of smoothed `positions` (n, joints, 3).
+
+    rate: Hz. smoothing: seconds, the standard deviation of the Gaussian.
+    """
     return np.asarray(np.gradient(_smoothed(positions, smoothing * rate), axis=0)) * rate
 
 
 def _smoothed(positions: FloatArray, spread: float) -> FloatArray:
-    """Smoothed in time; ends are continued by point reflection, so that they keep their speed."""
+    """`positions` smoothed by a Gaussian of `spread` frames.
+
+    Both ends are continued by point reflection, so that they keep their speed.
+    """
     reach = int(np.ceil(4 * spread))
     continued = np.pad(
         positions, ((reach, reach), (0, 0), (0, 0)), mode="reflect", reflect_type="odd"

@@ -1,8 +1,8 @@
-"""How much the joints of a recording shake, judged from the recording itself.
+"""The noise of a recording's joints, estimated from the recording itself.
 
-Between 8 and 12 Hz people hardly move, least of all while they rest, and no low-pass before
-has taken anything away (`resampling` is flat to about 12 Hz of 30): what is there at the
-quietest moments is noise. Taken to be white, it tells what noise makes of any speed.
+People hardly move at 8 to 12 Hz, least of all while they rest. Resampling does not remove these
+frequencies (it is flat to about 12 Hz at 30 frames per second). So the signal in this band at the
+quietest moments is noise. If it is white, the noise of a speed follows from it.
 """
 
 from __future__ import annotations
@@ -15,18 +15,19 @@ import scipy
 from app.numerics.arrays import FloatArray
 
 BAND = (8 / 15, 12 / 15)
-"""Of half the frame rate: 8 to 12 Hz at 30."""
+"""As shares of half the frame rate: 8 to 12 Hz at 30 frames per second."""
 
 TAPS = 25
-"""Frames that the filter sees: long enough to shut out movement, short enough to fit a rest."""
+"""Length of the filter in frames: long enough to exclude movement, shorter than a usual rest."""
 
-LEAST_FRAMES = 2 * TAPS
-"""Shorter clips show no quiet moments; their noise counts as none."""
+MIN_FRAMES = 2 * TAPS
+"""The fewest frames. Shorter clips have no quiet moments; their noise counts as 0."""
 
 QUIET = 0.2
-"""Quantile over time of what is told as quiet, averaged over `AROUND` frames."""
+"""The quantile over time of the power that counts as quiet."""
 
 AROUND = 5
+"""Frames over which the power is averaged before."""
 
 QUIET_PER_MEAN = 0.84
 """That quantile as a share of the mean, for white noise on 13 joints."""
@@ -36,16 +37,16 @@ QUIET_PER_MEAN = 0.84
 def _band_pass() -> FloatArray:
     """(TAPS,) the filter; made by the first call, because scipy.signal is slow to import."""
     taps = scipy.signal.firwin(TAPS, BAND, pass_zero=False, window="blackman")
-    return np.asarray(taps - taps.mean())  # nothing at all of what stands still
+    return np.asarray(taps - taps.mean())  # a still joint must give exactly 0
 
 
 def noise_power(positions: FloatArray, weights: FloatArray) -> float:
-    """Weighted mean over joints of the variance of white noise, x, y and z together.
+    """The variance of the white noise of x, y and z together, averaged over joints.
 
-    positions: (n, joints, 3); weights: (joints,), sum 1. In squared units of `positions`;
-    0 for fewer than LEAST_FRAMES frames.
+    positions: (n, joints, 3). weights: (joints,), sum 1. The result is in squared units of
+    `positions`. It is 0 for fewer than MIN_FRAMES frames.
     """
-    if len(positions) < LEAST_FRAMES:
+    if len(positions) < MIN_FRAMES:
         return 0.0
     reach = TAPS // 2
     band_pass = _band_pass()
@@ -57,9 +58,9 @@ def noise_power(positions: FloatArray, weights: FloatArray) -> float:
 
 
 def noise_of_speed(spread: float) -> float:
-    """What white noise of variance 1 adds to a squared speed (frames^-2).
+    """How much white noise of variance 1 adds to a squared speed, per squared frame.
 
-    For central differences of positions smoothed by a Gaussian of `spread` frames.
+    The speed is a central difference of positions smoothed by a Gaussian of `spread` frames.
     """
     turns = np.linspace(0.0, np.pi, 513)
     return float(np.mean(np.square(np.sin(turns)) * np.exp(-np.square(spread * turns))))

@@ -1,7 +1,7 @@
-"""Candidates for keyposes: rests at beats, or all rests where no beat is known (Perera 3.1).
+"""Candidates for keyposes: energy minima at beats, or all minima without beats (Perera 3.1).
 
-What makes a candidate a keypose, the thresholds T1 and T2, comes later: the same candidates
-serve every pair of thresholds, so that these can be learned.
+Later, the thresholds T1 and T2 select the keyposes. The candidates do not depend on the
+thresholds, so that thresholds can be learned.
 """
 
 from __future__ import annotations
@@ -11,134 +11,143 @@ from enum import StrEnum
 
 import numpy as np
 
-from app.analysis.keyposes.rests import SURE_REST, Rest, usual_length
+from app.analysis.keyposes.energy_minima import SURE_MINIMUM, EnergyMinimum, usual_length
 from app.numerics.arrays import FloatArray
 
 REACH = 0.35
-"""How far from its beat a rest may be, in beats."""
+"""How far from its beat a minimum may be, in beats."""
 
 ALMOST = 0.4
-"""Of that reach: a rest that begins so little after a beat was reached on it all the same."""
+"""A share of REACH. A minimum that begins at most this much after a beat still belongs to it."""
 
-LONGEST_INTERVAL = 1.5
-"""Median intervals: between beats further apart than that some are missing."""
+MAX_BEAT_INTERVAL = 1.5
+"""In median intervals. If two beats are farther apart, beats are missing between them."""
 
 LONE_BEAT = 15.0
-"""Frames; taken for the interval where only one beat is given."""
+"""Frames: the interval that is assumed if only one beat is given."""
 
 ASIDE = 0.5
-"""Units of energy that a rest at its beat's furthest reach must lie lower to be preferred."""
+"""Units of energy. A minimum at the far end of its beat's reach counts as this much higher."""
 
 LONG = 2.5
-"""Usual lengths beyond which a rest is a freeze: its moment is its arrival, not its middle."""
+"""In usual lengths. A longer minimum is a freeze: its keypose is at its start, not its middle."""
 
 FIRST_POSE = 7.0
-"""Frames: a clip that begins with a shorter rest just begins; a longer one is a pose."""
-
+"""Frames. If a clip begins with a shorter minimum, that is no pose, but the start of the clip."""
 
 NUDGE = 5.0
-"""Frames by which an estimated beat may move the moment of a rest from its middle."""
-
+"""Frames by which an estimated beat may move a keypose from the middle of its minimum."""
 
 AGREEING = 0.85
-"""Share of the sure rests that must hold a beat, for estimated beats to be believed."""
+"""The share of the certain minima that must contain a beat; else estimated beats are ignored."""
 
 
 class Scope(StrEnum):
-    """Which energy tells of a rest."""
+    """Which energy has the minimum."""
 
     GLOBAL = "global"
-    """The whole body comes to rest on the floor."""
+    """The global energy: the whole body comes to rest."""
 
     LOCAL = "local"
-    """The body comes to rest as seen from the waist, while that is carried on."""
+    """The local energy: the body comes to rest as seen from the waist, which may travel on."""
 
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A rest that may be a keypose: at `frame`, on `beat` (its index; None without beats)."""
+    """A minimum that may be a keypose at `frame`; beat: the index of its beat, None without."""
 
     frame: int
     beat: int | None
     scope: Scope
-    rest: Rest
+    minimum: EnergyMinimum
 
 
-def at_beats(rests: tuple[Rest, ...], beats: FloatArray, scope: Scope) -> tuple[Candidate, ...]:
-    """For each of `beats` (b,), in frames, rising, at most one rest: the lowest around it.
+def at_beats(
+    minima: tuple[EnergyMinimum, ...], beats: FloatArray, scope: Scope
+) -> tuple[Candidate, ...]:
+    """For each beat at most one candidate: the lowest minimum around it.
 
-    A rest belongs to the beat it is nearest to; of several that it lasts for to the first, on
-    which it was reached, or for the first rest of a clip to the last, on which it is left. Its
-    frame is the one nearest to the beat.
+    beats: (b,) in frames, rising. A minimum belongs to the nearest beat. If it lasts for several
+    beats, it belongs to the first one, on which it is reached. But the minimum at the start of
+    the clip belongs to the last one, on which it is left. The frame of a candidate is the frame
+    of its minimum that is nearest to the beat.
     """
     if not len(beats):
         return ()
     before, after = _reaches(beats)
-    around: dict[int, list[tuple[float, Rest]]] = {}
-    for rest in rests:
-        early = np.maximum(beats - rest.last, 0.0) / before
-        late = np.maximum(rest.first - beats, 0.0) / after
+    around: dict[int, list[tuple[float, EnergyMinimum]]] = {}
+    for minimum in minima:
+        early = np.maximum(beats - minimum.last, 0.0) / before
+        late = np.maximum(minimum.first - beats, 0.0) / after
         aside = float((early + late).min())
         lasting = np.flatnonzero(early + late <= aside + ALMOST)
-        nearest = int(lasting[-1] if rest.at_start else lasting[0])
+        nearest = int(lasting[-1] if minimum.at_start else lasting[0])
         aside = float((early + late)[nearest])
         if aside <= 1.0:
-            around.setdefault(nearest, []).append((rest.energy + ASIDE * aside, rest))
+            around.setdefault(nearest, []).append((minimum.energy + ASIDE * aside, minimum))
     lowest = {beat: min(found, key=lambda each: each[0])[1] for beat, found in around.items()}
     return tuple(
-        Candidate(round(float(np.clip(beats[beat], rest.first, rest.last))), beat, scope, rest)
-        for beat, rest in sorted(lowest.items())
+        Candidate(
+            round(float(np.clip(beats[beat], minimum.first, minimum.last))), beat, scope, minimum
+        )
+        for beat, minimum in sorted(lowest.items())
     )
 
 
 def _reaches(beats: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(b,) frames before and after each beat that are its own."""
+    """Two arrays (b,): how many frames before and after each beat belong to it."""
     if len(beats) < 2:
         alone = np.full(len(beats), REACH * LONE_BEAT)
         return alone, alone
     intervals = np.diff(beats)
-    intervals = np.minimum(intervals, LONGEST_INTERVAL * float(np.median(intervals)))
+    intervals = np.minimum(intervals, MAX_BEAT_INTERVAL * float(np.median(intervals)))
     before = REACH * np.concatenate([intervals[:1], intervals])
     return before, REACH * np.concatenate([intervals, intervals[-1:]])
 
 
-def at_rests(rests: tuple[Rest, ...], beats: FloatArray, scope: Scope) -> tuple[Candidate, ...]:
-    """Every rest, at its middle, or at that of `beats` (b,), in frames, which lies within it.
+def at_energy_minima(
+    minima: tuple[EnergyMinimum, ...], beats: FloatArray, scope: Scope
+) -> tuple[Candidate, ...]:
+    """A candidate for each minimum: at its middle, or at a beat within it.
 
-    The beats are hints, as those that were estimated from the rests themselves are. A freeze
-    counts when it is reached, the first pose when it is left.
+    beats: (b,) in frames, rising. They are hints, because they may be estimated from the minima
+    themselves. The candidate of a freeze is near its start, that of the clip's first pose near
+    its end.
     """
-    usual = usual_length(rests)
-    beats = beats if _agree(rests, beats) else beats[:0]
-    poses = (r for r in rests if not (r.at_start and (r.at_end or r.length < FIRST_POSE)))
+    usual = usual_length(minima)
+    beats = beats if _agree(minima, beats) else beats[:0]
+    poses = (r for r in minima if not (r.at_start and (r.at_end or r.length < FIRST_POSE)))
     return tuple(Candidate(round(_moment(r, usual, beats)), None, scope, r) for r in poses)
 
 
-def _agree(rests: tuple[Rest, ...], beats: FloatArray) -> bool:
-    sure = [rest for rest in rests if rest.energy < SURE_REST]
-    held = sum(len(_within(rest, beats)) > 0 for rest in sure)
+def _agree(minima: tuple[EnergyMinimum, ...], beats: FloatArray) -> bool:
+    sure = [minimum for minimum in minima if minimum.energy < SURE_MINIMUM]
+    held = sum(len(_within(minimum, beats)) > 0 for minimum in sure)
     return held >= AGREEING * len(sure)
 
 
-def _within(rest: Rest, beats: FloatArray) -> FloatArray:
-    first, stop = beats.searchsorted(rest.first - 1), beats.searchsorted(rest.last + 1, "right")
+def _within(minimum: EnergyMinimum, beats: FloatArray) -> FloatArray:
+    first, stop = (
+        beats.searchsorted(minimum.first - 1),
+        beats.searchsorted(minimum.last + 1, "right"),
+    )
     return beats[first:stop]
 
 
-def _moment(rest: Rest, usual: float, beats: FloatArray) -> float:
-    middle = _middle(rest, usual)
-    within = _within(rest, beats).tolist()
+def _moment(minimum: EnergyMinimum, usual: float, beats: FloatArray) -> float:
+    middle = _middle(minimum, usual)
+    within = _within(minimum, beats).tolist()
     if not within:
         return middle
     nearest = min(within, key=lambda beat: abs(beat - middle))
-    if not rest.at_start:
+    if not minimum.at_start:
         nearest = min(max(nearest, middle - NUDGE), middle + NUDGE)
-    return float(min(max(nearest, rest.first), rest.last))
+    return float(min(max(nearest, minimum.first), minimum.last))
 
 
-def _middle(rest: Rest, usual: float) -> float:
-    if rest.at_start:
-        return max(rest.last - usual / 2, 0.0)
-    if rest.at_end or rest.length > LONG * usual:
-        return min(rest.first + usual / 2, rest.last)
-    return 0.5 * (rest.first + rest.last)
+def _middle(minimum: EnergyMinimum, usual: float) -> float:
+    if minimum.at_start:
+        return max(minimum.last - usual / 2, 0.0)
+    if minimum.at_end or minimum.length > LONG * usual:
+        return min(minimum.first + usual / 2, minimum.last)
+    return 0.5 * (minimum.first + minimum.last)

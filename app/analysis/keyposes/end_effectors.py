@@ -1,9 +1,9 @@
-"""Keyposes by the speed of hands and feet: what Perera compares with (2009, sections 3.1, 3.2).
+"""Keyposes by the speed of hands and feet: the method that Perera compares with (2009, 3.1, 3.2).
 
-After Shiratori et al. 2004, as Perera tells it: the speed of the end effectors, and the
-beat. A beat at which the hands come to rest while the feet rest too is a keypose. Hands are
-seen from the waist, feet from the floor; feet that never move are at rest always. It stands
-beside the energies, to be measured, and is no default.
+It is the method of Shiratori et al. 2004, as Perera describes it. A beat at which the hands come to
+rest while the feet rest too is a keypose. The speed of the hands is that in the body frame, the
+speed of the feet that in the world. Feet that never move are always at rest. The benches compare
+this method with the energies; the analysis does not use it.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.energy.energy import SMOOTHING, EnergyCurve, velocities
-from app.analysis.keyposes.candidates import Candidate, Scope, at_beats, at_rests
-from app.analysis.keyposes.keyposes import LEAST_APART, T1, T2, are_law, passes
-from app.analysis.keyposes.rests import Rest, find_rests
+from app.analysis.keyposes.candidates import Candidate, Scope, at_beats, at_energy_minima
+from app.analysis.keyposes.energy_minima import EnergyMinimum, find_energy_minima
+from app.analysis.keyposes.keyposes import MIN_SEPARATION, T1, T2, are_law, passes
 from app.analysis.rhythm.beats import Beats
 from app.motion.frame.body_frame import BodyTrack
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
@@ -25,45 +25,49 @@ HANDS = [SUN_ROLES.index(role) for role in (JointRole.LEFT_HAND, JointRole.RIGHT
 FEET = [SUN_ROLES.index(role) for role in (JointRole.LEFT_FOOT, JointRole.RIGHT_FOOT)]
 
 TOGETHER = 6.0
-"""Frames by which the rests of hands and feet may miss each other."""
+"""Frames by which the minima of hands and feet may be apart."""
 
 
 @dataclass(frozen=True, slots=True)
 class EndEffectorCandidates:
-    """moments: rests of the hands, on beats where there are any; standing: rests of the feet."""
+    """The candidates of this method.
+
+    rate: frames per second. moments: minima of the hands' speed, on beats if there are any.
+    standing: minima of the feet's speed.
+    """
 
     rate: float
     moments: tuple[Candidate, ...]
-    standing: tuple[Rest, ...]
+    standing: tuple[EnergyMinimum, ...]
 
     def times(self, t1: float = T1, t2: float = T2) -> FloatArray:
-        """(k,) seconds of the keyposes, rising.
+        """(k,) the times of the keyposes in seconds, rising.
 
         t1, t2: in units of the median local maximum of each speed, as for the energies.
         """
-        planted = [rest for rest in self.standing if passes(rest, t1, t2)]
+        planted = [minimum for minimum in self.standing if passes(minimum, t1, t2)]
         frames = [
             moment.frame
             for moment in self.moments
-            if passes(moment.rest, t1, t2)
-            and (not self.standing or any(_holds(rest, moment.frame) for rest in planted))
+            if passes(moment.minimum, t1, t2)
+            and (not self.standing or any(_holds(minimum, moment.frame) for minimum in planted))
         ]
-        return _apart(frames, LEAST_APART * self.rate) / self.rate
+        return _apart(frames, MIN_SEPARATION * self.rate) / self.rate
 
 
 def end_effector_candidates(track: BodyTrack, beats: Beats | None) -> EndEffectorCandidates:
-    """What the method selects from. beats: where they are known; else rests alone count."""
+    """The candidates of `track`. beats: the known beats; None if there are none."""
     hands, feet = end_effector_speeds(track)
     times = np.zeros(0) if beats is None else beats.times * track.rate
-    look = at_beats if beats is not None and are_law(beats) else at_rests
-    moments = look(find_rests(hands), times, Scope.LOCAL)
-    return EndEffectorCandidates(track.rate, moments, find_rests(feet))
+    look = at_beats if beats is not None and are_law(beats) else at_energy_minima
+    moments = look(find_energy_minima(hands), times, Scope.LOCAL)
+    return EndEffectorCandidates(track.rate, moments, find_energy_minima(feet))
 
 
 def end_effector_speeds(track: BodyTrack) -> tuple[EnergyCurve, EnergyCurve]:
-    """Mean speed of both hands in the body frame, and of both feet in the world.
+    """The mean speed of both hands in the body frame, and of both feet in the world.
 
-    Body lengths per second; smoothed lightly, nothing taken off.
+    Both are in body lengths per second, of lightly smoothed positions. No noise is subtracted.
     """
     world = (track.positions - track.origin[:1, None]) / track.body_length
     return _speed(track.local[:, HANDS], track.rate), _speed(world[:, FEET], track.rate)
@@ -74,8 +78,8 @@ def _speed(positions: FloatArray, rate: float) -> EnergyCurve:
     return EnergyCurve(speeds.mean(axis=1), 0.0, SMOOTHING)
 
 
-def _holds(rest: Rest, frame: int) -> bool:
-    return rest.first - TOGETHER <= frame <= rest.last + TOGETHER
+def _holds(minimum: EnergyMinimum, frame: int) -> bool:
+    return minimum.first - TOGETHER <= frame <= minimum.last + TOGETHER
 
 
 def _apart(frames: list[int], least: float) -> IntArray:

@@ -1,11 +1,11 @@
 """Keyposes: the poses at which a motion comes to rest on its beats (Perera 2009, section 3).
 
-Around each beat the energy's minimum is a candidate; it is a keypose if it is small (T1) or
-far below the maxima beside it (T2). A candidate of the global energy comes before one of the
-local energy. Where the motion has no beat, or only one estimated from the motion itself,
-every rest is a candidate: such a beat knows nothing that the rests do not. A walker does not
-rest; where a motion goes on for long, its keyposes are the poses at which it is slowest as
-seen from the waist: the feet furthest apart, at each step.
+The minimum of the energy around each beat is a candidate. It is a keypose if it is small (T1) or
+far below the neighboring maxima (T2). Candidates of the global energy have priority over those of
+the local energy. If there are no beats, or only beats estimated from the motion itself, every
+minimum is a candidate, because such beats contain no other information than the minima. A walker
+does not rest. If a motion goes on for long without a keypose, its keyposes are the poses at which
+it is slowest as seen from the waist: at each step, when the feet are farthest apart.
 """
 
 from __future__ import annotations
@@ -18,44 +18,45 @@ from itertools import pairwise
 import numpy as np
 
 from app.analysis.energy.energy import Energies, EnergyMethod, Weights, energies
-from app.analysis.keyposes.candidates import Candidate, Scope, at_beats, at_rests
-from app.analysis.keyposes.rests import Rest, find_rests
+from app.analysis.keyposes.candidates import Candidate, Scope, at_beats, at_energy_minima
+from app.analysis.keyposes.energy_minima import EnergyMinimum, find_energy_minima
 from app.analysis.rhythm.beats import Beats, BeatSource, find_beats, given_beats
 from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray, IntArray
 
 T1 = 0.25
-"""A minimum is small below this share of the median local maximum."""
+"""A minimum is small if it is below this share of the median local maximum."""
 
 T2 = 0.8
-"""A minimum is deep if it lies this share of the median local maximum below the maxima."""
+"""A minimum is deep if it is lower than the neighboring maxima by this share of the median local
+maximum."""
 
-LEAST_APART = 0.2
-"""Seconds between keyposes."""
+MIN_SEPARATION = 0.2
+"""Seconds: the smallest time between two keyposes."""
 
 GOES_ON = 2.0
-"""Seconds without a keypose after which a motion is one that does not rest."""
+"""Seconds. After this time without a keypose, slow poses count too."""
 
 SLOWEST = 2.4
-"""Factor on T1 for what counts as slow there."""
+"""Slow poses have a local energy below T1 times this factor."""
 
 REPEATED = 2
-"""Slow poses that there must be: one alone is an accident."""
+"""The fewest slow poses between two keyposes. One alone may be chance."""
 
 KNOWN = frozenset({BeatSource.GIVEN, BeatSource.TEMPO, BeatSource.AUDIO})
-"""Sources of beats that know more than the motion: keyposes are sought on these beats alone."""
+"""Sources of beats that are independent of the motion. With these, keyposes are only on beats."""
 
 OVERLAP = 3
-"""Frames by which a local rest may miss a global one and still be the same."""
+"""Frames. Minima of both energies that are at most this far apart count as the same one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Keyposes:
-    """Where the keyposes are and from what they were found.
+    """The keyposes of a motion, and how they were found.
 
-    frames: (k,) at ANALYSIS_RATE, rising; times: (k,) seconds; chosen_by: (k,) which energy
-    chose each; energies: the curves, (n,) each; beats: the beats used, `beats.tempo` None
-    where none.
+    frames: (k,) at ANALYSIS_RATE, rising. times: (k,) seconds. chosen_by: (k,) which energy has
+    the minimum. energies: both curves, (n,) each. beats: the beats that were used; their tempo
+    is None if there are none. method, weights, t1, t2: the parameters of the search.
     """
 
     frames: IntArray
@@ -81,7 +82,10 @@ class Keyposes:
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """All candidates of a motion, global ones first, each of the two in order."""
+    """All candidates of a motion: first the global, then the local ones, each in order of time.
+
+    rate: of their frames, Hz.
+    """
 
     rate: float
     energies: Energies
@@ -90,28 +94,34 @@ class Candidates:
 
     @property
     def on_beats(self) -> bool:
-        """Whether the beats were known, so that keyposes are sought on them alone."""
+        """Whether the candidates belong to beats, because the beats were known."""
         return any(candidate.beat is not None for candidate in self.found)
 
     def select(self, t1: float = T1, t2: float = T2) -> tuple[Candidate, ...]:
-        """The keyposes under thresholds in units of each curve's median local maximum."""
+        """The keyposes for these thresholds, in order of time.
+
+        t1, t2: in units of the median local maximum of each energy curve.
+        """
         chosen: list[Candidate] = []
         for scope in Scope:
-            fresh = [c for c in self.found if c.scope is scope and passes(c.rest, t1, t2)]
+            fresh = [c for c in self.found if c.scope is scope and passes(c.minimum, t1, t2)]
             chosen += _not_there_yet(fresh, chosen)
         if not self.on_beats:
             chosen += self._where_it_goes_on(chosen, SLOWEST * t1)
-        return _apart(chosen, LEAST_APART * self.rate)
+        return _apart(chosen, MIN_SEPARATION * self.rate)
 
     def times(self, t1: float = T1, t2: float = T2) -> FloatArray:
-        """(k,) seconds of the keyposes under these thresholds."""
+        """(k,) the times, in seconds, of the keyposes for these thresholds."""
         return np.array([candidate.frame for candidate in self.select(t1, t2)]) / self.rate
 
     def _where_it_goes_on(self, chosen: list[Candidate], slow: float) -> list[Candidate]:
-        """The slow poses between keyposes that are further apart than GOES_ON."""
+        """The slow poses between keyposes that are farther apart than GOES_ON.
+
+        slow: the largest local energy of a slow pose.
+        """
         last = len(self.energies.local_energy) - 1
         walls = [0, *sorted(c.frame for c in chosen), last]
-        local = [c for c in self.found if c.scope is Scope.LOCAL and c.rest.energy < slow]
+        local = [c for c in self.found if c.scope is Scope.LOCAL and c.minimum.energy < slow]
         found: list[Candidate] = []
         for left, right in pairwise(walls):
             between = [c for c in local if left < c.frame < right]
@@ -132,10 +142,11 @@ def find_keyposes(
 ) -> Keyposes:
     """The keyposes of `track`.
 
-    beats: as they are known, or (b,) seconds, none if there are none; None: estimated from the
-    motion. t1, t2: thresholds in units of the median local maximum of each energy curve.
-    plain: `energies(track)`, where they are at hand. Raises ValueError for another method or
-    other weights.
+    method, weights: how the energies are computed. t1, t2: thresholds in units of the median
+    local maximum of each energy curve. beats: the known beats, as (b,) seconds or as `Beats`; an
+    empty array says that there are none; None estimates them from the motion. plain:
+    `energies(track)`, if the caller has them. Raises ValueError for an unknown method or unknown
+    weights.
     """
     method, weights = EnergyMethod(method), Weights(weights)
     candidates = find_candidates(track, method=method, weights=weights, beats=beats, plain=plain)
@@ -162,18 +173,18 @@ def find_candidates(
     beats: Beats | FloatArray | None = None,
     plain: Energies | None = None,
 ) -> Candidates:
-    """What `find_keyposes` selects from."""
+    """The candidates from which `find_keyposes` selects; the parameters are the same."""
     if (method, weights) == (EnergyMethod.RMS, Weights.UNIFORM):
         curves = plain = plain or energies(track)
     else:
         curves = energies(track, method, weights)
-    # Beats are sought in the plain energy, whatever keyposes are sought in.
+    # Beats are always estimated from the plain energy, whatever the method of the keyposes.
     used = _used(beats) or find_beats((plain or energies(track)).global_energy, track.rate)
-    look = at_beats if are_law(used) else at_rests
+    look = at_beats if are_law(used) else at_energy_minima
     found = (
         candidate
         for curve, scope in ((curves.whole, Scope.GLOBAL), (curves.own, Scope.LOCAL))
-        for candidate in look(find_rests(curve), used.times * track.rate, scope)
+        for candidate in look(find_energy_minima(curve), used.times * track.rate, scope)
     )
     return Candidates(track.rate, curves, used, tuple(found))
 
@@ -185,35 +196,39 @@ def _used(beats: Beats | FloatArray | None) -> Beats | None:
 
 
 def are_law(beats: Beats) -> bool:
-    """Whether keyposes are sought on these beats alone."""
+    """Whether keyposes must be on these beats: there are some, and their source is KNOWN."""
     return beats.source in KNOWN and len(beats.times) > 0
 
 
-def passes(rest: Rest, t1: float, t2: float) -> bool:
-    """Whether a rest's energy is small enough, or far enough below the maxima beside it."""
-    return rest.energy < t1 or rest.drop > t2
+def passes(minimum: EnergyMinimum, t1: float, t2: float) -> bool:
+    """Whether the energy of a minimum is below t1, or more than t2 below the neighboring maxima."""
+    return minimum.energy < t1 or minimum.drop > t2
 
 
 def _not_there_yet(fresh: list[Candidate], chosen: list[Candidate]) -> list[Candidate]:
-    """Those of `fresh` whose beat, or rest where there are no beats, is not chosen yet."""
+    """The candidates of `fresh` whose beat is not chosen yet, or, without beats, their minimum."""
     beats = {candidate.beat for candidate in chosen} - {None}
-    rests = [candidate.rest for candidate in chosen if candidate.beat is None]
-    starts = [rest.first - OVERLAP for rest in rests]
+    minima = [candidate.minimum for candidate in chosen if candidate.beat is None]
+    starts = [minimum.first - OVERLAP for minimum in minima]
 
-    def overlaps(rest: Rest) -> bool:
-        # Rests of one curve are in order and apart: only the last that starts before can do.
-        before = bisect_right(starts, rest.last)
-        return before > 0 and rests[before - 1].last + OVERLAP >= rest.first
+    def overlaps(minimum: EnergyMinimum) -> bool:
+        # The minima of a curve are in order and do not overlap. So only the last one that
+        # starts before `minimum` ends can overlap it.
+        before = bisect_right(starts, minimum.last)
+        return before > 0 and minima[before - 1].last + OVERLAP >= minimum.first
 
-    return [each for each in fresh if each.beat not in beats and not overlaps(each.rest)]
+    return [each for each in fresh if each.beat not in beats and not overlaps(each.minimum)]
 
 
 def _apart(chosen: Iterable[Candidate], least: float) -> tuple[Candidate, ...]:
-    """In order, at least `least` frames apart; of those too close the one of less energy stays."""
+    """The candidates in order, at least `least` frames apart.
+
+    Of two that are closer, the one with less energy stays.
+    """
     kept: list[Candidate] = []
     for candidate in sorted(chosen, key=lambda each: each.frame):
         if kept and candidate.frame - kept[-1].frame < least:
-            kept[-1] = min(kept[-1], candidate, key=lambda each: each.rest.energy)
+            kept[-1] = min(kept[-1], candidate, key=lambda each: each.minimum.energy)
         else:
             kept.append(candidate)
     return tuple(kept)

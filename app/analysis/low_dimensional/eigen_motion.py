@@ -1,10 +1,10 @@
 """Low-dimensional motion: poses as points of a space that few poses span (Perera 2009, section 4).
 
-Some poses of one or several clips, keyposes or poses at equal times, make an eigen model:
-their mean and principal axes. Any motion is then told by its coordinates along the first K'
-axes, and drawn again from them. Poses are those of the body frame (`BodyTrack.local`), in
-body lengths, so that persons of any size can be mixed; place, heading and size of what is
-drawn are the original's.
+Some poses of one or several clips (keyposes, or poses at equal times) make an eigen model: their
+mean and principal axes. Any motion can then be described by its coordinates along the first K'
+axes, and reconstructed from them. Poses are in the body frame (`BodyTrack.local`), in body lengths,
+so that persons of different size can be mixed. A reconstructed motion has the place, heading and
+size of the original.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.signs import fix_signs
 
 SHOWN = 3
-"""Axes of the space in which Perera draws poses and motions (figs 7 to 9), and K' of most of
-the paper's motions."""
+"""The axes of the space in which Perera draws poses and motions (figs 7 to 9). It is also K' of
+most of the paper's motions."""
 
 _RELATIVE_FLOOR = 1e-10
-"""Axes with a smaller share of the largest singular value hold only rounding."""
+"""Axes with a smaller share of the largest singular value hold only rounding errors."""
 
 
 class Basis(StrEnum):
@@ -32,15 +32,15 @@ class Basis(StrEnum):
     KEYPOSE = "keypose"
     """The clips' keyposes (eqs 4 to 8)."""
     UNIFORM = "uniform"
-    """As many poses of each clip, at equal times (eqs 10 and 11)."""
+    """Equally many poses of each clip, at equal times (eqs 10 and 11)."""
 
 
 @dataclass(frozen=True, slots=True)
 class EigenModel:
     """The space that K poses of j joints span.
 
-    mean: (j, 3) mean pose (eq. 4); axes: (r, j, 3), orthonormal, by falling variance, r <= K;
-    eigenvalues: (K,) lambda_k of the poses' covariance, 0 behind the r-th.
+    mean: (j, 3) the mean pose (eq. 4). axes: (r, j, 3), orthonormal, by falling variance, r <= K.
+    eigenvalues: (K,) lambda_k of the covariance of the poses, 0 after the r-th.
     """
 
     mean: FloatArray
@@ -49,19 +49,22 @@ class EigenModel:
 
     @property
     def poses(self) -> int:
-        """K: the poses that it was made of, and the most dimensions that can be asked for."""
+        """K: the number of poses of the model, which is also its largest number of dimensions."""
         return len(self.eigenvalues)
 
     def variance_kept(self) -> FloatArray:
-        """(K,) rho of eq. 9 for K' = 1..K; all 1 where the poses do not differ."""
+        """(K,) the share of variance kept for K' = 1..K (rho, eq. 9); 1 if all poses are equal."""
         total = self.eigenvalues.sum()
         if total <= 0:
             return np.ones(self.poses)
         return np.asarray(np.minimum(np.cumsum(self.eigenvalues) / total, 1.0))
 
     def coordinates(self, poses: FloatArray, dimensions: int) -> FloatArray:
-        """(n, dimensions) eigen poses of poses (n, j, 3) (eqs 5, 7, 10); 0 along axes that
-        the model does not have. Raises ValueError below 1 and above K dimensions."""
+        """(n, dimensions) the coordinates of `poses` (n, j, 3) (eqs 5, 7, 10).
+
+        They are 0 along axes that the model does not have. Raises ValueError if `dimensions` is
+        not 1..K.
+        """
         self._check(dimensions)
         axes = self.axes[:dimensions]
         found = np.zeros((len(poses), dimensions))
@@ -69,9 +72,9 @@ class EigenModel:
         return found
 
     def poses_at(self, coordinates: FloatArray) -> FloatArray:
-        """(n, j, 3) poses at coordinates (n, K') (eqs 6, 8, 11).
+        """(n, j, 3) the poses at `coordinates` (n, K') (eqs 6, 8, 11).
 
-        Raises ValueError below 1 and above K dimensions.
+        Raises ValueError if K' is not 1..K.
         """
         self._check(coordinates.shape[1])
         axes = self.axes[: coordinates.shape[1]]
@@ -83,10 +86,10 @@ class EigenModel:
 
 
 def eigen_model(poses: FloatArray) -> EigenModel:
-    """The model of poses (K, j, 3), by the SVD of their differences from the mean.
+    """The model of `poses` (K, j, 3), by the SVD of their differences from the mean.
 
-    The K-th eigenvalue is 0, since differences from a mean add up to nothing. Signs are
-    fixed. Raises ValueError where there is no pose.
+    The K-th eigenvalue is 0, because differences from a mean sum to 0. The signs of the axes are
+    fixed. Raises ValueError if there is no pose.
     """
     if not len(poses):
         raise ValueError("an eigen model needs at least one pose")
@@ -105,7 +108,7 @@ def eigen_model(poses: FloatArray) -> EigenModel:
 def uniform_frames(frames: int, count: int) -> IntArray:
     """(count,) frames at equal times: the middles of `count` equal parts of `frames` frames.
 
-    Raises ValueError where there are fewer frames than that, or none is asked for.
+    Raises ValueError if `count` is not 1..frames.
     """
     if not 1 <= count <= frames:
         raise ValueError(f"count must be from 1 to {frames}, found {count}")
@@ -113,10 +116,10 @@ def uniform_frames(frames: int, count: int) -> IntArray:
 
 
 def low_dimensional(model: EigenModel, track: BodyTrack, dimensions: int) -> BodyTrack:
-    """`track` drawn from its coordinates along the model's first axes (eqs 7 and 8).
+    """`track` reconstructed from its coordinates along the first axes of the model (eqs 7 and 8).
 
-    The hips' place, the heading and the body length are the original's.
-    Raises ValueError below 1 and above K dimensions.
+    The place of the hips, the heading and the body length are those of the original. Raises
+    ValueError if `dimensions` is not 1..K.
     """
     local = model.poses_at(model.coordinates(track.local, dimensions))
     return BodyTrack(
@@ -130,13 +133,13 @@ def low_dimensional(model: EigenModel, track: BodyTrack, dimensions: int) -> Bod
 
 
 def reconstruction_errors(model: EigenModel, track: BodyTrack) -> FloatArray:
-    """(K,) metres: how far joints are from the original's at K' = 1..K dimensions.
+    """(K,) the RMS error of the reconstruction, in meters, for K' = 1..K dimensions.
 
-    The root of the mean, over frames and all 13 joints, of the squared distance.
+    The mean is over all frames and all 13 joints.
     """
     away = track.local - model.mean
     along = np.einsum("njx,kjx->nk", away, model.axes)
-    # (r,) of squares that each axis explains, summed over frames
+    # (K,) the squares that each axis explains, summed over frames
     explained = np.zeros(model.poses)
     explained[: along.shape[1]] = np.square(along).sum(axis=0)
     left = np.maximum(np.square(away).sum() - np.cumsum(explained), 0.0)

@@ -1,9 +1,9 @@
-"""Beats of a recording: its tempo, and where each beat falls, though the tempo drifts.
+"""The beats of a recording: its tempo and the time of each beat. The tempo may drift.
 
-Onset strength (`onsets`) repeats with the beat; so it does with bars and half beats. Every
-plausible tempo is tracked by dynamic programming (Ellis 2007, "Beat tracking by dynamic
-programming"), and of all the one is taken whose beats are strong and alike, while the bass
-tells bass drum from snare; and which is a tempo that people play (the octave check).
+Onset strength (`onsets`) repeats with each beat, but also with each bar and each half beat. So
+every plausible tempo is tracked by dynamic programming (Ellis 2007, "Beat tracking by dynamic
+programming"). The chosen tempo is one that people usually play (the octave check), and whose beats
+are strong and similar; but the bass differs from beat to beat, as with bass drum and snare.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 import scipy
 
 from app.analysis.rhythm.beat_tracking import (
-    LEAST_BEATS,
+    MIN_BEATS,
     MULTIPLES,
     autocorrelation,
     likely_periods,
@@ -28,52 +28,53 @@ SLOWEST, FASTEST = 40.0, 220.0
 """Beats per minute."""
 
 TIGHTNESS = 100.0
-"""See `track`; onset strength is in units of its standard deviation."""
+"""The tightness of `track`; onset strength is in units of its standard deviation."""
 
 CANDIDATES = 4
-"""Strongest periods of the onsets from which tempi are derived."""
+"""How many of the strongest periods of the onsets are used to derive tempi."""
 
 USUAL = 112.0
-"""Beats per minute that most music is near (McKinney & Moelants 2006: 100 to 140)."""
+"""Beats per minute of most music (McKinney & Moelants 2006: 100 to 140)."""
 
 UNUSUAL, ALIKE, BASS_ALIKE, PULSE = -2.4, 2.8, -1.25, 4.8
-"""Weights of the squared octaves from USUAL; of how alike the rise is at odd and even beats, and
-the bass there (natural logarithms of the ratios); and of the pulse. A multinomial logit on 280
-pieces of the demo's music; with each style left out in turn it reached F .95."""
+"""Weights: of the squared distance from USUAL in octaves; of the similarity of the rise at odd and
+even beats, and of the bass there (natural logarithms of the ratios); and of the pulse. They come
+from a multinomial logit on 280 pieces of the demo's music. With each style left out in turn, it
+reached F .95."""
 
 NEAR = 3
-"""Frames around a beat in which its onset may lie."""
+"""Frames around a beat in which its onset may be."""
 
 CHOSEN_FROM = 90.0
-"""Seconds, in the midst of the recording, from which the tempo is chosen."""
+"""Seconds in the middle of the recording from which the tempo is chosen."""
 
 WINDOW = 8.0
-"""Seconds; in each half of one the beat must be heard for itself."""
+"""Seconds: the windows in which the pulse is measured. They overlap by half."""
 
 DRIFT = 0.04
-"""How far, relatively, a period may be from the beat's within a window."""
+"""The largest relative difference of a period from the beat within a window."""
 
 CHANCE = (0.06, 0.2)
-"""Pulse of recordings without a beat at most: a constant, and a part that falls with the square
-root of the number of windows."""
+"""The largest pulse of recordings without a beat: a constant, and a part that falls with the
+square root of the number of windows."""
 
 CLEAR = 0.16
-"""So far above chance the pulse is beyond doubt."""
+"""If the pulse is above chance by this, the confidence is 1."""
 
-LEAST_CONFIDENCE = 0.5
-"""Below, no beats are reported."""
+MIN_CONFIDENCE = 0.5
+"""The smallest confidence with which beats are reported."""
 
 
 def find_audio_beats(onsets: Onsets, tempo: float | None = None) -> Beats:
-    """The beats of a recording, seconds from its beginning; none where there is no pulse.
+    """The beats of a recording, in seconds from its beginning; none if there is no pulse.
 
-    tempo: beats per minute where it is known; then only their places are sought.
+    tempo: beats per minute, if it is known; then only the times of the beats are searched.
     """
     period, confidence = (60.0 * RATE / tempo, 1.0) if tempo else _choose(onsets)
-    if confidence < LEAST_CONFIDENCE:
+    if confidence < MIN_CONFIDENCE:
         return no_beats(confidence)
     beats = _tracked(onsets.strength, period)
-    if len(beats) < LEAST_BEATS:
+    if len(beats) < MIN_BEATS:
         return no_beats()
     found = 60.0 * RATE / float(np.median(np.diff(beats)))
     source = BeatSource.TEMPO if tempo else BeatSource.AUDIO
@@ -81,14 +82,14 @@ def find_audio_beats(onsets: Onsets, tempo: float | None = None) -> Beats:
 
 
 def _choose(onsets: Onsets) -> tuple[float, float]:
-    """The beat's period in frames, and how sure it is that there is one, 0..1."""
+    """The period of the beat in frames, and the confidence, 0..1, that there is a beat."""
     part = _middle(onsets)
     hearing = _Hearing.of(part.strength)
     best, found = (0.0, 0.0), -np.inf
     shortest, longest = 60.0 * RATE / FASTEST, 60.0 * RATE / SLOWEST
     for period in likely_periods(part.strength, shortest, longest, CANDIDATES):
         beats = _tracked(part.strength, period)
-        if len(beats) < LEAST_BEATS:
+        if len(beats) < MIN_BEATS:
             continue
         pulse = hearing.pulse(beats)
         score = PULSE * pulse + _plausibility(part, beats)
@@ -110,7 +111,7 @@ def _middle(onsets: Onsets) -> Onsets:
 
 @dataclass(frozen=True, slots=True)
 class _Hearing:
-    """Autocorrelations of the onsets within windows: (first frame, (lags,)) each."""
+    """For each window its first frame and the autocorrelation (lags,) of the onsets in it."""
 
     windows: tuple[tuple[int, FloatArray], ...]
 
@@ -122,7 +123,10 @@ class _Hearing:
         return cls(tuple((start, autocorrelation(part)) for start, part in parts if part.any()))
 
     def pulse(self, beats: IntArray) -> float:
-        """How well the onsets repeat after one to four beats, in the median window."""
+        """How well the onsets repeat after one to four beats: the median over windows, up to 1.
+
+        beats: frames.
+        """
         width = round(WINDOW * RATE)
         heard: list[float] = []
         for start, correlation in self.windows:
@@ -165,7 +169,10 @@ def _plausibility(onsets: Onsets, beats: IntArray) -> float:
 
 
 def _likeness(curve: FloatArray, beats: IntArray) -> float:
-    """Logarithm of the weaker over the stronger of odd and even beats, 0 if alike."""
+    """The logarithm of the ratio of the weaker to the stronger of odd and even beats; 0 if equal.
+
+    curve: (n,). beats: frames.
+    """
     here = _at(curve, beats)
     odd, even = float(here[1::2].mean()), float(here[::2].mean())
     floor = 1e-3 * float(curve.max(initial=0.0)) + 1e-12

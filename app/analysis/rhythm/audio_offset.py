@@ -1,9 +1,9 @@
-"""When in a motion its recording begins, where nobody says: the stops must meet the beats.
+"""Estimates when in a motion its recording begins: then the stops coincide with the beats.
 
-A steady beat tells the offset but for whole beats. Which of the beats it is shows a little:
-where the tempo drifts, the stops fit the right beats best; a recording is there for all of the
-motion; and its band is fullest while somebody dances. What is found comes with the probability
-that it is right with the beats counted too; the beats of the clip are right all the same.
+A steady beat gives the offset only up to whole beats. Three weak clues show which beat it is. If
+the tempo drifts, the stops fit the right beats best. A recording usually covers the whole motion.
+And the music is fullest while somebody dances. The result says with which probability the number of
+whole beats is right. The beats of the clip are right in both cases.
 """
 
 from __future__ import annotations
@@ -17,52 +17,57 @@ from app.analysis.rhythm.beats import FINE, WIDTH, Stops
 from app.analysis.rhythm.onsets import RATE, Onsets
 from app.numerics.arrays import FloatArray, IntArray
 
-LEAST_COVERED = 0.6
-"""Of the motion or the recording, whichever is shorter, that the two must share."""
+MIN_COVERED = 0.6
+"""The share of the shorter one of motion and recording that both must have in common."""
 
 AS_GOOD = 0.35
-"""Share of the stops by which a lag may meet fewer beats than the best one and still be tried."""
+"""A lag is tried if the share of stops that coincide with beats is below the best by less."""
 
 MET, FITTING, COVERED, FULLER, PER_SECOND = 18.0, 0.15, 13.0, 6.8, -0.05
-"""Weights of the share of stops that meet beats, of how closely they do (log likelihood), of the
-share of the motion that is recorded, of how much more begins while the motion lasts than before
-and after, and of each second from 0. A multinomial logit on 108 of the demo's dances with clicks,
-arranged music, and music that is the same throughout, a third each."""
+"""Weights: of the share of stops that coincide with beats; of how closely they do (log
+likelihood); of the share of the motion that is recorded; of how much fuller the music is during the
+motion than before and after it; and of each second from 0. They come from a multinomial logit on
+108 of the demo's dances: a third with clicks, a third with arranged music, and a third with music
+that does not change."""
 
-LEAST_SPREAD = 0.015
-"""Seconds (standard deviation) that dancers miss a beat by at least."""
+MIN_SPREAD = 0.015
+"""Seconds: the smallest standard deviation of dancers' stops from their beats."""
 
 NEAR = 0.3
-"""Of a beat: stops so near to one are meant for it."""
+"""In beats. A stop that is at most this far from a beat belongs to it."""
 
 SMOOTH = 0.75
-"""Beats (standard deviation) over which the fullness of the music is told."""
+"""Beats (standard deviation) over which the fullness of the music is smoothed."""
 
 TRIALS = 10.0
-"""Phases of a beat that may meet the stops by accident, about."""
+"""About how many independent phases of a beat are tried: each can fit the stops by chance."""
 
-LEAST_CONFIDENCE = 0.9
-"""Below, the offset is not known."""
+MIN_CONFIDENCE = 0.9
+"""With a lower confidence the offset counts as unknown."""
 
 
 @dataclass(frozen=True, slots=True)
 class Offset:
-    """seconds: time of the motion at which the recording begins; confidence: 0..1, how surely
-    the stops meet its beats there, whole beats left aside; beat: seconds, of which `seconds` may
-    be wrong by a multiple; beat_confidence: 0..1, the probability that it is not. Both are 1
-    where a client said it."""
+    """When a recording begins.
+
+    seconds: the time of the motion at which it begins. confidence: 0..1, how certain it is that
+    the stops coincide with the beats. is_given: whether a client gave the offset; then both
+    confidences are 1. beat: seconds; `seconds` may be wrong by a multiple of it.
+    beat_confidence: 0..1, the probability that it is not.
+    """
 
     seconds: float
     confidence: float
-    is_told: bool
+    is_given: bool
     beat: float
     beat_confidence: float
 
 
 def estimate_offset(stops: Stops, beats: FloatArray, onsets: Onsets) -> Offset | None:
-    """The offset of a recording of these `onsets`, with `beats` (b,) s from its beginning.
+    """The offset of a recording, or None if the stops have no common phase of the beat.
 
-    None where the stops keep no phase of the beat.
+    stops: those of the motion. beats: (b,) those of the recording, in seconds from its
+    beginning. onsets: those of the recording.
     """
     if len(beats) < 2 or not len(stops.times):
         return None
@@ -78,15 +83,18 @@ def estimate_offset(stops: Stops, beats: FloatArray, onsets: Onsets) -> Offset |
     same = np.abs(met.lags - met.lags[best]) < 0.5 * beat * FINE
     seconds = round(float(met.lags[best] / FINE), 3)
     confidence = _confidence(stops, beats + seconds)
-    if confidence < LEAST_CONFIDENCE:
+    if confidence < MIN_CONFIDENCE:
         return None
     return Offset(seconds, confidence, False, beat, float(likely[same].sum() / likely.sum()))
 
 
 @dataclass(frozen=True, slots=True)
 class _Met:
-    """Lags (c,) of the recording, in frames of FINE Hz, at which stops meet beats well; `share`
-    of the stops that do, `covered` of the motion; frames of both: moved, heard."""
+    """The lags of the recording at which many stops coincide with beats.
+
+    lags: (c,) in frames at FINE Hz. share: (c,) of the stops that coincide. covered: (c,) the
+    share of the motion that is recorded. moved, heard: frames of the motion and the recording.
+    """
 
     lags: IntArray
     share: FloatArray
@@ -100,7 +108,7 @@ def _met(stops: Stops, beats: FloatArray, duration: float) -> _Met:
     share = scipy.signal.fftconvolve(moved, heard[::-1]) / max(float(np.square(moved).sum()), 1e-9)
     lags = np.arange(-len(heard) + 1, len(moved))
     shared = np.minimum(len(moved), lags + len(heard)) - np.maximum(0, lags)
-    share[shared < LEAST_COVERED * min(len(moved), len(heard))] = 0.0
+    share[shared < MIN_COVERED * min(len(moved), len(heard))] = 0.0
     inner = (share[1:-1] >= share[:-2]) & (share[1:-1] > share[2:])
     tops = np.flatnonzero(inner) + 1
     tops = tops[share[tops] > max(float(share.max()) - AS_GOOD, 0.0)]
@@ -114,13 +122,16 @@ def _humps(times: FloatArray, count: int) -> FloatArray:
 
 
 def _nearest(times: FloatArray, beats: FloatArray) -> IntArray:
-    """(t,) index of the beat nearest to each time."""
+    """(t,) the index of the nearest of `beats` (b,) for each of `times` (t,)."""
     middles = 0.5 * (beats[1:] + beats[:-1])
     return np.searchsorted(middles, times)
 
 
 def _fit(stops: Stops, beats: FloatArray, beat: float) -> float:
-    """Log likelihood of how far the stops near `beats` (b,) are from them, evenly early or late."""
+    """The log likelihood of the distances of stops from near `beats` (b,).
+
+    A constant delay of all stops does not count.
+    """
     within = (stops.times > beats[0] - beat) & (stops.times < beats[-1] + beat)
     off = stops.times[within] - beats[_nearest(stops.times[within], beats)]
     near = np.abs(off) < NEAR * beat
@@ -128,12 +139,14 @@ def _fit(stops: Stops, beats: FloatArray, beat: float) -> float:
     if not len(off):
         return 0.0
     spread = float(np.average(np.square(off - np.average(off, weights=weights)), weights=weights))
-    return -0.5 * max(float(weights.sum()), 1.0) * float(np.log(spread + LEAST_SPREAD**2))
+    return -0.5 * max(float(weights.sum()), 1.0) * float(np.log(spread + MIN_SPREAD**2))
 
 
 def _fuller(met: _Met, onsets: Onsets, beat: float) -> FloatArray:
-    """(c,) by how much more begins to sound within the motion than outside, -1..1 or so: the
-    correlation of the music's fullness with being danced to."""
+    """(c,) how much fuller the music is during the motion than outside, about -1..1.
+
+    This is the correlation of the music's fullness with being within the motion.
+    """
     smooth = scipy.ndimage.gaussian_filter1d(onsets.rise, SMOOTH * beat * RATE)
     full = np.interp(np.arange(met.heard) / FINE, np.arange(len(smooth)) / RATE, smooth)
     sums = np.concatenate([[0.0], np.cumsum(full)])
@@ -147,7 +160,10 @@ def _fuller(met: _Met, onsets: Onsets, beat: float) -> FloatArray:
 
 
 def _confidence(stops: Stops, beats: FloatArray) -> float:
-    """Rayleigh's test: stops at random meet a phase as well with probability exp(-k R^2)."""
+    """The confidence, 0..1, that the stops have a common phase of the beat (Rayleigh's test).
+
+    k random stops have a mean phase vector of length R with probability exp(-k R^2).
+    """
     beat = float(np.median(np.diff(beats)))
     within = (stops.times > beats[0] - beat) & (stops.times < beats[-1] + beat)
     if not within.any():

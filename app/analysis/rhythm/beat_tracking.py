@@ -1,8 +1,8 @@
-"""Following a beat that drifts, in any curve that is high where beats may be.
+"""Tracks a drifting beat in any curve that is high where beats may be.
 
-Which periods a curve repeats with, and the frames of the beats of about such a period that
-gather most of the curve (Ellis 2007, "Beat tracking by dynamic programming"). Recordings are
-followed by their onsets, motions by their stops.
+It finds the periods with which a curve repeats, and the beats of about such a period that collect
+most of the curve (Ellis 2007, "Beat tracking by dynamic programming"). For recordings the curve is
+their onset strength, for motions their stops.
 """
 
 from __future__ import annotations
@@ -13,24 +13,27 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from app.numerics.arrays import FloatArray, IntArray
 
-LEAST_BEATS = 4
-"""Fewer are no rhythm."""
+MIN_BEATS = 4
+"""The fewest beats of a rhythm."""
 
 RATIOS = (1 / 3, 1 / 2, 2 / 3, 1.0, 3 / 2, 2.0, 3.0)
-"""Tempi that share most of their beats: what a curve repeats with may be any of them."""
+"""Ratios of tempi that share many beats. A strong period may be any of them times the beat."""
 
 STEP = 0.005
-"""Relative step of the grid of periods."""
+"""The relative step of the grid of periods."""
 
 APART = 0.04
-"""Relative difference of periods that are tried for themselves."""
+"""The smallest relative difference of two periods that are both tried."""
 
 MULTIPLES = 4
-"""Beats after which a curve must repeat."""
+"""A curve must repeat after 1 to this many beats."""
 
 
 def autocorrelation(strength: FloatArray) -> FloatArray:
-    """(n,) by lag in frames, 1 at lag 0, not falling with the overlap; zeros if constant."""
+    """(n,) the autocorrelation of `strength` (n,) by lag in frames, 1 at lag 0.
+
+    It is corrected for the smaller overlap at large lags. A constant curve gives zeros.
+    """
     count = len(strength)
     if not count or not np.ptp(strength) > 0:
         return np.zeros(count)
@@ -44,8 +47,12 @@ def autocorrelation(strength: FloatArray) -> FloatArray:
 def likely_periods(
     strength: FloatArray, shortest: float, longest: float, count: int
 ) -> list[float]:
-    """Frames that a beat may last: the `count` strongest periods and their ratios, each once."""
-    longest = min(longest, len(strength) / LEAST_BEATS)
+    """The lengths, in frames, that a beat may have, from `shortest` to `longest`.
+
+    These are the `count` strongest periods of `strength` (n,) and their RATIOS, without those
+    that are nearly equal.
+    """
+    longest = min(longest, len(strength) / MIN_BEATS)
     if longest <= shortest:
         return []
     grid = np.exp(np.arange(np.log(shortest / 1.5), np.log(longest), STEP))
@@ -68,11 +75,11 @@ def _salience(correlation: FloatArray, periods: FloatArray) -> FloatArray:
 
 
 def track(strength: FloatArray, period: float, tightness: float, reach: float = 2.0) -> IntArray:
-    """Frames of the beats of about `period` frames that gather most `strength` (n,).
+    """The frames of the beats with intervals of about `period` frames that collect most strength.
 
-    tightness: weight of the squared logarithm of an interval over the period; reach: factor
-    by which an interval may differ from it. Whole blocks of the shortest interval are filled
-    at once: a beat's predecessor lies in an earlier block.
+    strength: (n,). tightness: the weight of the squared logarithm of interval / period. reach:
+    the largest factor between them. Blocks as long as the shortest interval are computed at once,
+    because the predecessor of a beat is always in an earlier block.
     """
     nearest, furthest = max(1, round(period / reach)), max(2, round(reach * period))
     gaps = np.arange(furthest, nearest - 1, -1)
@@ -80,7 +87,7 @@ def track(strength: FloatArray, period: float, tightness: float, reach: float = 
     count = len(strength)
     if not count:
         return np.zeros(0, dtype=np.int64)
-    # Row f of `behind` sees `total` of frames f - furthest .. f - nearest.
+    # Row f of `behind` holds `total` of the frames f - furthest .. f - nearest.
     total = np.concatenate([np.full(furthest, -np.inf), strength])
     behind = sliding_window_view(total, len(gaps))
     for first in range(nearest, count, nearest):

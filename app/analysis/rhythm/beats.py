@@ -1,10 +1,10 @@
-"""The beat of a motion, estimated from its energy (DESIGN 5 and 13), and what beats are.
+"""The beats of a motion, estimated from its energy; and what beats are.
 
-Dancers come to rest on beats, though not on every one. The logarithm of energy makes rests
-as strong as bursts; where its deep minima repeat, their period is the beat or a simple ratio
-of it. Each such tempo is followed through its drift (`beat_tracking`), and the one is taken
-whose beats are mostly rested on, and that most rests are on (the octave check). Where rests
-keep no common beat there is none. Steps are rests, too: a walk's beats are its steps.
+Dancers come to rest on beats, though not on every beat. In the logarithm of the energy, rests are
+as strong as bursts. If its deep minima repeat, their period is the beat or a simple ratio of it.
+Each such tempo is tracked through its drift (`beat_tracking`). The chosen tempo is the one for
+which most beats have a stop and most stops are on a beat (the octave check). If the stops have no
+common beat, there are no beats. The steps of a walk are stops too, so its beats are its steps.
 """
 
 from __future__ import annotations
@@ -16,97 +16,100 @@ import numpy as np
 import scipy
 from numpy.polynomial.legendre import legvander
 
-from app.analysis.rhythm.beat_tracking import LEAST_BEATS, likely_periods, track
+from app.analysis.rhythm.beat_tracking import MIN_BEATS, likely_periods, track
 from app.numerics.arrays import FloatArray
 
 SLOWEST, FASTEST = 40.0, 200.0
 """Beats per minute."""
 
 CANDIDATES = 10
-"""Strongest periods of the rests from which tempi are derived."""
+"""How many of the strongest periods of the stops are used to derive tempi."""
 
 TREND = 2.0
-"""Seconds (standard deviation); slower changes of energy are no rhythm."""
+"""Seconds (standard deviation). Slower changes of the energy are not rhythm."""
 
 FLOOR = 0.05
-"""Of the median energy; keeps the logarithm of rest finite."""
+"""Added to the energy, as a share of its median, so that the logarithm is finite."""
 
 DEEP = 0.8
-"""Prominence of the minima that count, in standard deviations of log energy."""
+"""The smallest prominence of a stop, in standard deviations of the log energy."""
 
 DEEPEST = 2.0
-"""Prominence, in the same unit, beyond which a minimum counts no more than others."""
+"""The prominence, in the same unit, from which the weight of a stop is 1."""
 
 BOTTOM = 0.3
-"""Share of its prominence up to which a minimum is one rest, whose middle is its time."""
+"""The share of its prominence up to which a minimum is one stop. Its middle is the stop's time."""
 
 FINE = 60.0
-"""Hz of the curve of rests that is followed."""
+"""Hz: the rate of the curve of stops."""
 
 WIDTH = 0.05
-"""Seconds (standard deviation) of one rest in that curve."""
+"""Seconds (standard deviation): the width of one stop in that curve."""
 
 HUMP = 39 * WIDTH
-"""Seconds beyond which a rest adds nothing to it: exp(-39^2 / 2) is 0 in floating point."""
+"""Seconds beyond which a stop adds nothing: exp(-39^2 / 2) is 0 in floating point."""
 
 HEIGHT, TIGHTNESS = 4.0, 300.0
-"""Of a full rest in that curve; see `beat_tracking.track`."""
+"""The height of a stop of weight 1 in that curve; the tightness of `beat_tracking.track`."""
 
 REACH = 1.25
-"""Factor on the beat that any interval keeps within: further off costs more than a rest gains."""
+"""The largest factor between an interval and the beat. A larger one would cost more than a stop
+gains."""
 
-BEATS_PER_BEND, MOST_BENDS = 12, 5
-"""A tempo may change its course once in so many beats, and so often in all."""
+BEATS_PER_BEND, MAX_BENDS = 12, 5
+"""The degree of the curve of beats grows by 1 in this many beats, up to MAX_BENDS."""
 
 STIFFNESS = 0.3
-"""Weight against each bend, in rests."""
+"""The penalty of each coefficient of a higher degree, in stops."""
 
 NEAR = 0.15
-"""Of a beat: rests so near to one are on it."""
+"""In beats. A stop that is at most this far from a beat is on it."""
 
 USUAL, UNUSUAL = 95.0, -1.9
-"""Beats per minute that most dances are near; weight of the squared octaves from there."""
+"""Beats per minute of most dances, and the weight of the squared distance from it in octaves."""
 
 RESTED, EXPLAINED, TOGETHER = 3.5, 3.9, 5.4
-"""Weights, in the choice of a tempo, of the share of beats that are rests, of the share of
-rests that are beats, and of the length of the rests' mean phase vector: a multinomial logit
-on 160 of the demo's dances by seed, of noise up to 25 mm."""
+"""Weights in the choice of a tempo: of the share of beats that have a stop, of the share of stops
+that are on a beat, and of the length of the stops' mean phase vector. They come from a multinomial
+logit on 160 of the demo's dances, with noise of up to 25 mm."""
 
 CONFIDENCE = (5.9, 0.7, 5.2, 0.6, -12.0)
-"""A logit of those three, of Rayleigh's statistic (the number of rests, MOST_RESTS at most, times
-the squared length of the vector) and 1: the same dances, and parts of them, against 600 motions
-that stop at random, wander or tremble, both weighted alike."""
+"""The coefficients of a logit: of these three numbers, of Rayleigh's statistic (the number of
+stops, at most MAX_STOPS, times the squared length of the vector), and of 1. It was fitted on the
+same dances and parts of them, against 600 motions that stop at random, wander or tremble; both
+groups have the same total weight."""
 
-MOST_RESTS = 24
-LEAST_CONFIDENCE = 0.45
-"""Below, no beats are reported: of a hundred aimless motions five have more, of a hundred that
-stop at random twelve, of a hundred dances 97."""
+MAX_STOPS = 24
+MIN_CONFIDENCE = 0.45
+"""The smallest confidence with which beats are reported. 5 % of aimless motions have more, 12 % of
+motions that stop at random, and 97 % of dances."""
 
 
 class BeatSource(StrEnum):
-    """From what beats are known; each goes before those below it."""
+    """How the beats of a clip are known."""
 
     GIVEN = "given"
     """A client listed their times."""
 
     TEMPO = "tempo"
-    """A client told the tempo; their places were sought in the recording or the motion."""
+    """A client gave the tempo. Their times were found in the recording or in the motion."""
 
     AUDIO = "audio"
-    """Found in the recording."""
+    """They were found in the recording."""
 
     MOTION = "motion"
-    """Found in the motion's energy."""
+    """They were found in the energy of the motion."""
 
     NONE = "none"
-    """No beats were found, which is an answer."""
+    """No beats were found. This is a valid result."""
 
 
 @dataclass(frozen=True, slots=True)
 class Beats:
-    """Beats of a clip: `times` (beats,) seconds; `tempo` beats per minute, None where none.
+    """The beats of a clip.
 
-    confidence: 0..1, how surely they are no accident.
+    times: (beats,) seconds, rising. tempo: beats per minute, None if there are no beats.
+    confidence: 0..1, how certain it is that the beats are not chance.
     """
 
     times: FloatArray
@@ -116,49 +119,53 @@ class Beats:
 
 
 def no_beats(confidence: float = 0.0) -> Beats:
-    """None, with the `confidence` of the best there would have been."""
+    """No beats; confidence: that of the best beats that were rejected."""
     return Beats(np.zeros(0), None, confidence, BeatSource.NONE)
 
 
 def given_beats(times: FloatArray) -> Beats:
-    """Beats that somebody lists: (beats,) seconds, rising."""
+    """The beats that a client lists; times: (beats,) seconds, rising."""
     steps = np.diff(times)
     tempo = round(float(60.0 / np.median(steps)), 6) if len(steps) else None
     return Beats(np.asarray(times, dtype=np.float64), tempo, 1.0, BeatSource.GIVEN)
 
 
 def find_beats(energy: FloatArray, rate: float) -> Beats:
-    """The beats of an energy curve (n,) of `rate` Hz; none where its rests keep no beat."""
-    rests = find_stops(energy, rate)
+    """The beats of an energy curve (n,) at `rate` Hz; none if its stops have no common beat."""
+    stops = find_stops(energy, rate)
     shortest, longest = 60.0 * FINE / FASTEST, 60.0 * FINE / SLOWEST
     best, found = None, -np.inf
-    for period in likely_periods(rests.curve, shortest, longest, CANDIDATES):
-        followed = _follow(rests, period)
+    for period in likely_periods(stops.curve, shortest, longest, CANDIDATES):
+        followed = _follow(stops, period)
         if followed is not None and followed.plausibility > found:
             best, found = followed, followed.plausibility
-    if best is None or best.confidence < LEAST_CONFIDENCE:
+    if best is None or best.confidence < MIN_CONFIDENCE:
         return no_beats(0.0 if best is None else best.confidence)
-    times = through(best.beats, rests.duration)
+    times = through(best.beats, stops.duration)
     return Beats(times, best.tempo, best.confidence, BeatSource.MOTION)
 
 
 def beats_of_tempo(energy: FloatArray, rate: float, tempo: float) -> Beats:
-    """Beats of a `tempo` that is told, placed where the motion rests, from its first frame if
-    it does not; confidence: that of their places."""
-    rests = find_stops(energy, rate)
-    followed = _follow(rests, 60.0 * FINE / tempo)
+    """Beats of a given `tempo` (per minute), at the times when the motion stops.
+
+    energy: (n,) at `rate` Hz. If the motion does not stop, the beats begin at its first frame.
+    The confidence is that of the times of the beats.
+    """
+    stops = find_stops(energy, rate)
+    followed = _follow(stops, 60.0 * FINE / tempo)
     if followed is None:
-        times = np.arange(0.0, max(rests.duration, 1e-9), 60.0 / tempo)
+        times = np.arange(0.0, max(stops.duration, 1e-9), 60.0 / tempo)
         return Beats(times, tempo, 0.0, BeatSource.TEMPO)
-    times = through(followed.beats, rests.duration)
+    times = through(followed.beats, stops.duration)
     return Beats(times, tempo, followed.confidence, BeatSource.TEMPO)
 
 
 @dataclass(frozen=True, slots=True)
 class Stops:
-    """The stops of a motion, for its beats.
+    """The stops of a motion: the deep minima of its energy.
 
-    times: (r,) s; weights: (r,) 0..1; curve: (m,) at FINE Hz, a hump at each; duration: s.
+    times: (r,) seconds. weights: (r,) 0..1, larger for deeper minima. curve: (m,) at FINE Hz,
+    with a hump at each stop. duration: of the motion, in seconds.
     """
 
     times: FloatArray
@@ -168,7 +175,7 @@ class Stops:
 
 
 def find_stops(energy: FloatArray, rate: float) -> Stops:
-    """Where an energy curve (n,) of `rate` Hz falls to a deep minimum."""
+    """The stops of a motion, from its energy curve (n,) at `rate` Hz."""
     level = _log_energy(energy, rate)
     spread = float(level.std()) if len(level) else 0.0
     duration = max(len(energy) - 1, 0) / rate
@@ -188,7 +195,7 @@ def find_stops(energy: FloatArray, rate: float) -> Stops:
 
 
 def _log_energy(energy: FloatArray, rate: float) -> FloatArray:
-    """(n,) logarithm of energy without its slow changes; zeros for what does not move."""
+    """(n,) the logarithm of the energy, without its slow changes; 0 if nothing moves."""
     highest = float(energy.max(initial=0.0))
     if not highest > 0:
         return np.zeros(len(energy))
@@ -197,7 +204,10 @@ def _log_energy(energy: FloatArray, rate: float) -> FloatArray:
 
 
 def _middle(level: FloatArray, minimum: int, depth: float) -> float:
-    """The middle of the frames around a minimum that are about as low."""
+    """The middle of the frames around a minimum that are nearly as low.
+
+    level: (n,) log energy. minimum: a frame. depth: its prominence.
+    """
     low = level <= level[minimum] + BOTTOM * depth
     before = np.flatnonzero(~low[:minimum])
     after = np.flatnonzero(~low[minimum:])
@@ -208,8 +218,11 @@ def _middle(level: FloatArray, minimum: int, depth: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class _Followed:
-    """beats: (b,) s, rising, between the first and the last rest; plausibility: for choosing
-    among tempi; confidence: 0..1."""
+    """The beats for one tempo.
+
+    beats: (b,) seconds, rising, between the first and the last stop. plausibility: the tempo with
+    the largest one is chosen. confidence: 0..1.
+    """
 
     beats: FloatArray
     plausibility: float
@@ -220,49 +233,55 @@ class _Followed:
         return 60.0 / float(np.median(np.diff(self.beats)))
 
 
-def _follow(rests: Stops, period: float) -> _Followed | None:
-    """The beats of about `period` frames of `rests.curve`; None where there are too few."""
-    tracked = track(HEIGHT * rests.curve, period, TIGHTNESS, REACH) / FINE
-    if len(rests.times) < LEAST_BEATS or len(tracked) < LEAST_BEATS:
+def _follow(stops: Stops, period: float) -> _Followed | None:
+    """The beats whose interval is about `period` frames of `stops.curve`; None if too few."""
+    tracked = track(HEIGHT * stops.curve, period, TIGHTNESS, REACH) / FINE
+    if len(stops.times) < MIN_BEATS or len(tracked) < MIN_BEATS:
         return None
-    beats = _evened(tracked, rests)
+    beats = _evened(tracked, stops)
     if not (np.diff(beats) > 0).all():
         return None
     beat = float(np.median(np.diff(beats)))
-    off = (rests.times[:, None] - beats) / beat
+    off = (stops.times[:, None] - beats) / beat
     nearest = off[np.arange(len(off)), np.abs(off).argmin(axis=1)]
-    weights, total = rests.weights, float(rests.weights.sum())
+    weights, total = stops.weights, float(stops.weights.sum())
     rested = float((weights[:, None] * (np.abs(off) < NEAR)).max(axis=0).mean())
     explained = float(weights[np.abs(nearest) < NEAR].sum()) / total
     together = float(np.abs((weights * np.exp(2j * np.pi * nearest)).sum())) / total
     octaves = np.log2(60.0 / beat / USUAL)
     plausibility = RESTED * rested + EXPLAINED * explained + TOGETHER * together
-    evidence = (rested, explained, together, min(len(weights), MOST_RESTS) * together**2, 1.0)
+    evidence = (rested, explained, together, min(len(weights), MAX_STOPS) * together**2, 1.0)
     logit = float(np.dot(CONFIDENCE, evidence))
     return _Followed(
         beats, float(plausibility + UNUSUAL * octaves**2), float(1.0 / (1.0 + np.exp(-logit)))
     )
 
 
-def _evened(beats: FloatArray, rests: Stops) -> FloatArray:
-    """Beats (b,) on a smooth course through the rests near them: musicians drift, they do not
-    jump. A polynomial of few degrees over the beats' numbers, by least squares."""
-    nearest = np.abs(rests.times[:, None] - beats).argmin(axis=1)
+def _evened(beats: FloatArray, stops: Stops) -> FloatArray:
+    """(b,) `beats` (b,), in seconds, moved to a smooth curve through the stops near them.
+
+    The tempo of musicians drifts, but does not jump. The curve is a polynomial of low degree over
+    the numbers of the beats, fitted by least squares.
+    """
+    nearest = np.abs(stops.times[:, None] - beats).argmin(axis=1)
     beat = float(np.median(np.diff(beats)))
-    near = np.abs(rests.times - beats[nearest]) < 0.25 * beat
-    degree = min(1 + len(beats) // BEATS_PER_BEND, MOST_BENDS)
+    near = np.abs(stops.times - beats[nearest]) < 0.25 * beat
+    degree = min(1 + len(beats) // BEATS_PER_BEND, MAX_BENDS)
     if int(near.sum()) < degree + 2:
         return beats
     numbers = 2.0 * np.arange(len(beats)) / (len(beats) - 1) - 1.0
-    basis, weights = legvander(numbers[nearest[near]], degree), rests.weights[near]
+    basis, weights = legvander(numbers[nearest[near]], degree), stops.weights[near]
     stiff = np.diag([0.0, 0.0, *[STIFFNESS] * (degree - 1)])
     left = (basis * weights[:, None]).T @ basis + stiff
-    right = (basis * weights[:, None]).T @ rests.times[near]
+    right = (basis * weights[:, None]).T @ stops.times[near]
     return np.asarray(legvander(numbers, degree) @ np.linalg.solve(left, right))
 
 
 def through(beats: FloatArray, duration: float) -> FloatArray:
-    """The beats, gone on with evenly to both ends of a clip of `duration` s."""
+    """`beats` (b,), b >= 2, continued evenly to both ends of a clip of `duration` seconds.
+
+    Beats outside the clip are left out.
+    """
     first, last = float(beats[1] - beats[0]), float(beats[-1] - beats[-2])
     before = np.arange(beats[0] - first, -1e-9, -first)[::-1]
     after = np.arange(beats[-1] + last, duration + 1e-9, last)

@@ -1,10 +1,10 @@
 """Onsets of a recording: how much new sound begins at each moment.
 
-The spectral flux of Bock & Widmer 2013 ("Maximum filter vibrato suppression for onset
-detection"): the rise of the level in narrow bands, each compared with the loudest of its
-neighbours a moment before, so that a gliding tone is no onset. What librosa's
-`onset_strength` computes, in numpy alone: librosa compiles for 20 s and more when first
-used, in every analysis process where its cache cannot be written.
+This is the spectral flux of Bock & Widmer 2013 ("Maximum filter vibrato suppression for onset
+detection"): the rise of the level in narrow bands. Each band is compared with the loudest of its
+neighbors a moment before, so that a gliding tone is no onset. librosa's `onset_strength` computes
+the same. It is not used, because librosa compiles for 20 s and more at its first use, in every
+analysis process if its cache is not writable.
 """
 
 from __future__ import annotations
@@ -17,41 +17,43 @@ import scipy
 from app.numerics.arrays import FloatArray
 
 RATE = 100.0
-"""Hz of all curves here."""
+"""Hz: the rate of all curves here."""
 
 WINDOW = 0.046
-"""Seconds of sound that one spectrum sees."""
+"""Seconds of sound in one spectrum."""
 
 BANDS = 60
 LOWEST, HIGHEST = 30.0, 10_000.0
-"""Hz of the bands, which are evenly spaced in mel."""
+"""Hz: the range of the BANDS, which are evenly spaced in mel."""
 
 BEFORE = 2
-"""Frames back in time to which a level is compared."""
+"""A level is compared with that of so many frames before."""
 
 QUIETEST = 60.0
-"""dB below the loudest; what is quieter is silence."""
+"""dB below the loudest moment. Everything quieter counts as silence."""
 
 PARTS: tuple[tuple[float, float], ...] = ((200.0, 1.5), (2000.0, 1.0), (np.inf, 0.6))
-"""Upper edge in Hz, and weight: drums and bass mark beats, cymbals fill what is between."""
+"""The upper edge in Hz and the weight of each part. Drums and bass mark beats; cymbals also sound
+between them."""
 
-LEAST_RISE = 5.0
-"""dB, weighted, that the loudest hundredths of all moments bring at least where anything begins
-at all; held chords and humming machines stay below it."""
+MIN_RISE = 5.0
+"""dB, weighted. If the 98th percentile of the rise is lower, the recording has no onsets. Held
+chords and humming machines stay below it."""
 
 LEVELLED = 1.0
-"""Seconds over which the mean strength is taken off."""
+"""Seconds over which the mean is taken that is subtracted from the strength."""
 
 FRAMES_AT_ONCE = 512
+"""Spectra that are computed at once. It bounds the memory."""
 
 
 @dataclass(frozen=True, slots=True)
 class Onsets:
-    """Curves at RATE of a recording that lasts `duration` s, frame i at i / RATE.
+    """Curves at RATE of a recording of `duration` seconds; frame i is at i / RATE seconds.
 
-    strength: (n,) all bands, levelled, in units of its standard deviation, 0 and more;
-    rise: (n,) of the amplitude, linear; bass: (n,) the same below 200 Hz; loudness: (n,)
-    amplitude. All are zeros where the recording is silent.
+    strength: (n,) the onset strength of all bands above its local mean, in units of its standard
+    deviation, 0 or more. rise: (n,) the rise of the amplitude, linear. bass: (n,) the same below
+    200 Hz. loudness: (n,) the amplitude. All are 0 if the recording is silent.
     """
 
     strength: FloatArray
@@ -62,15 +64,15 @@ class Onsets:
 
 
 def find_onsets(samples: FloatArray, rate: float) -> Onsets:
-    """Onsets of a mono recording (samples,) at `rate` Hz."""
-    centres, power = _band_power(samples, rate)
-    loudest, bass = float(power.max(initial=0.0)), centres < PARTS[0][0]
+    """The onsets of a mono recording; samples: (samples,) at `rate` Hz."""
+    centers, power = _band_power(samples, rate)
+    loudest, bass = float(power.max(initial=0.0)), centers < PARTS[0][0]
     curves = np.zeros((4, len(power)))
     for first in range(0, len(power), FRAMES_AT_ONCE):
         start = max(0, first - BEFORE)
         some = power[start : first + FRAMES_AT_ONCE].astype(np.float64)
         rise = _rise(np.sqrt(some))
-        found = [_flux(some, loudest) @ _weights(centres), rise.sum(axis=1)]
+        found = [_flux(some, loudest) @ _weights(centers), rise.sum(axis=1)]
         found += [rise[:, bass].sum(axis=1), np.sqrt(some.sum(axis=1))]
         curves[:, first : first + FRAMES_AT_ONCE] = np.array(found)[:, first - start :]
     flux, rise, low, loudness = curves
@@ -78,9 +80,9 @@ def find_onsets(samples: FloatArray, rate: float) -> Onsets:
 
 
 def _band_power(samples: FloatArray, rate: float) -> tuple[FloatArray, FloatArray]:
-    """Centres (BANDS,) in Hz, and power (frames, BANDS), float32, around each frame."""
+    """The centers (BANDS,) of the bands in Hz, and the power (frames, BANDS) float32 in them."""
     width = int(2 ** round(np.log2(max(WINDOW * rate, 16.0))))
-    centres, bank = _filters(rate, width)
+    centers, bank = _filters(rate, width)
     frames = int(len(samples) * RATE / rate) + 1
     padded = np.pad(samples, (width // 2, width))
     starts = np.round(np.arange(frames) * rate / RATE).astype(np.int64)
@@ -89,14 +91,18 @@ def _band_power(samples: FloatArray, rate: float) -> tuple[FloatArray, FloatArra
         some = slice(first, first + FRAMES_AT_ONCE)
         pieces = padded[starts[some, None] + np.arange(width)] * window
         power[some] = np.square(np.abs(np.fft.rfft(pieces, axis=1))) @ bank.T
-    return centres, power
+    return centers, power
 
 
 def _filters(rate: float, width: int) -> tuple[FloatArray, FloatArray]:
-    """Centres (BANDS,) Hz, and triangles (BANDS, width // 2 + 1) over the spectrum's lines."""
+    """The centers (BANDS,) of the bands in Hz, and their triangular filters.
+
+    The filters are (BANDS, width // 2 + 1): the weights of the lines of a spectrum of `width`
+    samples at `rate` Hz.
+    """
     lines = np.fft.rfftfreq(width, 1.0 / rate)
     edges = _hertz(np.linspace(_mel(LOWEST), _mel(min(HIGHEST, 0.475 * rate)), BANDS + 2))
-    # A low band may be narrower than the lines are apart: each gets one line at least.
+    # A low band can be narrower than the distance of two lines. Each band gets at least one line.
     half = np.maximum(np.diff(edges), lines[1])
     up = (lines - edges[:-2, None]) / half[:-1, None]
     down = (edges[2:, None] - lines) / half[1:, None]
@@ -115,14 +121,14 @@ def _hertz(mel: FloatArray) -> FloatArray:
 
 
 def _rise(level: FloatArray) -> FloatArray:
-    """(frames, BANDS) by how much more there is than BEFORE frames ago; 0 in the first ones."""
+    """(frames, BANDS) the rise of `level` since BEFORE frames ago; 0 in the first frames."""
     rise = np.zeros_like(level)
     rise[BEFORE:] = np.maximum(level[BEFORE:] - level[:-BEFORE], 0.0)
     return rise
 
 
 def _flux(power: FloatArray, loudest: float) -> FloatArray:
-    """(frames, BANDS) rise in dB over the loudest neighbouring band BEFORE frames ago."""
+    """(frames, BANDS) the rise, in dB, above the loudest neighboring band BEFORE frames ago."""
     flux: FloatArray = np.zeros_like(power)
     if loudest > 0:
         level = 10.0 * np.log10(np.maximum(power / loudest, 10.0 ** (-QUIETEST / 10.0)))
@@ -131,16 +137,16 @@ def _flux(power: FloatArray, loudest: float) -> FloatArray:
     return flux
 
 
-def _weights(centres: FloatArray) -> FloatArray:
-    """(BANDS,) so that each part has its weight, whatever the number of its bands."""
-    part = np.searchsorted([upper for upper, _ in PARTS], centres, side="right")
+def _weights(centers: FloatArray) -> FloatArray:
+    """(BANDS,) weights such that the bands of each of PARTS together have its weight."""
+    part = np.searchsorted([upper for upper, _ in PARTS], centers, side="right")
     counts = np.bincount(part, minlength=len(PARTS))
     return np.array([PARTS[index][1] / counts[index] for index in part])
 
 
 def _levelled(curve: FloatArray) -> FloatArray:
-    """Above its local mean, in units of its spread; zeros where nothing begins."""
-    if len(curve) < RATE or float(np.percentile(curve, 98)) < LEAST_RISE:
+    """(n,) `curve` above its local mean, in units of its spread; 0 if there are no onsets."""
+    if len(curve) < RATE or float(np.percentile(curve, 98)) < MIN_RISE:
         return np.zeros(len(curve))
     smooth = scipy.ndimage.gaussian_filter1d(curve, 1.0)
     above = np.maximum(smooth - scipy.ndimage.uniform_filter1d(smooth, round(LEVELLED * RATE)), 0.0)

@@ -1,7 +1,8 @@
-"""The beats of a clip from all that is known: what a client says, a recording, the motion.
+"""The beats of a clip, from everything that is known: client, audio recording, motion.
 
-Beats that are listed go before a tempo that is told, that before what is heard, that before
-what the motion shows. A recording's beats become the clip's by the offset between the two.
+The beats that a client lists come first. Then come the beats of the recording, at the client's
+tempo if it gives one; then the client's tempo alone; then beats estimated from the motion. The
+offset between recording and motion turns the beats of the recording into beats of the clip.
 """
 
 from __future__ import annotations
@@ -32,27 +33,34 @@ from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
 
 SOURCES = tuple(BeatSource)
-"""Their order is stored (`beat_facts`): append only."""
+"""The stored array `beat_facts` refers to this order. New sources must be appended."""
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """What a client says: beats, seconds of the motion; tempo, beats a minute; audio_offset,
-    the time of the motion at which the recording begins."""
+class RhythmInput:
+    """What a client says about the rhythm of a clip; None where it says nothing.
+
+    beats: their times, in seconds of the motion. tempo: beats per minute. audio_offset: the time
+    of the motion, in seconds, at which the recording begins.
+    """
 
     beats: tuple[float, ...] | None = None
     tempo: float | None = None
     audio_offset: float | None = None
 
 
-NOTHING = Told()
+NOTHING_GIVEN = RhythmInput()
 
 BEAT_ARRAYS = ("beat_times", "beat_facts")
 
 
 @dataclass(frozen=True, slots=True)
 class Rhythm:
-    """A clip's beats; the offset of its recording, None without one or where it is not known."""
+    """The beats of a clip.
+
+    offset: that of its recording; None without a recording, or if it is unknown. cautions: doubts
+    about beats and recording.
+    """
 
     beats: Beats
     offset: Offset | None = None
@@ -61,95 +69,106 @@ class Rhythm:
 
 def find_rhythm(
     track: BodyTrack,
-    told: Told = NOTHING,
+    given: RhythmInput = NOTHING_GIVEN,
     onsets: Onsets | None = None,
     plain: Energies | None = None,
 ) -> Rhythm:
-    """The beats of `track`; onsets: of its recording; plain: `energies(track)`, if at hand."""
+    """Find the beats of `track`.
+
+    given: what a client says about them. onsets: those of the recording, None without one.
+    plain: `energies(track)`, if the caller has them.
+    """
     energy = (plain or energies(track)).global_energy
     duration = (len(energy) - 1) / track.rate
     heard, offset = no_beats(), None
     if onsets is not None:
-        heard = find_audio_beats(onsets, told.tempo)
-        # By the beats that are heard freely: stops are on every beat, a told tempo may be half.
-        free = find_audio_beats(onsets) if told.tempo and told.audio_offset is None else heard
-        offset = _offset(told, energy, track.rate, free, onsets)
+        heard = find_audio_beats(onsets, given.tempo)
+        # The offset needs every beat: a given tempo may be half of that at which people stop.
+        free = find_audio_beats(onsets) if given.tempo and given.audio_offset is None else heard
+        offset = _offset(given, energy, track.rate, free, onsets)
     shifted = None if offset is None else _shifted(heard, offset, duration)
-    cautions = [] if onsets is None else _doubts(told, heard, offset, shifted)
-    if told.beats and not _within(told.beats, duration):
+    cautions = [] if onsets is None else _doubts(given, heard, offset, shifted)
+    if given.beats and not _within(given.beats, duration):
         detail = f"None of the beats that were given lies within the {duration:.2f} s of motion."
         cautions.append(Caution("beats_outside_motion", detail))
-        told = replace(told, beats=None)
-    return Rhythm(_first(told, energy, track.rate, shifted), offset, tuple(cautions))
+        given = replace(given, beats=None)
+    return Rhythm(_first(given, energy, track.rate, shifted), offset, tuple(cautions))
 
 
 def _within(times: Sequence[float] | FloatArray, duration: float) -> bool:
-    """Whether any of `times` (s) lies within a motion."""
+    """Whether any of `times`, in seconds, lies within a motion of `duration` seconds."""
     return any(0.0 <= time <= duration for time in times)
 
 
-def _first(told: Told, energy: FloatArray, rate: float, shifted: Beats | None) -> Beats:
-    if told.beats:
-        return given_beats(np.array(told.beats))
+def _first(given: RhythmInput, energy: FloatArray, rate: float, shifted: Beats | None) -> Beats:
+    if given.beats:
+        return given_beats(np.array(given.beats))
     if shifted is not None:
         return shifted
-    if told.tempo:
-        return beats_of_tempo(energy, rate, told.tempo)
+    if given.tempo:
+        return beats_of_tempo(energy, rate, given.tempo)
     return find_beats(energy, rate)
 
 
 def _offset(
-    told: Told, energy: FloatArray, rate: float, heard: Beats, onsets: Onsets
+    given: RhythmInput, energy: FloatArray, rate: float, heard: Beats, onsets: Onsets
 ) -> Offset | None:
-    if told.audio_offset is not None:
-        return Offset(told.audio_offset, 1.0, True, 0.0, 1.0)
+    if given.audio_offset is not None:
+        return Offset(given.audio_offset, 1.0, True, 0.0, 1.0)
     return estimate_offset(find_stops(energy, rate), heard.times, onsets)
 
 
 def _shifted(heard: Beats, offset: Offset, duration: float) -> Beats | None:
-    """What is heard, in the motion's time, gone on with evenly; None where they do not meet."""
+    """The beats of the recording in the time of the motion, continued evenly to both ends.
+
+    None if fewer than two beats were heard, or none falls into the motion.
+    """
     times = heard.times + offset.seconds
     if len(times) < 2 or not _within(times, duration):
         return None
-    told_tempo = heard.source is BeatSource.TEMPO
+    is_tempo_given = heard.source is BeatSource.TEMPO
     return Beats(
         through(times, duration),
         heard.tempo,
         min(heard.confidence, offset.confidence),
-        BeatSource.TEMPO if told_tempo else BeatSource.AUDIO,
+        BeatSource.TEMPO if is_tempo_given else BeatSource.AUDIO,
     )
 
 
 def _doubts(
-    told: Told, heard: Beats, offset: Offset | None, shifted: Beats | None
+    given: RhythmInput, heard: Beats, offset: Offset | None, shifted: Beats | None
 ) -> list[Caution]:
     if not len(heard.times):
         return [Caution("audio_without_beats", "No beat was heard in the recording.")]
     if offset is None:
-        detail = "The motion does not tell when the recording begins: send audio_offset."
+        detail = "The motion does not show when the recording begins. Send audio_offset."
         return [Caution("audio_offset_unknown", detail)]
     if shifted is None:
-        detail = "By its audio_offset no beat of the recording falls into the motion."
+        detail = "With this audio_offset, no beat of the recording falls into the motion."
         return [Caution("audio_apart", detail)]
-    if not offset.is_told and told.beats is None:
+    if not offset.is_given and given.beats is None:
         detail = (
-            f"The recording's beginning was estimated as {offset.seconds:.2f} s: right but for"
-            f" whole beats of {offset.beat:.2f} s, and right in those too with probability"
-            f" {offset.beat_confidence:.2f}. Its beats do not mind; send audio_offset to be sure."
+            f"The recording's beginning was estimated as {offset.seconds:.2f} s. It may be wrong"
+            f" by whole beats of {offset.beat:.2f} s; it is exact with probability"
+            f" {offset.beat_confidence:.2f}. The beats are right in both cases. Send audio_offset"
+            " to be sure."
         )
         return [Caution("audio_offset_estimated", detail, offset.seconds)]
     return []
 
 
 def rhythm_arrays(rhythm: Rhythm) -> dict[str, NDArray[Any]]:
-    """What is stored: beat_times (b,) s; beat_facts (3,): index of the source in SOURCES, tempo
-    (0 for none), confidence."""
+    """The arrays that are stored for a rhythm.
+
+    beat_times: (b,) seconds. beat_facts: (3,) the index of the source in SOURCES, the tempo in
+    beats per minute (0 if none), and the confidence.
+    """
     beats = rhythm.beats
     facts = [SOURCES.index(beats.source), beats.tempo or 0.0, beats.confidence]
     return {"beat_times": beats.times, "beat_facts": np.array(facts, dtype=np.float64)}
 
 
 def beats_of(arrays: dict[str, NDArray[Any]]) -> Beats:
-    """The beats that `rhythm_arrays` stored."""
+    """The beats from the arrays of `rhythm_arrays`."""
     source, tempo, confidence = (float(fact) for fact in arrays["beat_facts"])
     return Beats(arrays["beat_times"], tempo or None, confidence, SOURCES[int(source)])

@@ -1,14 +1,13 @@
 """Cycles: sequences of segments that are danced again and again.
 
-A cycle begins and ends at keyposes and is followed by one that is like it. Two parts are
-compared at as many times, evenly spaced in each, so that tempo does not matter, and a
-keypose that was missed within one of them does no harm. How like they are is told by Lin's
-concordance (1989): 1 minus the mean squared distance over the sum of both variances, so that
-a body that holds still or shakes repeats nothing.
+A cycle begins and ends at keyposes, and a similar one follows it. Two parts are compared at
+equally many, evenly spaced times. So the tempo does not matter, and a missed keypose within a part
+does no harm. Their similarity is Lin's concordance (1989): 1 minus the mean squared
+distance divided by the sum of both variances. So a body that holds still or shakes repeats nothing.
 
-Of all runs of such parts the one is taken that repeats best for longest, its first cycle not
-counted: two steps danced four times are four cycles, not two of four steps. Then the next
-among what is left.
+Of all runs of such parts, the one with the largest sum of duration times concordance is taken
+first; its first cycle does not count. So two steps danced four times are four cycles, not two
+cycles of four steps. Then the next run is taken from the rest of the motion.
 """
 
 from __future__ import annotations
@@ -21,25 +20,32 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray
 
-MOST_SEGMENTS = 32
-"""In one cycle."""
+MAX_SEGMENTS = 32
+"""The most segments of a cycle."""
+
 SAMPLES = 32
-"""Times at which two parts are compared."""
-LEAST_CONCORDANCE = 0.6
-"""Of two cycles: 1 where they are the same, 0 where they have nothing in common."""
-MOST_STRETCH = 1.3
-"""Between the durations of a cycle and of the next."""
+"""The number of times at which two parts are compared."""
+
+MIN_CONCORDANCE = 0.6
+"""The smallest concordance of two cycles. It is 1 for equal ones, 0 if they have nothing in
+common."""
+
+MAX_STRETCH = 1.3
+"""The largest ratio of the durations of a cycle and the next one."""
+
 MISSED = 1
 """A cycle may have so many segments more or fewer than the one before."""
 
 _SMALLEST = 1e-6
-"""Variance, square body lengths: of less only rounding is told."""
+"""Squared body lengths: smaller variances are only rounding errors."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cycle:
-    """Segments first..stop-1, one time through what is repeated; run: which repeated sequence
-    it belongs to, from 0, in order of time."""
+    """One repetition: the segments first .. stop - 1.
+
+    run: the number of the repeated sequence to which it belongs, from 0, in order of time.
+    """
 
     first: int
     stop: int
@@ -47,10 +53,10 @@ class Cycle:
 
 
 def find_cycles(poses: FloatArray, bounds: FloatArray) -> tuple[Cycle, ...]:
-    """The cycles of a motion in order of time, at least two in a row.
+    """The cycles of a motion in order of time; each run has at least two.
 
-    poses: (n, d) in the body frame; bounds: (m + 1,) the rising times of keyposes, in frames,
-    which bound m segments.
+    poses: (n, d) in the body frame, body lengths. bounds: (m + 1,) the rising times of the
+    keyposes between m segments, in frames.
     """
     if len(bounds) < 3 or len(poses) < 2:
         return ()
@@ -68,23 +74,25 @@ _Part = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class _Link:
-    """To the part behind that is most like: its number of segments, and what it is worth, its
-    duration times its concordance."""
+    """A link from a part to the most similar part that follows it directly.
+
+    length: the number of segments of that part. worth: its duration times its concordance.
+    """
 
     length: int
     worth: float
 
 
 def _linked(poses: FloatArray, bounds: FloatArray) -> dict[_Part, _Link]:
-    """The links of the parts that have one."""
-    longest = min(MOST_SEGMENTS, len(bounds) - 2)
+    """The link of each part that has one."""
+    longest = min(MAX_SEGMENTS, len(bounds) - 2)
     links: dict[_Part, _Link] = {}
     near: dict[int, _Parts] = {}
     for length in range(1, longest + 1):
         others = range(max(length - MISSED, 1), min(length + MISSED, longest) + 1)
-        # only those of about this length are kept: all together would be large
+        # only parts of about this length are kept in memory, because all together are large
         near = {other: near.get(other) or _Parts(poses, bounds, other) for other in others}
-        best = np.full(len(bounds), LEAST_CONCORDANCE)
+        best = np.full(len(bounds), MIN_CONCORDANCE)
         for other in others:
             likeness = near[length].concordance(near[other])
             for first in np.flatnonzero(likeness > best[: len(likeness)]):
@@ -95,7 +103,7 @@ def _linked(poses: FloatArray, bounds: FloatArray) -> dict[_Part, _Link]:
 
 
 class _Parts:
-    """All parts of as many segments: (c, SAMPLES, d) poses, and what compares them."""
+    """All parts of `length` segments: their poses (c, SAMPLES, d), durations and variances."""
 
     def __init__(self, poses: FloatArray, bounds: FloatArray, length: int) -> None:
         self.length = length
@@ -109,26 +117,30 @@ class _Parts:
         self.variances = _mean_squares(self.poses - self.poses.mean(axis=1, keepdims=True))
 
     def concordance(self, other: _Parts) -> FloatArray:
-        """(c,) of each part with the part of `other` behind it; -1 where durations differ, or
-        nothing moves."""
+        """(c,) the concordance of each part with the part of `other` that follows it.
+
+        It is -1 if their durations differ too much, or if nothing moves.
+        """
         count = max(len(other.poses) - self.length, 0)
         one, two = slice(0, count), slice(self.length, self.length + count)
         apart = _mean_squares(self.poses[one] - other.poses[two])
         both = self.variances[one] + other.variances[two]
         stretch = other.durations[two] / self.durations[one]
-        near = (stretch <= MOST_STRETCH) & (stretch >= 1 / MOST_STRETCH) & (both > _SMALLEST)
+        near = (stretch <= MAX_STRETCH) & (stretch >= 1 / MAX_STRETCH) & (both > _SMALLEST)
         return np.where(near, 1 - apart / np.maximum(both, _SMALLEST), -1.0)
 
 
 def _mean_squares(lines: FloatArray) -> FloatArray:
-    """(c,) of lines (c, SAMPLES, d): the mean over samples of their squared lengths."""
+    """(c,) the mean squared length, over samples, of `lines` (c, SAMPLES, d)."""
     return np.asarray(np.einsum("csd,csd->c", lines, lines)) / SAMPLES
 
 
 def _runs(links: dict[_Part, _Link], bounds: FloatArray) -> list[list[int]]:
-    """The bounds of the cycles of each run, the run that is worth most first; no two share a
-    segment."""
-    # of two that are worth the same the earlier one, with the shorter cycles
+    """The bounds of the cycles of each run, the run of the largest worth first.
+
+    No two runs share a segment.
+    """
+    # of two runs of equal worth, the earlier one, then the one with shorter cycles comes first
     queue = [(-worth, *part, end) for part, (worth, end) in _ends(links).items()]
     heapify(queue)
     taken = np.zeros(len(bounds) - 1, dtype=bool)
@@ -149,7 +161,7 @@ def _runs(links: dict[_Part, _Link], bounds: FloatArray) -> list[list[int]]:
 
 
 def _ends(links: dict[_Part, _Link]) -> dict[_Part, tuple[float, int]]:
-    """By part what the run that begins with it is worth, and the bound at which it ends."""
+    """For each part, the worth of the run that begins with it, and the bound where it ends."""
     ends: dict[_Part, tuple[float, int]] = {}
     for part in sorted(links, reverse=True):
         link, first = links[part], sum(part)
@@ -159,7 +171,7 @@ def _ends(links: dict[_Part, _Link]) -> dict[_Part, tuple[float, int]]:
 
 
 def _followed(links: dict[_Part, _Link], part: _Part, high: int) -> tuple[float, list[int]]:
-    """What a run is worth, and the bounds of its cycles, as far as they do not pass `high`."""
+    """The worth of a run and the bounds of its cycles, up to the bound `high`."""
     worth, run = 0.0, [part[0], sum(part)]
     while link := links.get((run[-2], run[-1] - run[-2])):
         if run[-1] + link.length > high:

@@ -1,7 +1,7 @@
-"""The cycles of a clip as Perera's tensor takes them: as many segments each, as many poses each.
+"""The cycles of a clip for Perera's tensor: all with equally many segments and poses.
 
-A dance that repeats a sequence of steps is cut at its keyposes (segments), and these into its
-cycles (section 5.4: trained on one cycle, probed with another). A motion that does not repeat
+A dance that repeats a sequence of steps is cut at its keyposes into segments, and these are grouped
+into cycles (section 5.4: trained on one cycle, tested with another). A motion that does not repeat
 itself is one segment.
 """
 
@@ -21,29 +21,35 @@ from app.motion.skeleton.resampling import resample_to, sample_at
 from app.numerics.arrays import FloatArray, IntArray
 
 POSES = 16
-"""In a segment, evenly spaced in time, both keyposes among them."""
+"""The number of poses of a segment, evenly spaced in time, including both keyposes."""
 
 _POSITIONS = slice(0, 3 * len(SUN_ROLES))
 
 
 @dataclass(frozen=True, slots=True)
 class DancedCycles:
-    """segments: (s, POSES, 13, 3) body-frame positions, body lengths, in order of time and
-    without a gap; length: how many of them make one cycle, from wherever one begins."""
+    """The segments of a repeated sequence.
+
+    segments: (s, POSES, 13, 3) positions in the body frame, body lengths, in order of time
+    without gaps. length: how many segments make one cycle; it may begin at any segment.
+    """
 
     segments: FloatArray
     length: int
 
     def cycles(self, shift: int = 0) -> FloatArray:
-        """(c, length, POSES, 13, 3) the whole cycles there are from segment `shift` on."""
+        """(c, length, POSES, 13, 3) all complete cycles from segment `shift` on."""
         count = (len(self.segments) - shift) // self.length
         whole = self.segments[shift : shift + count * self.length]
         return whole.reshape(count, self.length, *self.segments.shape[1:])
 
 
 def danced_cycles(arrays: Mapping[str, Any]) -> DancedCycles:
-    """The longest run of cycles of a clip, by its stored arrays features_10hz (m, 82),
-    segment_spans (s, 2) and segment_cycles (c, 3); the whole clip where there is none."""
+    """The longest run of cycles of a clip, or the whole clip if nothing is repeated.
+
+    arrays: the stored arrays of the clip: features_10hz (m, 82), segment_spans (s, 2) and
+    segment_cycles (c, 3).
+    """
     poses = np.asarray(arrays["features_10hz"], dtype=np.float64)[:, _POSITIONS]
     first, stop, length = _longest(np.asarray(arrays[SEGMENT_CYCLES], dtype=np.int64))
     if not length:
@@ -55,8 +61,11 @@ def danced_cycles(arrays: Mapping[str, Any]) -> DancedCycles:
 
 
 def _longest(cycles: IntArray) -> tuple[int, int, int]:
-    """First segment, stop and segments a cycle of the most cycles (c, 3) in a row that have as
-    many segments as most have; zeros where nothing is repeated."""
+    """The first segment, the stop, and the segments of a cycle, of the longest run.
+
+    Only cycles (c, 3) with the most common number of segments count. All three are 0 if there are
+    no cycles.
+    """
     if not len(cycles):
         return 0, 0, 0
     lengths = cycles[:, 1] - cycles[:, 0]

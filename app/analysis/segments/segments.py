@@ -1,8 +1,8 @@
-"""Segments: what is danced from one keypose to the next, the units that dances are made of
-(Perera 2009, section 5.1), each as a vector, and the cycles that they form.
+"""Segments: the motion from one keypose to the next (Perera 2009, section 5.1).
 
-All is computed from the features at 10 Hz that are stored with a clip, so that segments can
-follow keyposes that a person corrects, without the motion.
+Dances are made of segments. Each gets a vector, and the cycles that segments form are found. All is
+computed from the stored features at 10 Hz. So segments can be computed again without the motion if
+a person corrects the keyposes.
 """
 
 from __future__ import annotations
@@ -25,15 +25,17 @@ SEGMENT_VECTORS, SEGMENT_SPANS, SEGMENT_CYCLES = (
     "segment_cycles",
 )
 SAMPLES = 5
-"""Poses that a segment is told by, both keyposes among them; 3 or 9 find the same."""
-TRAVEL_WEIGHT = 0.5
-"""Of the mean velocity and yaw rate, as they stand in the features, beside the poses."""
-DURATION_WEIGHT = 0.25
-"""Of the duration's logarithm: a step twice as slow is another step, though a like one.
+"""The number of poses of a segment vector, including both keyposes. 3 or 9 work as well."""
 
-With poses alone 1-NN by task of the segments of every second real clip is .735, with these
-weights .77, with the motion vector .78 and with warping .75; on repeated dances all find
-nearly all (`tests/bench/test_segments.py` measures the other clips).
+TRAVEL_WEIGHT = 0.5
+"""The weight of the mean velocity and yaw rate (as in the features); poses have weight 1."""
+
+DURATION_WEIGHT = 0.25
+"""The weight of the duration's logarithm: a step that is twice as slow is similar, but different.
+
+The 1-NN accuracy by task, for segments of every second real clip, is .735 with poses alone, .77
+with these weights, .78 with the motion vector, and .75 with warping. On repeated dances, all four
+find nearly all repetitions (`tests/bench/test_segments.py` measures the other clips).
 """
 
 _POSITIONS = slice(0, 3 * len(SUN_ROLES))
@@ -42,33 +44,34 @@ SEGMENT_WIDTH = 3 * SAMPLES * len(_MOVING) + (TRAVEL.stop - TRAVEL.start) + 1
 
 
 def describe_segments(features: FloatArray, keyposes: FloatArray) -> dict[str, NDArray[Any]]:
-    """The segments of a clip as arrays by name; s segments, c cycles.
+    """The arrays, by name, of the s segments and c cycles of a clip.
 
-    features: (m, 82) at 10 Hz; keyposes: (k,) seconds, rising. segment_spans (s, 2) float32
-    seconds; segment_vectors (s, SEGMENT_WIDTH) float16; segment_cycles (c, 3) int32: first
-    segment, the one behind the last, and number of the run (see `motion_cycles.Cycle`).
+    features: (m, 82) at 10 Hz. keyposes: (k,) seconds, rising.
+    segment_spans: (s, 2) float32, start and end in seconds. segment_vectors: (s, SEGMENT_WIDTH)
+    float16. segment_cycles: (c, 3) int32, the first segment, the one after the last, and the
+    number of the run (see `cycles.Cycle`).
     """
     spans = segment_spans(keyposes)
     cycles = find_cycles(features[:, _POSITIONS], keyposes * WARPING_RATE)
-    told = [(cycle.first, cycle.stop, cycle.run) for cycle in cycles]
+    rows = [(cycle.first, cycle.stop, cycle.run) for cycle in cycles]
     return {
         SEGMENT_SPANS: spans.astype(np.float32),
         SEGMENT_VECTORS: segment_vectors(features, spans).astype(np.float16),
-        SEGMENT_CYCLES: np.array(told, dtype=np.int32).reshape(len(told), 3),
+        SEGMENT_CYCLES: np.array(rows, dtype=np.int32).reshape(len(rows), 3),
     }
 
 
 def segment_spans(keyposes: FloatArray) -> FloatArray:
-    """(s, 2) start and end of each segment, from keyposes (s + 1,), in their unit."""
+    """(s, 2) start and end of each segment, in the unit of the `keyposes` (s + 1,)."""
     return np.array(list(pairwise(keyposes)), dtype=np.float64).reshape(-1, 2)
 
 
 def segment_vectors(features: FloatArray, spans: FloatArray) -> FloatArray:
     """(s, SEGMENT_WIDTH) float32 vectors of parts of a motion, compared by Euclidean distance.
 
-    features: (m, 82) at 10 Hz; spans: (s, 2) seconds. Each has the poses at SAMPLES evenly
-    spaced times, such that the squared distance of two is the joints' mean over time in body
-    lengths; how the body travels and turns; and how long it takes.
+    features: (m, 82) at 10 Hz. spans: (s, 2) seconds. A vector holds the poses at SAMPLES evenly
+    spaced times (in squared body lengths, the squared distance of two is the mean over these
+    times of the sum over joints), the mean travel and turn, and the log of the duration.
     """
     spans = np.asarray(spans, dtype=np.float64).reshape(-1, 2)
     at = np.linspace(spans[:, 0], spans[:, 1], SAMPLES, axis=1) * WARPING_RATE
@@ -85,7 +88,7 @@ def segment_vectors(features: FloatArray, spans: FloatArray) -> FloatArray:
 
 
 def _means(values: FloatArray, spans: FloatArray) -> FloatArray:
-    """(s, d) means of values (m, d) over spans (s, 2) in frames, one frame at least."""
+    """(s, d) the means of `values` (m, d) over `spans` (s, 2) in frames, at least one frame."""
     sums = np.vstack([np.zeros(values.shape[1]), np.cumsum(values, axis=0, dtype=np.float64)])
     firsts = np.minimum(spans[:, 0].astype(np.int64), len(values) - 1)
     stops = np.clip(np.ceil(spans[:, 1]).astype(np.int64), firsts + 1, len(values))

@@ -1,12 +1,11 @@
-"""The 26 channels of a motion symbol (Takano, section 3; DESIGN 5).
+"""The 26 channels of a motion symbol (Takano, section 3).
 
-The paper takes 20 joint angles, height, roll and pitch of the trunk, two horizontal
-speeds and the yaw rate. Many formats have no usable rotations, and joint angles of
-different skeletons do not agree, so the 20 are computed from positions of joint roles:
-swing of upper arms and thighs as direction cosines in the body frame (three each, smooth
-and free of the jumps of an angle at +-180 degrees), flexion of elbows and knees, rise of
-the forearms and lean of the head. Nothing is fitted, so channels of all libraries and
-years agree.
+The paper uses 20 joint angles; height, roll and pitch of the trunk; two horizontal speeds; and the
+yaw rate. Many formats have no usable rotations, and joint angles of different skeletons do not
+agree. So we compute 20 channels from the positions of joint roles: the directions of upper arms and
+thighs in the body frame (three cosines each, which do not jump as an angle does at +-180 degrees),
+the flexion of elbows and knees, the rise of the forearms, and the lean of the head. Nothing is
+fitted, so the channels of all libraries can be compared.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ CHANNELS: tuple[str, ...] = (
     "speed_forward",
     "yaw_rate",
 )
-"""Names of the channels, in their order."""
+"""The names of the channels, in their order."""
 
 _THIGH_AND_ARM = (0.15, 0.15, 0.25), (0.3, 0.5, 0.4)
 
@@ -55,27 +54,27 @@ CHANNEL_SCALES: FloatArray = np.array(
         *(0.3, 0.9, 1.3),  # speeds, yaw rate
     ]
 )
-"""Typical standard deviation of each channel over varied motion (cosine, radian, body
-length, body lengths / s, radians / s): measured once on CMU and Bandai Namco clips and
-rounded; part of the descriptor's definition, never refitted."""
+"""The typical standard deviation of each channel over varied motion, in its unit (cosine, radian,
+body length, body lengths / s, radians / s). It was measured once on CMU and Bandai Namco clips and
+rounded. It is part of the descriptor's definition and is never fitted again."""
 
 EXTREMES = (0.02, 0.98)
-"""Quantiles that stand for the extremes of a channel; a single bad frame moves them little."""
+"""The quantiles used as extremes of a channel. A single bad frame changes them little."""
 
-MOST_YAW_RATE = 10.0
-"""Radians per second; a faster turn of the shoulders' line (a roll, a fall) saturates."""
+MAX_YAW_RATE = 10.0
+"""Radians per second. The channel saturates there, for example in a roll or a fall."""
 
 FLOOR_QUANTILE = 0.01
-"""Height is over the level that the lowest joint goes under in this share of frames."""
+"""The lowest joint is below the floor in this share of the frames."""
 
-SHORTEST_LIMB = 0.02
-"""Body lengths; a shorter limb (its joint is missing) has no direction: it fades to zero."""
+MIN_LIMB_LENGTH = 0.02
+"""Body lengths. The direction of a shorter limb, whose joint may be missing, goes to zero."""
 
 
 def symbol_features(track: BodyTrack) -> FloatArray:
-    """(n, 26) channels at ANALYSIS_RATE, each divided by its CHANNEL_SCALES.
+    """(n, 26) the channels at ANALYSIS_RATE, each divided by its scale in CHANNEL_SCALES.
 
-    Invariant to place, heading, size and unit of the body.
+    They do not depend on the place, the heading, the size or the unit of the body.
     """
     limbs = _limb_channels(track.local)
     trunk = _trunk_channels(track)
@@ -83,11 +82,11 @@ def symbol_features(track: BodyTrack) -> FloatArray:
 
 
 def symbol_statistics(features: FloatArray, rate: float) -> FloatArray:
-    """(131,) statistics of `features` (n, 26) at `rate` Hz: what the word model sees.
+    """(131,) the statistics of `features` (n, 26) at `rate` Hz that the word model uses.
 
-    Mean, standard deviation, mean absolute change per second, low and high quantile
-    (EXTREMES) of each channel, then the logarithm of the length in seconds. DESIGN 13
-    without the quantiles: held out on 496 real clips these add .013 to top-3 recognition,
+    For each channel these are the mean, the standard deviation, the mean absolute change per
+    second, and the low and the high quantile (EXTREMES). The last number is the logarithm of the
+    length in seconds. On 496 held-out real clips, the quantiles add .013 to top-3 recognition,
     .008 to F and .010 to MAP (three foldings).
     """
     change = np.zeros(features.shape[1])
@@ -100,7 +99,7 @@ def symbol_statistics(features: FloatArray, rate: float) -> FloatArray:
 
 
 def _limb_channels(local: FloatArray) -> FloatArray:
-    """(n, 20) of body-frame positions (n, 13, 3)."""
+    """(n, 20) the channels of the limbs and the head, of body-frame positions (n, 13, 3)."""
     thighs = _direction(local, _R.HIPS, _R.LEFT_KNEE), _direction(local, _R.HIPS, _R.RIGHT_KNEE)
     shins = (
         _direction(local, _R.LEFT_KNEE, _R.LEFT_FOOT),
@@ -126,31 +125,31 @@ def _limb_channels(local: FloatArray) -> FloatArray:
 
 
 def _trunk_channels(track: BodyTrack) -> FloatArray:
-    """(n, 6) height (body lengths), roll and pitch (cosines), speeds, yaw rate."""
+    """(n, 6) height (body lengths), roll and pitch (cosines), two speeds, and yaw rate."""
     spine = _direction(track.local, _R.HIPS, _R.NECK)
     velocity = track.velocity()
-    yaw_rate = MOST_YAW_RATE * np.tanh(track.yaw_rate() / MOST_YAW_RATE)
+    yaw_rate = MAX_YAW_RATE * np.tanh(track.yaw_rate() / MAX_YAW_RATE)
     posture = [_height(track), spine[:, 0], spine[:, 2]]
     return np.stack([*posture, velocity[:, 0], velocity[:, 2], yaw_rate], axis=1)
 
 
 def _height(track: BodyTrack) -> FloatArray:
-    """(n,) height of the hips over the floor, body lengths; the floor is the clip's own."""
+    """(n,) the height of the hips above the floor of the clip, body lengths."""
     lowest = track.positions[:, :, 1].min(axis=1)
     floor = np.quantile(lowest, FLOOR_QUANTILE)
     return np.asarray((track.origin[:, 1] - floor) / track.body_length)
 
 
 def _direction(local: FloatArray, start: JointRole, end: JointRole) -> FloatArray:
-    """(n, 3) unit vector from one joint to another; shorter for limbs of hardly any length."""
+    """(n, 3) the unit vector from one joint to another; it is shorter below MIN_LIMB_LENGTH."""
     line = local[:, SUN_ROLES.index(end)] - local[:, SUN_ROLES.index(start)]
     length = np.linalg.norm(line, axis=1, keepdims=True)
-    return np.asarray(line / np.maximum(length, SHORTEST_LIMB))
+    return np.asarray(line / np.maximum(length, MIN_LIMB_LENGTH))
 
 
 def _flexion(upper: FloatArray, lower: FloatArray) -> FloatArray:
-    """(n, 1) half the chord between two limbs' directions: 0 straight, 1 folded.
+    """(n, 1) half the chord between the directions of two limbs: 0 if straight, 1 if folded.
 
-    The sine of half the angle: smooth where the angle itself has a kink (straight limb).
+    This is the sine of half the angle. It is smooth at a straight limb, where the angle is not.
     """
     return np.asarray(np.linalg.norm(upper - lower, axis=1, keepdims=True) / 2.0)

@@ -1,15 +1,15 @@
-"""Generation: the motion that a motion symbol stands for (Takano, section 2.1 and fig. 6).
+"""Generation of the motion that a motion symbol represents (Takano, section 2.1 and fig. 6).
 
-The mean trajectory follows the symbol's expected path: each state lasts as long as it is
-expected to, its mean stands at the middle of that time, and between two middles the channels
-are led by monotone cubics, which never overshoot. The spread is that of the states, led alike.
+The mean trajectory follows the expected path of the symbol. Each state lasts as long as expected,
+and its mean is the value at the middle of that time. Between two middles, the channels are
+interpolated by monotone cubics, which never overshoot. The standard deviations are interpolated in
+the same way.
 
-The 26 channels tell how far a knee is bent but not all of a pose. The states' emissions are
-therefore widened by the 39 coordinates of the 13 joint roles in the body frame: their means
-under the states' occupancy of the clip that the symbol was fitted to, which is the very
-M-step that gave the channels' means; limbs, which a mean of unlike poses shortens, get the
-body's lengths back. Place and heading follow from the speeds, the yaw rate
-and the height that the symbol generates, never from the clip.
+The 26 channels do not describe a whole pose. So each state also gets the mean of the 39 coordinates
+of the 13 joint roles in the body frame, weighted by the probability of the state in each frame of
+the clip to which the symbol was fitted. This is the M-step that also gave the channels' means. A
+mean of different poses shortens limbs, so limbs are scaled back to the body's lengths. Place and
+heading follow from the generated speeds, yaw rate and height, never from the clip.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ _OUTWARD = sorted(range(len(SUN_PARENTS)), key=_steps_to_root)[1:]
 
 @dataclass(frozen=True, slots=True)
 class SymbolMotion:
-    """What a symbol generates, n frames at `rate` Hz.
+    """The motion that a symbol generates: n frames at `rate` Hz.
 
-    means, spreads: (n, 26) the channels (CHANNELS) in their units (cosines, body lengths,
-    body lengths / s, radians / s) and their standard deviations; positions: (n, 13, 3)
-    metres, world, Y up, floor at 0, starting over the origin and looking along Z.
+    means, spreads: (n, 26) the CHANNELS in their units (cosines, body lengths, body lengths / s,
+    radians / s) and their standard deviations. positions: (n, 13, 3) meters, in the world, Y up,
+    floor at 0. The motion starts above the origin and faces along Z.
     """
 
     means: FloatArray
@@ -54,9 +54,10 @@ class SymbolMotion:
 
 
 def symbol_motion(symbol: GaussianHMM, track: BodyTrack) -> SymbolMotion:
-    """The motion that `symbol` generates; `track` is that of the clip that it was fitted to.
+    """The motion that `symbol` generates.
 
-    Deterministic. A symbol of one state holds one pose while it travels.
+    track: that of the clip to which the symbol was fitted. The result is deterministic. A symbol
+    of one state holds one pose while it travels.
     """
     from app.numerics.hmm.fit import occupancy  # hmmlearn is slow to load
 
@@ -71,21 +72,24 @@ def symbol_motion(symbol: GaussianHMM, track: BodyTrack) -> SymbolMotion:
 
 
 def _means_by_state(rows: FloatArray, weights: FloatArray) -> FloatArray:
-    """(K, d) means of `rows` (T, d) under `weights` (T, K); an unvisited state has the whole's."""
+    """(K, d) the means of `rows` (T, d) weighted by `weights` (T, K).
+
+    A state without weight gets the mean of all rows.
+    """
     visited = weights.sum(axis=0)
     share = weights / np.maximum(visited, 1e-9)
     return np.where(visited[:, None] > 1e-6, share.T @ rows, rows.mean(axis=0))
 
 
 def _middles(symbol: GaussianHMM) -> tuple[FloatArray, int]:
-    """(K,) the middle frame of each state on the expected path, and the path's length."""
+    """(K,) the middle frame of each state on the expected path, and the length of the path."""
     lasting = np.bincount(symbol.expected_path(), minlength=symbol.states)
     ends = np.cumsum(lasting)
     return ends - (lasting + 1) / 2, int(ends[-1])
 
 
 def _led(times: FloatArray, values: FloatArray, frames: int) -> FloatArray:
-    """(frames, d) through `values` (K, d) at `times` (K,), constant outside of them."""
+    """(frames, d) monotone cubics through `values` (K, d) at `times` (K,), constant outside."""
     if len(times) == 1:
         return np.repeat(values, frames, axis=0)
     inside = np.clip(np.arange(frames), times[0], times[-1])
@@ -93,7 +97,7 @@ def _led(times: FloatArray, values: FloatArray, frames: int) -> FloatArray:
 
 
 def _with_lengths(poses: FloatArray, like: FloatArray) -> FloatArray:
-    """`poses` (n, 13, 3) with each limb as long as its median in `like` (m, 13, 3)."""
+    """(n, 13, 3) `poses` with the length of each limb set to its median in `like` (m, 13, 3)."""
     mended = poses.copy()
     for joint in _OUTWARD:
         parent = SUN_PARENTS[joint]
@@ -107,7 +111,10 @@ def _with_lengths(poses: FloatArray, like: FloatArray) -> FloatArray:
 def _in_the_world(
     local: FloatArray, channels: FloatArray, body_length: float, rate: float
 ) -> FloatArray:
-    """(n, 13, 3) metres of body-frame poses, carried by the generated speeds and turns."""
+    """(n, 13, 3) the body-frame poses `local` in the world, meters.
+
+    channels: (n, 26) give the speeds, the yaw rate and the height.
+    """
     heading = _summed(channels[:, _YAW]) / rate
     sideways = np.zeros(len(channels))
     speeds = np.stack([channels[:, _LEFT], sideways, channels[:, _FORWARD]], axis=1)
@@ -117,6 +124,6 @@ def _in_the_world(
 
 
 def _summed(rates: FloatArray) -> FloatArray:
-    """The running integral by trapezoids, zero at the first frame, in units of a frame."""
+    """The running integral of `rates` by trapezoids, in frames; 0 at the first frame."""
     steps = (rates[1:] + rates[:-1]) / 2
     return np.concatenate([np.zeros_like(rates[:1]), np.cumsum(steps, axis=0)])

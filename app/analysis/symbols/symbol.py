@@ -8,19 +8,19 @@ from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
 
 SYMBOL_STATES = 30
-"""States of a symbol (Takano, section 3); fewer for clips under three seconds."""
+"""The states of a symbol (Takano, section 3). Clips under three seconds have fewer."""
 
 VARIANCE_FLOOR = 0.1
-"""Share of each channel's joint variance (one, after scaling) below which no state goes."""
+"""The smallest variance of a state, as a share of the channel's typical variance (1, scaled)."""
 
 SYMBOL_ARRAYS = ("symbol_transitions", "symbol_means", "symbol_variances")
 """The stored arrays that make a symbol."""
 
 
 def motion_symbol(features: FloatArray) -> GaussianHMM:
-    """The symbol of the channels `features` (n, 26), n >= 1; deterministic.
+    """The symbol of the channels `features` (n, 26), n >= 1, from `symbol_features`.
 
-    features: as from `symbol_features`. Raises ValueError where one is not finite.
+    The result is deterministic. Raises ValueError if a value is not finite.
     """
     from app.numerics.hmm.fit import fit_left_to_right  # hmmlearn is slow to load
 
@@ -29,9 +29,9 @@ def motion_symbol(features: FloatArray) -> GaussianHMM:
 
 
 def describe_symbol(features: FloatArray) -> dict[str, FloatArray]:
-    """The arrays that are stored of the symbol of the channels `features` (n, 26), float32.
+    """The arrays, by name, that are stored for the symbol of `features` (n, 26), float32.
 
-    symbol_means, symbol_variances: (K, 26); symbol_transitions: (K, K).
+    symbol_means, symbol_variances: (K, 26). symbol_transitions: (K, K).
     """
     symbol = motion_symbol(features)
     return {
@@ -42,7 +42,7 @@ def describe_symbol(features: FloatArray) -> dict[str, FloatArray]:
 
 
 def symbol_from_arrays(arrays: dict[str, FloatArray]) -> GaussianHMM:
-    """The symbol back from what describe_symbol returned (float64)."""
+    """The symbol, in float64, from the arrays of `describe_symbol`."""
     return GaussianHMM(
         transitions=arrays["symbol_transitions"].astype(np.float64),
         means=arrays["symbol_means"].astype(np.float64),

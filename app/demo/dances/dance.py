@@ -39,7 +39,7 @@ from app.formats.npz.writer import write_npz
 from app.motion.skeleton.kinematics import forward_kinematics, local_translations
 from app.numerics.arrays import FloatArray
 
-UNITS_PER_METRE = 100.0
+UNITS_PER_METER = 100.0
 AFTERWARDS = 0.7
 """Beats that go on after the last keypose is left."""
 
@@ -133,11 +133,11 @@ def _performed(
     curves = {
         part: weights(times, loosened(counts.moments, draw, lag)) for part, lag in LAGS.items()
     }
-    centre = curves["hips"] @ feet.centres
+    center = curves["hips"] @ feet.centers
     hips, trunk = curves["hips"] @ poses[:, HIPS], curves["trunk"] @ poses[:, TRUNK]
     head = curves["head"] @ poses[:, HEAD]
     root = rest.root.copy()
-    root[:, [0, 2]] += leg * centre[:, :2]
+    root[:, [0, 2]] += leg * center[:, :2]
     root[:, 1] -= leg * (curves["hips"] @ poses[:, CROUCH])
     arms = [
         _arm(curves[part] @ poses[:, channels])
@@ -147,7 +147,7 @@ def _performed(
     return replace(
         rest,
         root=root,
-        pelvis=_plus(rest.pelvis, hips[:, 0] + centre[:, 2], hips[:, 1], hips[:, 2]),
+        pelvis=_plus(rest.pelvis, hips[:, 0] + center[:, 2], hips[:, 1], hips[:, 2]),
         spine=_plus(rest.spine, trunk[:, 0], trunk[:, 1], trunk[:, 2]),
         head=_plus(rest.head, head, -0.5 * trunk[:, 1], 0.15 * head),
         arms=(arms[0], arms[1]),
@@ -166,11 +166,11 @@ def _arm(curves: FloatArray) -> Arm:
 
 
 def _content(draw: np.random.RandomState, take: Take, controls: Controls, noise_mm: float) -> bytes:
-    """BVH in centimetres; with noise, which no skeleton has, positions in metres."""
+    """BVH in centimeters; with noise, which no skeleton has, positions in meters."""
     rotations, rate = local_rotations(controls, take.rig), take.actor.frame_rate
     if not noise_mm:
-        skeleton = skeleton_of(take.rig, take.actor.naming, UNITS_PER_METRE)
-        return write_bvh(skeleton, rotations, controls.root * UNITS_PER_METRE, rate)
+        skeleton = skeleton_of(take.rig, take.actor.naming, UNITS_PER_METER)
+        return write_bvh(skeleton, rotations, controls.root * UNITS_PER_METER, rate)
     skeleton = skeleton_of(take.rig, take.actor.naming, 1.0)
     moved = local_translations(skeleton, controls.root)
     positions = forward_kinematics(skeleton, rotations, moved)

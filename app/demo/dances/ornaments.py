@@ -14,7 +14,7 @@ OFTEN = 0.3
 """Ornaments for each beat."""
 
 BOUNCE = 0.012
-"""Metres up and down on each beat, of dancers who bounce."""
+"""Meters up and down on each beat, of dancers who bounce."""
 
 
 def ornamented(
@@ -51,9 +51,9 @@ def ornamented(
 
 def _burst(times: FloatArray, draw: np.random.RandomState) -> FloatArray:
     """(frames,) a short vibration, at most 1, of 1.5 to 3 Hz."""
-    centre = draw.uniform(times[0], times[-1])
+    center = draw.uniform(times[0], times[-1])
     length, rate = draw.uniform(0.15, 0.3), draw.uniform(1.5, 3.0)
-    away = times - centre
+    away = times - center
     return np.asarray(np.exp(-0.5 * (away / length) ** 2) * np.sin(2.0 * np.pi * rate * away))
 
 

@@ -29,7 +29,7 @@ LIFT = 0.16
 """Height of a step, of its length."""
 
 BEARING = 0.3
-"""How far the pelvis goes towards the foot that stays, of half the feet's distance."""
+"""How far the pelvis goes toward the foot that stays, of half the feet's distance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,10 +44,10 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Footwork:
-    """steps: in time; centres: (moments + 1, 3) x, z, yaw between the feet, the start first."""
+    """steps: in time; centers: (moments + 1, 3) x, z, yaw between the feet, the start first."""
 
     steps: tuple[Step, ...]
-    centres: FloatArray
+    centers: FloatArray
 
 
 def footwork(
@@ -73,7 +73,7 @@ def footwork(
         standings.append(feet)
         movers.append(mover)
         left = moment.leave
-    return Footwork(tuple(steps), _centres(standings, movers))
+    return Footwork(tuple(steps), _centers(standings, movers))
 
 
 def _window(draw: np.random.RandomState, left: float, arrive: float) -> tuple[float, float]:
@@ -98,15 +98,15 @@ def _put(
     return min(places, key=lambda place: float(np.hypot(place[0], place[1])))
 
 
-def _centres(standings: list[FloatArray], movers: list[int | None]) -> FloatArray:
-    """Between the feet, towards the one that stays when the next step is made."""
-    centres = []
+def _centers(standings: list[FloatArray], movers: list[int | None]) -> FloatArray:
+    """Between the feet, toward the one that stays when the next step is made."""
+    centers = []
     for feet, mover in zip(standings, [*movers, None], strict=True):
         middle = feet.mean(axis=0)
         if mover is not None:
             middle[:2] += BEARING * (feet[1 - mover, :2] - middle[:2])
-        centres.append(middle)
-    return np.array(centres)
+        centers.append(middle)
+    return np.array(centers)
 
 
 def stepped(times: FloatArray, rest: Foot, side: int, steps: tuple[Step, ...], leg: float) -> Foot:

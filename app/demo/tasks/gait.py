@@ -247,7 +247,7 @@ def _vault(phase: FloatArray, gait: Gait) -> FloatArray:
 
 
 def _bound(phase: FloatArray, gait: Gait, stride_time: float) -> FloatArray:
-    """Running: free fall while no foot stands, a sine below it while one does, metres."""
+    """Running: free fall while no foot stands, a sine below it while one does, meters."""
     within = np.mod(phase, 0.5) * stride_time
     stand = gait.duty * stride_time
     flight = (0.5 - gait.duty) * stride_time

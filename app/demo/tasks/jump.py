@@ -181,7 +181,7 @@ def _bent_and_swung(
     for one in jumps:
         apex = 0.5 * (one.off + one.down)
         arm += [(one.begin, None), (one.lowest - 0.14, behind), (one.off + 0.02, above)]
-        # Still arms in the air: then the hips fall as the centre of mass does.
+        # Still arms in the air: then the hips fall as the center of mass does.
         arm += [(0.4 * apex + 0.6 * one.down, above), (one.absorbed, balance)]
         arm += [(one.upright + 0.1, None)]
         for keys, size in ((pelvis, 0.5), (spine, 0.42), (head, -0.45)):

@@ -31,8 +31,8 @@ from app.numerics.arrays import FloatArray
 def read_amc(content: bytes, skeleton: bytes | None = None) -> Recording:
     """Read an AMC file with its ASF file.
 
-    Raises SkeletonNeeded without one, Unreadable naming the line of the file that it is in,
-    and TooLarge. Where the file says no frame rate, `assumed_frame_rate` is the usual one.
+    Raises SkeletonNeeded without an ASF file, Unreadable with the file and the line, and
+    TooLarge. If the file gives no frame rate, `assumed_frame_rate` is the usual one.
     """
     if skeleton is None:
         raise SkeletonNeeded(places=[Place("skeleton", "expected the ASF file, found none")])

@@ -1,8 +1,8 @@
-"""The frames of an AMC file: one line a bone, numbers in the order of the bone's channels.
+"""The frames of an AMC file: one line for each bone, with the numbers of the bone's channels.
 
-What a frame does not say stays as it was in the frame before: at first all channels are
-zero, the rest pose. Sources as in `asf.py`; headers `:SAMPLES-PER-SECOND` and `:RADIANS`
-as the writers of Acclaim's own tools put them.
+If a frame does not contain a bone, the bone keeps its numbers of the frame before. At first all
+channels are zero, which is the rest pose. Sources: as in `asf.py`; the headers
+`:SAMPLES-PER-SECOND` and `:RADIANS` as Acclaim's own tools write them.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def read_amc_frames(
 ) -> AmcFrames:
     """Read an AMC file's text, with plain newlines, for bones (joints,) and their channels.
 
-    Raises Unreadable naming the line, and TooLarge.
+    Raises Unreadable with the line, and TooLarge.
     """
     return _Reader(text, names, channels).read()
 
@@ -77,7 +77,7 @@ class _Reader:
             slice(end - len(bone), end) for end, bone in zip(ends, channels, strict=True)
         ]
         self.bones = {name.lower().encode(): bone for bone, name in enumerate(names)}
-        self.wanted = {bone for bone, channels_of in enumerate(channels) if channels_of}
+        self.expected = {bone for bone, channels_of in enumerate(channels) if channels_of}
         self.width = ends[-1]
         self.has_underscores = b"_" in text
         self.frame_rate: float | None = None
@@ -184,13 +184,13 @@ class _Reader:
     def _closed(self, frame: _Frame) -> _Frame:
         if not self.numbering and 0 not in frame.seen:
             raise unreadable(frame.line, f"expected the root in frame {frame.number}, found none")
-        if len(frame.seen) < len(self.wanted):
-            self.held += len(self.wanted) - len(frame.seen)
+        if len(frame.seen) < len(self.expected):
+            self.held += len(self.expected) - len(frame.seen)
             if self.held > MAX_HELD:
                 raise too_large(
                     f"line {frame.line}", f"expected at most {MAX_HELD} poses of bones unsaid"
                 )
-            self.absent.update(self.wanted - frame.seen)
+            self.absent.update(self.expected - frame.seen)
         return frame
 
     def _parsed(self, block: list[_Frame]) -> FloatArray:

@@ -26,9 +26,9 @@ from app.numerics.arrays import FloatArray
 
 MAX_ASF_BYTES = 2_000_000
 CHANNELS = ("tx", "ty", "tz", "rx", "ry", "rz", "l")
-METRES_PER_INCH = 0.0254
+METERS_PER_INCH = 0.0254
 STATURES = (0.3, 3.0)
-"""Metres; a rest pose beyond means that `length` is no unit."""
+"""Meters; a rest pose beyond means that `length` is no unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,7 +233,7 @@ class _Reader:
         return order
 
     def _axes(self, bone: _Bone) -> FloatArray:
-        """C (4,): turns about fixed axes in the order told."""
+        """C (4,): the product of turns about fixed axes, in the given order."""
         angles = np.radians(bone.angles) if self.in_degrees else bone.angles
         by_axis = dict(zip("XYZ", angles, strict=True))
         outermost_first = bone.order[::-1]
@@ -260,7 +260,7 @@ def _metres_per_unit(length: float, skeleton: Skeleton) -> float | None:
     """`length` is units per inch; 1 is what writers put that say nothing."""
     if length <= 0 or length == 1.0:
         return None
-    scale = METRES_PER_INCH / length
+    scale = METERS_PER_INCH / length
     stature = scale * float(np.ptp(_at_rest(skeleton), axis=0).max())
     return scale if STATURES[0] <= stature <= STATURES[1] else None
 

@@ -13,8 +13,8 @@ from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 USUAL_RATE = 120.0
 """Hz of CMU's and of most AMC files, whose format has no obligatory place for it."""
-MOST_MISSING = 0.5
-"""More missing frames than this part of those that are there are no gaps but a lie."""
+MAX_MISSING = 0.5
+"""The most missing frames, as a share of those in the file. With more, the numbers are wrong."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +29,8 @@ class OrderedFrames:
 def in_order(frames: AmcFrames) -> OrderedFrames:
     """Sort frames by number and fill gaps by the frame before, each with a caution.
 
-    Numbers that rise evenly by more than one are a motion at a lower rate. Raises
-    Unreadable naming the line of a number that comes twice, or after too wide a gap.
+    If the numbers rise evenly by more than one, the motion has a lower rate. Raises Unreadable,
+    with the line, for a number that occurs twice and for a gap that is too wide.
     """
     cautions: list[Caution] = []
     order = np.argsort(frames.numbering, kind="stable")
@@ -49,7 +49,7 @@ def in_order(frames: AmcFrames) -> OrderedFrames:
     if (steps % step).any():
         step = 1
     missing = int((steps // step - 1).sum())
-    if missing > MOST_MISSING * len(numbering):
+    if missing > MAX_MISSING * len(numbering):
         wide = steps == steps.max()
         raise unreadable(
             int(lines[1:][wide][0]), f"expected frames without gaps, found {_at(numbering, wide)}"

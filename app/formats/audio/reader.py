@@ -1,7 +1,7 @@
-"""Recordings of sound: WAV, FLAC, OGG and MP3 to mono samples, by libsndfile (soundfile).
+"""Reads audio recordings: WAV, FLAC, OGG and MP3 to mono samples, by libsndfile (soundfile).
 
-Decoding is block by block, mixed down and thinned out as it goes, so that a small file that
-unpacks to hours costs no more than the limit allows. soundfile is the extra `audio`.
+Each block is decoded, mixed to mono and decimated before the next one. So a small file that
+decompresses to hours costs no more than the limit allows. soundfile is in the extra `audio`.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from app.numerics.arrays import FloatArray
 
 FORMATS = "WAV, FLAC, OGG or MP3"
 HEAD_BYTES = 12
-"""Of a file, from which its format is told."""
+"""The first bytes of a file, which show its format."""
 
 SAMPLE_RATES = (2000, 400_000)
-"""Hz; anything else is no recording."""
+"""Hz: the smallest and the largest sample rate of a recording."""
 
 ENOUGH = 22_050
-"""Hz; of faster recordings neighbouring samples are averaged, down to not less than this."""
+"""Hz. In faster recordings neighboring samples are averaged; the result is not below this rate."""
 
 MAX_SECONDS = 1800.0
-LONGEST_TOLD = 24 * 3600.0
-"""Seconds; a header that promises more does not know."""
-MOST_OF = 0.95
-"""Share of what is promised that must be there: MP3 is estimated, and comes in whole frames."""
+MAX_DECLARED_SECONDS = 24 * 3600.0
+"""Seconds. If a header gives a longer duration, it is not known and is ignored."""
+MIN_SHARE = 0.95
+"""The share of the declared duration that must be there. That of MP3 files is only an estimate."""
 
 MAX_CHANNELS = 32
 BLOCK_FRAMES = 65_536
@@ -71,7 +71,7 @@ def sniff_audio(head: bytes) -> str:
 
 
 def read_audio(content: bytes) -> Sound:
-    """Decode a recording, or what is there of one that was cut off.
+    """Decode a recording; of a file that was cut off, decode the part that is there.
 
     Raises EmptyFile, UnknownFormat, Unreadable, TooLarge beyond MAX_SECONDS or MAX_CHANNELS,
     and ExtraNeeded where soundfile is not installed.
@@ -85,8 +85,8 @@ def read_audio(content: bytes) -> Sound:
             missing = _missing(content, file, len(samples) / rate)
     except soundfile.SoundFileError as problem:
         # Without what libsndfile was doing, and to which object in memory.
-        told = str(getattr(problem, "error_string", problem)).removeprefix("Error : ")
-        raise _unreadable(f"{format.upper()}: {told.rstrip('.')}") from problem
+        message = str(getattr(problem, "error_string", problem)).removeprefix("Error : ")
+        raise _unreadable(f"{format.upper()}: {message.rstrip('.')}") from problem
     if not len(samples):
         raise _unreadable("it holds no sound")
     if not np.isfinite(samples).all():
@@ -107,7 +107,7 @@ def _library() -> Any:
 
 
 def _check(file: Any) -> None:
-    """Refuse what would be too much before decoding it; the header may lie about the length."""
+    """Refuse a recording that is too long, before it is decoded; its header may be wrong."""
     if not SAMPLE_RATES[0] <= file.samplerate <= SAMPLE_RATES[1]:
         raise _unreadable(f"a sample rate of {file.samplerate} Hz")
     if file.channels > MAX_CHANNELS:
@@ -149,9 +149,9 @@ def _missing(content: bytes, file: Any, seconds: float) -> str | None:
     promised = promised_bytes(content)
     if promised is not None and promised > len(content):
         return f"its header promises {promised} bytes, {len(content)} are there"
-    told = file.frames / file.samplerate
-    if told <= LONGEST_TOLD and seconds < MOST_OF * told:
-        return f"its header promises {told:.2f} s, {seconds:.2f} s could be decoded"
+    declared = file.frames / file.samplerate
+    if declared <= MAX_DECLARED_SECONDS and seconds < MIN_SHARE * declared:
+        return f"its header promises {declared:.2f} s, {seconds:.2f} s could be decoded"
     return None
 
 

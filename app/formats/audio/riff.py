@@ -1,4 +1,4 @@
-"""How long a WAV file says that it is: decoders read what is there of one that was cut off."""
+"""The size that a WAV file declares. Decoders do not report that a file was cut off."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ _FIRST_CHUNK = 12
 _CHUNK_HEAD = 8
 _UNKNOWN_FROM = 0x7FFF0000
 """Sizes from here on are what programs write that do not know the length yet."""
-_MOST_CHUNKS = 100
+_MAX_CHUNKS = 100
 """Before the samples; a file with more is not looked through."""
 
 
 def promised_bytes(content: bytes) -> int | None:
     """The size of a whole RIFF, RIFX or RF64 WAV file by the header of its samples.
 
-    None where that is not told: it is no such file, was written as a stream, or has no samples.
+    None if it is unknown: the content is no such file, was written as a stream, or has no samples.
     """
     if content[:4] not in (b"RIFF", b"RIFX", b"RF64"):
         return None
     order = ">" if content[:4] == b"RIFX" else "<"
     at, long_size = _FIRST_CHUNK, None
-    for _ in range(_MOST_CHUNKS):
+    for _ in range(_MAX_CHUNKS):
         name, head = content[at : at + 4], content[at + 4 : at + _CHUNK_HEAD]
         if len(head) < 4:
             return None
@@ -30,8 +30,8 @@ def promised_bytes(content: bytes) -> int | None:
         if name == b"ds64" and len(content) >= at + 16:
             (long_size,) = struct.unpack_from(f"{order}Q", content, at + 8)
         if name == b"data":
-            told = long_size if long_size is not None else size
-            known = long_size is not None or told < _UNKNOWN_FROM
-            return at + told if known and told else None
+            length = long_size if long_size is not None else size
+            known = long_size is not None or length < _UNKNOWN_FROM
+            return at + length if known and length else None
         at += size + size % 2
     return None

@@ -1,4 +1,4 @@
-"""An animation as a BVH file: centimetres, Y up, as most programs expect.
+"""An animation as a BVH file: centimeters, Y up, as most programs expect.
 
 Joints that move along their bone have position channels of their own. Leaves that have no
 end site get one, which readers other than ours insist on.
@@ -16,8 +16,8 @@ from app.formats.common.names import MAX_NAME_LENGTH
 from app.motion.skeleton.animation import Animation
 from app.motion.skeleton.skeleton import Skeleton
 
-UNITS_PER_METRE = 100.0
-"""BVH does not say its unit; centimetres are usual."""
+UNITS_PER_METER = 100.0
+"""BVH does not say its unit; centimeters are usual."""
 ROTATION_ORDER = "ZXY"
 END_SHARE = 0.5
 """Length of an end site that we add, in parts of the bone before it."""
@@ -29,7 +29,7 @@ def write_animation_bvh(animation: Animation) -> Iterator[bytes]:
     return bvh_blocks(
         replace(skeleton, names=tuple(bvh_name(name) for name in skeleton.names)),
         animation.rotations,
-        animation.translations * UNITS_PER_METRE,
+        animation.translations * UNITS_PER_METER,
         animation.frame_rate,
         ROTATION_ORDER,
         np.flatnonzero(animation.moving_joints()).tolist(),
@@ -45,8 +45,8 @@ def bvh_name(name: str) -> str:
 def _scaled(skeleton: Skeleton) -> Skeleton:
     return replace(
         skeleton,
-        offsets=skeleton.offsets * UNITS_PER_METRE,
-        end_offsets=skeleton.end_offsets * UNITS_PER_METRE,
+        offsets=skeleton.offsets * UNITS_PER_METER,
+        end_offsets=skeleton.end_offsets * UNITS_PER_METER,
     )
 
 

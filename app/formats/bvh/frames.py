@@ -1,7 +1,7 @@
 """The MOTION part of a BVH file: frame time and the numbers of each frame.
 
-What the file declares is never trusted with memory: only lines that are there are read,
-and `Frames` is compared afterwards.
+The declared number of frames allocates no memory. Only lines that are there are read, and `Frames`
+is compared afterward.
 """
 
 from __future__ import annotations
@@ -23,11 +23,12 @@ from app.numerics.arrays import FloatArray
 MAX_FRAMES = 1_000_000
 """More than two hours at 120 Hz."""
 MAX_HEADER_LINE = 200
-"""Bytes of the longest header line: patterns cost more than linear time."""
+"""Bytes of the longest header line. The time of patterns grows faster than the line."""
 SLOWEST_RATE, FASTEST_RATE = FRAME_RATES
-"""Hz; a declared rate outside is no rate."""
+"""Hz: the smallest and the largest frame rate. A declared rate outside is ignored."""
 NEAR_WHOLE = 1e-4
-"""A rate this near to a whole number (relative) was rounded when its period was printed."""
+"""The relative distance from a whole number up to which a rate is rounded to it. Its period was
+rounded when it was printed."""
 BLOCK_LINES = 1024
 
 _FRAMES = re.compile(rb"\s*frames\s*:?\s*(\S*)\s*", re.IGNORECASE)

@@ -1,8 +1,8 @@
-"""Biovision hierarchy (BVH) files, every dialect that we have met (DESIGN 4).
+"""Reads Biovision hierarchy (BVH) files in all known dialects.
 
-Bytes in, Recording out. Position channels replace their joint's OFFSET axis by axis,
-whichever joint they stand on; rotation channels turn in the order in which they are
-listed. Source: Meredith and Maddock, "Motion capture file formats explained" (2001).
+Bytes in, Recording out. Position channels of any joint replace its OFFSET axis by axis. Rotation
+channels turn in the order in which they are listed. Source: Meredith and Maddock, "Motion capture
+file formats explained" (2001).
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ _MOTION = re.compile(rb"^[ \t]*MOTION[ \t]*(?::[ \t]*)?$", re.IGNORECASE | re.MU
 def read_bvh(content: bytes) -> Recording:
     """Read a BVH file.
 
-    Units and axes stay the file's. Raises Unreadable naming the line, and TooLarge.
-    A frame time that is no time leaves `frame_rate` None, with a caution.
+    Units and axes are those of the file. Raises Unreadable with the line, and TooLarge. If the
+    frame time is impossible, `frame_rate` is None, with a caution.
     """
     text = with_plain_newlines(content)
     motion = _MOTION.search(text)

@@ -1,4 +1,4 @@
-"""The markers of a C3D file that count: labelled, of one subject, each once, while seen."""
+"""The markers of a C3D file that are used: labeled, of one subject, each once, while seen."""
 
 from __future__ import annotations
 
@@ -33,9 +33,11 @@ class Markers:
     cautions: tuple[Caution, ...] = ()
 
 
-def labelled_markers(points: Points) -> Markers:
-    """The markers of one subject that were seen, each label once, from the first frame that
-    shows any of them to the last. Raises Unreadable where there are none."""
+def labeled_markers(points: Points) -> Markers:
+    """The markers of one subject that were seen, each label once.
+
+    Frames before the first marker is seen, and after the last, are left out. Raises Unreadable if
+    no labeled marker is seen."""
     split = [subject_and_label(label) for label in points.labels]
     outputs = _model_outputs(points)
     named = [
@@ -46,7 +48,7 @@ def labelled_markers(points: Points) -> Markers:
     seen = np.isfinite(points.positions[..., 0])
     named = [index for index in named if seen[:, index].any()]
     if not named:
-        message = "expected labelled markers, found none that is seen"
+        message = "expected labeled markers, found none that is seen"
         raise Unreadable(message, places=[Place("POINT:LABELS", message)])
     subject, cautions = _main_subject([split[index] for index in named])
     mine = [index for index in named if split[index][0] == subject]
@@ -72,7 +74,7 @@ def _model_outputs(points: Points) -> set[str]:
 
 
 def _main_subject(names: Sequence[tuple[str, str]]) -> tuple[str, tuple[Caution, ...]]:
-    """The subject with most markers that we know, then with most markers."""
+    """The subject with the most known markers; of equal ones that with the most markers."""
     by_subject: dict[str, list[str]] = {}
     for subject, label in names:
         by_subject.setdefault(subject, []).append(label)
@@ -87,7 +89,7 @@ def _main_subject(names: Sequence[tuple[str, str]]) -> tuple[str, tuple[Caution,
 def _each_once(
     named: Sequence[tuple[str, int]], seen: BoolArray
 ) -> tuple[list[int], tuple[Caution, ...]]:
-    """Of points with the same label the one that is seen most."""
+    """Of points with the same label, the one that is seen in the most frames."""
     best: dict[str, int] = {}
     for label, index in named:
         held = best.setdefault(label, index)
@@ -102,7 +104,7 @@ def _each_once(
 
 
 def hidden_too_long(markers: Markers, gaps: Sequence[Gap]) -> Unreadable:
-    """The failure that names the markers and frames of gaps."""
+    """The error with the markers and frames of gaps."""
     places = []
     for gap in gaps[:SHOWN_MARKERS]:
         first, last = markers.first_frame + gap.start, markers.first_frame + gap.end - 1

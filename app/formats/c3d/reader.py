@@ -1,4 +1,4 @@
-"""C3D files of labelled markers: bytes in, Recording out.
+"""C3D files of labeled markers: bytes in, Recording out.
 
 The joints of the recording are the joint centers that are computed from the markers (a tree with
 plain names), then the markers themselves (without parents, under their labels), so that a client
@@ -14,10 +14,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from app.formats.c3d.markers import Markers, gap_cautions, hidden_too_long, labelled_markers
+from app.formats.c3d.markers import Markers, gap_cautions, hidden_too_long, labeled_markers
 from app.formats.c3d.points import Points, read_points
-from app.motion.canonical.units import METRES_PER_UNIT
-from app.motion.roles.joint_centres import RECIPES, Centre, chosen, joint_centres
+from app.motion.canonical.units import METERS_PER_UNIT
+from app.motion.roles.joint_centres import RECIPES, Center, chosen, joint_centers
 from app.motion.roles.joint_names import roles_by_name
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.roles.marker_names import places_of
@@ -35,7 +35,7 @@ _PARENTS: dict[JointRole, JointRole] = {
     _R.LEFT_KNEE: _R.LEFT_UPPER_LEG,
     _R.RIGHT_KNEE: _R.RIGHT_UPPER_LEG,
 }
-"""Where it is not the role's neighbour towards the trunk."""
+"""Where it is not the role's neighbor toward the trunk."""
 _NAMES: dict[str, str] = {
     "upper_leg": "UpLeg", "knee": "Knee", "foot": "Ankle", "toes": "ToeBase",
     "shoulder": "UpperArm", "elbow": "Elbow", "hand": "Wrist",
@@ -50,12 +50,12 @@ def read_c3d(content: bytes) -> Recording:
     is hidden for too long, and TooLarge.
     """
     points = read_points(content)
-    markers = labelled_markers(points)
+    markers = labeled_markers(points)
     filled = fill_gaps(markers.positions, points.frame_rate or RATE_FOR_GAPS)
     good = np.isfinite(filled.positions).all(axis=(0, 2))
     usable = {marker: filled.positions[:, marker] for marker in np.flatnonzero(good).tolist()}
-    centres = _centres(markers, usable, filled.long_gaps)
-    skeleton, positions = _skeleton(markers.labels, usable, centres)
+    centers = _centers(markers, usable, filled.long_gaps)
+    skeleton, positions = _skeleton(markers.labels, usable, centers)
     return Recording(
         format="c3d",
         skeleton=skeleton,
@@ -71,34 +71,34 @@ def read_c3d(content: bytes) -> Recording:
     )
 
 
-def _centres(
+def _centers(
     markers: Markers, usable: Mapping[int, FloatArray], gaps: Sequence[Gap]
-) -> dict[JointRole, Centre]:
-    """Joint centres by role: by recipes from several markers, else by a marker's label.
+) -> dict[JointRole, Center]:
+    """Joint centers by role: by recipes from several markers, else by a marker's label.
 
     usable: (frames, 3) by marker, those that were seen long enough. Raises Unreadable where one
     of Sun's roles is lost to long gaps.
     """
     places = places_of(markers.labels)
     tracks = {place: usable[m] for place, m in places.items() if m in usable}
-    centres = joint_centres(tracks)
-    for role, centre in _centres_by_label(markers, usable).items():
-        centres.setdefault(role, centre)
+    centers = joint_centers(tracks)
+    for role, center in _centers_by_label(markers, usable).items():
+        centers.setdefault(role, center)
     for role in SUN_ROLES:
-        recipe = None if role in centres else chosen(RECIPES[role], places.__contains__)
+        recipe = None if role in centers else chosen(RECIPES[role], places.__contains__)
         if recipe is not None:
             hidden = {places[place] for place in recipe}
             raise hidden_too_long(markers, [gap for gap in gaps if gap.marker in hidden])
-    return centres
+    return centers
 
 
-def _centres_by_label(
+def _centers_by_label(
     markers: Markers, usable: Mapping[int, FloatArray]
-) -> dict[JointRole, Centre]:
-    """A centre for each role whose name is the label of a usable marker."""
+) -> dict[JointRole, Center]:
+    """A center for each role whose name is the label of a usable marker."""
     labels = [label if m in usable else "" for m, label in enumerate(markers.labels)]
     return {
-        role: Centre(usable[marker].astype(np.float64), (labels[marker],))
+        role: Center(usable[marker].astype(np.float64), (labels[marker],))
         for role, marker in roles_by_name(labels).items()
         if marker in usable
     }
@@ -107,14 +107,14 @@ def _centres_by_label(
 def _skeleton(
     labels: Sequence[str],
     usable: Mapping[int, FloatArray],
-    centres: Mapping[JointRole, Centre],
+    centers: Mapping[JointRole, Center],
 ) -> tuple[Skeleton, FloatArray]:
-    """The tree of centres and the loose markers; positions (frames, joints, 3) float32."""
-    roles = _parents_first(centres)
+    """The tree of centers and the loose markers; positions (frames, joints, 3) float32."""
+    roles = _parents_first(centers)
     names = [_name(role) for role in roles]
-    parents = [roles.index(above) if above else -1 for above in (_above(r, centres) for r in roles)]
+    parents = [roles.index(above) if above else -1 for above in (_above(r, centers) for r in roles)]
     loose = [marker for marker in usable if labels[marker] not in names]
-    tracks = [centres[role].positions for role in roles] + [usable[marker] for marker in loose]
+    tracks = [centers[role].positions for role in roles] + [usable[marker] for marker in loose]
     positions = np.stack(tracks, axis=1).astype(np.float32)
     parents_of = np.array(parents + [-1] * len(loose), dtype=np.int64)
     middle = np.median(positions, axis=0).astype(np.float64)
@@ -123,21 +123,21 @@ def _skeleton(
     return Skeleton(tuple(names), parents_of, offsets), positions
 
 
-def _parents_first(centres: Mapping[JointRole, Centre]) -> list[JointRole]:
+def _parents_first(centers: Mapping[JointRole, Center]) -> list[JointRole]:
     depth: dict[JointRole, int] = {}
-    for role in centres:
+    for role in centers:
         above, steps = role, 0
-        while (next_above := _above(above, centres)) is not None:
+        while (next_above := _above(above, centers)) is not None:
             above, steps = next_above, steps + 1
         depth[role] = steps
-    return sorted(centres, key=depth.__getitem__)
+    return sorted(centers, key=depth.__getitem__)
 
 
-def _above(role: JointRole, centres: Mapping[JointRole, Centre]) -> JointRole | None:
-    """The nearest role towards the hips that has a centre."""
+def _above(role: JointRole, centers: Mapping[JointRole, Center]) -> JointRole | None:
+    """The nearest role toward the hips that has a center."""
     while role is not _R.HIPS:
         role = _PARENTS.get(role, role.towards_trunk())
-        if role in centres:
+        if role in centers:
             return role
     return None
 
@@ -151,7 +151,7 @@ def _metres_per_unit(points: Points) -> float | None:
     said = points.parameters.get("POINT:UNITS")
     name = said.texts[0].strip().lower() if said is not None and said.texts else ""
     spelled = name.replace("metre", "meter").rstrip("s")
-    return METRES_PER_UNIT.get(_UNITS.get(spelled, name))
+    return METERS_PER_UNIT.get(_UNITS.get(spelled, name))
 
 
 def _up_axis(points: Points) -> str:

@@ -14,11 +14,11 @@ import numpy as np
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 PLAIN = b"0123456789.- \t\n"
-MOST_DIGITS = 15
+MAX_DIGITS = 15
 """A whole number of so many digits is exact as float64, so that one division rounds as
 reading the decimal does."""
 
-_POWERS = 10.0 ** np.arange(MOST_DIGITS + 1)
+_POWERS = 10.0 ** np.arange(MAX_DIGITS + 1)
 _MINUS, _DOT, _NEWLINE, _BLANK = b"-"[0], b"."[0], b"\n"[0], b" "[0]
 
 
@@ -26,7 +26,7 @@ def plain_table(lines: Sequence[bytes], columns: int) -> FloatArray | None:
     """(lines, columns) float64, as `float` reads each number.
 
     None where a line has another number of them, or where a number is not plain: digits with
-    at most one point and one leading minus, MOST_DIGITS characters in all.
+    at most one point and one leading minus, MAX_DIGITS characters in all.
     """
     text = b"\n".join(lines) + b"\n"
     if text.translate(None, PLAIN):
@@ -36,7 +36,7 @@ def plain_table(lines: Sequence[bytes], columns: int) -> FloatArray | None:
     if len(starts) != len(lines) * columns or not _are_even(starts, characters, columns):
         return None
     decimals = _decimals(characters, ends)
-    if decimals is None or np.max(ends - starts, initial=0) > MOST_DIGITS:
+    if decimals is None or np.max(ends - starts, initial=0) > MAX_DIGITS:
         return None
     is_negative = characters[starts] == _MINUS
     numbers = _whole_numbers(text, int(is_negative.sum()))

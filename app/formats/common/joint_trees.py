@@ -1,4 +1,4 @@
-"""Parents of joints as arrays tell them, checked and put in order.
+"""Parents of joints from arrays, checked and put in order.
 
 parents: (joints,) int, -1 for a root. A skeleton of ours has parents before children.
 """
@@ -28,12 +28,12 @@ def parents_of(array: NDArray[Any], key: str, names: Sequence[str]) -> IntArray:
         shape = "x".join(map(str, array.shape)) or "one"
         raise _refused(key, f"expected {len(names)} integers, found {shape} {array.dtype}")
     parents = np.full(len(names), -1, dtype=np.int64)
-    for joint, told in enumerate(row.tolist()):
-        is_root = told in (-1, SMPL_ROOT, joint)
-        if not is_root and not 0 <= told < len(names):
-            found = f"expected -1 or a joint below {len(names)} in {key}, found {told}"
+    for joint, parent in enumerate(row.tolist()):
+        is_root = parent in (-1, SMPL_ROOT, joint)
+        if not is_root and not 0 <= parent < len(names):
+            found = f"expected -1 or a joint below {len(names)} in {key}, found {parent}"
             raise _refused(f"joint {joint} ({names[joint]})", found)
-        parents[joint] = -1 if is_root else told
+        parents[joint] = -1 if is_root else parent
     _check_no_circle(parents, names, key)
     return parents
 

@@ -2,7 +2,7 @@
 
 A key says how the curve goes on to the next: constant, linear, or a Bezier cubic whose
 tangents have a slope and a length (a weight, in parts of the gap). Tangents are stored,
-or follow from the neighbours ("auto"). Before the first and after the last key the curve
+or follow from the neighbors ("auto"). Before the first and after the last key the curve
 is constant. Times are ticks, KTIME a second.
 
 Source: the flags of `fbxanimcurve.h` (Autodesk FBX SDK 2020) and its reference.
@@ -30,11 +30,11 @@ _NEXT = 0x100
 """With _CONSTANT: the value is that of the next key."""
 _TCB, _USER = 0x200, 0x400
 _CLAMP, _TIMED, _PROGRESSIVE = 0x1000, 0x2000, 0x4000
-"""Of automatic tangents: flat beside an equal value; along the neighbours' chord rather
-than the mean of both sides' slopes; never beyond the neighbours' values."""
+"""Of automatic tangents: flat beside an equal value; along the neighbors' chord rather
+than the mean of both sides' slopes; never beyond the neighbors' values."""
 _WEIGHTED_RIGHT, _WEIGHTED_NEXT_LEFT = 0x1000000, 0x2000000
 _FLAT = 1e-4
-"""Neighbouring values that differ by less make a clamped tangent flat."""
+"""Neighboring values that differ by less make a clamped tangent flat."""
 _SOLVING_STEPS = 60
 _SOLVED = 1e-12
 """Parts of a gap."""

@@ -28,10 +28,10 @@ from app.motion.skeleton.rotations import matrices_to_quaternions, multiply, rot
 from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray, IntArray
 
-METRES_PER_CENTIMETRE = 0.01
-"""UnitScaleFactor counts centimetres."""
+METERS_PER_CENTIMETRE = 0.01
+"""UnitScaleFactor counts centimeters."""
 SCALES = (1e-6, 1e3)
-"""Metres per unit that can be meant."""
+"""Meters per unit that can be meant."""
 STILL = 1e-5
 """Translations that change by less, in parts of the skeleton's size, are still."""
 
@@ -133,7 +133,7 @@ def _recording(
         rest = _Rest(motion, body, axes(scene.settings))
         solved = solve(rest.skeleton, frames, rest.local_pose, moving=rest.moving())
     _check(solved)
-    factor = scene.settings.get("UnitScaleFactor", (np.nan,))[0] * METRES_PER_CENTIMETRE
+    factor = scene.settings.get("UnitScaleFactor", (np.nan,))[0] * METERS_PER_CENTIMETRE
     return Recording(
         format="fbx",
         skeleton=rest.skeleton,

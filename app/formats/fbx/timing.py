@@ -1,7 +1,7 @@
 """When an FBX clip is sampled: from where, to where, at what rate.
 
-The scene's frame rate (TimeMode), unless its keys lie closer: dense keys are samples of
-something faster, and a scene's rate is often the program's default.
+This is the scene's frame rate (TimeMode), unless its keys are denser. Dense keys are samples at a
+higher rate, and a scene's rate is often only the default of the program.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ TIME_MODES: dict[int, float] = {
 """Hz by number; 14 is CustomFrameRate, 0 says nothing."""
 CUSTOM_MODE = 14
 UNSAID_RATE = 30.0
-"""Hz, of sparse keys in a scene that does not say its rate."""
+"""Hz: the rate for sparse keys in a scene without a rate."""
 NEEDLESS_RATE = 250.0
-"""Hz; a scene's rate beyond is one of its clock rather than of motion."""
+"""Hz. A higher rate of a scene is that of its clock, not of its motion."""
 DENSE = 0.5
-"""So many of all gaps have to be equal for keys to be samples."""
+"""The share of gaps that must be equal, so that keys count as samples."""
 GAP_TOLERANCE = 0.01
-"""Gaps that differ by less (relative) are equal; times are rounded by some writers."""
+"""Gaps that differ by less (relative) count as equal, because some writers round times."""
 FREE_FRAMES, FRAMES_PER_KEY = 10_000, 1_000
-"""A clip has no more frames than these and so many for each key of its richest curve; a
-stray key far away makes no hours of standing still."""
+"""The most frames of a clip: a constant, and a number for each key of its longest curve. So a
+single far key does not add hours without movement."""
 ON_GRID = 0.02
-"""Of a period: a key that near to a frame lies on it."""
+"""In periods. A key that is at most this far from a frame is on it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
-"""A body of sticks to be seen: what a GLB file shows of a skeleton.
+"""A body of sticks, which makes the skeleton of a GLB file visible.
 
-Every joint is a small octahedron and every bone a long one, whose tip goes with the joint
-at its end, so that sticks follow bones that stretch. Triangles, metres, in the rest pose.
+Every joint is a small octahedron, every bone a long one. The tip of a bone follows the joint at its
+end, so sticks also follow bones that stretch. Triangles in the rest pose, in meters.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray, IntArray
 
 JOINT_RADIUS = 0.012
-"""Metres."""
+"""Meters."""
 BONE_WIDTH = 0.08
 """Half of a bone's thickest part, in parts of its length."""
 THICKEST = 0.15
 """Where along the bone it is thickest."""
-SHORTEST_BONE = 1e-4
-"""Metres; below it there is nothing to draw."""
+MIN_BONE_LENGTH = 1e-4
+"""Meters; below it there is nothing to draw."""
 _CORNERS = np.array(
     [[0, -1, 0], [1, 0, 0], [0, 0, 1], [-1, 0, 0], [0, 0, -1], [0, 1, 0]], dtype=np.float64
 )
@@ -33,7 +33,7 @@ _TRIANGLES = np.array(
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """corners: (n, 3) metres at rest; joints: (n,) the joint each goes with; triangles: (m, 3)."""
+    """corners: (n, 3) meters at rest; joints: (n,) the joint each goes with; triangles: (m, 3)."""
 
     corners: FloatArray
     joints: IntArray
@@ -53,7 +53,7 @@ def stick_mesh(skeleton: Skeleton) -> Mesh:
     ends = zip(skeleton.end_parents.tolist(), skeleton.end_offsets, strict=True)
     bones += [(joint, joint, rest[joint] + offset) for joint, offset in ends]
     for start, end, tip in bones:
-        if np.linalg.norm(tip - rest[start]) > SHORTEST_BONE:
+        if np.linalg.norm(tip - rest[start]) > MIN_BONE_LENGTH:
             corners.append(_stick(rest[start], tip))
             owners.append(np.array([start] * 5 + [end]))
     first = 6 * np.arange(len(corners))[:, None, None]

@@ -1,6 +1,6 @@
 """An animation as binary glTF 2.0 (GLB): a node a joint, a skinned body of sticks, one clip.
 
-Metres, Y up, which is glTF's own frame. Source: Khronos, "glTF 2.0 specification",
+Meters, Y up, which is glTF's own frame. Source: Khronos, "glTF 2.0 specification",
 sections 3.7 (skins), 3.11 (animations), 4 (GLB). Written with json and numpy alone: the
 file is one JSON object and one block of numbers, while pygltflib brings eight packages to
 build the same object and trimesh writes neither skins nor animations.
@@ -22,9 +22,9 @@ from app.numerics.arrays import FloatArray
 
 _FLOAT, _USHORT, _UINT = 5126, 5123, 5125
 _ARRAY_BUFFER, _INDEX_BUFFER = 34962, 34963
-_COLOUR = (0.23, 0.42, 0.65, 1.0)
+_COLOR = (0.23, 0.42, 0.65, 1.0)
 _SAME = 1e-7
-"""What varies by less over a clip is not animated."""
+"""A value that varies by less over a clip is not animated."""
 _Json = dict[str, Any]
 
 
@@ -66,7 +66,7 @@ def write_glb(animation: Animation, name: str = "motion", license: str | None = 
 
 
 class _Blob:
-    """The block of numbers, and the accessors and views that tell where each array is."""
+    """The block of numbers, and the accessors and views that say where each array is."""
 
     def __init__(self) -> None:
         self.parts: list[bytes] = []
@@ -129,7 +129,7 @@ def _mesh(blob: _Blob, sticks: Mesh) -> _Json:
 
 
 def _material() -> _Json:
-    surface = {"baseColorFactor": _COLOUR, "metallicFactor": 0.0, "roughnessFactor": 0.8}
+    surface = {"baseColorFactor": _COLOR, "metallicFactor": 0.0, "roughnessFactor": 0.8}
     return {"name": "sticks", "pbrMetallicRoughness": surface}
 
 

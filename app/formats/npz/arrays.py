@@ -1,9 +1,8 @@
-"""Arrays of NPY and NPZ content, read without trusting what they say of themselves.
+"""Reads the arrays of NPY and NPZ content without trusting their headers.
 
-Bytes in, arrays out, by NumPy's format specification (NEP 1, versions 1.0 to 3.0). The
-header is matched against a strict pattern rather than evaluated, no object is ever
-unpickled, and nothing is allocated before the declared shape was held against limits and
-against the bytes that are there.
+Bytes in, arrays out, by NumPy's format specification (NEP 1, versions 1.0 to 3.0). The header is
+matched against a strict pattern and never evaluated. No object is unpickled. Memory is allocated
+only after the declared shape was compared with the limits and with the bytes that are there.
 """
 
 from __future__ import annotations
@@ -30,9 +29,9 @@ MAX_ARRAY_BYTES = 480_000_000
 MAX_MEMBERS = 256
 """Arrays in one NPZ file; the largest public ones have about 20."""
 MAX_RATIO = 200
-"""Unpacked size over packed size; movement shrinks to a tenth at best."""
+"""The largest ratio of unpacked to packed size. Movement is compressed to a tenth at best."""
 SMALL_BYTES = 16_000_000
-"""Arrays up to this size may shrink as they like (all zeros, say)."""
+"""Arrays up to this size may have any ratio (for example, if all numbers are zero)."""
 MAX_HEADER_BYTES = 4096
 MAX_AXES = 8
 
@@ -72,7 +71,7 @@ def read_npy(content: bytes, key: str = "array") -> NDArray[Any]:
 
 
 class Archive:
-    """The arrays of an NPZ file by key; each is unpacked only when it is asked for."""
+    """The arrays of an NPZ file by key. Each is unpacked only when it is read."""
 
     def __init__(self, content: bytes) -> None:
         """Read the directory only. Raises Unreadable, TooLarge."""

@@ -1,8 +1,8 @@
-"""Joint orders that files without names use, told apart by the body that they make.
+"""Known joint orders of files without names, recognized by the body that they make.
 
-A bare array (frames, joints, 3) says nothing but how many joints there are, and several
-orders share a count. An order is believed where its bones are as long on the left as on
-the right and keep their length, and it alone of its count does so.
+A bare array (frames, joints, 3) only shows the number of joints, and several orders have the same
+number. An order is accepted if its bones are equally long on the left and on the right and keep
+their length, and if no other order with this number of joints does so.
 
 Sources: the orders' own documentation (SMPL, SMPL-H and SMPL-X by MPI; LAFAN1 by Ubisoft;
 Human3.6M in 17 joints as in VideoPose3D; Kinect v2 SDK; OpenPose BODY_25).
@@ -19,11 +19,11 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 
 SIDES_DIFFER = 0.2
-"""Left and right bones may differ by so much of their mean, estimation noise included."""
+"""The largest difference of left and right bones, as a share of their mean, including noise."""
 BONES_BREATHE = 0.2
 """Median standard deviation of a bone's length over time, as part of that length."""
 FRAMES_JUDGED = 500
-"""Evenly spaced; more tell nothing new."""
+"""The number of frames, evenly spaced, that are checked. More would not change the result."""
 
 
 @dataclass(frozen=True, slots=True)

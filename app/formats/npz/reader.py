@@ -8,7 +8,7 @@ The layout, which `/export?format=npz` writes too:
 | `joint_names` | text (joints,) |
 | `parents` | integers (joints,), -1 for a root; may be left out |
 | `frame_rate` | Hz |
-| `unit` | "m", "cm", "mm", "in", ... or metres per unit; judged from stature where left out |
+| `unit` | "m", "cm", "mm", "in", ... or meters per unit; judged from stature where left out |
 | `up_axis` | "x", "y" or "z"; "y" where left out |
 
 Keys are matched without regard to case and separators, and usual other names are taken
@@ -36,7 +36,7 @@ from app.formats.npz.arrays import Archive, numbers, read_npy, texts
 from app.formats.npz.joint_layouts import layout_of
 from app.formats.npz.keys import NamedArrays
 from app.formats.npz.smpl import read_smpl
-from app.motion.canonical.units import METRES_PER_UNIT
+from app.motion.canonical.units import METERS_PER_UNIT
 from app.motion.skeleton.recording import Caution, Recording
 from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray, IntArray
@@ -185,12 +185,12 @@ def _unit(arrays: NamedArrays) -> float | None:
     key = arrays.key("unit")
     if array.dtype.kind in "US":
         (name, *_) = texts(array, key)
-        scale = METRES_PER_UNIT.get(name.strip().lower())
+        scale = METERS_PER_UNIT.get(name.strip().lower())
     else:
         scale = float(numbers(array, key).reshape(-1)[0]) if array.size == 1 else None
     if scale is None or not 1e-6 <= scale <= 1e3:
-        known = ", ".join(METRES_PER_UNIT)
-        raise refused(key, f"expected one of {known}, or metres per unit; found {array!s:.40}")
+        known = ", ".join(METERS_PER_UNIT)
+        raise refused(key, f"expected one of {known}, or meters per unit; found {array!s:.40}")
     return scale
 
 

@@ -5,7 +5,7 @@ which is licensed and not here. The angles are read exactly; they turn a generic
 our own, with segments by Drillis and Contini's proportions of stature (1966; Winter,
 "Biomechanics and motor control of human movement", fig. 4.1). So directions of limbs are
 as recorded, lengths of limbs are generic, and the ground under the feet is a few
-centimetres off. Fingers and face are left out.
+centimeters off. Fingers and face are left out.
 
 Sources: Loper et al., "SMPL" (2015), for the order of joints and the axis-angle
 parameters; Mahmood et al., "AMASS" (2019), for the file's keys.
@@ -24,7 +24,7 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 STATURE = 1.7
-"""Metres, of the generic body."""
+"""Meters, of the generic body."""
 BODY_JOINTS = 22
 """The first joints of every SMPL model are the same."""
 PARAMETERS = (66, 72, 156, 165)
@@ -70,10 +70,10 @@ def read_smpl(
     frame_rate: float | None,
     up_axis: str = "z",
 ) -> Recording:
-    """A recording of 24 joints in metres from axis-angle parameters.
+    """A recording of 24 joints in meters from axis-angle parameters.
 
     poses: (frames, n) radians, n one of PARAMETERS, the root's first; translation:
-    (frames, 3) metres, None for a body that stays; both finite. up_axis: "z" as in AMASS,
+    (frames, 3) meters, None for a body that stays; both finite. up_axis: "z" as in AMASS,
     or "y". Raises Unreadable.
     """
     frames = len(poses)
@@ -106,7 +106,7 @@ def read_smpl(
 
 
 def generic_body() -> Skeleton:
-    """SMPL's 24 joints with our own rough offsets in metres, Y up.
+    """SMPL's 24 joints with our own rough offsets in meters, Y up.
 
     The root's offset is where the model's pelvis is from its origin, about.
     """

@@ -13,7 +13,7 @@ from app.numerics.arrays import FloatArray, IntArray
 def write_npz(
     names: Sequence[str], parents: IntArray, positions: FloatArray, frame_rate: float
 ) -> bytes:
-    """An NPZ file of positions (frames, joints, 3) in metres, Y up; the same bytes each time."""
+    """An NPZ file of positions (frames, joints, 3) in meters, Y up; the same bytes each time."""
     file = io.BytesIO()
     np.savez(
         file,

@@ -143,7 +143,7 @@ def fit_axes(described: Described, labels: Sequence[str | None], factor: Factor)
     centre = rows.mean(axis=0)
     rows -= centre
     scales = _scales(rows, part.widths(), factor)
-    found = principal_axes(rows * scales, DIMENSIONS, centred=False)
+    found = principal_axes(rows * scales, DIMENSIONS, centered=False)
     _, classes = np.unique([str(labels[i]) for i in known], return_inverse=True)
     parted = discriminants(found.project(rows * scales), classes, COORDINATES)
     strength = parted.between + UNPARTED

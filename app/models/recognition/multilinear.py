@@ -89,7 +89,7 @@ class Multilinear:
         """Arrays and JSON-able meta from which from_arrays makes the same record."""
         people, actions, motions = self.svd.factors
         arrays = {
-            "centre": self.axes.centre,
+            "centre": self.axes.center,
             "axes": self.axes.axes,
             "core": self.svd.core,
             "people": people,
@@ -146,7 +146,7 @@ def fit_multilinear(
     chosen, task_means = np.asarray(samples)[use], None
     if moments is not None:
         chosen, task_means = _aligned(chosen, [tasks[i] for i in use], moments)
-    axes = principal_axes(chosen, DIMENSIONS, centred=False)
+    axes = principal_axes(chosen, DIMENSIONS, centered=False)
     points = axes.project(chosen)
     tensor = complete_tensor(cell_means(points, cells), cells)
     svd = nmode_svd(tensor, [*ranks, None])

@@ -150,7 +150,7 @@ def recognise_many(
     known_task: str | None = None,
 ) -> list[Recognition]:
     """`recognise` for each of `samples` (n, 1762)."""
-    rows = both_views(samples, len(record.sample.axes.centre))
+    rows = both_views(samples, len(record.sample.axes.center))
     sample, wide = record.sample, record.wide
     points = Seen(sample.axes.project(rows.sample), wide.axes.project(rows.wide))
     h = wide.hypotheses

@@ -99,7 +99,7 @@ class TaskModel:
         """Arrays and JSON-able meta from which from_arrays makes the same record."""
         position, people, tasks = self.svd.factors
         arrays = {
-            "centre": self.axes.centre,
+            "centre": self.axes.center,
             "axes": self.axes.axes,
             "core": self.svd.core,
             "position_mode": position,
@@ -143,7 +143,7 @@ def fit_task_model(
         raise NotEnoughLabels(f"The task model holds {MOST_CELLS} persons x tasks.")
     flat = np.asarray(poses, dtype=np.float64)[use].reshape(len(use), -1)
     means = cell_means(flat, cells)
-    axes = principal_axes(means, MOST_AXES, centred=False)
+    axes = principal_axes(means, MOST_AXES, centered=False)
     tensor = np.moveaxis(complete_tensor(axes.project(means), cells), 2, 0)
     svd = nmode_svd(tensor, ranks)
     recorded = svd.reconstruct()[:, cells.person, cells.task].T @ axes.axes.T

@@ -56,7 +56,7 @@ class View:
 
     def to_arrays(self, name: str) -> dict[str, np.ndarray[Any, Any]]:
         """Arrays, their names beginning with `name`."""
-        arrays = {"centre": self.axes.centre, "axes": self.axes.axes}
+        arrays = {"centre": self.axes.center, "axes": self.axes.axes}
         arrays |= {f.name: getattr(self.hypotheses, f.name) for f in fields(Hypotheses)}
         return {f"{name}_{key}": array for key, array in arrays.items()}
 

@@ -130,7 +130,7 @@ class Synthesis:
             "side": self.side,
             "aligned": self.aligned.astype(np.float32),
             "timing": self.timing.astype(np.float32),
-            "centre": self.axes.centre,
+            "centre": self.axes.center,
             "axes": self.axes.axes,
             "points": self.points.astype(np.float32),
             "member": self.member,

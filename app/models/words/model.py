@@ -44,7 +44,7 @@ class WordModel:
         arrays = {
             "mean": self.mean,
             "scale": self.scale,
-            "centres": self.ridge.centres,
+            "centres": self.ridge.centers,
             "weights": self.ridge.weights,
             "offset": self.ridge.offset,
         }

@@ -1,1 +1,1 @@
-"""Canonical motion: metres, Y up, the true frame rate."""
+"""Canonical motion: meters, Y up, the true frame rate."""

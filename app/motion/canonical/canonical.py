@@ -1,4 +1,4 @@
-"""From a recording as its file tells it to the one form that all else works on (DESIGN 4)."""
+"""Turns a recording, as it is in its file, into the canonical form that everything else uses."""
 
 from __future__ import annotations
 
@@ -23,29 +23,29 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 
-def canonicalise(
+def canonicalize(
     recording: Recording,
     *,
     frame_rate: float | None = None,
     metres_per_unit: float | None = None,
     roles: Mapping[JointRole, str] | Mapping[str, str] | None = None,
 ) -> Motion:
-    """The motion in metres, Y up, right-handed, with roles, rate and unit settled.
+    """The motion of a recording in meters, Y up, right-handed, with roles, rate and unit.
 
-    frame_rate (Hz), metres_per_unit and roles (role -> joint name) are what the client
-    says; it wins over the file. Raises BadField where that cannot be, NotHuman where
-    essential roles are missing, Unreadable where no usable frame rate is known, BadContent where
-    the body is beyond human measure.
+    frame_rate (Hz), metres_per_unit and roles (the joint name of each role) are what a client
+    says. They have priority over the file. Raises BadField if they are impossible, NotHuman if
+    essential roles are missing, Unreadable if no usable frame rate is known, and BadContent if
+    the body is larger or faster than any human.
     """
     names, parents = recording.skeleton.names, recording.skeleton.parents
-    rate = _rate_in_force(recording, frame_rate)
+    rate = _active_rate(recording, frame_rate)
     given = given_roles(names, {str(role): name for role, name in (roles or {}).items()})
     found, others = roles_of_one_body(names, parents, recording.positions, given)
     missing = _missing(found)
     up_axis = judge_up_axis(
         recording.positions, _rest(recording.skeleton), found, recording.up_axis
     )
-    unit = _unit_in_force(recording, found, metres_per_unit)
+    unit = _active_unit(recording, found, metres_per_unit)
     positions = to_y_up(recording.positions, up_axis) * np.float32(unit.metres_per_unit)
     motion = Motion(
         format=recording.format,
@@ -68,7 +68,7 @@ def canonicalise(
     return _with_cautions(motion, doubts)
 
 
-def _rate_in_force(recording: Recording, said: float | None) -> float:
+def _active_rate(recording: Recording, said: float | None) -> float:
     if said is not None:
         return _within("frame_rate", said, FRAME_RATES, "Hz")
     if recording.frame_rate is None and recording.assumed_frame_rate is not None:
@@ -107,18 +107,16 @@ def _missing(found: Mapping[JointRole, int]) -> tuple[JointRole, ...]:
     return tuple(role for role in SUN_ROLES if role not in found)
 
 
-def _unit_in_force(
-    recording: Recording, roles: Mapping[JointRole, int], said: float | None
-) -> Unit:
+def _active_unit(recording: Recording, roles: Mapping[JointRole, int], said: float | None) -> Unit:
     if said is not None:
-        return Unit(_within("unit", said, SCALES, "metres per unit"))
+        return Unit(_within("unit", said, SCALES, "meters per unit"))
     if recording.metres_per_unit is not None:
         return confirm_unit(recording.metres_per_unit, recording.positions, roles)
     return judge_unit(recording.positions, roles)
 
 
 def _rest(skeleton: Skeleton) -> FloatArray:
-    """(joints, 3): positions with all rotations 0, roots at their offsets."""
+    """(joints, 3) the positions if all rotations are 0 and roots are at their offsets."""
     rest = np.array(skeleton.offsets, dtype=np.float64)
     for joints in joints_by_depth(skeleton.parents)[1:]:
         rest[joints] += rest[skeleton.parents[joints]]
@@ -143,7 +141,7 @@ def _rate_cautions(motion: Motion) -> tuple[Caution, ...]:
 
 
 def _assumption(recording: Recording, said: float | None) -> tuple[Caution, ...]:
-    """A caution where the rate in force is neither the client's nor the file's."""
+    """A caution if the frame rate comes neither from the client nor from the file."""
     if said is not None or recording.frame_rate is not None:
         return ()
     rate = recording.assumed_frame_rate

@@ -1,8 +1,8 @@
-"""The body's centre of mass from Sun's 13 roles.
+"""The body's center of mass from Sun's 13 roles.
 
-Source: Dempster (1955) as tabled by Winter, "Biomechanics and motor control of human
-movement", table 4.1: each segment's share of the mass and where along it its own centre
-lies. Feet and hands are points at ankle and wrist.
+Source: Dempster (1955), as in table 4.1 of Winter, "Biomechanics and motor control of human
+movement". The table gives each segment's share of the mass, and the position of its center along
+the segment. Feet and hands are points at ankle and wrist.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _SEGMENTS: tuple[tuple[JointRole, JointRole, float, float], ...] = (
     (_R.LEFT_HAND, _R.LEFT_HAND, 0.006, 0.0),
     (_R.RIGHT_HAND, _R.RIGHT_HAND, 0.006, 0.0),
 )
-"""From, to, share of the body's mass, and how far along the segment's centre lies."""
+"""Start, end, share of the body's mass, and position of the center along the segment (0..1)."""
 
 
 def _weights() -> FloatArray:
@@ -41,10 +41,13 @@ def _weights() -> FloatArray:
 
 
 ROLE_MASSES = _weights()
-"""(13,) share of the body's mass that each of SUN_ROLES stands for; the sum is 1."""
+"""(13,) the share of the body's mass that belongs to each of SUN_ROLES; the sum is 1."""
 
 
-def centre_of_mass(role_positions: FloatArray) -> FloatArray:
-    """(frames, 3) of role positions (frames, 13, 3) in SUN_ROLES order, same unit."""
+def center_of_mass(role_positions: FloatArray) -> FloatArray:
+    """(frames, 3) the center of mass of role positions (frames, 13, 3), in their unit.
+
+    role_positions: in SUN_ROLES order.
+    """
     positions = np.asarray(role_positions, dtype=np.float64)
     return np.asarray(np.einsum("r,frc->fc", ROLE_MASSES, positions))

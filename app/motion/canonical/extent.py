@@ -1,10 +1,10 @@
-"""Positions beyond any human measure: refused before anything is computed from them.
+"""Refuses positions that no human body can have, before anything is computed from them.
 
-Files that are damaged, or read in a wrong unit, hold positions that no body takes. They would end
-as infinities in descriptors of small floats, or as nonsense among the hits. Each limit is far
-beyond what people do, and holds both in metres and by the body's own length, since the client may
-give any unit. Measured on 501 real clips: joints at most 1.5 m from the hips, steps of at most
-.4 m in 1/30 s, 9 m from the origin.
+Damaged files, and files read in a wrong unit, hold impossible positions. They would cause
+infinities in descriptors of small floats, or useless hits. Each limit is far beyond what people
+do. It is given both in meters and in lengths of the body, because a client may give any unit. In
+501 real clips, joints are at most 1.5 m from the hips, the hips move at most .4 m in 1/30 s, and
+joints are at most 9 m from the origin.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from app.numerics.arrays import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class _Limit:
-    """The largest length: in metres, and in lengths of the body."""
+    """The largest length, in meters and in lengths of the body; the smaller one counts."""
 
-    metres: float
+    meters: float
     bodies: float
 
     def of(self, body: float) -> float:
-        return min(self.metres, self.bodies * body)
+        return min(self.meters, self.bodies * body)
 
 
 REACH = _Limit(10.0, 1_000.0)
@@ -39,13 +39,13 @@ REACH = _Limit(10.0, 1_000.0)
 STEP = _Limit(100.0, 1_000.0)
 """Of the hips in 1/30 s, some 10,000 km/h; real recordings are cut, and then the body jumps."""
 FARTHEST = _Limit(10_000.0, 10_000.0)
-"""From the origin; beyond, float32 does not hold a millimetre."""
+"""From the origin; beyond, float32 does not hold a millimeter."""
 
 
 def check_extent(motion: Motion) -> tuple[Caution, ...]:
-    """Cautions about joints far away that are no part of the body.
+    """Cautions about far joints that do not belong to the body.
 
-    Raises BadContent, naming the joint and the frame, where the body itself is beyond a limit.
+    Raises BadContent, with the joint and the frame, if the body itself exceeds a limit.
     """
     size = _size(motion)
     own = sorted(set(motion.roles.values()))
@@ -59,13 +59,13 @@ def check_extent(motion: Motion) -> tuple[Caution, ...]:
         away = motion.positions[:, [joint]] - hips[:, None]
         reached = _first_beyond(away, REACH.of(size), [0])
         if reached is not None:
-            found = _Found(reached.frame, joint, reached.metres)
+            found = _Found(reached.frame, joint, reached.meters)
             raise _refused(motion, found, REACH.of(size), "from the hips")
     return _strangers(farthest, motion)
 
 
 def _size(motion: Motion) -> float:
-    """Length of the body in metres; endless where it has none, which the analysis refuses."""
+    """The body length in meters; infinite for a body without size, which the analysis refuses."""
     try:
         return body_length(motion)
     except NotHuman:
@@ -74,17 +74,17 @@ def _size(motion: Motion) -> float:
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """Where a limit is passed, and by a coordinate of how many metres."""
+    """Where a limit is exceeded, and the length there in meters."""
 
     frame: int
     joint: int
-    metres: float
+    meters: float
 
 
 def _first_beyond(positions: FloatArray, limit: float, joints: Iterable[int]) -> _Found | None:
-    """The first of `joints` that has a coordinate beyond `limit`, in its first such frame.
+    """The first of `joints` with a coordinate beyond `limit`, and its first such frame.
 
-    positions: (frames, joints, 3). Joint by joint, so that no copy of a long clip is made.
+    positions: (frames, joints, 3). Joints are checked one by one, to avoid a copy of a long clip.
     """
     if max(positions.max(), -positions.min()) <= limit:
         return None
@@ -97,7 +97,7 @@ def _first_beyond(positions: FloatArray, limit: float, joints: Iterable[int]) ->
 
 
 def _refuse_jumps(limit: float, hips: FloatArray, motion: Motion) -> None:
-    """hips: (frames, 3), metres."""
+    """hips: (frames, 3), meters."""
     apart = max(1, round(motion.frame_rate / ANALYSIS_RATE))
     steps = np.linalg.norm(hips[apart:] - hips[:-apart], axis=-1)
     if steps.size and steps.max() > limit:
@@ -108,7 +108,7 @@ def _refuse_jumps(limit: float, hips: FloatArray, motion: Motion) -> None:
 
 
 def _refused(motion: Motion, found: _Found, limit: float, where: str) -> BadContent:
-    message = f"expected at most {limit:.3g} m {where}, found {found.metres:.3g} m"
+    message = f"expected at most {limit:.3g} m {where}, found {found.meters:.3g} m"
     location = f"frame {found.frame}, joint {motion.names[found.joint]}"
     return BadContent(
         f"No body reaches so far ({location}: {message}). Is the unit right?",
@@ -121,7 +121,7 @@ def _strangers(limit: float, motion: Motion) -> tuple[Caution, ...]:
     if found is None:
         return ()
     detail = (
-        f"frame {found.frame}, joint {motion.names[found.joint]}: {found.metres:.3g} m from the"
+        f"frame {found.frame}, joint {motion.names[found.joint]}: {found.meters:.3g} m from the"
         " origin; it is not a part of the body that is analyzed"
     )
     return (Caution("position_suspect", detail),)

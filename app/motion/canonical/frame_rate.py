@@ -1,25 +1,25 @@
-"""Whether a frame rate is plausible for a human body, by physics.
+"""Checks by physics whether a frame rate is plausible for a human body.
 
-A clip told k times too fast shows speeds k times and accelerations k^2 times the true
-ones. Five laws are asked, none of which a body can break:
+If the declared rate is k times the true one, speeds seem k times and accelerations k^2 times too
+large. Five laws are checked that no body can break:
 
-1. Free fall. With both feet clear of the floor, the height of the centre of mass is a
-   parabola of curvature g, so that flights tell the true rate, both ways.
-2. Ground friction. Only friction moves a body sideways, and a foot slips that asks for
-   more than about the weight on it (coefficient of friction .5 to 1). Demand is the
-   horizontal acceleration of the centre of mass over (g + the vertical one). Ballet,
-   fights and sprints ask for much in moments only; nobody does a quarter of the time.
-3. Support. Nothing but its weight pulls a body down: it does not fall faster than g.
+1. Free fall. While both feet are off the floor, the height of the center of mass is a parabola of
+   curvature g. So flights show rates that are too high and rates that are too low.
+2. Ground friction. Only friction moves a body sideways. A foot slips if it needs a force larger
+   than about the weight on it (coefficient of friction .5 to 1). The demand is the horizontal
+   acceleration of the center of mass divided by (g + its vertical acceleration). Ballet, fights
+   and sprints have a high demand for moments; nobody has it for a quarter of the time.
+3. Support. Only its weight pulls a body down, so it does not fall faster than g.
 4. Speed. Nobody travels faster than a sprinter (Bolt 2009: 12.4 m/s).
-5. Steps. The leg is a pendulum: step frequency x sqrt(leg length / g) stays below the
-   fastest sprinters' (about 5 steps/s on legs of .9 m: 1.5).
+5. Steps. The leg is a pendulum: step frequency x sqrt(leg length / g) is below that of the
+   fastest sprinters (about 5 steps/s with legs of .9 m: 1.5).
 
-Too slow a rate is told by flights alone: slow motion breaks no other law.
+A rate that is too low only shows in flights, because slow motion breaks no other law.
 
-Measured on real clips at their true rates: demand .39 at most (n = 372), support -1.33 g,
-flights .81 to 1.26 g, steps 1.09. Of the same clips at twice their rate, a third of those
-that still last 3 s is found out, of walks nine in ten (standing gestures obey every law at
-twice their speed).
+Real clips at their true rates have a demand of at most .39 (n = 372), a support of -1.33 g, flights
+of .81 to 1.26 g, and steps of 1.09. At twice their rate, a third of the clips that still last 3 s
+are detected, and nine of ten walks. (Gestures of a standing person obey every law at twice their
+speed.)
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from itertools import pairwise
 import numpy as np
 import scipy
 
-from app.motion.canonical.centre_of_mass import centre_of_mass
+from app.motion.canonical.centre_of_mass import center_of_mass
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
@@ -40,28 +40,28 @@ from app.numerics.arrays import FloatArray
 GRAVITY = 9.81
 """m/s2."""
 CUTOFF = 4.0
-"""Hz; faster changes of the centre of mass are mostly noise."""
+"""Hz. Faster changes of the center of mass are mostly noise."""
 SHORTEST = 3.0
-"""Seconds by the rate in question; a shorter clip may be one start, stop or leap."""
-FEWEST_FRAMES = 30
+"""Seconds at the checked rate. A shorter clip may be a single start, stop or leap."""
+MIN_FRAMES = 30
 EDGE = 0.25
-"""Seconds at each end that the filter disturbs."""
+"""Seconds at each end that are left out, because the filter is not exact there."""
 FRICTION_QUANTILE, FRICTION_LIMIT = 75.0, 0.45
-LEAST_WEIGHT = 0.5
-"""Part of the weight that friction demand is at least divided by, for moments of flight."""
+MIN_WEIGHT = 0.5
+"""The smallest share of the weight by which friction demand is divided, for moments of flight."""
 SUPPORT_QUANTILE, SUPPORT_LIMIT = 2.0, -1.7
 """In g."""
 SPEED_QUANTILE, SPEED_LIMIT = 95.0, 12.5
 """m/s."""
 STEP_LIMIT = 1.7
-SHORTEST_STEP, FEWEST_STEPS = 0.2, 6
+MIN_STEP_LENGTH, MIN_STEPS = 0.2, 6
 """In leg lengths; and how many there have to be."""
 STEP_CUTOFF = 8.0
 """Hz."""
 CLEARANCE = 0.12
-"""Metres that both feet are above where they mostly stand."""
+"""Meters that both feet are above where they mostly stand."""
 FLIGHT_FRAMES, FLIGHT_RISE, FLIGHT_MISFIT = 6, 0.05, 0.05
-"""Fewest frames; least rise of hips and centre of mass in metres; worst residual in rises."""
+"""Fewest frames; least rise of hips and center of mass in meters; worst residual in rises."""
 FLIGHT_LIMITS = (0.5, 2.0)
 """Measured over true gravity; outside the rate is off by sqrt(2) or more."""
 FACTORS = (2.0, 3.0, 4.0, 5.0, 8.0)
@@ -72,18 +72,19 @@ _ROLE = {role: index for index, role in enumerate(SUN_ROLES)}
 
 @dataclass(frozen=True, slots=True)
 class _Finding:
-    """A broken law: how many times too fast at least (below 1: too slow), and why."""
+    """A broken law. factor: by how much the rate is at least too high (below 1: too low)."""
 
     factor: float
     reason: str
 
 
 def judge_frame_rate(role_positions: FloatArray, rate: float) -> list[Caution]:
-    """Cautions about a rate in Hz for role positions (frames, 13, 3), metres, Y up.
+    """Check a frame rate in Hz against the laws of this module.
 
-    None, or one `frame_rate_suspect` with the likely rate.
+    role_positions: (frames, 13, 3) in SUN_ROLES order, meters, Y up. The result is empty, or one
+    caution `frame_rate_suspect` with the likely rate.
     """
-    # Converters put a frame of rest pose first.
+    # Converters often insert a rest pose as the first frame.
     positions = np.asarray(role_positions[1:], dtype=np.float64)
     finding = next(_findings(positions, rate), None)
     if finding is None:
@@ -94,7 +95,10 @@ def judge_frame_rate(role_positions: FloatArray, rate: float) -> list[Caution]:
 
 
 def _likely_rate(positions: FloatArray, rate: float, factor: float) -> float:
-    """Too slow: by the nearest usual factor; too fast: by the first that breaks no law."""
+    """The likely rate, by one of FACTORS.
+
+    For a rate that is too low it is the nearest factor; else the first one that breaks no law.
+    """
     if factor < 1:
         return rate * min(FACTORS, key=lambda usual: abs(np.log(usual * factor)))
     lawful = (
@@ -106,15 +110,15 @@ def _likely_rate(positions: FloatArray, rate: float, factor: float) -> float:
 
 
 def _findings(positions: FloatArray, rate: float) -> Iterator[_Finding]:
-    """What speaks against the rate, the most telling law first."""
+    """The laws that the rate breaks, the most reliable law first."""
     if len(positions) < FLIGHT_FRAMES:
         return
-    centre = centre_of_mass(positions)
-    yield from _free_fall(positions, centre, rate)
+    center = center_of_mass(positions)
+    yield from _free_fall(positions, center, rate)
     yield from _steps(positions, rate)
-    if len(positions) < max(SHORTEST * rate, FEWEST_FRAMES):
+    if len(positions) < max(SHORTEST * rate, MIN_FRAMES):
         return
-    smooth = _low_pass(centre, rate, CUTOFF)
+    smooth = _low_pass(center, rate, CUTOFF)
     edge = max(1, round(EDGE * rate))
     acceleration = np.diff(smooth, 2, axis=0)[edge:-edge] * rate**2 / GRAVITY
     yield from _friction(acceleration)
@@ -122,12 +126,12 @@ def _findings(positions: FloatArray, rate: float) -> Iterator[_Finding]:
     yield from _speed(np.diff(smooth, axis=0) * rate)
 
 
-def _free_fall(positions: FloatArray, centre: FloatArray, rate: float) -> Iterator[_Finding]:
+def _free_fall(positions: FloatArray, center: FloatArray, rate: float) -> Iterator[_Finding]:
     gravities = [
         float(-2 * curve[0]) * rate**2 / GRAVITY
         for start, end in _off_the_floor(positions)
         if (
-            curve := _parabola(centre[start:end, 1], positions[start:end, _ROLE[JointRole.HIPS], 1])
+            curve := _parabola(center[start:end, 1], positions[start:end, _ROLE[JointRole.HIPS], 1])
         )
         is not None
     ]
@@ -166,9 +170,9 @@ def _parabola(height: FloatArray, hips: FloatArray) -> FloatArray | None:
 
 
 def _friction(acceleration: FloatArray) -> Iterator[_Finding]:
-    """acceleration: (frames, 3) of the centre of mass in g."""
+    """acceleration: (frames, 3) of the center of mass in g."""
     sideways = np.hypot(acceleration[:, 0], acceleration[:, 2])
-    weight = np.maximum(1 + acceleration[:, 1], LEAST_WEIGHT)
+    weight = np.maximum(1 + acceleration[:, 1], MIN_WEIGHT)
     demand = float(np.percentile(sideways / weight, FRICTION_QUANTILE))
     if demand > FRICTION_LIMIT:
         yield _Finding(
@@ -184,7 +188,7 @@ def _support(acceleration: FloatArray) -> Iterator[_Finding]:
 
 
 def _speed(velocity: FloatArray) -> Iterator[_Finding]:
-    """velocity: (frames, 3) of the centre of mass, m/s."""
+    """velocity: (frames, 3) of the center of mass, m/s."""
     speed = float(np.percentile(np.linalg.norm(velocity, axis=1), SPEED_QUANTILE))
     if speed > SPEED_LIMIT:
         yield _Finding(speed / SPEED_LIMIT, f"the body travels at {speed:.0f} m/s")
@@ -196,8 +200,8 @@ def _steps(positions: FloatArray, rate: float) -> Iterator[_Finding]:
     stride = _fore_aft_of_feet(smooth)
     crossings = np.flatnonzero(np.diff(np.sign(stride)))
     spans = pairwise(crossings)
-    times = [b - a for a, b in spans if np.abs(stride[a : b + 1]).max() > SHORTEST_STEP * leg]
-    if len(times) < FEWEST_STEPS:
+    times = [b - a for a, b in spans if np.abs(stride[a : b + 1]).max() > MIN_STEP_LENGTH * leg]
+    if len(times) < MIN_STEPS:
         return
     frequency = rate / float(np.median(times))
     pace = frequency * (leg / GRAVITY) ** 0.5
@@ -215,7 +219,7 @@ def _leg_length(positions: FloatArray) -> float:
 
 
 def _fore_aft_of_feet(positions: FloatArray) -> FloatArray:
-    """(frames,): how far the left foot is before the right one, metres."""
+    """(frames,): how far the left foot is before the right one, meters."""
     across = positions[:, _ROLE[JointRole.LEFT_KNEE]] - positions[:, _ROLE[JointRole.RIGHT_KNEE]]
     shoulders = (JointRole.LEFT_SHOULDER, JointRole.RIGHT_SHOULDER)
     wide = positions[:, _ROLE[shoulders[0]]] - positions[:, _ROLE[shoulders[1]]]

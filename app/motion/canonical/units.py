@@ -17,7 +17,7 @@ from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
 
-METRES_PER_UNIT: dict[str, float] = {
+METERS_PER_UNIT: dict[str, float] = {
     "m": 1.0,
     "cm": 0.01,
     "mm": 0.001,
@@ -28,13 +28,13 @@ METRES_PER_UNIT: dict[str, float] = {
 }
 """Names that a client may use; "cmu" is the unit of CMU's ASF/AMC files (1 / .45 inch)."""
 SCALES = (1e-6, 1e3)
-"""Metres per unit, the least and the most that a client may say."""
+"""Meters per unit, the least and the most that a client may say."""
 TYPICAL_STATURE = 1.7
-"""Metres."""
-SMALLEST_STATURE = 1e-6
+"""Meters."""
+MIN_STATURE = 1e-6
 """In any unit; below it a body has no size."""
 USUAL_STATURES = (1.35, 2.15)
-"""Metres; outside we say that the unit is a guess."""
+"""Meters; outside we say that the unit is a guess."""
 FARTHEST_FACTOR = 1.6
 """If no unit brings stature within this factor of the typical one, it is scaled to it."""
 BELIEVED_FACTOR = 2.5
@@ -79,10 +79,10 @@ def stature(positions: FloatArray, roles: Mapping[JointRole, int]) -> float:
 def judge_unit(positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
     """The unit of positions (frames, joints, 3) that makes the person most ordinary."""
     height = stature(positions, roles)
-    if height < SMALLEST_STATURE:
-        detail = "the body has no size, so its unit cannot be judged; taken as metres"
+    if height < MIN_STATURE:
+        detail = "the body has no size, so its unit cannot be judged; taken as meters"
         return Unit(1.0, (Caution("unit_guessed", detail),))
-    scales = np.array(list(METRES_PER_UNIT.values()))
+    scales = np.array(list(METERS_PER_UNIT.values()))
     odds = np.abs(np.log(height * scales / TYPICAL_STATURE))
     best = float(scales[np.argmin(odds)])
     if odds.min() > np.log(FARTHEST_FACTOR):
@@ -91,20 +91,18 @@ def judge_unit(positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
         return Unit(best, (Caution("unit_guessed", detail, likely=best),))
     if USUAL_STATURES[0] <= height * best <= USUAL_STATURES[1]:
         return Unit(best)
-    name = next(name for name, scale in METRES_PER_UNIT.items() if scale == best)
+    name = next(name for name, scale in METERS_PER_UNIT.items() if scale == best)
     detail = f"in {name} the person would be {height * best:.2f} m tall"
     return Unit(best, (Caution("unit_guessed", detail, likely=best),))
 
 
 def confirm_unit(declared: float, positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
-    """The file's own metres per unit, unless the person would be no human: then as judged.
+    """The file's own meters per unit, unless the person would be no human: then as judged.
 
     Exporters often write a scale that their numbers do not follow.
     """
     height = stature(positions, roles) * declared
-    if height < SMALLEST_STATURE or abs(np.log(height / TYPICAL_STATURE)) <= np.log(
-        BELIEVED_FACTOR
-    ):
+    if height < MIN_STATURE or abs(np.log(height / TYPICAL_STATURE)) <= np.log(BELIEVED_FACTOR):
         return Unit(declared)
     judged = judge_unit(positions, roles)
     detail = (

@@ -1,4 +1,4 @@
-"""The body frame (DESIGN 4): a motion without its place, heading, size and frame rate.
+"""The body frame: a motion without its place, heading, size and frame rate.
 
 Origin at the hips, X to the body's left along the shoulders' horizontal, Y up, Z forward
 (right-handed), scaled by the body length: torso + neck to head + shin.
@@ -17,19 +17,20 @@ from app.motion.skeleton.resampling import resample
 from app.numerics.arrays import BoolArray, FloatArray
 
 ANALYSIS_RATE = 30.0
-"""Hz; all analyses see motion at this rate."""
+"""Hz: the rate at which all motions are analyzed."""
 
 MIN_FRAMES = 2
-"""At the analysis rate; fewer hold no movement."""
+"""The fewest frames at the analysis rate. Fewer contain no movement."""
 
 NECK_TO_HEAD_PER_TORSO = 0.3
 SHIN_PER_TORSO = 0.85
-"""Usual proportions, put in for what a skeleton lacks."""
+"""Usual proportions, used for joints that a skeleton does not have."""
 
 MIN_AXIS_SHARE = 0.2
-"""Where less than this share of the left-right line is horizontal it gives no heading."""
+"""The smallest horizontal share of the left-right line. With less, it gives no heading."""
 
-SMALLEST_BODY = 1e-6
+MIN_BODY_SIZE = 1e-6
+"""A smaller body length or left-right line counts as 0."""
 
 _LEFT_RIGHT: tuple[tuple[JointRole, JointRole], ...] = (
     (JointRole.LEFT_SHOULDER, JointRole.RIGHT_SHOULDER),
@@ -40,11 +41,11 @@ _LEFT_RIGHT: tuple[tuple[JointRole, JointRole], ...] = (
 
 @dataclass(frozen=True, slots=True)
 class BodyTrack:
-    """A body through time at ANALYSIS_RATE; n frames, 13 joints in SUN_ROLES order, float64.
+    """A body over time at ANALYSIS_RATE: n frames, 13 joints in SUN_ROLES order, float64.
 
-    positions: (n, 13, 3) metres, world, Y up; local: (n, 13, 3) body lengths, body frame;
-    origin: (n, 3) metres, the hips in the world; heading: (n,) radians, unwrapped, turn
-    about Y that takes world Z to the body's forward; body_length: metres; rate: Hz.
+    positions: (n, 13, 3) in the world, meters, Y up. local: (n, 13, 3) in the body frame, body
+    lengths. origin: (n, 3) the hips in the world, meters. heading: (n,) radians, unwrapped: the
+    turn about Y that takes the world's Z to the body's forward. body_length: meters. rate: Hz.
     """
 
     positions: FloatArray
@@ -56,7 +57,7 @@ class BodyTrack:
 
     @property
     def frames(self) -> int:
-        """Number of frames."""
+        """The number of frames."""
         return len(self.heading)
 
     @property
@@ -65,7 +66,7 @@ class BodyTrack:
         return self.frames / self.rate
 
     def part(self, first: int, stop: int) -> BodyTrack:
-        """The frames first..stop-1, with the body length of the whole."""
+        """The frames first .. stop - 1, with the body length of the whole motion."""
         cut = slice(first, stop)
         return BodyTrack(
             positions=self.positions[cut],
@@ -77,19 +78,20 @@ class BodyTrack:
         )
 
     def velocity(self) -> FloatArray:
-        """(n, 3) velocity of the hips in the body frame, body lengths per second."""
+        """(n, 3) the velocity of the hips in the body frame, body lengths per second."""
         steps = np.gradient(self.origin, axis=0) * (self.rate / self.body_length)
         return turned(steps[:, None], -self.heading)[:, 0]
 
     def yaw_rate(self) -> FloatArray:
-        """(n,) turning about Y, radians per second, positive to the left."""
+        """(n,) the rate of turning about Y, radians per second, positive to the left."""
         return np.asarray(np.gradient(self.heading) * self.rate)
 
 
 def body_track(motion: Motion) -> BodyTrack:
-    """The body's track through `motion`, at ANALYSIS_RATE.
+    """The track of the body in `motion`, resampled to ANALYSIS_RATE.
 
-    Raises TooShort below MIN_FRAMES frames at that rate, NotHuman for a body of no size.
+    Raises TooShort for fewer than MIN_FRAMES frames at that rate, and NotHuman for a body without
+    size.
     """
     positions = _at_analysis_rate(motion.role_positions(), motion.frame_rate)
     if len(positions) < MIN_FRAMES:
@@ -107,9 +109,10 @@ def body_track(motion: Motion) -> BodyTrack:
 
 
 def body_length(motion: Motion) -> float:
-    """Torso + neck to head + shin, metres: medians over the frames of `motion`.
+    """The body length in meters: torso + neck to head + shin, each the median over frames.
 
-    A missing head or foot counts with its usual proportion to the torso.
+    A missing head or foot counts with its usual proportion to the torso. Raises NotHuman for a
+    body without size.
     """
     roles, r = motion.roles, JointRole
     torso = _distance(motion, r.HIPS, r.NECK)
@@ -121,14 +124,14 @@ def body_length(motion: Motion) -> float:
     has_head = r.HEAD in roles and r.NECK in roles
     head = _distance(motion, r.NECK, r.HEAD) if has_head else torso * NECK_TO_HEAD_PER_TORSO
     length = torso + head + (float(np.mean(shins)) if shins else torso * SHIN_PER_TORSO)
-    if not length > SMALLEST_BODY:
+    if not length > MIN_BODY_SIZE:
         message = "hips, neck, head, knees and feet are all in one place"
         raise NotHuman(f"The body has no size: {message}.", places=[Place("joints", message)])
     return length
 
 
 def turned(points: FloatArray, angles: FloatArray) -> FloatArray:
-    """`points` (n, joints, 3) turned about Y by `angles` (n,), radians, Z towards X."""
+    """(n, joints, 3) `points` turned about Y by `angles` (n,), in radians, from Z toward X."""
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
     x, y, z = np.moveaxis(points, -1, 0)
     return np.stack([cos * x + sin * z, y, cos * z - sin * x], axis=-1)
@@ -146,7 +149,8 @@ def _distance(motion: Motion, one: JointRole, other: JointRole) -> float:
 
 
 def _left_axis(motion: Motion) -> FloatArray | None:
-    """(n, 3) line from the right to the left of the first pair of joints that has a width."""
+    """(n, 3) the line from right to left of the first pair of joints that are not above each
+    other; None if there is no such pair."""
     for left, right in _LEFT_RIGHT:
         if left not in motion.roles or right not in motion.roles:
             continue
@@ -159,14 +163,14 @@ def _left_axis(motion: Motion) -> FloatArray | None:
 
 def _gives_heading(line: FloatArray) -> BoolArray:
     across = np.hypot(line[:, 0], line[:, 2])
-    least = np.maximum(MIN_AXIS_SHARE * np.linalg.norm(line, axis=1), SMALLEST_BODY)
+    least = np.maximum(MIN_AXIS_SHARE * np.linalg.norm(line, axis=1), MIN_BODY_SIZE)
     return np.asarray(across > least)
 
 
 def _heading(left: FloatArray | None, frames: int) -> FloatArray:
-    """(frames,) unwrapped heading from the left axis (frames, 3), bridged where that is upright.
+    """(frames,) the unwrapped heading, from the left axis (frames, 3).
 
-    A body that shows no left and right is said to look along Z.
+    It is interpolated where the axis is upright. A body without left and right faces along Z.
     """
     if left is None:
         return np.zeros(frames)

@@ -1,8 +1,7 @@
-"""Single poses in the body frame, each on its own: free of place, heading and size.
+"""Single poses in the body frame: without place, heading and size.
 
-A pose that is asked for comes without a motion around it, so each pose is taken as a motion
-of one frame: its own hips, heading and body length (see `body_frame`). The same pose is then
-the same numbers wherever it comes from.
+A query by pose has no motion around it. So each pose is treated as a motion of one frame, with its
+own hips, heading and body length (see `body_frame`). Equal poses then have equal numbers.
 """
 
 from __future__ import annotations
@@ -11,9 +10,9 @@ import numpy as np
 
 from app.motion.frame.body_frame import (
     MIN_AXIS_SHARE,
+    MIN_BODY_SIZE,
     NECK_TO_HEAD_PER_TORSO,
     SHIN_PER_TORSO,
-    SMALLEST_BODY,
 )
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
@@ -21,7 +20,7 @@ from app.numerics.arrays import FloatArray
 _R = JointRole
 _HIPS = SUN_ROLES.index(_R.HIPS)
 SIDES = ((_R.LEFT_SHOULDER, _R.RIGHT_SHOULDER), (_R.LEFT_KNEE, _R.RIGHT_KNEE))
-"""Pairs of joints that tell left from right, the better one first."""
+"""Pairs of joints that show left and right, the better one first."""
 
 _LENGTHS = (
     (_R.NECK, _R.HIPS),
@@ -33,12 +32,12 @@ _TIPS, _STARTS = ([SUN_ROLES.index(pair[end]) for pair in (*_LENGTHS, *SIDES)] f
 
 
 def body_poses(positions: FloatArray) -> FloatArray:
-    """(n, 13, 3) float64 poses in the body frame, body lengths, from positions (n, 13, 3).
+    """(n, 13, 3) float64 poses in the body frame, in body lengths.
 
-    positions: SUN_ROLES order, any unit, Y up. A joint that is where its neighbour towards
-    the trunk is stands in for one that is missing (see `Motion.role_positions`). The heading
-    is that of the shoulders where their line is level enough, else of the knees, or of what
-    is more level. A pose of no size, or with no left and right, is NaN.
+    positions: (n, 13, 3) in SUN_ROLES order, any unit, Y up. A joint at the place of its neighbor
+    toward the trunk counts as missing (see `Motion.role_positions`). The heading is that of the
+    shoulders if their line is level enough, else that of the more level one of shoulders and
+    knees. A pose without size, or without left and right, is NaN.
     """
     # (3, 13, n): planes of x, y and z, in which everything below is contiguous
     planes = np.array(np.asarray(positions).T, dtype=np.float64, order="C")
@@ -46,7 +45,7 @@ def body_poses(positions: FloatArray) -> FloatArray:
     lengths = np.sqrt(np.square(lines).sum(axis=0))
     size = _body_lengths(lengths[: len(_LENGTHS)])
     across, along, width = _left_lines(lines[:, len(_LENGTHS) :], lengths[len(_LENGTHS) :])
-    size[(size <= SMALLEST_BODY) | (width <= SMALLEST_BODY)] = np.nan
+    size[(size <= MIN_BODY_SIZE) | (width <= MIN_BODY_SIZE)] = np.nan
     planes -= planes[:, _HIPS, None]
     planes /= size
     x, y, z = planes
@@ -54,7 +53,7 @@ def body_poses(positions: FloatArray) -> FloatArray:
 
 
 def _body_lengths(lengths: FloatArray) -> FloatArray:
-    """(n,) body length from those of torso, neck to head, and shins (4, n)."""
+    """(n,) the body lengths; lengths: (4, n) of torso, neck to head, and both shins."""
     torso, head, *shins = lengths
     known = np.count_nonzero(shins, axis=0)
     head = np.where(head > 0, head, NECK_TO_HEAD_PER_TORSO * torso)
@@ -65,14 +64,14 @@ def _body_lengths(lengths: FloatArray) -> FloatArray:
 def _left_lines(
     lines: FloatArray, lengths: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """(n,) X and (n,) Z of the unit vector to the left, seen from above, and the line's width.
+    """X (n,) and Z (n,) of the horizontal unit vector to the left, and the line's width (n,).
 
-    lines: (3, 2, n) of the SIDES, from right to left; lengths: (2, n).
+    lines: (3, 2, n) the lines of the SIDES from right to left. lengths: (2, n) of these lines.
     """
     widths = np.hypot(lines[0], lines[2])
-    shares = widths / np.maximum(lengths, SMALLEST_BODY)
+    shares = widths / np.maximum(lengths, MIN_BODY_SIZE)
     second = (shares[0] <= MIN_AXIS_SHARE) & (shares[1] > shares[0])
     x, _, z = np.where(second, lines[:, 1], lines[:, 0])
     width = np.where(second, widths[1], widths[0])
-    held = np.maximum(width, SMALLEST_BODY)
+    held = np.maximum(width, MIN_BODY_SIZE)
     return x / held, z / held, width

@@ -1,4 +1,4 @@
-"""When feet stand, and how much they slide while they do."""
+"""When feet stand on the floor, and how much they slide while they stand."""
 
 from __future__ import annotations
 
@@ -11,35 +11,35 @@ from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import BoolArray, FloatArray
 
 LOW = 0.03
-"""Metres: a foot that is no higher above where it stands is on the floor."""
+"""Meters. A foot at most this far above its standing height is on the floor."""
 
 LEVEL_PERCENTILE = 5.0
-"""Of a foot's heights: where it stands."""
+"""The percentile of a foot's heights that is its standing height."""
 
 SLOW = 0.5
-"""Metres per second: a foot that is faster swings, however low."""
+"""Meters per second. A foot that is clearly faster swings, even if it is low."""
 
 REACH = 0.15
-"""Seconds over which a foot is led to where it is to stand, and away from it."""
+"""Seconds in which a foot moves to the place where it stands, and away from it."""
 
 SHORTEST = 0.1
-"""Seconds that a foot stands at least."""
+"""Seconds: the shortest time for which a foot stands."""
 
 FEET = (SUN_ROLES.index(JointRole.LEFT_FOOT), SUN_ROLES.index(JointRole.RIGHT_FOOT))
 
 
 def is_low(feet: FloatArray) -> BoolArray:
-    """(n, 2) whether feet (n, 2, 3), metres, Y up, are as low as when they stand."""
+    """(n, 2) whether `feet` (n, 2, 3), in meters, Y up, are as low as when they stand."""
     heights = feet[:, :, 1]
     level = np.percentile(heights, LEVEL_PERCENTILE, axis=0)
     return np.asarray(heights <= level + LOW)
 
 
 def skating(feet: FloatArray, rate: float) -> float:
-    """Mean horizontal speed, m/s, of feet (n, 2, 3) while they are low; 0 where they never are.
+    """The mean horizontal speed, m/s, of `feet` (n, 2, 3) while they are low; 0 if never.
 
-    A foot that rolls from heel to toe moves too: real walks have some tenths of a metre per
-    second.
+    rate: frames per second. A foot that rolls from heel to toe moves too: real walks have a few
+    tenths of a meter per second.
     """
     if len(feet) < 2:
         return 0.0
@@ -49,7 +49,7 @@ def skating(feet: FloatArray, rate: float) -> float:
 
 
 def standing(feet: FloatArray, rate: float) -> FloatArray:
-    """(n, 2) how surely feet (n, 2, 3) stand, 0..1: low and slow."""
+    """(n, 2) how certain it is, 0..1, that `feet` (n, 2, 3) stand: they are low and slow."""
     heights = feet[:, :, 1] - np.percentile(feet[:, :, 1], LEVEL_PERCENTILE, axis=0)
     speeds = np.linalg.norm(np.gradient(feet[:, :, [0, 2]], axis=0), axis=-1) * rate
     sure = np.exp(-((np.maximum(heights, 0.0) / LOW) ** 2) - (speeds / SLOW) ** 2)
@@ -57,10 +57,10 @@ def standing(feet: FloatArray, rate: float) -> FloatArray:
 
 
 def carried_by_feet(origin: FloatArray, feet: FloatArray, rate: float) -> FloatArray:
-    """(n, 3) the way of the hips `origin` (n, 3) such that the standing feet (n, 2, 3) stay.
+    """(n, 3) the path of the hips `origin` (n, 3), changed such that standing feet do not slide.
 
-    Where a foot surely stands, the speed with which it would slide is taken from the hips;
-    in flight they go on as they did. Heights stay.
+    feet: (n, 2, 3) meters. While a foot stands, its sliding speed is subtracted from the hips. In
+    flight the speed of the hips does not change. Heights do not change.
     """
     if len(origin) < 2:
         return origin
@@ -75,7 +75,7 @@ def carried_by_feet(origin: FloatArray, feet: FloatArray, rate: float) -> FloatA
 
 @dataclass(frozen=True, slots=True)
 class Stance:
-    """Frames first..stop-1 in which a foot (0 left, 1 right) stands."""
+    """The frames first .. stop - 1 in which a foot (0 left, 1 right) stands."""
 
     foot: int
     first: int
@@ -83,7 +83,7 @@ class Stance:
 
 
 def stances(feet: FloatArray, rate: float) -> list[Stance]:
-    """When feet (n, 2, 3) stand, for SHORTEST at least."""
+    """The stances of `feet` (n, 2, 3) that last at least SHORTEST."""
     found = []
     stands = standing(feet, rate) > 0.4
     for foot in range(2):
@@ -95,7 +95,7 @@ def stances(feet: FloatArray, rate: float) -> list[Stance]:
 
 
 def planted(feet: FloatArray, rate: float) -> FloatArray:
-    """(n, 2, 3) the feet held where they stand, and led there and away without a jump."""
+    """(n, 2, 3) `feet` (n, 2, 3) with each standing foot fixed in place, without jumps."""
     result = np.array(feet, dtype=np.float64)
     reach = max(round(REACH * rate), 1)
     found = stances(feet, rate)
@@ -119,7 +119,7 @@ def planted(feet: FloatArray, rate: float) -> FloatArray:
 
 
 def _let_go(frames: list[float], offsets: list[FloatArray], until: float, reach: int) -> None:
-    """Nothing is held between stances that are far enough from each other."""
+    """End the correction of a stance, and begin that of the next, if they are far apart."""
     if until - frames[-1] > 2 * reach:
         frames += [frames[-1] + reach, until - reach]
         offsets += [np.zeros(2), np.zeros(2)]

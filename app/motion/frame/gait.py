@@ -1,8 +1,8 @@
-"""Gait cycles (DESIGN 4): from one forward swing of the left foot to its next.
+"""Gait cycles: from one forward swing of the left foot to the next.
 
-The fore-aft difference of the feet in the body frame, cut at its upward zero crossings.
-A motion is cyclic where such cycles follow one another, last as human steps do and swing
-widely to both sides; anything else has none.
+The fore-aft difference of the feet in the body frame is cut at its upward zero crossings. A cycle
+must last as long as two human steps, swing widely to both sides, and travel. Other motions have no
+cycles.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from app.numerics.arrays import FloatArray
 SMOOTHING = 0.05
 """Seconds (standard deviation)."""
 
-SHORTEST_CYCLE = 0.4
-LONGEST_CYCLE = 2.0
-"""Seconds for both steps, from a sprint to a stroll."""
+MIN_CYCLE = 0.4
+MAX_CYCLE = 2.0
+"""Seconds for both steps: from a sprint to a slow walk."""
 
-LEAST_SWING = 0.15
-"""Body lengths that the feet must part, to each side, in a cycle."""
+MIN_SWING = 0.15
+"""Body lengths by which each foot must be ahead of the other one in a cycle."""
 
-LEAST_TRAVEL = 0.3
-"""Body lengths that the hips must travel in a cycle: kicks and dances on the spot do not."""
+MIN_TRAVEL = 0.3
+"""Body lengths that the hips must travel in a cycle. Kicks and dances on the spot do not."""
 
 LACKING = 0.15
-"""Share of a cycle that a short clip may lack."""
+"""The share of a cycle that may be missing in a short clip."""
 
 LEFT_FOOT = SUN_ROLES.index(JointRole.LEFT_FOOT)
 RIGHT_FOOT = SUN_ROLES.index(JointRole.RIGHT_FOOT)
@@ -38,14 +38,14 @@ FORWARD = 2
 
 
 def gait_cycles(track: BodyTrack) -> list[tuple[int, int]]:
-    """(first, stop) frames of each gait cycle of `track`, in order; empty where none."""
+    """The first frame and the stop of each gait cycle of `track`, in order; may be empty."""
     return _cycles(track, foot_split(track))
 
 
 def exact_gait_cycles(track: BodyTrack) -> list[tuple[float, float]]:
-    """(start, end) of each gait cycle of `track` in frames, between frames too.
+    """The start and the end of each gait cycle of `track`, in fractions of frames.
 
-    A cycle cut at whole frames would be out of phase by as much as the stride of one.
+    If cycles were cut at whole frames, their phases would be wrong by up to a frame.
     """
     split = foot_split(track)
     cycles = _cycles(track, split)
@@ -70,9 +70,10 @@ def _crossing(split: FloatArray, frame: int) -> float:
 
 
 def _lone_cycle(split: FloatArray) -> list[tuple[int, int]]:
-    """The cycle of a clip too short for two upward crossings, timed by the downward ones.
+    """The cycle of a clip that is too short for two upward crossings.
 
-    It starts or ends at the upward crossing; up to LACKING of it may be cut off.
+    The downward crossings give its length. It starts or ends at the upward crossing; up to
+    LACKING of it may be missing.
     """
     upward, downward = _upward(split), _upward(-split)
     if len(upward) != 1 or len(downward) != 2:
@@ -86,7 +87,7 @@ def _lone_cycle(split: FloatArray) -> list[tuple[int, int]]:
 
 
 def foot_split(track: BodyTrack) -> FloatArray:
-    """(n,) how far the left foot is before the right one, body lengths, smoothed."""
+    """(n,) how far the left foot is ahead of the right one, in body lengths, smoothed."""
     split = track.local[:, LEFT_FOOT, FORWARD] - track.local[:, RIGHT_FOOT, FORWARD]
     return np.asarray(
         scipy.ndimage.gaussian_filter1d(split, SMOOTHING * track.rate, mode="nearest")
@@ -94,12 +95,12 @@ def foot_split(track: BodyTrack) -> FloatArray:
 
 
 def _is_stride(track: BodyTrack, split: FloatArray, first: int, stop: int) -> bool:
-    """Whether frames first..stop-1 last, swing and travel as two steps do."""
+    """Whether the frames first .. stop - 1 have the duration, swing and travel of two steps."""
     within = split[first:stop]
     seconds = (stop - first) / track.rate
-    if not SHORTEST_CYCLE <= seconds <= LONGEST_CYCLE:
+    if not MIN_CYCLE <= seconds <= MAX_CYCLE:
         return False
     last = min(stop, track.frames - 1)
     travel = np.linalg.norm((track.origin[last] - track.origin[first])[[0, FORWARD]])
-    parted = min(within.max(), -within.min()) >= LEAST_SWING
-    return bool(parted and travel / track.body_length >= LEAST_TRAVEL)
+    parted = min(within.max(), -within.min()) >= MIN_SWING
+    return bool(parted and travel / track.body_length >= MIN_TRAVEL)

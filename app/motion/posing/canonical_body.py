@@ -20,15 +20,15 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 STATURE = 1.7
-"""Metres."""
+"""Meters."""
 ANKLE_HEIGHT = 0.039 * STATURE
 """Of the ankle above the sole that stands (Winter)."""
 FLOOR_PERCENTILE = 5.0
 """Of the lower foot's heights over a clip: where the floor is. A few frames may be lower."""
 CHEST_SHARE = 0.6
 """Where on the line from hips to neck a chest is put that a clip lacks."""
-SHORTEST_LEG = 1e-3
-"""Metres; below it legs have no length to scale by."""
+MIN_LEG_LENGTH = 1e-3
+"""Meters; below it legs have no length to scale by."""
 
 _R = JointRole
 # role: role that it hangs on, offset in shares of stature
@@ -65,7 +65,7 @@ _Points = dict[JointRole, FloatArray]
 
 
 def canonical_body() -> Skeleton:
-    """The body at rest, metres, Y up, standing on the floor; joints are called by role."""
+    """The body at rest, meters, Y up, standing on the floor; joints are called by role."""
     above = (role for role, _ in _BODY.values())
     return Skeleton(
         names=tuple(role.value for role in BODY_ROLES),
@@ -78,7 +78,7 @@ def on_canonical_body(motion: Motion) -> Animation:
     """The movement of `motion` on the canonical body, at the same frame rate."""
     body, points = canonical_body(), _points(motion)
     rotations = solve_rotations(body, _bones(body, points, motion.frames))
-    scale = _leg_length(body.offsets) / max(_leg_length_of(points), SHORTEST_LEG)
+    scale = _leg_length(body.offsets) / max(_leg_length_of(points), MIN_LEG_LENGTH)
     roots = points[_R.HIPS] * scale
     posed = forward_kinematics(body, rotations, local_translations(body, roots))
     roots[:, 1] += _wanted_height(points, scale) - posed[:, _FEET, 1].min(axis=1)
@@ -86,7 +86,7 @@ def on_canonical_body(motion: Motion) -> Animation:
 
 
 def _points(motion: Motion) -> _Points:
-    """(frames, 3) float64 metres by role; chest and upper legs are put in where they lack."""
+    """(frames, 3) float64 meters by role; chest and upper legs are put in where they lack."""
     points: _Points = {
         role: motion.positions[:, joint].astype(np.float64) for role, joint in motion.roles.items()
     }

@@ -1,6 +1,6 @@
 """The rotations that a file had, brought to the canonical form that its positions have.
 
-A canonical motion is the recording turned to Y up and scaled to metres. Turn and scale are
+A canonical motion is the recording turned to Y up and scaled to meters. Turn and scale are
 found again by holding the recording against the stored positions, so that a file that is
 now read otherwise is noticed rather than exported wrongly.
 """
@@ -19,9 +19,9 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 SAME_PLACE = 5e-5
-"""Metres; a joint that the file's own offsets bring so near is where it was stored."""
+"""Meters; a joint that the file's own offsets bring so near is where it was stored."""
 SAME_READING = 1e-3
-"""Metres, of the first frame; more and the recording is not what was stored."""
+"""Meters, of the first frame; more and the recording is not what was stored."""
 UP_AXES = ("y", "z", "x", "-z", "-x", "-y")
 
 
@@ -36,9 +36,9 @@ def animation_of_recording(recording: Recording, motion: Motion) -> Animation | 
     turn = _turn_between(recording, motion)
     if turn is None or recording.rotations.shape[:2] != motion.positions.shape[:2]:
         return None
-    told = recording.rotations.astype(np.float64)
-    told /= np.linalg.norm(told, axis=-1, keepdims=True)  # float32 is short of unit length
-    rotations = multiply(multiply(turn, told), conjugate(turn))
+    local = recording.rotations.astype(np.float64)
+    local /= np.linalg.norm(local, axis=-1, keepdims=True)  # float32 is short of unit length
+    rotations = multiply(multiply(turn, local), conjugate(turn))
     skeleton = _turned(recording.skeleton, turn, motion.metres_per_unit)
     as_told = _translations(recording, turn, motion)
     reached = forward_kinematics(skeleton, rotations, as_told)
@@ -70,7 +70,7 @@ def _turned(skeleton: Skeleton, turn: FloatArray, scale: float) -> Skeleton:
 
 
 def _translations(recording: Recording, turn: FloatArray, motion: Motion) -> FloatArray:
-    """(frames, joints, 3) local translations, metres, in the turned frame."""
+    """(frames, joints, 3) local translations, meters, in the turned frame."""
     local = recording.translations
     if local is None:
         local = local_translations(recording.skeleton, recording.positions[:, 0])

@@ -13,13 +13,13 @@ THROWN = 2.0
 """Times the longest step of a joint role between any other two frames. Of 42 real clips by CMU
 all but one begin with more, of 97 by Bandai-Namco none with more than 1.05."""
 
-FEWEST_FRAMES = 10
-"""Of fewer the first step cannot be told from the others."""
+MIN_FRAMES = 10
+"""The fewest frames. With fewer, the first step cannot be compared with the others."""
 
 
 def without_posed_start(motion: Motion) -> Motion:
     """The motion without its first frame where that is such a pose, else the same object."""
-    if motion.frames < FEWEST_FRAMES:
+    if motion.frames < MIN_FRAMES:
         return motion
     roles = motion.role_positions().astype(np.float64)
     steps = np.linalg.norm(np.diff(roles, axis=0), axis=-1).max(axis=1)

@@ -20,14 +20,14 @@ from app.numerics.arrays import FloatArray, IntArray
 
 ITERATIONS = 12
 DAMPING = 3e-3
-"""Square metres per square radian: of a step."""
+"""Square meters per square radian: of a step."""
 STAYING = 1e-3
 """Likewise: of leaving the pose that was started from."""
-LARGEST_STEP = 0.4
+MAX_STEP = 0.4
 """Radians that a joint turns in one step."""
 
-SMALLEST_STEP = 2e-3
-"""Radians and metres: below it all frames are there."""
+MIN_STEP = 2e-3
+"""Radians and meters: below it all frames are there."""
 
 _WEIGHTS = {
     JointRole.HIPS: 2.0,
@@ -56,7 +56,7 @@ class _Body:
 def pose_to(start: Animation, joints: dict[JointRole, int], wanted: FloatArray) -> Animation:
     """The poses near `start` whose roles, at the indices `joints`, come nearest to `wanted`.
 
-    wanted: (frames, 13, 3) metres in SUN_ROLES order; roles that the skeleton lacks are not
+    wanted: (frames, 13, 3) meters in SUN_ROLES order; roles that the skeleton lacks are not
     looked at. Only the first root's place and turns change, of the hips and what is below.
     """
     body = _body(start.skeleton, joints)
@@ -72,7 +72,7 @@ def pose_to(start: Animation, joints: dict[JointRole, int], wanted: FloatArray) 
         turns = step[:, 3:]
         left += turns
         _turn(rotations, above, body.turning, turns.reshape(len(aim), -1, 3))
-        if np.abs(step).max() < SMALLEST_STEP:
+        if np.abs(step).max() < MIN_STEP:
             break
     return Animation(start.skeleton, rotations, translations, start.frame_rate)
 
@@ -134,7 +134,7 @@ def _step(body: _Body, places: FloatArray, aim: FloatArray, left: FloatArray) ->
     aimed = (across @ off.reshape(frames, -1, 1))[..., 0]
     aimed[:, 3:] -= STAYING * left
     step = np.linalg.solve(normal + np.diag(damping + 1e-9), aimed[..., None])[..., 0]
-    step[:, 3:] = np.clip(step[:, 3:], -LARGEST_STEP, LARGEST_STEP)
+    step[:, 3:] = np.clip(step[:, 3:], -MAX_STEP, MAX_STEP)
     return np.asarray(step)
 
 

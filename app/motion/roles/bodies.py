@@ -1,4 +1,4 @@
-"""Several bodies in one file: one is taken whole, and the others are told.
+"""Several bodies in one file: one is used, and the others are reported in a caution.
 
 A skeleton may have several roots: people, props, loose markers. Roles must not be mixed from
 two people, so that where two trees are bodies by themselves, only one is looked at.
@@ -16,8 +16,8 @@ from app.motion.skeleton.kinematics import joints_by_depth
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray, IntArray
 
-LEAST_JOINTS = 8
-"""A tree of fewer joints is a prop or markers, no person."""
+MIN_JOINTS = 8
+"""The fewest joints of a person. A smaller tree is an object or a set of markers."""
 
 Roles = dict[JointRole, int]
 
@@ -28,10 +28,10 @@ def roles_of_one_body(
     positions: FloatArray,
     given: Mapping[JointRole, int],
 ) -> tuple[Roles, tuple[Caution, ...]]:
-    """Joint index by role, all of one body, and a caution where there are others.
+    """The joint of each role, all of one body, and a caution if there are other bodies.
 
-    names, parents: (joints,); positions: (frames, joints, 3) in any unit and axes. Of several
-    bodies the one that most of `given` belong to is taken, else the first.
+    names, parents: (joints,). positions: (frames, joints, 3) in any unit and axes. given: joints
+    that a client named. The body with most of them is used, else the first one.
     """
     found = _bodies(names, parents, positions)
     if len(found) < 2:
@@ -47,12 +47,12 @@ def roles_of_one_body(
 
 
 def _bodies(names: Sequence[str], parents: IntArray, positions: FloatArray) -> list[IntArray]:
-    """The trees that have all that a body needs, each as its joints, the root first."""
+    """The trees that have all ESSENTIAL_ROLES, each as its joints, the root first."""
     if np.count_nonzero(parents < 0) < 2:
         return []
     root_of = _roots(parents)
     trees = [np.flatnonzero(root_of == root) for root in np.flatnonzero(parents < 0)]
-    large = [tree for tree in trees if len(tree) >= LEAST_JOINTS]
+    large = [tree for tree in trees if len(tree) >= MIN_JOINTS]
     if len(large) < 2:
         return []
     return [tree for tree in large if _is_body(_roles_in(tree, names, parents, positions))]
@@ -65,7 +65,7 @@ def _is_body(roles: Roles) -> bool:
 def _roles_in(
     joints: IntArray, names: Sequence[str], parents: IntArray, positions: FloatArray
 ) -> Roles:
-    """Roles found in one tree alone, as joints of the whole."""
+    """The roles that are found in one tree, as joints of the whole skeleton."""
     place = {joint: index for index, joint in enumerate(joints.tolist())}
     inner = np.array([place.get(int(parent), -1) for parent in parents[joints]])
     found = find_roles([names[joint] for joint in joints], inner, positions[:, joints])
@@ -73,7 +73,7 @@ def _roles_in(
 
 
 def _roots(parents: IntArray) -> IntArray:
-    """(joints,): the root of each joint's tree."""
+    """(joints,) the root of the tree of each joint."""
     roots = np.arange(len(parents))
     for joints in joints_by_depth(parents)[1:]:
         roots[joints] = roots[parents[joints]]

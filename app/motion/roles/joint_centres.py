@@ -1,8 +1,8 @@
-"""Joint centres from markers, simply: means of the markers around a joint.
+"""Joint centers from markers, simply: means of the markers around a joint.
 
 Hips are the mean of the pelvis markers, the neck that of C7 and the clavicle, the head that
 of its band, knee, ankle, elbow and wrist the middle between their two markers, or the outer
-one alone: up to 5 cm beside the true centre, always on the same side. The hip joints lie by
+one alone: up to 5 cm beside the true center, always on the same side. The hip joints lie by
 Bell, Pedersen and Brand (1990) 14 % of the distance between the front pelvis markers
 inwards, 30 % down and 22 % back from them. No model of the person is fitted.
 """
@@ -19,7 +19,7 @@ from app.numerics.arrays import FloatArray
 
 _R = JointRole
 Recipe = tuple[str, ...]
-"""Places of markers whose mean is a joint's centre."""
+"""Names of marker places. The mean of these markers is a joint's center."""
 
 _SIDED: dict[str, tuple[Recipe, ...]] = {
     "knee": (("?KJC",), ("?KNE", "?KNM"), ("?KNE",)),
@@ -52,20 +52,23 @@ _INWARDS, _DOWN, _BACK = 0.14, 0.30, 0.22
 
 
 @dataclass(frozen=True, slots=True)
-class Centre:
-    """A joint's centre (frames, 3) and the places of the markers that it comes from."""
+class Center:
+    """A joint's center (frames, 3) and the places of the markers that it comes from."""
 
     positions: FloatArray
     places: Recipe
 
 
-def joint_centres(markers: Mapping[str, FloatArray]) -> dict[JointRole, Centre]:
-    """The centres that markers (frames, 3) by place tell, in the markers' unit and axes."""
-    found: dict[JointRole, Centre] = {}
+def joint_centers(markers: Mapping[str, FloatArray]) -> dict[JointRole, Center]:
+    """The joint centers that can be computed from `markers`, in their unit and axes.
+
+    markers: (frames, 3) for each marker place.
+    """
+    found: dict[JointRole, Center] = {}
     for role, recipes in RECIPES.items():
         recipe = chosen(recipes, markers.__contains__)
         if recipe is not None:
-            found[role] = Centre(_mean(markers, recipe), recipe)
+            found[role] = Center(_mean(markers, recipe), recipe)
     pelvis = chosen(_PELVES, markers.__contains__)
     if pelvis is not None:
         _add_hip_joints(found, markers, pelvis)
@@ -73,12 +76,12 @@ def joint_centres(markers: Mapping[str, FloatArray]) -> dict[JointRole, Centre]:
 
 
 def chosen(recipes: tuple[Recipe, ...], has: Callable[[str], bool]) -> Recipe | None:
-    """The first recipe all of whose places there are."""
+    """The first recipe for which all markers exist; None if there is none."""
     return next((recipe for recipe in recipes if all(map(has, recipe))), None)
 
 
 def _add_hip_joints(
-    found: dict[JointRole, Centre], markers: Mapping[str, FloatArray], pelvis: Recipe
+    found: dict[JointRole, Center], markers: Mapping[str, FloatArray], pelvis: Recipe
 ) -> None:
     left, right = markers["LASI"].astype(np.float64), markers["RASI"].astype(np.float64)
     back = _mean(markers, pelvis[2:])
@@ -89,8 +92,8 @@ def _add_hip_joints(
     up = np.cross(forward, outwards)
     for role, front, side in ((_R.LEFT_UPPER_LEG, left, 1.0), (_R.RIGHT_UPPER_LEG, right, -1.0)):
         inwards = -side * _INWARDS * outwards
-        centre = front + width * (inwards - _DOWN * up - _BACK * forward)
-        found.setdefault(role, Centre(centre, pelvis))
+        center = front + width * (inwards - _DOWN * up - _BACK * forward)
+        found.setdefault(role, Center(center, pelvis))
 
 
 def _mean(markers: Mapping[str, FloatArray], recipe: Recipe) -> FloatArray:

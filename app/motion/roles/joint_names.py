@@ -1,4 +1,4 @@
-"""What a joint's name says of its role, in the conventions that are about (DESIGN 4).
+"""What a joint's name says about its role, in the common naming conventions.
 
 CMU/MotionBuilder `LeftUpLeg`, ASF `lfemur`, DAZ/Poser `lShldr`, Mixamo
 `mixamorig:LeftArm`, Bandai Namco `UpperArm_L`, LAFAN1, SMPL `L_Hip`, Vicon plug-in-gait
@@ -64,7 +64,7 @@ _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 
 
 def roles_by_name(names: Sequence[str]) -> dict[JointRole, int]:
-    """The joint of each role that the names tell; at most one role a joint."""
+    """The joint of each role that is found by name; no joint has two roles."""
     keys = _first_by_key(names)
     found: dict[JointRole, int] = {}
     for role, aliases in _aliases_by_role():

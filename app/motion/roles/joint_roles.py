@@ -28,7 +28,7 @@ class JointRole(StrEnum):
     RIGHT_UPPER_LEG = "right_upper_leg"
 
     def towards_trunk(self) -> JointRole:
-        """The neighbour one link nearer to the hips; the hips are their own."""
+        """The neighboring role that is nearer to the hips; for the hips, the hips."""
         return _TOWARDS_TRUNK[self]
 
     def mirrored(self) -> JointRole:
@@ -42,7 +42,7 @@ class JointRole(StrEnum):
 
 
 SUN_ROLES: tuple[JointRole, ...] = tuple(JointRole)[:13]
-"""Sun's order, which is also the order of a pose query (DESIGN 8)."""
+"""Sun's order of the 13 joints. It is also the order of a query by pose."""
 
 ESSENTIAL_ROLES: tuple[JointRole, ...] = (
     JointRole.HIPS,
@@ -50,7 +50,7 @@ ESSENTIAL_ROLES: tuple[JointRole, ...] = (
     JointRole.RIGHT_KNEE,
     JointRole.NECK,
 )
-"""Without these there is no body frame: such a skeleton is refused."""
+"""Without these roles there is no body frame. A skeleton without them is refused."""
 
 _R = JointRole
 _TOWARDS_TRUNK: dict[JointRole, JointRole] = {
@@ -78,4 +78,4 @@ SUN_PARENTS: tuple[int, ...] = tuple(
     -1 if (nearer := role.towards_trunk()) is role else SUN_ROLES.index(nearer)
     for role in SUN_ROLES
 )
-"""Each of SUN_ROLES' neighbour towards the trunk, as an index; the hips are the root."""
+"""Each of SUN_ROLES' neighbor toward the trunk, as an index; the hips are the root."""

@@ -1,4 +1,4 @@
-"""Which joint has which role: from the client, else by name, else by shape (DESIGN 4)."""
+"""Which joint has which role: from the client, else by its name, else by the body's shape."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _LIMBS: tuple[tuple[JointRole, ...], ...] = (
     (_R.RIGHT_SHOULDER, _R.RIGHT_ELBOW, _R.RIGHT_HAND),
     (_R.NECK, _R.HEAD),
 )
-"""Each role hangs on the one before it."""
+"""Chains of roles: each joint must be below the one before it in the tree."""
 _NEEDED = tuple(role for role in JointRole if role not in (_R.CHEST, _R.LEFT_TOES, _R.RIGHT_TOES))
 
 
@@ -29,11 +29,11 @@ def find_roles(
     positions: FloatArray,
     given: Mapping[JointRole, int] | None = None,
 ) -> dict[JointRole, int]:
-    """Joint index by role; a role that cannot be found is left out.
+    """The joint of each role; roles that cannot be found are left out.
 
-    names, parents: (joints,); positions: (frames, joints, 3) in any unit and axes;
-    given: joints that are known already and win over everything. Sides told by names win
-    over geometry. No joint gets two roles except as `given`.
+    names, parents: (joints,). positions: (frames, joints, 3) in any unit and axes. given: joints
+    that are already known; they have priority. Sides in names have priority over geometry. No
+    joint gets two roles, except by `given`.
     """
     found = dict(given or {})
     tree = _Ancestry(parents)
@@ -45,9 +45,9 @@ def find_roles(
 
 
 def given_roles(names: Sequence[str], mapping: Mapping[str, str]) -> dict[JointRole, int]:
-    """A client's mapping of role names to joint names, as indices.
+    """The joints of a client's mapping of role names to joint names.
 
-    Raises BadField naming each unknown role, unknown joint and ambiguous joint.
+    Raises BadField with each unknown role, unknown joint and ambiguous joint.
     """
     found: dict[JointRole, int] = {}
     places: list[Place] = []
@@ -72,14 +72,14 @@ def _problem(names: Sequence[str], role: str, name: str) -> str | None:
 
 
 def _add(found: dict[JointRole, int], more: Mapping[JointRole, int]) -> None:
-    """Add roles that are not found yet, on joints that have none yet."""
+    """Add roles that are not found yet, for joints that have no role yet."""
     for role, joint in more.items():
         if role not in found and joint not in found.values():
             found[role] = joint
 
 
 def _add_agreeing(found: dict[JointRole, int], shape: Mapping[JointRole, int]) -> None:
-    """Add roles by shape, unless shape has taken a known side for the other one."""
+    """Add roles by shape, unless these exchange left and right of a known role."""
     swapped = any(
         role in found and role.mirrored() != role and shape.get(role.mirrored()) == joint
         for role, joint in found.items()
@@ -100,11 +100,11 @@ class _Ancestry:
         return found
 
     def is_tree(self) -> bool:
-        """Markers hang on nothing; their names are all there is."""
+        """Whether joints have parents. Markers have none; only their names can be used."""
         return any(parent >= 0 for parent in self.parents)
 
     def consistent(self, named: dict[JointRole, int]) -> dict[JointRole, int]:
-        """`named` without limbs whose parts do not hang on each other."""
+        """`named` without limbs whose joints are not below each other in the tree."""
         if not self.is_tree():
             return named
         good = dict(named)
@@ -119,7 +119,7 @@ class _Ancestry:
         return good
 
     def trunk_from_limbs(self, found: Mapping[JointRole, int]) -> dict[JointRole, int]:
-        """Hips where the legs part; neck below the head, or where the arms part."""
+        """The hips, where the legs branch; the neck, below the head or where the arms branch."""
         trunk: dict[JointRole, int] = {}
         legs, arms = (self._branching(found, r) for r in (_R.LEFT_KNEE, _R.LEFT_SHOULDER))
         if legs is not None:
@@ -133,7 +133,7 @@ class _Ancestry:
         return trunk
 
     def _branching(self, roles: Mapping[JointRole, int], left: JointRole) -> int | None:
-        """The lowest joint that a left role and its mirror both hang on."""
+        """The lowest joint that is above both a left role and its mirrored role."""
         if left not in roles or left.mirrored() not in roles:
             return None
         other = set(self.above(roles[left.mirrored()]))

@@ -1,10 +1,9 @@
-"""Joint roles from a skeleton's shape, where its names say nothing.
+"""Joint roles from the shape of a skeleton, if its names give none.
 
-Legs and arms are the two mirrored pairs of chains with the longest two neighbouring
-bones: thigh and shank make .49 of stature, upper arm and forearm .33 (Drillis and
-Contini 1966, as tabled by Winter, "Biomechanics and motor control", fig. 4.1). Left is
-told from right by geometry: up the trunk x forward, forward being where the toes point
-and knees bend. A mirrored motion gets mirrored answers.
+Legs and arms are the two mirrored pairs of chains with the longest two neighboring bones. Thigh and
+shank make .49 of the stature, upper arm and forearm .33 (Drillis and Contini 1966; fig. 4.1 of
+Winter, "Biomechanics and motor control"). Left is the cross product of up (along the trunk) and
+forward (where the toes point and the knees bend). A mirrored motion gets mirrored roles.
 """
 
 from __future__ import annotations
@@ -19,23 +18,24 @@ from app.motion.roles.joint_roles import JointRole
 from app.numerics.arrays import FloatArray, IntArray
 
 SAMPLED_FRAMES = 64
-"""Shape and sides are judged on at most so many frames, evenly chosen."""
+"""The most frames, evenly chosen, on which shape and sides are judged."""
 SAME_LENGTH = 0.85
-"""Mirrored bones are at least this much alike (shorter / longer)."""
+"""The smallest ratio of the lengths of two mirrored bones (shorter / longer)."""
 NEAR_LONGEST = 0.85
+"""Pairs of bones of at least this share of the longest pair count as equally long."""
 NO_LENGTH = 0.02
-"""A bone below this part of its chain only doubles a joint."""
-SHORTEST_ARM = 0.35
-"""Upper arm and forearm are at least this part of thigh and shank; fingers are not."""
+"""A bone below this share of its chain only doubles a joint."""
+MIN_ARM_SHARE = 0.35
+"""Upper arm and forearm have at least this share of the length of thigh and shank."""
 CLEAR_SIDE = 0.02
-"""Sides are told only where the evidence is this part of its possible size."""
+"""Left and right are decided only if the evidence is at least this share of its possible size."""
 MAX_PAIRED_CHILDREN = 12
-"""Children of one joint that are compared pairwise; bodies branch less."""
+"""The most children of a joint that are compared in pairs. Bodies have fewer branches."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Chain:
-    """A limb from the joint where it branches off by the child `branch` outwards.
+    """A limb, from the joint where it branches off outward; `branch` is its first own joint.
 
     joints: one more than `lengths`; bone i runs from joint i to joint i + 1.
     """
@@ -45,15 +45,15 @@ class _Chain:
     lengths: tuple[float, ...]
 
     def main_bones(self) -> int:
-        """Index of the first of the two main bones: neighbours that are longest together.
+        """The index of the first of the two main bones: the longest two neighbors.
 
-        A collar bone can be as long as a forearm, so the outermost of near equals is it.
+        A collar bone can be as long as a forearm. So of nearly equal pairs the outermost is used.
         """
         sums = np.array([a + b for a, b in pairwise(self.lengths)])
         return int(np.flatnonzero(sums >= NEAR_LONGEST * sums.max())[-1])
 
     def reach(self) -> float:
-        """Length of the two main bones."""
+        """The length of the two main bones."""
         first = self.main_bones()
         return self.lengths[first] + self.lengths[first + 1]
 
@@ -63,9 +63,10 @@ _Pair = tuple[int, _Chain, _Chain]
 
 
 def roles_by_shape(parents: IntArray, positions: FloatArray) -> dict[JointRole, int]:
-    """Roles told by the tree `parents` (joints,) and positions (frames, joints, 3).
+    """The joint of each role, from the tree `parents` (joints,) and the shape of the body.
 
-    Empty where there are no two legs; limbs whose side cannot be told are left out.
+    positions: (frames, joints, 3) in any unit and axes. The result is empty if there are no two
+    legs. Limbs are left out if their side is unclear.
     """
     chosen = np.unique(np.linspace(0, len(positions) - 1, SAMPLED_FRAMES).astype(int))
     tree = _Tree(parents, np.asarray(positions[chosen], dtype=np.float64))
@@ -99,7 +100,7 @@ class _Tree:
                 self.reach[parent] = max(self.reach[parent], along)
 
     def mirrored_pairs(self) -> Iterator[_Pair]:
-        """Every two chains that leave one joint, have two bones or more and look alike."""
+        """All pairs of similar chains that branch off at one joint and have two or more bones."""
         for joint, children in enumerate(self.children):
             chains = [self.chain(joint, child) for child in children[:MAX_PAIRED_CHILDREN]]
             for one, other in combinations(chains, 2):
@@ -107,7 +108,7 @@ class _Tree:
                     yield joint, one, other
 
     def chain(self, start: int, child: int) -> _Chain:
-        """From `start` by `child` along the longest way out, doubled joints dropped."""
+        """The longest chain from `start` through `child` outward, without doubled joints."""
         path = [start, child]
         while self.children[path[-1]]:
             onward = self.children[path[-1]]
@@ -124,7 +125,7 @@ class _Tree:
 
     def could_be_arms(self, legs: _Pair, arms: _Pair) -> bool:
         """Whether the pair is long enough, and apart from the legs' chains."""
-        if arms[1].reach() < SHORTEST_ARM * legs[1].reach():
+        if arms[1].reach() < MIN_ARM_SHARE * legs[1].reach():
             return False
         taken = {joint for chain in legs[1:] for joint in chain.joints if joint != legs[0]}
         others = {joint for chain in arms[1:] for joint in chain.joints if joint != arms[0]}

@@ -25,7 +25,7 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 STILL = 2e-6
-"""Metres: a joint that leaves its offset by no more is not said to move along its bone.
+"""Meters: a joint that leaves its offset by no more is not said to move along its bone.
 Errors add up along a chain; thirty joints stay within 0.06 mm."""
 FOLLOW_PARENT = 3e-7
 """Weight of turning with the parent against the bones' directions: so little that it decides
@@ -38,7 +38,7 @@ BLOCK_FRAMES = 2048
 
 @dataclass(frozen=True, slots=True)
 class Animation:
-    """Joints turning and moving in their parents' frames, metres, Y up.
+    """Joints turning and moving in their parents' frames, meters, Y up.
 
     skeleton: at rest; rotations: (frames, joints, 4) unit quaternions w x y z, local;
     translations: (frames, joints, 3) local, which replace the skeleton's offsets;
@@ -51,7 +51,7 @@ class Animation:
     frame_rate: float
 
     def positions(self) -> FloatArray:
-        """(frames, joints, 3) world positions, metres."""
+        """(frames, joints, 3) world positions, meters."""
         return forward_kinematics(self.skeleton, self.rotations, self.translations)
 
     def moving_joints(self) -> BoolArray:
@@ -101,7 +101,7 @@ def animation_of_rotations(
 def animation_of_positions(
     names: Sequence[str], parents: IntArray, positions: FloatArray, frame_rate: float
 ) -> Animation:
-    """Joints (frames, joints, 3) in metres, turned so that bones follow their directions.
+    """Joints (frames, joints, 3) in meters, turned so that bones follow their directions.
 
     The rest pose is the first frame. A joint turns as its children do (least squares); one
     without children turns with its parent; what bones leave open follows the parent.
@@ -130,7 +130,7 @@ def solve_rotations(skeleton: Skeleton, bones: FloatArray) -> FloatArray:
 
     bones: (frames, joints, 3) world vector from parent to joint; a zero vector says
     nothing. Each joint solves Wahba's problem over its children by the SVD (Markley 1988),
-    long bones weighing more, with a light pull towards its parent's turn.
+    long bones weighing more, with a light pull toward its parent's turn.
     """
     blocks = range(0, len(bones), BLOCK_FRAMES)
     return np.concatenate(

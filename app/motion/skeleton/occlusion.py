@@ -1,7 +1,7 @@
-"""Markers that no camera saw for a while: short gaps are filled, long ones are told.
+"""Markers that no camera saw for a while: short gaps are filled, long gaps are reported.
 
-A gap is filled by the cubic spline through all that was seen of the marker, at the ends of
-the recording by the nearest frame that was seen.
+A gap is filled by a cubic spline through all frames in which the marker was seen. At the ends of
+the recording it is filled by the nearest such frame.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ import scipy
 
 from app.numerics.arrays import BoolArray, FloatArray
 
-LONGEST_GAP = 0.25
-"""Seconds; a limb turns back within half a second, so that a longer gap may hide it."""
+MAX_GAP = 0.25
+"""Seconds. A limb can move away and back within half a second, so a longer gap may hide that."""
 
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """Frames from `start` to before `end` in which `marker` was not seen."""
+    """The frames start .. end - 1 in which `marker` was not seen."""
 
     marker: int
     start: int
@@ -28,8 +28,11 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class Filled:
-    """positions: (frames, markers, 3), NaN only in long gaps; frames: how many frames of
-    markers were filled; long_gaps: those that were not, by marker and time."""
+    """Markers with filled gaps.
+
+    positions: (frames, markers, 3), NaN only in long gaps. frames: how many frames of markers
+    were filled. long_gaps: the gaps that were not filled, by marker and time.
+    """
 
     positions: FloatArray
     frames: int
@@ -37,8 +40,11 @@ class Filled:
 
 
 def fill_gaps(positions: FloatArray, frame_rate: float) -> Filled:
-    """Fill what is NaN in positions (frames, markers, 3) for up to LONGEST_GAP seconds."""
-    longest = max(1, round(LONGEST_GAP * frame_rate))
+    """Fill the gaps (NaN) of at most MAX_GAP seconds in `positions` (frames, markers, 3).
+
+    frame_rate: Hz. The input is not changed.
+    """
+    longest = max(1, round(MAX_GAP * frame_rate))
     unseen: BoolArray = np.asarray(np.isnan(positions).any(axis=-1))
     filled = positions.copy()
     long_gaps: list[Gap] = []
@@ -56,15 +62,15 @@ def fill_gaps(positions: FloatArray, frame_rate: float) -> Filled:
 
 
 def runs(flags: BoolArray) -> list[list[int]]:
-    """Start and end (exclusive) of each run of true flags (frames,)."""
+    """The start and the end (exclusive) of each run of true values in `flags` (frames,)."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
     return [list(run) for run in edges.reshape(-1, 2).tolist()]
 
 
-def _interpolated(track: FloatArray, unseen: BoolArray, wanted: BoolArray) -> FloatArray:
-    """(wanted frames, 3) of a track (frames, 3)."""
+def _interpolated(track: FloatArray, unseen: BoolArray, mask: BoolArray) -> FloatArray:
+    """(masked frames, 3) `track` (frames, 3) interpolated at the frames of `mask`."""
     seen = np.flatnonzero(~unseen)
-    frames = np.clip(np.flatnonzero(wanted), seen[0], seen[-1])
+    frames = np.clip(np.flatnonzero(mask), seen[0], seen[-1])
     if len(seen) < 2:
         return np.repeat(track[seen], len(frames), axis=0)
     return np.asarray(scipy.interpolate.CubicSpline(seen, track[seen].astype(np.float64))(frames))

@@ -1,4 +1,4 @@
-"""A recording: a motion as its file tells it, in the file's own unit, axes and rate."""
+"""A recording: a motion as it is in its file, in the file's own unit, axes and frame rate."""
 
 from __future__ import annotations
 
@@ -8,14 +8,15 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 FRAME_RATES = (1.0, 2000.0)
-"""Hz, the least and the most, whether a client says it or a file."""
+"""Hz: the smallest and the largest frame rate that a client or a file may give."""
 
 
 @dataclass(frozen=True, slots=True)
 class Caution:
-    """A doubt that does not stop a clip: `code` for machines, `detail` for people.
+    """A doubt that does not prevent the use of a clip.
 
-    `likely` is the value that we think right where there is one (a frame rate in Hz).
+    code: for programs. detail: for people. likely: the value that is probably right, if there is
+    one (for example a frame rate in Hz).
     """
 
     code: str
@@ -27,14 +28,13 @@ class Caution:
 class Recording:
     """What every format reader returns.
 
-    positions: (frames, joints, 3) float32, world, file unit and axes, always finite;
-    rotations: (frames, joints, 4) float32 local unit quaternions w x y z, or None where
-    the format has none (markers); translations: (frames, joints, 3) float32 local
-    translations where they move over time (six-channel joints), else None, meaning the
-    skeleton's offsets plus the root's motion; root_translations follow from positions.
-    frame_rate: Hz as declared, None if the file does not say; up_axis: "x", "y" or "z";
-    metres_per_unit: None if the file does not say; assumed_frame_rate: Hz that the format's
-    files usually have, where the file does not say and nearly all are alike.
+    positions: (frames, joints, 3) float32 in the world, in the unit and axes of the file, always
+    finite. rotations: (frames, joints, 4) float32 local unit quaternions w x y z; None if the
+    format has none (markers). translations: (frames, joints, 3) float32 local translations if
+    they change over time (joints of six channels); None means the skeleton's offsets and the
+    motion of the root. frame_rate: Hz as declared, None if the file does not give it. up_axis:
+    "x", "y" or "z". metres_per_unit: None if the file does not give it. assumed_frame_rate: Hz,
+    the usual rate of the format, if the file does not give one and nearly all files agree.
     """
 
     format: str

@@ -1,11 +1,11 @@
-"""Change of frame rate and of sample count, by time, along the first axis.
+"""Changes the frame rate or the number of samples, along the first axis.
 
-Between samples we read a cubic Hermite curve with Catmull-Rom tangents: a straight line
-would cut the crests of fast movement at 24 Hz and make clips depend on their frame rate.
-Before decimation a windowed-sinc low-pass (flat to about 12 Hz of 30) keeps what the
-lower rate cannot carry from folding down into it. It grows with the ratio of the rates; where
-they are FAR_APART only what is read is filtered, so that the cost grows with the clip's length
-alone, whatever rate is asked for. Long clips are worked on in blocks.
+Between samples, the motion is a cubic Hermite curve with Catmull-Rom tangents. Straight lines
+would cut the peaks of fast movement at 24 Hz, so that results would depend on the frame rate.
+Before the rate is lowered, a windowed-sinc low-pass filter (flat to about 12 Hz of 30) removes
+frequencies that the lower rate cannot represent, which avoids aliasing. The filter grows with the
+ratio of the rates. If they are FAR_APART, only the frames that are read are filtered, so that the
+cost depends only on the length of the clip. Long clips are processed in blocks.
 Shapes: (frames, ...) in, (samples, ...) out. Any unit.
 """
 
@@ -23,22 +23,23 @@ LOW_PASS_REACH = 4.0
 """Half-length of the low-pass, in periods of the lower rate."""
 
 FAR_APART = 8.0
-"""Frames between moments from which on only what they read is filtered."""
+"""The ratio of the rates from which on only the frames that are read are filtered."""
 
 NUMBERS_AT_ONCE = 2_000_000
-"""Of one block: bounds memory, and how long it takes."""
+"""Numbers of one block. It bounds the memory and the time of a step."""
 
 AROUND = 4
-"""Frames that a moment is read from: those beside it, and what their tangents look at."""
+"""Frames from which a moment is read: its two neighbors, and the next ones for the tangents."""
 
 _ROUNDING = 1e-6
 
 
 def resample(samples: FloatArray, from_rate: float, to_rate: float) -> FloatArray:
-    """Read `samples` (frames, ...) of `from_rate` Hz at `to_rate` Hz.
+    """`samples` (frames, ...) of `from_rate` Hz at `to_rate` Hz.
 
-    The first sample stays at time 0; the result has
-    floor((frames - 1) / from_rate * to_rate) + 1 samples, of the input's float type.
+    The first sample stays at time 0. The result has
+    floor((frames - 1) / from_rate * to_rate) + 1 samples, in the float type of the input.
+    Raises ValueError if a rate is not positive.
     """
     if from_rate <= 0 or to_rate <= 0:
         raise ValueError("frame rates must be positive")
@@ -49,14 +50,14 @@ def resample(samples: FloatArray, from_rate: float, to_rate: float) -> FloatArra
 
 
 def resample_to(samples: FloatArray, count: int) -> FloatArray:
-    """Read `samples` (frames, ...) at `count` evenly spaced times, both ends included."""
+    """(count, ...) `samples` (frames, ...) at evenly spaced times, including both ends."""
     if len(samples) < 2:
         return np.repeat(samples, count, axis=0)
     return _at_steps(samples, (len(samples) - 1) / max(count - 1, 1), count)
 
 
 def _at_steps(samples: FloatArray, step: float, count: int) -> FloatArray:
-    """`count` samples, `step` frames apart from the first on, of what their rate can carry."""
+    """(count, ...) low-pass filtered samples from the first frame on, `step` frames apart."""
     times = np.arange(count) * step
     if step < FAR_APART or len(samples) < AROUND:
         return sample_at(low_pass(samples, step), times)
@@ -64,9 +65,10 @@ def _at_steps(samples: FloatArray, step: float, count: int) -> FloatArray:
 
 
 def sample_at(samples: FloatArray, times: FloatArray) -> FloatArray:
-    """Read `samples` (frames, ...) at `times` (n,), in frames, held within the clip.
+    """(n, ...) `samples` (frames, ...) at `times` (n,), in frames, clipped to the clip.
 
-    Cubic Hermite with Catmull-Rom tangents; exact for straight and parabolic movement.
+    The curve is a cubic Hermite one with Catmull-Rom tangents. It is exact for straight and
+    parabolic movement.
     """
     last = len(samples) - 1
     if last < 1:
@@ -85,10 +87,10 @@ def sample_at(samples: FloatArray, times: FloatArray) -> FloatArray:
 
 
 def low_pass(samples: FloatArray, ratio: float) -> FloatArray:
-    """Remove from `samples` (frames, ...) what a rate `ratio` times lower cannot carry.
+    """`samples` (frames, ...) without frequencies that a `ratio` times lower rate cannot represent.
 
-    `ratio` <= 1 changes nothing. Both ends are continued by point reflection, so that the
-    first and last samples stay where they are and steady movement stays steady.
+    A `ratio` up to 1 changes nothing. Both ends are continued by point reflection, so that the
+    first and the last sample, and steady movement, do not change.
     """
     if ratio <= 1 or len(samples) < 2:
         return samples

@@ -1,4 +1,4 @@
-"""Rotations as unit quaternions and Euler angles, vectorised over any leading axes.
+"""Rotations as unit quaternions and Euler angles, vectorized over any leading axes.
 
 Quaternions are (..., 4), w x y z, acting on column vectors: q v q*. Euler angles are
 intrinsic: order "ZXY" means R = Rz(a0) Rx(a1) Ry(a2), which is how BVH lists its

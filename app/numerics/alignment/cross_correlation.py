@@ -1,7 +1,7 @@
 """The largest value of the cross-correlation of two sequences (Sun 2011, equation 6).
 
-The transforms are scipy's; that many candidates share one is ours. With 500 clips it takes 1.8 ms,
-a loop over scipy.signal.correlate 10.5, one over numpy.correlate 3.3
+scipy computes the Fourier transforms. Our part is that many candidates share one transform: 500
+clips take 1.8 ms, a loop over scipy.signal.correlate 10.5, a loop over numpy.correlate 3.3
 (tests/bench/test_libraries.py).
 """
 
@@ -16,18 +16,19 @@ from app.deadline import check
 from app.numerics.arrays import FloatArray, IntArray
 
 CELLS_AT_ONCE = 1 << 16
-"""Numbers transformed at once (half a megabyte): they stay in the processor's cache."""
-LARGEST_WASTE = 1.25
-"""Candidates share a batch while the longest transform is this times the shortest at most."""
+"""Numbers that are transformed at once (half a megabyte). They stay in the processor's cache."""
+
+MAX_WASTE = 1.25
+"""The largest ratio of the longest to the shortest transform of the candidates of a batch."""
 
 
 def max_cross_correlations(query: FloatArray, candidates: Sequence[FloatArray]) -> FloatArray:
-    """(candidates,) max over lags k of sum_i query[i + k] candidate[i], by FFT.
+    """(candidates,) the maximum over all lags k of sum_i query[i + k] candidate[i], by FFT.
 
-    query: (n,) and each candidate (m,), numbers of one unit, zero outside their ends. Padding
-    the shorter to the length of the longer, as the paper does, adds only zeros to the
-    correlation. All lags count, also those where the two do not meet, so no value is below 0.
-    Empty sequences give 0.
+    query: (n,) and each candidate (m,), in the same unit, zero outside their ends. The paper
+    pads the shorter sequence to the length of the longer one, which adds only zeros to the
+    correlation. Lags at which the two do not overlap count too, so no value is negative.
+    An empty sequence gives 0.
     """
     query = np.asarray(query, dtype=np.float64)
     lengths = np.array([len(candidate) for candidate in candidates], dtype=np.int64)
@@ -40,14 +41,15 @@ def max_cross_correlations(query: FloatArray, candidates: Sequence[FloatArray]) 
 
 
 def max_cross_correlations_of_rows(query: FloatArray, rows: FloatArray) -> FloatArray:
-    """The same for candidates of one length, (candidates, m): one product, for short ones.
+    """(candidates,) as `max_cross_correlations`, for short candidates of equal length.
 
-    It takes n + m - 1 multiplications a number; the transform wins from some 100 on.
+    query: (n,). rows: (candidates, m). One matrix product computes all: n + m - 1 multiplications
+    for each number of `rows`. From about 100 on, the transform is faster.
     """
     n, m = len(query), rows.shape[1]
     if not n or not m:
         return np.zeros(len(rows))
-    # (m, n + m - 1): column k holds the query where it lies m - 1 - k before the row's start
+    # (m, n + m - 1): column k holds the query, shifted to begin m - 1 - k before the row
     shifted = np.zeros((m, n + m - 1))
     for i in range(m):
         shifted[i, m - 1 - i : m - 1 - i + n] = query
@@ -55,12 +57,15 @@ def max_cross_correlations_of_rows(query: FloatArray, rows: FloatArray) -> Float
 
 
 def _batches(lengths: IntArray, n: int) -> Iterator[IntArray]:
-    """Indices of candidates whose transforms are about equally long; empty ones left out."""
+    """Indices of candidates whose transforms are about equally long, without empty candidates.
+
+    lengths: (candidates,). n: the length of the query.
+    """
     order = np.argsort(lengths, kind="stable")
     ordered = lengths[order]
     first = int(np.searchsorted(ordered, 0, side="right"))
     while first < len(order):
-        longest = int(LARGEST_WASTE * (n + ordered[first])) - n
+        longest = int(MAX_WASTE * (n + ordered[first])) - n
         alike = int(np.searchsorted(ordered, max(longest, ordered[first]), side="right")) - first
         count = min(alike, max(1, CELLS_AT_ONCE // (n + longest)))
         yield order[first : first + count]
@@ -68,9 +73,9 @@ def _batches(lengths: IntArray, n: int) -> Iterator[IntArray]:
 
 
 def _by_transform(query: FloatArray, candidates: list[FloatArray]) -> FloatArray:
-    """(c,) maxima for candidates of similar length, none empty."""
+    """(c,) the maxima of c candidates of similar length, none empty."""
     longest = max(len(candidate) for candidate in candidates)
-    # Circular, but as long as all lags together: nothing wraps onto anything.
+    # The correlation is circular, but long enough for all lags, so nothing overlaps.
     length = scipy.fft.next_fast_len(len(query) + longest - 1, real=True)
     padded = np.zeros((len(candidates), length))
     for row, candidate in zip(padded, candidates, strict=True):

@@ -8,8 +8,8 @@ not fit is warped in strips of rows of the query. Each strip continues the last 
 before it; the result is the same, in memory that grows with the length and not with its square.
 Sequences are (frames, dimensions), or (frames,) for one dimension; cost is Euclidean.
 
-This stays ours: one clip against 350 takes 58 ms, with dtaidistance 307, with aeon 344, with
-tslearn 430 (one thread; tests/bench/test_dtw.py).
+This is our own code, because it is faster: one clip against 350 takes 58 ms, with dtaidistance
+307, with aeon 344, with tslearn 430 (one thread; tests/bench/test_dtw.py).
 """
 
 from __future__ import annotations
@@ -23,40 +23,43 @@ from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.euclidean import distances, squared_lengths
 
 CELLS_AT_ONCE = 1_000_000
-"""Cost cells of one batch (4 bytes each): bounds memory, and keeps it near the caches."""
+"""Cost cells of one batch (4 bytes each). It bounds the memory, and keeps it near the caches."""
 
 MAX_BATCH = 256
+"""The largest number of candidates in a batch."""
 
 STRIP_CELLS = 16_000_000
-"""Cost cells of one strip of a long pair, if that leaves it FEWEST_ROWS."""
+"""Cost cells of one strip of a long pair, as far as MIN_ROWS and MAX_ROWS allow."""
 
-FEWEST_ROWS, MOST_ROWS = 256, 1024
-"""Rows of a strip: fewer cost more steps, more leave the caches. 36 million cells take 0.4 s
-with 512 rows, 0.35 s with 1,024, 0.7 s with 6,000, 2.5 s with 64."""
+MIN_ROWS, MAX_ROWS = 256, 1024
+"""Rows of a strip. Fewer rows need more steps; more rows do not fit the caches. 36 million cells
+take 0.4 s with 512 rows, 0.35 s with 1,024, 0.7 s with 6,000, 2.5 s with 64."""
 
 
 def dtw_distances(
     query: FloatArray, candidates: Sequence[FloatArray], *, per_step: bool = True
 ) -> FloatArray:
-    """(c,) the cost of the cheapest path that warps `query` onto each of the candidates.
+    """(c,) the cost of the cheapest path that warps `query` onto each of c candidates.
 
-    query: (n, d); candidates: c sequences (m, d), in the same unit, which is that of the result.
-    per_step: divide each cost by n + m. Raises ValueError for an empty sequence.
+    query: (n, d) or (n,). candidates: (m, d) or (m,) each, in the same unit, which is also the
+    unit of the result. per_step: whether each cost is divided by n + m. The result is float64,
+    computed in float32. Raises ValueError for an empty sequence, and DeadlineExceeded or
+    ClientLeft (app.deadline).
     """
     query = _as_table(query)
     lengths = np.array([len(candidate) for candidate in candidates], dtype=np.int64)
     if not len(query) or (len(lengths) and not lengths.min()):
         raise ValueError("cannot warp an empty sequence")
     totals = np.empty(len(lengths))
-    centre = query.mean(axis=0)  # differences of small numbers keep more digits
+    center = query.mean(axis=0)  # differences of small numbers keep more digits
     for chosen in _batches(lengths, len(query)):
         check()
         frames = np.concatenate([_as_table(candidates[i]) for i in chosen])
-        frames -= centre  # in place: these rows are wide, and new memory is dear
+        frames -= center  # in place: these rows are wide, and new memory costs time
         if len(query) * len(frames) > CELLS_AT_ONCE:
-            totals[chosen] = _in_strips(query - centre, frames)
+            totals[chosen] = _in_strips(query - center, frames)
             continue
-        cost = _side_by_side(_costs(query - centre, frames, lengths[chosen]), lengths[chosen])
+        cost = _side_by_side(_costs(query - center, frames, lengths[chosen]), lengths[chosen])
         totals[chosen] = _accumulate(cost, lengths[chosen])
     return totals / (len(query) + lengths) if per_step else totals
 
@@ -67,7 +70,10 @@ def _as_table(sequence: FloatArray) -> FloatArray:
 
 
 def _batches(lengths: IntArray, frames: int) -> list[IntArray]:
-    """Indices grouped so that lengths are alike and a batch's costs fit CELLS_AT_ONCE."""
+    """Indices of candidates in groups of similar length whose costs fit CELLS_AT_ONCE.
+
+    lengths: (c,). frames: the length of the query.
+    """
     order = np.argsort(-lengths, kind="stable")
     batches: list[IntArray] = []
     first = 0
@@ -80,11 +86,11 @@ def _batches(lengths: IntArray, frames: int) -> list[IntArray]:
 
 
 def _costs(query: FloatArray, frames: FloatArray, lengths: IntArray) -> FloatArray:
-    """(n, k) float32 Euclidean distances of the rows of (n, d) and (k, d).
+    """(n, k) float32 Euclidean distances of `query` (n, d) to `frames` (k, d).
 
-    Each candidate is multiplied on its own. The cost of a pair must not depend on the other
-    candidates of its batch: a ranking that is computed in pieces must agree with itself to the
-    last bit.
+    frames: the candidates of `lengths` (c,) one after the other. Each candidate is multiplied
+    alone, so that the cost of a pair does not depend on the other candidates of its batch: a
+    ranking that is computed in pieces must agree with itself to the last bit.
     """
     if query.shape[1] == 1:
         apart = query - frames[:, 0]
@@ -95,10 +101,10 @@ def _costs(query: FloatArray, frames: FloatArray, lengths: IntArray) -> FloatArr
 
 
 def _side_by_side(table: FloatArray, lengths: IntArray) -> FloatArray:
-    """(n, m, c) C-contiguous from (n, k), candidates of `lengths` (c,) one after the other.
+    """(n, m, c) C-contiguous costs, from `table` (n, k) of c candidates one after the other.
 
-    Costs are moved, not frames, which are wider. What is behind a candidate's end repeats
-    its last frame.
+    lengths: (c,), of which m is the largest. Costs are moved, because frames are wider. After
+    its end, a candidate repeats the costs of its last frame.
     """
     starts = np.cumsum(lengths) - lengths
     inside = np.minimum(np.arange(lengths.max())[:, None], lengths - 1)
@@ -107,10 +113,10 @@ def _side_by_side(table: FloatArray, lengths: IntArray) -> FloatArray:
 
 
 def _accumulate(cost: FloatArray, lengths: IntArray) -> FloatArray:
-    """(c,) totals at each candidate's last frame; cost (n, m, c) C-contiguous.
+    """(c,) the totals D at the last frame of each candidate; cost: (n, m, c) C-contiguous.
 
-    Anti-diagonal k holds D[i, k - i] at row i + 1, between two rows of infinity: the walls
-    outside the table, of which the next two diagonals read no more than one row.
+    Anti-diagonal k holds D[i, k - i] at row i + 1. A row of infinity before and after it stands
+    for the cells outside the table; the next two diagonals read only these.
     """
     rows, columns, count = cost.shape
     totals = np.empty(count, dtype=cost.dtype)
@@ -137,11 +143,11 @@ def _accumulate(cost: FloatArray, lengths: IntArray) -> FloatArray:
 
 
 def _in_strips(query: FloatArray, frames: FloatArray) -> float:
-    """The total of one long pair: query (n, d), frames (m, d)."""
+    """The total D of one long pair: query (n, d), frames (m, d)."""
     columns = len(frames)
     above = np.full(columns + 1, np.inf, dtype=np.float32)
     above[0] = 0.0  # the corner before the first cell
-    count = int(np.clip(STRIP_CELLS // columns, FEWEST_ROWS, MOST_ROWS))
+    count = int(np.clip(STRIP_CELLS // columns, MIN_ROWS, MAX_ROWS))
     for first in range(0, len(query), count):
         rows = query[first : first + count]
         above = _last_row(_costs(rows, frames, np.array([columns])), above)
@@ -149,10 +155,11 @@ def _in_strips(query: FloatArray, frames: FloatArray) -> float:
 
 
 def _last_row(cost: FloatArray, above: FloatArray) -> FloatArray:
-    """(m + 1,) infinity and D of a strip's last row; above: the same of the row above its first.
+    """(m + 1,) infinity, then D of the last row of a strip.
 
-    cost: (n, m) C-contiguous. As in `_accumulate`, anti-diagonal k holds D[i, k - i] at row
-    i + 1; its row 0 is of the strip above: D[-1, k + 1].
+    cost: (n, m) C-contiguous. above: (m + 1,) the same for the row above the strip. As in
+    `_accumulate`, anti-diagonal k holds D[i, k - i] at row i + 1. Its row 0 belongs to the strip
+    above: D[-1, k + 1].
     """
     rows, columns = cost.shape
     older, old, new = (np.full(rows + 2, np.inf, dtype=cost.dtype) for _ in range(3))

@@ -1,13 +1,13 @@
 """Takes warped onto the mean of their group, by dynamic time warping.
 
-Of two takes of a task, one hurries where the other is slow, so that moments of the same number
-are not the same moment of the task. A mean of the takes as they are is blurred, and a difference
-in timing looks like a difference in manner. So each take is warped onto the mean of its group, and
-the mean is taken again. Recognition needs the warped takes alone (`warped`). Synthesis brings its
-results back to a time of their own, so it needs times that rise smoothly and may lie between
-moments (`warping_times`, `read_at`, `inverse`).
+Two takes of a task differ in timing: moment i of one take is not the same part of the task as
+moment i of another. So a plain mean of the takes is blurred, and a difference in timing looks like
+a difference in style. Therefore each take is warped onto the mean of its group, and the mean is
+computed again. Recognition needs only the warped takes (`warped`). Synthesis gives its results a
+timing of their own. It needs times that rise smoothly and may lie between moments
+(`warping_times`, `read_at`, `inverse`).
 
-Shapes: motions (n, m, d) are n takes of m moments of d numbers. A time is a number of moments.
+Shapes: motions (n, m, d) are n takes of m moments of d numbers. A time is counted in moments.
 """
 
 from __future__ import annotations
@@ -22,34 +22,35 @@ from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.euclidean import distances
 
 BAND = 0.2
-"""The share of its length by which a moment may be moved."""
+"""How far a moment may be moved, as a share of the length of a take."""
 
 STEP_COST = 0.1
-"""The cost of a step of one sequence alone, as a share of the mean distance of two moments."""
+"""The cost of a step in one sequence alone, as a share of the mean distance of two moments."""
 
 ROUNDS = 2
-"""How often takes are warped onto the mean, and the mean is taken of what was warped."""
+"""How often the takes are warped onto the mean and the mean is computed again."""
 
 SMOOTHING = 1.0
-"""Standard deviation in moments: a path goes by whole steps, but time does not."""
+"""Standard deviation, in moments, of the smoothing of times. A path has only whole steps."""
 
 SLOWEST = 0.2
-"""Moments of a take that pass at least in one moment of the reference: time never stands still."""
+"""The fewest moments of a take that pass in one moment of the reference. Time never stops."""
 
 AT_ONCE = 2000
-"""Takes whose tables are in memory together: about 100 MB with 32 moments."""
+"""Takes whose cost tables are in memory together: about 100 MB with 32 moments."""
 
 Warp = Callable[[FloatArray, FloatArray], FloatArray]
-"""Takes (n, m, d) and a reference for each (n, m, d) to the warped takes (n, m, d)."""
+"""A function of takes (n, m, d) and their references (n, m, d) to the warped takes (n, m, d)."""
 
 
 def means_of_warped(
     motions: FloatArray, group: IntArray, references: FloatArray, warp: Warp, rounds: int = ROUNDS
 ) -> FloatArray:
-    """(g, m, d) the mean of each group's takes, warped onto it `rounds` times.
+    """(g, m, d) the mean of the takes of each group, after they were warped onto it.
 
-    motions: (n, m, d); group: (n,) the number of each take's group, 0 .. g - 1, none empty;
-    references: (g, m, d) onto which the takes of each group are warped first.
+    motions: (n, m, d). group: (n,) the group of each take, 0 .. g - 1, no group empty.
+    references: (g, m, d) the motions onto which the takes are warped in the first round. warp:
+    how takes are warped. rounds: how often the means are computed.
     """
     for _ in range(rounds):
         references = group_means(warp(motions, references[group]), group)
@@ -57,21 +58,21 @@ def means_of_warped(
 
 
 def group_means(values: FloatArray, group: IntArray) -> FloatArray:
-    """(g, ...) the mean of `values` (n, ...) of each number in `group` (n,), 0 .. g - 1."""
+    """(g, ...) the mean of `values` (n, ...) in each group; group: (n,), 0 .. g - 1, none empty."""
     return np.stack([values[members].mean(axis=0) for members in group_members(group)])
 
 
 def group_members(group: IntArray) -> list[IntArray]:
-    """The rows of each number in `group` (n,), 0 .. g - 1, ascending."""
+    """The ascending rows of each of the g groups; group: (n,), 0 .. g - 1."""
     order = np.argsort(group, kind="stable")
     return list(np.split(order, np.cumsum(np.bincount(group))[:-1]))
 
 
 def warped(motions: FloatArray, references: FloatArray) -> FloatArray:
-    """(n, m, d) `motions` (n, m, d) in the time of `references` (m, d) or (n, m, d).
+    """(n, m, d) `motions` (n, m, d) with the timing of `references` (m, d) or (n, m, d).
 
-    Each moment is the mean of those moments of the take that the cheapest path holds against
-    that moment of the reference.
+    Each moment is the mean of the moments of the take that the cheapest path matches with that
+    moment of the reference.
     """
     motions = np.asarray(motions, dtype=np.float64)
     references = np.broadcast_to(references, motions.shape)
@@ -83,8 +84,10 @@ def warped(motions: FloatArray, references: FloatArray) -> FloatArray:
 
 
 def warping_times(motions: FloatArray, references: FloatArray) -> FloatArray:
-    """(n, m) the time in each of `motions` (n, m, d) that goes with each moment of the reference
-    in the same row of `references` (n, m, d). Times rise from moment to moment."""
+    """(n, m) the time in each motion that belongs to each moment of its reference.
+
+    motions, references: (n, m, d). The times rise strictly, within 0 .. m - 1.
+    """
     steady = np.arange(motions.shape[1], dtype=np.float64)
     held = np.empty(motions.shape[:2])
     for part in _parts(len(motions)):
@@ -93,16 +96,22 @@ def warping_times(motions: FloatArray, references: FloatArray) -> FloatArray:
 
 
 def smooth_times(times: FloatArray, deviation: float) -> FloatArray:
-    """(n, m) rising times like `times` (n, m), of which the difference from steady time is
-    smoothed by a Gaussian with the standard `deviation`, in moments."""
+    """(n, m) `times` (n, m) smoothed, and rising strictly.
+
+    A Gaussian with the standard `deviation`, in moments, smooths their difference from the steady
+    times 0, 1, ... m - 1.
+    """
     steady = np.arange(times.shape[1], dtype=np.float64)
     moved = scipy.ndimage.gaussian_filter1d(times - steady, deviation, axis=1, mode="nearest")
     return rising(moved + steady)
 
 
 def rising(times: FloatArray) -> FloatArray:
-    """(..., m) `times` (..., m) changed so that each is later than the one before by SLOWEST at
-    least, from about their first to about their last, all within 0 .. m - 1."""
+    """(..., m) `times` (..., m) changed so that they rise strictly within 0 .. m - 1.
+
+    Steps smaller than SLOWEST become SLOWEST. Then all steps are scaled, so that the times still
+    run from their first to their last value (both clipped to 0 .. m - 1).
+    """
     last = times.shape[-1] - 1
     steps = np.cumsum(np.maximum(np.diff(times, axis=-1), SLOWEST), axis=-1)
     share = np.concatenate([np.zeros((*times.shape[:-1], 1)), steps / steps[..., -1:]], axis=-1)
@@ -112,15 +121,15 @@ def rising(times: FloatArray) -> FloatArray:
 
 
 def inverse(times: FloatArray) -> FloatArray:
-    """(n, m) the times at which the rising `times` (n, m) reach 0, 1, ... m - 1."""
+    """(n, m) the moments at which the rising `times` (n, m) reach 0, 1, ... m - 1."""
     moments = np.arange(times.shape[1], dtype=np.float64)
     return np.stack([np.interp(moments, row, moments) for row in times])
 
 
 def read_at(motions: FloatArray, times: FloatArray) -> FloatArray:
-    """(n, m, d) the values of `motions` (n, m, d) at their own `times` (n, m).
+    """(n, m, d) the values of each of `motions` (n, m, d), m >= 2, at its row of `times` (n, m).
 
-    Between moments a motion is a cubic curve with Catmull-Rom tangents, as in
+    Between moments, a motion is a cubic curve with Catmull-Rom tangents, as in
     `app.motion.skeleton.resampling`, which reads one motion.
     """
     last = motions.shape[1] - 1
@@ -128,7 +137,7 @@ def read_at(motions: FloatArray, times: FloatArray) -> FloatArray:
     x = (times - before)[..., None]
     row = np.arange(len(motions))[:, None]
     a, b, c, d = (motions[row, np.clip(before + k, 0, last)] for k in (-1, 0, 1, 2))
-    # beyond an end the curve goes straight on
+    # beyond its ends, the motion is continued as a straight line
     a = np.where((before == 0)[..., None], 2 * b - c, a)
     d = np.where((before == last - 1)[..., None], 2 * c - b, d)
     bend = 2 * a - 5 * b + 4 * c - d + x * (3 * (b - c) + d - a)
@@ -140,8 +149,10 @@ def _parts(count: int) -> list[slice]:
 
 
 def _weights(motions: FloatArray, references: FloatArray) -> FloatArray:
-    """(n, m, m) how much moment i of a take counts at moment j of its reference; over i, the
-    weights sum to 1. motions, references: (n, m, d)."""
+    """(n, m, m) the weight of moment i of a take in moment j of its reference.
+
+    motions, references: (n, m, d). The weights sum to 1 over i.
+    """
     cost = distances(motions, references)
     path = cheapest_paths(cost, BAND, STEP_COST * cost.mean(axis=(1, 2)))
     return np.asarray(path / path.sum(axis=1, keepdims=True))

@@ -1,4 +1,4 @@
-"""Where in long streams a short query occurs: dynamic time warping with both ends free.
+"""Finds a short query in long streams: dynamic time warping with free ends.
 
 Sakoe and Chiba 1978 (table I, asymmetric form, slope constraint P = 1): with c[i, j] the
 distance of query frame i to stream frame j,
@@ -7,14 +7,15 @@ distance of query frame i to stream frame j,
                   D[i-1, j-2] + (c[i, j-1] + c[i, j]) / 2,
                   D[i-2, j-1] + c[i-1, j] + c[i, j]),      D[-1, j] = 0.
 
-Every query frame weighs one, so that matches of any start and length compare fairly and
-D / n is the mean distance of a query frame to where it is found; a match is between half
-and twice as long as the query, so that none shrinks to a single frame. No cell depends on
-its own row: one numpy step computes a row of many streams laid end to end. Which of the
-three each cell took is kept, and followed back from every end that is a local minimum.
-Sequences are (frames, dimensions). A stream is a curve of which its frames are samples, and
-each stands for the lines half-way to the frames beside it: c is the Euclidean distance of a
-query frame to those. So it does not matter where between two movements the samples fell.
+Every query frame has weight 1, so matches of any start and length compare fairly. D / n is the
+mean distance of a query frame to the place where it is found. A match is between half and twice as
+long as the query, so none shrinks to a single frame. No cell depends on its own row, so one numpy
+step computes a row of many streams laid end to end. The step that led to each cell is kept, and
+followed back from every end that is a local minimum.
+
+Sequences are (frames, dimensions). A stream is a curve, and its frames are samples of it. Each
+frame stands for the two half lines to the frames next to it: c is the Euclidean distance of a query
+frame to those. So the result hardly depends on when the samples were taken.
 """
 
 from __future__ import annotations
@@ -29,35 +30,35 @@ from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.euclidean import squared_distances, squared_lengths
 
 CELLS_AT_ONCE = 4_000_000
-"""Cells (query frames x stream frames) of one table; two bytes each."""
+"""Cells (query frames x stream frames) of one table, two bytes each."""
 
-MOST_FRAMES_AT_ONCE = 20_000
-"""Frames of one table: its rows stay near the caches."""
+MAX_FRAMES_AT_ONCE = 20_000
+"""The most stream frames of one table, so that its rows stay near the caches."""
 
 COSTS_AT_ONCE = 250_000
-"""Costs (4 bytes each) that are computed at a time: near the caches."""
+"""Costs (4 bytes each) that are computed at a time, so that they stay near the caches."""
 
 STILL = 1e-9
-"""Squared length below which a line between two frames is a point."""
+"""The squared length up to which a line between two frames counts as a point."""
 
-LONGEST_MATCH = 2
-"""Of the query's length: the slope constraint."""
+MAX_MATCH_LENGTH = 2
+"""The longest match, in lengths of the query. It follows from the slope constraint."""
 
 WALL = 2
-"""Columns before each stream that no path may cross: as far as a path looks back."""
+"""Columns before each stream that no path may cross: a step goes back at most two columns."""
 
 _ROWS_BACK = np.array([1, 1, 2, 2])
 _COLUMNS_BACK = np.array([1, 2, 1, 1])
-"""By what a cell took: 0 one step of both, 1 two columns, 2 or 3 two rows."""
+"""Indexed by the step to a cell: 0 one row and column, 1 two columns, 2 and 3 two rows."""
 
 
 @dataclass(frozen=True, slots=True)
 class Matches:
-    """Matches of a query in streams: those that are no dearer than others ending beside them.
+    """Matches of a query in streams: those whose cost is a local minimum over their ends.
 
-    streams: (k,) index of the stream, ascending; starts, ends: (k,) the first frame of the
-    match and the first behind it, ends ascending within a stream; costs: (k,) float32, mean
-    distance of a query frame to where it is matched.
+    streams: (k,) the index of the stream, ascending. starts: (k,) the first frame of the match.
+    ends: (k,) the first frame after it, ascending within a stream. costs: (k,) float32, the mean
+    distance of a query frame to the place where it is matched, in the unit of the sequences.
     """
 
     streams: IntArray
@@ -68,7 +69,12 @@ class Matches:
 
 @dataclass(frozen=True, slots=True)
 class _Piece:
-    """Frames of a stream: of those that end in it, only matches behind `valid` are its own."""
+    """A part of a stream.
+
+    stream: its index. first: the part's first frame in the stream. frames: (m, d). valid: matches
+    that end before this frame of the part belong to the part before. is_last: whether the part
+    ends the stream.
+    """
 
     stream: int
     first: int
@@ -78,17 +84,18 @@ class _Piece:
 
 
 def subsequence_dtw(query: FloatArray, streams: Sequence[FloatArray]) -> Matches:
-    """The matches of `query` (n, d) in `streams`, each (m, d).
+    """All matches of `query` (n, d) in `streams`, each (m, d), in the same unit.
 
-    Raises ValueError for an empty query.
+    Matches may overlap. Raises ValueError for an empty query, and DeadlineExceeded or ClientLeft
+    (app.deadline).
     """
     if not len(query):
         raise ValueError("cannot look for an empty sequence")
     # differences of small numbers keep more digits
-    centre = np.asarray(query.mean(axis=0, dtype=np.float64), dtype=np.float32)
-    wanted = np.asarray(query, dtype=np.float32) - centre
-    at_once = max(min(MOST_FRAMES_AT_ONCE, CELLS_AT_ONCE // len(query)), 4 * len(query) + 8)
-    found = [_in_pieces(wanted, some, centre) for some in _batches(streams, len(query), at_once)]
+    center = np.asarray(query.mean(axis=0, dtype=np.float64), dtype=np.float32)
+    wanted = np.asarray(query, dtype=np.float32) - center
+    at_once = max(min(MAX_FRAMES_AT_ONCE, CELLS_AT_ONCE // len(query)), 4 * len(query) + 8)
+    found = [_in_pieces(wanted, some, center) for some in _batches(streams, len(query), at_once)]
     if not found:
         nothing = np.zeros(0, dtype=np.int64)
         return Matches(nothing, nothing, nothing, np.zeros(0, dtype=np.float32))
@@ -101,7 +108,7 @@ _Columns = tuple[IntArray, IntArray, IntArray, FloatArray]
 def _batches(
     streams: Sequence[FloatArray], query_frames: int, at_once: int
 ) -> Iterator[list[_Piece]]:
-    """Pieces of the streams in their order, up to `at_once` frames together."""
+    """Pieces of the streams in their order, in batches of up to `at_once` frames."""
     batch: list[_Piece] = []
     frames = 0
     for stream, whole in enumerate(streams):
@@ -116,23 +123,23 @@ def _batches(
 
 
 def _pieces(stream: int, whole: FloatArray, query_frames: int, at_once: int) -> Iterator[_Piece]:
-    """A long stream in pieces that overlap by more than a match is long: nothing is lost.
+    """A long stream in pieces that overlap by more than the length of a match.
 
-    A piece's first and last frames stand for less than they do in the stream, as they lack the
-    line to the frame beside them: no match that counts touches them.
+    So no match is lost. The first and last frame of a piece lack the line to the next frame of
+    the stream; no match that the piece reports touches them.
     """
-    overlap = LONGEST_MATCH * query_frames + 3
+    overlap = MAX_MATCH_LENGTH * query_frames + 3
     first, valid = 0, 0
     while len(whole) - first > at_once:
         yield _Piece(stream, first, whole[first : first + at_once], valid, is_last=False)
-        # the last two ends of a piece are not sure there; they are the first of the next piece
+        # the last two ends of a piece are uncertain; the next piece reports them
         first, valid = first + at_once - 2 - overlap, overlap
     if len(whole) > first:
         yield _Piece(stream, first, whole[first:], valid, is_last=True)
 
 
-def _in_pieces(query: FloatArray, pieces: Sequence[_Piece], centre: FloatArray) -> _Columns:
-    laid, firsts = _end_to_end(pieces, centre)
+def _in_pieces(query: FloatArray, pieces: Sequence[_Piece], center: FloatArray) -> _Columns:
+    laid, firsts = _end_to_end(pieces, center)
     costs, skips, stays = _accumulate(query, laid, firsts)
     ends = np.concatenate([_ends(costs, p, f) for p, f in zip(pieces, firsts, strict=True)])
     starts = _starts(skips, stays, ends)
@@ -142,23 +149,23 @@ def _in_pieces(query: FloatArray, pieces: Sequence[_Piece], centre: FloatArray) 
     return streams, starts + offset, ends + 1 + offset, costs[ends] / len(query)
 
 
-def _end_to_end(pieces: Sequence[_Piece], centre: FloatArray) -> tuple[FloatArray, IntArray]:
-    """((k, d) float32 pieces less `centre`, zeros for walls), and their first columns."""
+def _end_to_end(pieces: Sequence[_Piece], center: FloatArray) -> tuple[FloatArray, IntArray]:
+    """(k, d) float32, the pieces less `center` with zeros between them, and their first columns."""
     lengths = np.array([len(piece.frames) for piece in pieces])
     firsts = np.cumsum(lengths + WALL) - lengths
-    laid = np.zeros((int(firsts[-1] + lengths[-1]), len(centre)), dtype=np.float32)
+    laid = np.zeros((int(firsts[-1] + lengths[-1]), len(center)), dtype=np.float32)
     for first, piece in zip(firsts, pieces, strict=True):
-        np.subtract(piece.frames, centre, out=laid[first : first + len(piece.frames)])
+        np.subtract(piece.frames, center, out=laid[first : first + len(piece.frames)])
     return laid, firsts
 
 
 def _accumulate(
     query: FloatArray, laid: FloatArray, firsts: IntArray
 ) -> tuple[FloatArray, BoolArray, BoolArray]:
-    """(k,) total costs of the matches that end at each column, and what each cell took.
+    """(k,) the total costs of the matches that end at each column, and the step to each cell.
 
-    skips, stays: (n, k), whether a cell came from two columns, or two rows, back. The row
-    before the first is free everywhere: there a match may begin with the next column.
+    The steps are two arrays (n, k): whether a cell was reached from two columns back (skips), and
+    from two rows back (stays). D[-1] is 0 in every column, so a match may begin anywhere.
     """
     columns = len(laid)
     skips, stays = (np.zeros((len(query), columns), dtype=bool) for _ in range(2))
@@ -184,7 +191,7 @@ def _accumulate(
 
 
 def _cost_rows(query: FloatArray, laid: FloatArray, firsts: IntArray) -> Iterator[FloatArray]:
-    """For each query frame its (k,) distances to the columns; walls are infinitely far."""
+    """For each query frame, its (k,) distances to the columns; walls are infinitely far."""
     squares = squared_lengths(laid)
     walls = np.concatenate([firsts - back for back in range(1, WALL + 1)])
     steps = squared_lengths(laid[1:] - laid[:-1])
@@ -202,12 +209,14 @@ def _cost_rows(query: FloatArray, laid: FloatArray, firsts: IntArray) -> Iterato
 
 
 def _draw_near(apart: FloatArray, steps: FloatArray, share: FloatArray) -> None:
-    """From squared distances (n, k) to the columns to those to the lines half-way, in place.
+    """Change squared distances to columns into squared distances to their half lines, in place.
 
-    steps: (k - 1,) squared lengths s of the lines from a column to the next; share: 1 / (4 s),
-    0 where there is no line. With a and b the squared distances to a line's ends, that to the
-    point at t of it is a - t g + t^2 s, g = a - b + s: least at t = g / (2 s), for the near half
-    held to 0..1/2. For the half that is the next column's, a and b change places.
+    apart: (n, k) squared distances to the columns. steps: (k - 1,) squared lengths s of the lines
+    from a column to the next. share: (k - 1,) 1 / (4 s), 0 where there is no line.
+
+    Let a and b be the squared distances to the ends of a line. The squared distance to its point
+    t is a - t g + t^2 s, with g = a - b + s. It is smallest at t = g / (2 s), which for the first
+    half is limited to 0..1/2. For the half of the next column, a and b change places.
     """
     to_here, to_next = apart[:, :-1].copy(), apart[:, 1:].copy()
     gain = to_here - to_next
@@ -219,12 +228,12 @@ def _draw_near(apart: FloatArray, steps: FloatArray, share: FloatArray) -> None:
     to_next -= held * (2.0 * gain - held) * share
     np.minimum(apart[:, :-1], to_here, out=apart[:, :-1])
     np.minimum(apart[:, 1:], to_next, out=apart[:, 1:])
-    # below 0 only by rounding
+    # only rounding makes values negative
     np.maximum(apart, 0.0, out=apart)
 
 
 def _ends(costs: FloatArray, piece: _Piece, first: int) -> IntArray:
-    """Columns of the ends in a piece that are no dearer than those beside them."""
+    """The columns of a piece at which the cost of ending is a local minimum."""
     own = np.concatenate([[np.inf], costs[first : first + len(piece.frames)], [np.inf]])
     least = (own[1:-1] <= own[:-2]) & (own[1:-1] < own[2:]) & np.isfinite(own[1:-1])
     least[: piece.valid] = False
@@ -234,7 +243,7 @@ def _ends(costs: FloatArray, piece: _Piece, first: int) -> IntArray:
 
 
 def _starts(skips: BoolArray, stays: BoolArray, ends: IntArray) -> IntArray:
-    """(k,) columns at which the matches that end at columns `ends` (k,) begin."""
+    """(k,) the columns at which the matches begin that end at the columns `ends` (k,)."""
     width = skips.shape[1]
     took_skip, took_stay = skips.reshape(-1).view(np.uint8), stays.reshape(-1).view(np.uint8)
     columns, rows = ends.copy(), np.full(len(ends), len(skips) - 1)

@@ -1,11 +1,11 @@
 """Left-to-right models of one sequence, fitted by hmmlearn (Takano, section 2.1).
 
-hmmlearn does the expectation-maximization, the sampling and the state probabilities. The
+hmmlearn does the expectation-maximization (EM), the sampling and the state probabilities. The
 subclass below adds what a motion symbol needs: a start from equal parts, a prior on the
-allowed transitions, and a variance floor inside every M-step (hmmlearn's `min_covar` acts
-only before the first one).
+allowed transitions, and a variance floor in every M-step (hmmlearn's `min_covar` acts only
+before the first one).
 
-hmmlearn takes .25 s and 35 MB to load. Import this module inside the function that needs it.
+hmmlearn takes .25 s and 35 MB to load. So import this module inside the function that needs it.
 Shapes: frames T, states K, channels D.
 """
 
@@ -21,20 +21,21 @@ from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM, log_emissions
 
 TRANSITION_PRIOR = 1.01
-"""Dirichlet parameter of the allowed transitions. It keeps the rows of short clips above zero."""
+"""Dirichlet parameter of the allowed transitions. It keeps their probabilities in short clips
+above zero."""
 
 ITERATIONS = 3
-"""The most iterations. On the real clips, divergences after 3 rank as after 5 (Spearman .9999),
-and words are found as well."""
+"""The largest number of iterations. On the real clips, divergences after 3 iterations rank as
+after 5 (Spearman .9999), and search by words is equally good."""
 
-LEAST_GAIN = 1e-3
-"""Stop when an iteration gains less log likelihood per frame than this."""
+MIN_GAIN = 1e-3
+"""Iterations stop if one gains less log likelihood per frame than this (nats)."""
 
 FRAMES_PER_STATE = 3
 """A state needs at least this many frames. Short sequences get fewer states."""
 
-LARGEST = 1e100
-"""Channels beyond this are refused: their squares would overflow."""
+MAX_CHANNEL = 1e100
+"""The largest magnitude of a channel. Squares of larger values would overflow."""
 
 # hmmlearn warns of short clips and of a likelihood that falls. Both are usual here: the prior
 # and the floor can lower the likelihood. Only real errors may reach the service's log.
@@ -50,15 +51,16 @@ def fit_left_to_right(
 ) -> GaussianHMM:
     """Fit a model to `sequence` (T, D), T >= 1. The result is deterministic.
 
-    states: the wanted number of states; short sequences get fewer. variance_floor: (D,) or a
-    scalar, positive, in the squared units of the channels. The fit starts from the sequence
-    cut into equal parts. It takes 2.8 ms for a clip of 6 s, as long as our own loop took.
+    states: the number of states; short sequences get fewer (`states_for`). variance_floor: (D,)
+    or a scalar, positive, in the squared units of the channels. iterations: the largest number
+    of EM iterations. The fit starts from the sequence cut into equal parts. It takes 2.8 ms for
+    a clip of 6 s.
 
-    Raises ValueError where a value is NaN or beyond LARGEST.
+    Raises ValueError if a value is NaN or its magnitude is above MAX_CHANNEL.
     """
     data = np.asarray(sequence, dtype=np.float64)
-    if not (np.abs(data) <= LARGEST).all():
-        raise ValueError(f"expected channels within {LARGEST:g}, found larger ones or NaN")
+    if not (np.abs(data) <= MAX_CHANNEL).all():
+        raise ValueError(f"expected channels within {MAX_CHANNEL:g}, found larger ones or NaN")
     floor = np.broadcast_to(np.asarray(variance_floor, dtype=np.float64), data.shape[1:])
     center = data.mean(axis=0)  # keeps the products of log_emissions well conditioned
     start = _equal_parts(data - center, states_for(len(data), states), floor)
@@ -67,18 +69,21 @@ def fit_left_to_right(
 
 
 def states_for(frames: int, states: int) -> int:
-    """How many of the wanted states a sequence of so many frames can fill."""
+    """How many states, at most `states` and at least 1, a sequence of `frames` frames can fill."""
     return max(1, min(states, frames // FRAMES_PER_STATE))
 
 
 def sample(model: GaussianHMM, frames: int, rng: np.random.RandomState) -> FloatArray:
-    """(frames, D) one sequence drawn from the model. hmmlearn takes no newer generator."""
+    """(frames, D) one sequence drawn from the model.
+
+    rng: a RandomState, because hmmlearn takes no newer generator.
+    """
     drawn, _ = _LeftToRight(model).sample(frames, random_state=rng)
     return np.asarray(drawn, dtype=np.float64)
 
 
 def occupancy(model: GaussianHMM, sequence: FloatArray) -> FloatArray:
-    """(T, K) probability of being in each state at each frame of `sequence` (T, D)."""
+    """(T, K) the probability of each state at each frame of `sequence` (T, D); rows sum to 1."""
     center = sequence.mean(axis=0)
     centered = GaussianHMM(model.transitions, model.means - center, model.variances)
     # logarithms: under a model of other motion, plain probabilities underflow
@@ -87,9 +92,9 @@ def occupancy(model: GaussianHMM, sequence: FloatArray) -> FloatArray:
 
 
 class _LeftToRight(hmm.GaussianHMM):  # type: ignore[misc]  # hmmlearn has no types
-    """hmmlearn's model with diagonal covariances, started from `start`.
+    """hmmlearn's model with diagonal covariances, which starts from `start`.
 
-    floor: (D,) or a scalar, below which no variance goes; options: as those of hmmlearn.
+    floor: (D,) or a scalar, the smallest variance. options: those of hmmlearn.
     """
 
     means_: FloatArray
@@ -130,19 +135,22 @@ class _LeftToRight(hmm.GaussianHMM):  # type: ignore[misc]  # hmmlearn has no ty
         return np.asarray(random_state.normal(self.means_[state], spread))
 
     def model(self) -> GaussianHMM:
-        """What was learned."""
+        """The fitted model."""
         return GaussianHMM(self.transmat_, self.means_, self._covars_)
 
 
 def _improve(
     start: GaussianHMM, data: FloatArray, floor: FloatArray, iterations: int
 ) -> GaussianHMM:
-    """The model after `iterations` of EM at most, from `start`."""
-    limits = {"n_iter": iterations, "tol": LEAST_GAIN * len(data)}
+    """The model after at most `iterations` iterations of EM from `start`.
+
+    data: (T, D). floor: (D,) the smallest variances.
+    """
+    limits = {"n_iter": iterations, "tol": MIN_GAIN * len(data)}
     learner = _LeftToRight(start, floor, **limits)
     try:
-        # Plain probabilities are fast. Under a frame far from every state they vanish, or the
-        # factors that scale them overflow.
+        # Plain probabilities are fast. If a frame is far from every state, they become 0, or
+        # the factors that scale them overflow.
         with np.errstate(over="raise", invalid="raise"):
             learner.fit(data)
     except (ValueError, FloatingPointError):
@@ -152,18 +160,22 @@ def _improve(
 
 
 def _equal_parts(data: FloatArray, states: int, floor: FloatArray) -> GaussianHMM:
+    """A model of `states` states, each of an equal part of `data` (T, D)."""
     edges = np.linspace(0, len(data), states + 1).round().astype(np.int64)
     starts, lengths = edges[:-1], np.diff(edges)[:, None]
     means = np.add.reduceat(data, starts, axis=0) / lengths
     squares = np.add.reduceat(data**2, starts, axis=0) / lengths
     leave = 1.0 / lengths[:, 0]
-    # A one-frame part would stay with probability zero and never learn otherwise.
+    # A part of one frame would stay with probability zero, and EM could not change that.
     transitions = _left_to_right(np.maximum(1.0 - leave, 1e-3), leave)
     return GaussianHMM(transitions, means, np.maximum(squares - means**2, floor))
 
 
 def _left_to_right(stay: FloatArray, move: FloatArray) -> FloatArray:
-    """(K, K) rows summing to one; the last state only stays."""
+    """(K, K) transitions from `stay` (K,) and `move` (K,), whose rows sum to 1.
+
+    The model never leaves its last state.
+    """
     transitions = np.diag(stay) + np.diag(move[:-1], 1)
     transitions[-1] = 0.0
     transitions[-1, -1] = 1.0

@@ -17,22 +17,25 @@ from app.numerics.tensors.tensor import multiply_modes, unfold
 
 @dataclass(frozen=True, slots=True)
 class NModeSVD:
-    """core: (R_1, ..., R_N); factors: N mode matrices (I_n, R_n), columns orthonormal."""
+    """A decomposed tensor: core x_1 factors[0] x_2 factors[1] ... (eq. 1).
+
+    core: (R_1, ..., R_N). factors: N mode matrices (I_n, R_n) with orthonormal columns.
+    """
 
     core: FloatArray
     factors: tuple[FloatArray, ...]
 
     def reconstruct(self) -> FloatArray:
-        """The tensor (I_1, ..., I_N) of eq. 1; exact at full ranks."""
+        """The tensor (I_1, ..., I_N) of eq. 1. It is exact if no rank was truncated."""
         return multiply_modes(self.core, self.factors)
 
 
 def nmode_svd(tensor: FloatArray, ranks: Sequence[int | None] | None = None) -> NModeSVD:
     """Decompose a tensor (I_1, ..., I_N) by the two steps of Vasilescu's algorithm.
 
-    ranks: columns to keep of each mode matrix; None keeps all that the unfolding can have,
-    min(I_n, product of the others). Truncating is the truncated HOSVD: not the best
-    approximation of these ranks, but within a factor sqrt(N) of it, and without iteration.
+    ranks: for each mode the number of columns to keep. None keeps all that the unfolding has:
+    min(I_n, product of the other sizes). With smaller ranks the result is the truncated HOSVD.
+    It needs no iteration, and its error is within a factor sqrt(N) of the smallest possible.
     """
     wanted = ranks if ranks is not None else [None] * tensor.ndim
     factors = tuple(mode_matrix(tensor, mode, rank) for mode, rank in enumerate(wanted))
@@ -41,7 +44,11 @@ def nmode_svd(tensor: FloatArray, ranks: Sequence[int | None] | None = None) -> 
 
 
 def mode_matrix(tensor: FloatArray, mode: int, rank: int | None = None) -> FloatArray:
-    """Left singular vectors of the unfolding along `mode`: (I_mode, rank), signs fixed."""
+    """(I_mode, rank) the first left singular vectors of the unfolding along `mode`.
+
+    mode: counted from 0. rank: None keeps all. In each column the entry of largest magnitude is
+    positive.
+    """
     flat = unfold(tensor, mode)
     left, _, _ = np.linalg.svd(flat, full_matrices=False)
     return fix_signs(left[:, :rank])

@@ -15,23 +15,25 @@ from app.deadline import check
 from app.numerics.arrays import FloatArray
 
 MAX_ITERATIONS = 200
-"""Sun saw 5 to 10 suffice on motion volumes; to SMALLEST_CHANGE it takes some 20."""
+"""Sun reports that 5 to 10 iterations are enough for motion volumes. About 20 reach MIN_CHANGE."""
 
-SMALLEST_CHANGE = 1e-12
-"""Stop when lambda changes by less, as a share of it, and rho's square by as little.
+MIN_CHANGE = 1e-12
+"""Iterations stop if the relative change of lambda and the squared change of rho are smaller.
 
-Lambda errs with the square of rho, which is then good to a millionth. The paper's 1e-10 is
-that of the difference to the volume, which no volume of rank above 1 ever reaches.
+The error of lambda is of the order of the squared error of rho, so rho is then right to a
+millionth. The paper's limit, 1e-10, is for the difference to the volume. No volume of a rank above
+1 can reach that.
 """
 
 
 @dataclass(frozen=True, slots=True)
 class Rank1:
-    """weight * primary o primary o secondary.
+    """The approximation weight * primary o primary o secondary, and how it was reached.
 
-    weight: lambda >= 0; primary: rho (I,), unit length, sum >= 0; secondary: epsilon (K,),
-    unit length; errors: (iterations,) |A - approximation| / |A| after each iteration;
-    changes: (iterations,) |lambda - its value before| / lambda (figure 7 shows such a curve).
+    weight: lambda, 0 or more. primary: rho (I,), of unit length, with a sum of 0 or more.
+    secondary: epsilon (K,), of unit length. errors: (iterations,) |A - approximation| / |A|
+    after each iteration. changes: (iterations,) |lambda - lambda before| / lambda after each
+    iteration (figure 7 shows such a curve). converged: whether MIN_CHANGE was reached.
     """
 
     weight: float
@@ -43,7 +45,7 @@ class Rank1:
 
     @property
     def iterations(self) -> int:
-        """How many iterations were made."""
+        """The number of iterations."""
         return len(self.errors)
 
 
@@ -51,12 +53,14 @@ def symmetric_rank1(
     volume: FloatArray,
     *,
     max_iterations: int = MAX_ITERATIONS,
-    smallest_change: float = SMALLEST_CHANGE,
+    smallest_change: float = MIN_CHANGE,
 ) -> Rank1:
-    """Alternating least squares from a constant start, so that it always ends alike.
+    """The best rank-1 approximation by alternating least squares (algorithm 1).
 
-    `volume`: (I, I, K), symmetric in the first two axes, finite; max_iterations >= 1. An
-    all-zero volume gives weight 0 and constant vectors. Convergence is reported, never assumed.
+    volume: (I, I, K), symmetric in its first two axes, finite. max_iterations: 1 or more.
+    smallest_change: see MIN_CHANGE. The start is constant, so the result is deterministic. A
+    volume of zeros has weight 0 and constant vectors. If the iterations do not converge, the
+    last result is returned with `converged` false.
     """
     volume = np.asarray(volume, dtype=np.float64)
     rho, epsilon = _constant(volume.shape[0]), _constant(volume.shape[2])
@@ -69,8 +73,8 @@ def symmetric_rank1(
         check()
         before = rho
         if change <= smallest_change:
-            # Lambda stands still and rho does not: it swings between two vectors, as power
-            # iteration does where an eigenvalue has a twin of the other sign.
+            # Lambda is constant but rho is not: rho alternates between two vectors. Power
+            # iteration does so if two eigenvalues differ only in their sign.
             rho = _unit(rho + _step(volume, rho, epsilon)[0], otherwise=rho)
         rho, epsilon = _step(volume, rho, epsilon)
         weights.append(_weight(volume, rho, epsilon))
@@ -82,7 +86,7 @@ def symmetric_rank1(
 def _step(
     volume: FloatArray, rho: FloatArray, epsilon: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Both updates of algorithm 1, from the same old vectors as printed."""
+    """Both updates of algorithm 1, each from the old vectors, as in the paper."""
     return (
         _unit((volume @ epsilon) @ rho, otherwise=rho),
         _unit(_along_time(volume, rho), otherwise=epsilon),
@@ -90,7 +94,10 @@ def _step(
 
 
 def _settled(volume: FloatArray, rho: FloatArray, weights: FloatArray, converged: bool) -> Rank1:
-    """Fix the sign of rho, and take epsilon and the weight from it (so the weight is >= 0)."""
+    """The result, with the sign of rho fixed. Epsilon and the weight follow from rho.
+
+    weights: (iterations + 1,) lambda at the start and after each iteration.
+    """
     rho = rho if rho.sum() >= 0 else -rho
     times = _along_time(volume, rho)
     epsilon = _unit(times, otherwise=_constant(len(times)))
@@ -100,7 +107,7 @@ def _settled(volume: FloatArray, rho: FloatArray, weights: FloatArray, converged
 
 
 def _along_time(volume: FloatArray, rho: FloatArray) -> FloatArray:
-    """(K,) = A x1 rho x2 rho."""
+    """(K,) A x_1 rho x_2 rho."""
     rows, columns, frames = volume.shape
     return np.outer(rho, rho).ravel() @ volume.reshape(rows * columns, frames)
 
@@ -110,13 +117,16 @@ def _weight(volume: FloatArray, rho: FloatArray, epsilon: FloatArray) -> float:
 
 
 def _change(weights: Sequence[float] | FloatArray) -> float:
-    """Of the last weight against the one before, as a share of it; 0 where it is 0."""
+    """The relative change of the last weight to the one before it; 0 if the last weight is 0."""
     before, now = weights[-2:]
     return float(abs(now - before) / abs(now)) if now else 0.0
 
 
 def _relative_errors(weights: FloatArray, size: float) -> FloatArray:
-    """From |A - weight * rank-1|^2 = |A|^2 - weight^2, which holds for unit vectors."""
+    """The errors |A - approximation| / |A|, from |A - approximation|^2 = |A|^2 - weight^2.
+
+    This holds for unit vectors. size: |A|.
+    """
     return np.asarray(np.sqrt(np.maximum(0.0, 1.0 - (weights / size) ** 2)))
 
 

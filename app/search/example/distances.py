@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from app.analysis.descriptors.motion_volume import (
-    LARGEST_CROSS_CORRELATION,
+    MAX_CROSS_CORRELATION,
     cross_correlations,
     warping_distances,
 )
@@ -65,7 +65,7 @@ def _by_volume_dtw(query: Descriptors, columns: list[list[FloatArray]]) -> Float
 
 def _by_volume_correlation(query: Descriptors, columns: list[list[FloatArray]]) -> FloatArray:
     likeness = cross_correlations(query[RHO], query[EPSILON], np.stack(columns[0]), columns[1])
-    return np.asarray(np.maximum(LARGEST_CROSS_CORRELATION - likeness, 0.0))
+    return np.asarray(np.maximum(MAX_CROSS_CORRELATION - likeness, 0.0))
 
 
 _Comparison = Callable[[Descriptors, list[list[FloatArray]]], FloatArray]

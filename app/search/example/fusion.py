@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
-from app.numerics.diffusion import diffused_closeness, neighbour_radii
+from app.numerics.diffusion import diffused_closeness, neighbor_radii
 from app.numerics.euclidean import distances
 
 SHORTLIST = 300
@@ -51,7 +51,7 @@ class FusedDistance:
         if not len(vectors):
             return cls(np.zeros(0), np.zeros(0))
         between = _distances(np.vstack([query, vectors]).astype(np.float64))
-        radii = neighbour_radii(between, max(1, round(NEIGHBORS * len(between) ** 0.5)))
+        radii = neighbor_radii(between, max(1, round(NEIGHBORS * len(between) ** 0.5)))
         closeness = diffused_closeness(between, radii)[1:]
         far = -np.log((closeness + MIN_CLOSENESS) / (1.0 + MIN_CLOSENESS))
         return cls(between[0, 1:], float(np.median(radii)) * far)

@@ -25,7 +25,7 @@ from app.json_stderr import STDERR, log_uncaught
 from app.logs import configure_logging
 
 LIBRARIES = [
-    "app.analysis.analyse",
+    "app.analysis.analyze",
     "app.formats.read",
     "app.motion.canonical.canonical",
     "hmmlearn.hmm",

@@ -6,7 +6,7 @@ the job and the imports that wait: a clip is never ready in part.
 
 from __future__ import annotations
 
-from app.analysis.analyse import ANALYSIS_VERSION, Analysis
+from app.analysis.analyze import ANALYSIS_VERSION, Analysis
 from app.analysis.energy.energy import EnergyMethod
 from app.errors import (
     MAX_MESSAGE,

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from app.analysis.analyse import ANALYSIS_VERSION
+from app.analysis.analyze import ANALYSIS_VERSION
 from app.services.clips.catalogue import BULK_PRIORITY, enqueue_ingest
 from app.services.library.library import Library
 from app.store.clips import listing as clip_listing

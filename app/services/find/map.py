@@ -80,7 +80,7 @@ def draw_map(
     return Map(
         clips=tuple(records[ids[row]] for row in rows),
         points=_padded(seen[rows], dimensions),
-        kept=_share(points - axes.centre, seen) if len(ids) else 0.0,
+        kept=_share(points - axes.center, seen) if len(ids) else 0.0,
         total=len(passed),
         library_version=version,
         model=model,

@@ -122,7 +122,7 @@ def _describe_upload(lib: Library, source: QuerySource, names: tuple[str, ...]) 
 def _described(motion: Motion, names: tuple[str, ...]) -> Arrays:
     """The named descriptors of a part of a motion, computed in this process."""
     # The analysis is slow to import, and a search by a whole clip does not need it.
-    from app.analysis.analyse import describe_for_search
+    from app.analysis.analyze import describe_for_search
 
     return describe_for_search(motion, names).arrays
 

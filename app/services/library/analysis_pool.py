@@ -34,7 +34,7 @@ from app.services.children.processes import limit_memory, log_like_parent, stder
 from app.store.files.checked import read_whole
 
 if TYPE_CHECKING:
-    from app.analysis.analyse import Analysis
+    from app.analysis.analyze import Analysis
     from app.analysis.rhythm.onsets import Onsets
     from app.motion.skeleton.recording import Caution, Recording
 
@@ -184,26 +184,25 @@ def analyze_file(request: AnalysisRequest, limits: Limits) -> Analysis:
 
     Raises BadContent for content that cannot be used, TooLarge beyond the limits.
     """
-    from app.analysis import analyse
+    from app.analysis import analyze
     from app.analysis.keyposes.keyposes import T1, T2
-    from app.analysis.rhythm.rhythm import Told
-    from app.motion.canonical.canonical import canonicalise
+    from app.motion.canonical.canonical import canonicalize
     from app.motion.roles.joint_roles import JointRole
 
     recording = read_file(request, limits)
     roles = {JointRole(role): joint for role, joint in (request.roles or {}).items()}
-    motion = canonicalise(
+    motion = canonicalize(
         recording,
         frame_rate=request.frame_rate,
         metres_per_unit=request.metres_per_unit,
         roles=roles or None,
     )
     if request.for_search:
-        return analyse.describe_for_search(motion)
+        return analyze.describe_for_search(motion)
     t1, t2 = request.thresholds or (T1, T2)
-    told = Told(request.beats, request.tempo, request.audio_offset)
+    given = RhythmInput(request.beats, request.tempo, request.audio_offset)
     onsets, doubts = (None, ()) if request.audio_path is None else _listen(Path(request.audio_path))
-    found = analyse.analyse(motion, t1=t1, t2=t2, told=told, onsets=onsets)
+    found = analyze.analyze(motion, t1=t1, t2=t2, rhythm_input=given, onsets=onsets)
     return replace(found, cautions=(*doubts, *found.cautions))
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.analysis.analyse import Analysis
+from app.analysis.analyze import Analysis
 from app.analysis.keyposes.keyposes import find_keyposes
 from app.analysis.rhythm.beats import Beats
 from app.analysis.rhythm.rhythm import BEAT_ARRAYS, beats_of

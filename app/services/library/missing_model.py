@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from app.errors import ModelBeingFitted, ModelNotFitted
-from app.store.clips.listing import is_being_analysed_anew
+from app.store.clips.listing import is_being_analyzed_anew
 from app.store.database.engine import Tx
 from app.store.jobs import repository as jobs
 from app.store.jobs.record import OPEN_STATES, JobKind, JobRecord, JobState
@@ -58,9 +58,9 @@ def outdated_model(tx: Tx, kind: str) -> ModelNotFitted:
 
 def _is_upgrading(tx: Tx) -> bool:
     """Whether a worker analyses anew what another version described; it fits after that."""
-    from app.analysis.analyse import ANALYSIS_VERSION
+    from app.analysis.analyze import ANALYSIS_VERSION
 
-    return is_being_analysed_anew(tx, ANALYSIS_VERSION)
+    return is_being_analyzed_anew(tx, ANALYSIS_VERSION)
 
 
 def _ask_again(doing: str, fit: JobRecord) -> str:

@@ -92,7 +92,7 @@ def count_waiting(tx: Tx) -> int:
     return int(tx.execute(select(func.count()).select_from(clips).where(_WAITS)).scalar_one())
 
 
-def is_being_analysed_anew(tx: Tx, version: int) -> bool:
+def is_being_analyzed_anew(tx: Tx, version: int) -> bool:
     """Whether a clip that another analysis than `version` described waits for it, or is at it."""
     query = select(clips.c.id).where(_WAITS, clips.c.analysis_version != version)
     return tx.execute(query.limit(1)).first() is not None

@@ -31,7 +31,7 @@ MOST_KILLS = 8
 """A job whose child process is killed from outside so often is tried once more, alone."""
 KILL_DELAY_S = 0.5
 """Before the first new try; doubled each time."""
-NOT_REANALYSED = "reanalysis_failed"
+NOT_REANALYZED = "reanalysis_failed"
 """Code of the warning of a clip that keeps an earlier analysis."""
 
 
@@ -208,7 +208,7 @@ def _why_not_anew(problem: dict[str, Any]) -> ClipWarning:
     reason = str(problem.get("detail", "")).rstrip(".")
     if problem.get("code") != StoredFileMissing.code:
         told = f"The clip was not analyzed again: {reason}. It keeps its earlier analysis."
-        return ClipWarning(NOT_REANALYSED, told)
+        return ClipWarning(NOT_REANALYZED, told)
     return ClipWarning(
         StoredFileMissing.code,
         f"{reason}. The clip cannot be analyzed again and keeps its earlier analysis. Put the"

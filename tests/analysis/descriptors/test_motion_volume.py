@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.analysis.descriptors.motion_volume import (
-    LARGEST_CROSS_CORRELATION,
+    MAX_CROSS_CORRELATION,
     compression_ratio,
     cross_correlations,
     decompose,
@@ -99,8 +99,8 @@ def test_both_measures_find_the_motion_itself_first() -> None:
     rhos, epsilons = np.array([f.primary for f in found]), [f.secondary for f in found]
     likeness = cross_correlations(rhos[0], epsilons[0], rhos, epsilons)
     distances = warping_distances(rhos[0], epsilons[0], rhos, epsilons)
-    assert likeness[0] == pytest.approx(LARGEST_CROSS_CORRELATION)
-    assert (likeness <= LARGEST_CROSS_CORRELATION + 1e-9).all()
+    assert likeness[0] == pytest.approx(MAX_CROSS_CORRELATION)
+    assert (likeness <= MAX_CROSS_CORRELATION + 1e-9).all()
     assert distances[0] == 0.0
     assert likeness.argmax() == distances.argmin() == 0
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from app.analysis.energy.energy import EnergyMethod, Weights, energies
-from app.motion.canonical.centre_of_mass import ROLE_MASSES, centre_of_mass
+from app.motion.canonical.centre_of_mass import ROLE_MASSES, center_of_mass
 from app.motion.frame.body_frame import body_track
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from tests.bodies import motion_of, place, standing, turned_about_y, walking, waving
@@ -41,12 +41,12 @@ def test_rms_of_one_moving_joint_is_its_speed_over_root_13() -> None:
     np.testing.assert_allclose(energies(track).global_energy, expected, rtol=1e-3)
 
 
-def test_weights_by_mass_make_the_printed_global_energy_that_of_the_centre_of_mass() -> None:
+def test_weights_by_mass_make_the_printed_global_energy_that_of_the_center_of_mass() -> None:
     body = walking(turn=0.5)
     track = body_track(motion_of(body))
     found = energies(track, EnergyMethod.PRINTED, Weights.MASS).whole
-    centre = gaussian_filter1d(centre_of_mass(track.positions), 1.0, axis=0)
-    speed = np.linalg.norm(np.gradient(centre, axis=0), axis=1) * 30 / track.body_length
+    center = gaussian_filter1d(center_of_mass(track.positions), 1.0, axis=0)
+    speed = np.linalg.norm(np.gradient(center, axis=0), axis=1) * 30 / track.body_length
     np.testing.assert_allclose(found.values[5:-5], speed[5:-5], rtol=1e-3)
 
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.analysis.energy.marker_noise import LEAST_FRAMES, noise_of_speed, noise_power
+from app.analysis.energy.marker_noise import MIN_FRAMES, noise_of_speed, noise_power
 from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, walking
@@ -17,7 +17,7 @@ ALIKE = np.full(13, 1 / 13)
 
 
 def noise_of(positions: FloatArray, rate: float) -> float:
-    """Standard deviation on each coordinate, metres, at the analysis rate."""
+    """Standard deviation on each coordinate, meters, at the analysis rate."""
     track = body_track(motion_of(positions, rate))
     return float(np.sqrt(noise_power(track.positions, ALIKE) / 3))
 
@@ -54,7 +54,7 @@ def test_only_joints_that_weigh_are_looked_at() -> None:
 
 
 def test_a_short_clip_counts_as_clean() -> None:
-    assert noise_power(np.random.default_rng(0).normal(size=(LEAST_FRAMES - 1, 13, 3)), ALIKE) == 0
+    assert noise_power(np.random.default_rng(0).normal(size=(MIN_FRAMES - 1, 13, 3)), ALIKE) == 0
 
 
 @pytest.mark.parametrize("spread", [1.0, 2.0, 3.0])

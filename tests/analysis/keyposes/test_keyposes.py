@@ -82,7 +82,7 @@ def test_a_candidate_is_taken_when_it_is_small_or_deep_and_global_goes_first() -
         for beat in range(len(made.beats)):
             for scope in (Scope.GLOBAL, Scope.LOCAL):
                 here = [c for c in candidates.found if (c.beat, c.scope) == (beat, scope)]
-                if any(c.rest.energy < t1 or c.rest.drop > t2 for c in here):
+                if any(c.minimum.energy < t1 or c.minimum.drop > t2 for c in here):
                     expected[beat] = scope
                     break
         assert {c.beat: c.scope for c in candidates.select(t1, t2)} == expected

@@ -11,14 +11,14 @@ from app.analysis.rhythm.beats import BeatSource, beats_of_tempo, find_beats, gi
 from app.demo import DemoClip
 from app.demo.dances import dance as drifting_dance
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import body_track
 from tests.bodies import motion_of, standing
 from tests.dances import dance, irregular
 
 
 def energy_of(clip: DemoClip) -> np.ndarray:
-    return energies(body_track(canonicalise(read_recording(clip.content)))).global_energy
+    return energies(body_track(canonicalize(read_recording(clip.content)))).global_energy
 
 
 @pytest.mark.parametrize("tempo", [60, 75, 90, 105, 120, 140, 160, 180])

@@ -11,12 +11,12 @@ import pytest
 from app.analysis.energy.energy import energies
 from app.analysis.rhythm.beats import BeatSource
 from app.analysis.rhythm.onsets import Onsets, find_onsets
-from app.analysis.rhythm.rhythm import SOURCES, Told, beats_of, find_rhythm, rhythm_arrays
+from app.analysis.rhythm.rhythm import SOURCES, RhythmInput, beats_of, find_rhythm, rhythm_arrays
 from app.demo import DemoClip
 from app.demo.dances import Sound, dance
 from app.formats.audio.reader import read_audio
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import BodyTrack, body_track
 from tests.bodies import motion_of, standing
 from tests.recordings import without_beat
@@ -26,7 +26,7 @@ from tests.recordings import without_beat
 def made(seed: int, sound: Sound, offset: float) -> tuple[DemoClip, BodyTrack, Onsets]:
     clip = dance(seed, bpm=90.0 + seed, seconds=14.0, sound=sound, audio_offset=offset)
     heard = read_audio(clip.audio)
-    track = body_track(canonicalise(read_recording(clip.content)))
+    track = body_track(canonicalize(read_recording(clip.content)))
     return clip, track, find_onsets(heard.samples, heard.rate)
 
 
@@ -36,7 +36,7 @@ def test_a_planted_offset_is_found_but_for_whole_beats(sound: Sound, offset: flo
     clip, track, onsets = made(5, sound, offset)
     rhythm = find_rhythm(track, onsets=onsets)
     assert rhythm.offset is not None
-    assert not rhythm.offset.is_told
+    assert not rhythm.offset.is_given
     beat = float(np.median(np.diff(clip.beats)))
     off = (rhythm.offset.seconds - offset) / beat
     assert abs(off - round(off)) * beat < 0.05
@@ -47,32 +47,32 @@ def test_a_planted_offset_is_found_but_for_whole_beats(sound: Sound, offset: flo
 
 def test_an_offset_that_is_told_is_kept() -> None:
     _, track, onsets = made(5, Sound.MUSIC, 0.0)
-    rhythm = find_rhythm(track, Told(audio_offset=7.0), onsets)
+    rhythm = find_rhythm(track, RhythmInput(audio_offset=7.0), onsets)
     assert rhythm.offset is not None
-    assert (rhythm.offset.seconds, rhythm.offset.is_told) == (7.0, True)
+    assert (rhythm.offset.seconds, rhythm.offset.is_given) == (7.0, True)
     assert rhythm.cautions == ()
 
 
 def test_beats_go_on_where_the_recording_is_silent() -> None:
     _, track, onsets = made(5, Sound.MUSIC, 0.0)
-    late = find_rhythm(track, Told(audio_offset=4.0), onsets).beats
+    late = find_rhythm(track, RhythmInput(audio_offset=4.0), onsets).beats
     assert 0.0 <= late.times[0] < 1.0
     assert late.times[-1] <= energies(track).global_energy.size / 30.0
 
 
 def test_a_recording_that_never_meets_the_motion_tells_nothing_of_it() -> None:
     _, track, onsets = made(5, Sound.MUSIC, 0.0)
-    apart = find_rhythm(track, Told(audio_offset=1000.0), onsets)
+    apart = find_rhythm(track, RhythmInput(audio_offset=1000.0), onsets)
     assert apart.beats.source in (BeatSource.MOTION, BeatSource.NONE)
     assert [caution.code for caution in apart.cautions] == ["audio_apart"]
 
 
 def test_beats_that_are_given_for_another_motion_are_told_of_and_not_used() -> None:
     _, track, _ = made(5, Sound.MUSIC, 0.0)
-    rhythm = find_rhythm(track, Told(beats=(600.0, 601.0)))
+    rhythm = find_rhythm(track, RhythmInput(beats=(600.0, 601.0)))
     assert rhythm.beats.source is find_rhythm(track).beats.source
     assert [caution.code for caution in rhythm.cautions] == ["beats_outside_motion"]
-    some = find_rhythm(track, Told(beats=(1.0, 600.0)))
+    some = find_rhythm(track, RhythmInput(beats=(1.0, 600.0)))
     assert (some.beats.source, some.cautions) == (BeatSource.GIVEN, ())
 
 
@@ -95,14 +95,14 @@ def test_a_still_body_does_not_tell_when_its_recording_begins() -> None:
 
 def test_what_is_told_goes_first() -> None:
     clip, track, onsets = made(5, Sound.MUSIC, 0.0)
-    told = Told(beats=(0.5, 1.5), tempo=60.0, audio_offset=0.0)
+    told = RhythmInput(beats=(0.5, 1.5), tempo=60.0, audio_offset=0.0)
     assert find_rhythm(track, told, onsets).beats.source is BeatSource.GIVEN
-    both = find_rhythm(track, Told(tempo=47.5, audio_offset=0.0), onsets).beats
+    both = find_rhythm(track, RhythmInput(tempo=47.5, audio_offset=0.0), onsets).beats
     assert (both.source, both.tempo) == (BeatSource.TEMPO, 47.5)
-    halved = find_rhythm(track, Told(tempo=47.5), onsets)
+    halved = find_rhythm(track, RhythmInput(tempo=47.5), onsets)
     assert halved.beats.source is BeatSource.TEMPO
     assert halved.offset is not None
-    alone = find_rhythm(track, Told(tempo=95.0)).beats
+    alone = find_rhythm(track, RhythmInput(tempo=95.0)).beats
     assert alone.source is BeatSource.TEMPO
     beats = np.array(clip.beats)
     assert np.median(np.abs(beats[:, None] - alone.times).min(axis=1)) < 0.08

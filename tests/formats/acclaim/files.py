@@ -127,7 +127,7 @@ def _turn(axis: str, degrees: float) -> FloatArray:
 def acclaim_person(
     frames: int = 40, scale: float = 1 / 0.056444, seed: int = 0
 ) -> tuple[bytes, bytes, FloatArray]:
-    """ASF, AMC and true positions (frames, roles, 3) in metres of the swaying person.
+    """ASF, AMC and true positions (frames, roles, 3) in meters of the swaying person.
 
     A joint off the end of its parent hangs on a bone of its own that does not move.
     """

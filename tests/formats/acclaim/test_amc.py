@@ -20,7 +20,7 @@ from app.errors import (
 from app.formats.acclaim.amc import read_amc
 from app.formats.bvh.reader import read_bvh
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.motion.skeleton.recording import Recording
 from tests.cpu_time import cpu_seconds_below
@@ -109,14 +109,14 @@ def test_dialects_of_the_same_pair_read_the_same(motion: bytes, skeleton: bytes)
 
 def test_the_person_comes_out_as_it_went_in() -> None:
     skeleton, motion, truth = acclaim_person()
-    found = canonicalise(read_recording(motion, skeleton))
+    found = canonicalize(read_recording(motion, skeleton))
     assert found.missing_roles == ()
     assert found.frame_rate == 120
     assert found.declared_frame_rate is None
     assert "frame_rate_assumed" in [caution.code for caution in found.cautions]
     expected = truth[:, [ROLES.index(role) for role in SUN_ROLES]]
     assert np.allclose(found.role_positions(), expected, atol=1e-4)
-    said = canonicalise(read_recording(motion, skeleton), frame_rate=60)
+    said = canonicalize(read_recording(motion, skeleton), frame_rate=60)
     assert said.frame_rate == 60
     assert "frame_rate_assumed" not in [caution.code for caution in said.cautions]
 
@@ -318,5 +318,5 @@ def test_real_legs_stand_where_the_bvh_of_the_same_clips_has_them(clip: str) -> 
     a, b = (x - x.mean(axis=(0, 1), dtype=float) for x in (a, b))
     scale = (a * b).sum() / (b * b).sum()
     assert ours.metres_per_unit is not None
-    millimetres = 1000 * ours.metres_per_unit * np.linalg.norm(a - scale * b, axis=-1)
-    assert millimetres.max() < 0.01
+    millimeters = 1000 * ours.metres_per_unit * np.linalg.norm(a - scale * b, axis=-1)
+    assert millimeters.max() < 0.01

@@ -136,11 +136,11 @@ PLUG_IN_GAIT: dict[str, tuple[JointRole, tuple[float, float, float]]] = {
     "LHEE": (R.LEFT_FOOT, (0, -0.05, -0.08)), "RHEE": (R.RIGHT_FOOT, (0, -0.05, -0.08)),
     "LTOE": (R.LEFT_TOES, (0, 0, 0)), "RTOE": (R.RIGHT_TOES, (0, 0, 0)),
 }  # fmt: skip
-"""Markers that stand fast on a joint of the person: which, and where beside it in metres."""
+"""Markers that stand fast on a joint of the person: which, and where beside it in meters."""
 
 
 def markers_of(recording: Recording) -> dict[str, FloatArray]:
-    """Tracks (frames, 3) of the person's markers, millimetres, Z up."""
+    """Tracks (frames, 3) of the person's markers, millimeters, Z up."""
     skeleton = recording.skeleton
     assert recording.rotations is not None
     turned = recording.rotations.astype(np.float64)
@@ -160,6 +160,6 @@ def stacked(tracks: Mapping[str, FloatArray]) -> tuple[FloatArray, list[str]]:
 
 
 def marker_person(frames: int = 60, seed: int = 0) -> tuple[dict[str, FloatArray], FloatArray]:
-    """The swaying person's markers, and true positions (frames, roles, 3) in metres."""
+    """The swaying person's markers, and true positions (frames, roles, 3) in meters."""
     recording = person(frames=frames, seed=seed)
     return markers_of(recording), recording.positions

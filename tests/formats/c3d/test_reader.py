@@ -10,7 +10,7 @@ import pytest
 from app.errors import NotHuman, TooLarge, Unreadable
 from app.formats.c3d.reader import read_c3d
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.motion import Motion
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.recording import Recording
@@ -31,7 +31,7 @@ def codes(recording: Recording | Motion) -> list[str]:
 
 
 def worst_error(motion: Motion, start: int = 0) -> dict[JointRole, float]:
-    """By role: the largest distance from the truth, metres."""
+    """By role: the largest distance from the truth, meters."""
     truth = TRUTH[start : start + motion.frames, [ROLES.index(role) for role in SUN_ROLES]]
     apart = np.linalg.norm(motion.role_positions() - truth, axis=-1).max(axis=0)
     return {r: e for r, e in zip(SUN_ROLES, apart.tolist(), strict=True) if r in motion.roles}
@@ -54,7 +54,7 @@ def test_the_person_comes_out_as_it_went_in(processor: str, scale: float, analog
     assert (recording.format, recording.frame_rate) == ("c3d", 100)
     assert (recording.metres_per_unit, recording.up_axis) == (0.001, "z")
     assert recording.cautions == ()
-    motion = canonicalise(recording)
+    motion = canonicalize(recording)
     assert motion.missing_roles == ()
     assert max(worst_error(motion).values()) < 0.001
     assert len(motion.roles) == len(JointRole)
@@ -68,23 +68,23 @@ def test_the_person_comes_out_as_it_went_in(processor: str, scale: float, analog
         ("cm", 0.1),
         ("m", 0.001),
         ("Millimeters", 1),
-        ("metres", 0.001),
+        ("meters", 0.001),
         ("", 1),
         ("?", 1),
     ],
 )
 def test_units(unit: str, scale: float) -> None:
     content = c3d(MARKERS * scale, LABELS, parameters={"POINT:UNITS": unit})
-    assert max(worst_error(canonicalise(read_c3d(content))).values()) < 0.001
+    assert max(worst_error(canonicalize(read_c3d(content))).values()) < 0.001
 
 
 def test_rate_axis_and_parameters_that_are_missing() -> None:
     no_rate = c3d(MARKERS, LABELS, rate=0)
     assert read_c3d(no_rate).frame_rate is None
     with pytest.raises(Unreadable, match="frame_rate"):
-        canonicalise(read_c3d(no_rate))
+        canonicalize(read_c3d(no_rate))
     y_up = c3d(MARKERS[..., [0, 2, 1]] * [1, 1, -1], LABELS, parameters={"POINT:Y_SCREEN": "+Y"})
-    motion = canonicalise(read_c3d(y_up))
+    motion = canonicalize(read_c3d(y_up))
     assert max(worst_error(motion).values()) < 0.001
     assert codes(motion) == []
 
@@ -105,7 +105,7 @@ def test_rate_axis_and_parameters_that_are_missing() -> None:
 def test_other_names_of_the_same_markers(rename: object) -> None:
     assert callable(rename)
     recording = read_c3d(c3d(MARKERS, [rename(label) for label in LABELS]))
-    motion = canonicalise(recording)
+    motion = canonicalize(recording)
     assert motion.missing_roles == ()
     assert max(worst_error(motion).values()) < 0.001
 
@@ -121,7 +121,7 @@ def test_helen_hayes() -> None:
     tracks |= {f"{side}.Wrist": (TRACKS[f"{side}WRA"] + TRACKS[f"{side}WRB"]) / 2 for side in "LR"}
     tracks["V.Sacral"] = (TRACKS["LPSI"] + TRACKS["RPSI"]) / 2
     tracks["Top.Head"] = (TRACKS["LFHD"] + TRACKS["RBHD"]) / 2
-    motion = canonicalise(read_c3d(c3d(*stacked(tracks))))
+    motion = canonicalize(read_c3d(c3d(*stacked(tracks))))
     assert motion.missing_roles == ()
     errors = worst_error(motion)
     assert errors.pop(R.NECK) < 0.1  # between the shoulders
@@ -132,13 +132,13 @@ def test_outer_markers_alone_are_near_enough() -> None:
     outer = {
         label: track for label, track in TRACKS.items() if label[1:] not in ("KNM", "ANM", "ELM")
     }
-    motion = canonicalise(read_c3d(c3d(*stacked(outer))))
+    motion = canonicalize(read_c3d(c3d(*stacked(outer))))
     assert motion.missing_roles == ()
     assert max(worst_error(motion).values()) < 0.051
 
 
 def test_hip_joints_lie_below_and_inside_the_pelvis_markers() -> None:
-    motion = canonicalise(read_c3d(PLAIN))
+    motion = canonicalize(read_c3d(PLAIN))
     for side in ("left", "right"):
         role = JointRole(f"{side}_upper_leg")
         truth = TRUTH[:, ROLES.index(role)]
@@ -154,7 +154,7 @@ def test_what_is_no_marker_of_this_person_is_left_out() -> None:
     recording = read_c3d(c3d(*stacked(tracks), parameters={"POINT:ANGLES": ["HEDO"]}))
     assert not {*extra, "LKNE"} - {"LKNE"} & set(recording.skeleton.names)
     assert codes(recording) == ["several_subjects"]
-    assert max(worst_error(canonicalise(recording)).values()) < 0.001
+    assert max(worst_error(canonicalize(recording)).values()) < 0.001
 
 
 def test_of_the_same_label_twice_the_one_seen_most_is_read() -> None:
@@ -166,14 +166,14 @@ def test_of_the_same_label_twice_the_one_seen_most_is_read() -> None:
     ):
         recording = read_c3d(c3d(positions, labels))
         assert codes(recording) == ["duplicate_names"]
-        assert max(worst_error(canonicalise(recording)).values()) < 0.001
+        assert max(worst_error(canonicalize(recording)).values()) < 0.001
 
 
 def test_short_gaps_are_filled() -> None:
     content = c3d(hide(("LKNE", 10, 30), ("C7", 20, 40), ("RANK", 0, 6), ("LWRA", 55, 60)), LABELS)
     recording = read_c3d(content)
     assert codes(recording) == ["gaps_filled"]
-    errors = worst_error(canonicalise(recording))
+    errors = worst_error(canonicalize(recording))
     assert max(errors.pop(role) for role in (R.RIGHT_FOOT, R.LEFT_HAND)) < 0.1  # ends are held
     assert max(errors.values()) < 0.01
 
@@ -191,7 +191,7 @@ def test_whatever_says_that_a_point_is_hidden(hidden: str) -> None:
         values[at] = [0, 0, 0, 0] if hidden == "zeros" else [np.nan, 1, 1, 0]
     recording = read_c3d(bytes(content[:start]) + values.tobytes())
     assert codes(recording) == ["gaps_filled"]
-    assert max(worst_error(canonicalise(recording)).values()) < 0.002
+    assert max(worst_error(canonicalize(recording)).values()) < 0.002
 
 
 def test_long_gaps_are_refused_with_marker_and_frames() -> None:
@@ -209,7 +209,7 @@ def test_long_gaps_of_markers_that_others_stand_in_for_are_told() -> None:
     assert caution.code == "markers_left_out"
     assert all(label in caution.detail for label in ("LKNM", "C7", "LTHI"))
     assert not {"LKNM", "C7", "LTHI"} & set(recording.skeleton.names)
-    errors = worst_error(canonicalise(recording))
+    errors = worst_error(canonicalize(recording))
     assert errors.pop(R.LEFT_KNEE) < 0.051
     assert errors.pop(R.NECK) < 0.1
     assert max(errors.values()) < 0.001
@@ -218,7 +218,7 @@ def test_long_gaps_of_markers_that_others_stand_in_for_are_told() -> None:
 def test_labels_that_are_never_seen_are_absent() -> None:
     recording = read_c3d(c3d(hide(("LTOE", 0, 60), ("LKNM", 0, 60)), LABELS))
     assert recording.cautions == ()
-    motion = canonicalise(recording)
+    motion = canonicalize(recording)
     assert R.LEFT_TOES not in motion.roles
     assert motion.missing_roles == ()
 
@@ -227,25 +227,25 @@ def test_frames_with_nobody_there_are_trimmed_at_the_ends() -> None:
     empty = np.full((40, *MARKERS.shape[1:]), np.nan)
     recording = read_c3d(c3d(np.concatenate([empty, MARKERS, empty]), LABELS))
     assert codes(recording) == ["frames_trimmed"]
-    assert max(worst_error(canonicalise(recording)).values()) < 0.001
+    assert max(worst_error(canonicalize(recording)).values()) < 0.001
 
 
 def test_roles_sent_by_the_client_may_be_markers() -> None:
-    motion = canonicalise(read_c3d(PLAIN), roles={"left_hand": "LWRA"})
+    motion = canonicalize(read_c3d(PLAIN), roles={"left_hand": "LWRA"})
     assert motion.names[motion.roles[R.LEFT_HAND]] == "LWRA"
     strange = [f"point{i}" for i in range(len(LABELS))]
     with pytest.raises(NotHuman):
-        canonicalise(read_c3d(c3d(MARKERS, strange)))
+        canonicalize(read_c3d(c3d(MARKERS, strange)))
     said = {"hips": "LASI", "neck": "C7", "left_knee": "LKNE", "right_knee": "RKNE"}
     names = {role: strange[LABELS.index(label)] for role, label in said.items()}
-    motion = canonicalise(read_c3d(c3d(MARKERS, strange)), roles=names)
+    motion = canonicalize(read_c3d(c3d(MARKERS, strange)), roles=names)
     assert len(motion.roles) == 4
 
 
 def test_no_labels_at_all_are_refused() -> None:
-    with pytest.raises(Unreadable, match="labelled markers"):
+    with pytest.raises(Unreadable, match="labeled markers"):
         read_c3d(c3d(MARKERS, []))
-    with pytest.raises(Unreadable, match="labelled markers"):
+    with pytest.raises(Unreadable, match="labeled markers"):
         read_c3d(c3d(np.full_like(MARKERS, np.nan), LABELS))
 
 

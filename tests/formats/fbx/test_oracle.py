@@ -14,7 +14,7 @@ from app.numerics.arrays import FloatArray
 from tests.real_clips import real_clips
 
 TOLERANCE = 1e-3
-"""Centimetres."""
+"""Centimeters."""
 
 
 def keys(found: Any, seconds: FloatArray) -> FloatArray:

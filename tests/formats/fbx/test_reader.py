@@ -144,11 +144,11 @@ def test_axes_that_are_none_are_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("factor", "metres"), [(1.0, 0.01), (100.0, 1.0), (2.54, 0.0254), (0.0, None)]
+    ("factor", "meters"), [(1.0, 0.01), (100.0, 1.0), (2.54, 0.0254), (0.0, None)]
 )
-def test_units(factor: float, metres: float | None) -> None:
+def test_units(factor: float, meters: float | None) -> None:
     recording = read_fbx(clip(settings={"TimeMode": 6, "UnitScaleFactor": factor}))
-    assert recording.metres_per_unit == pytest.approx(metres)
+    assert recording.metres_per_unit == pytest.approx(meters)
 
 
 @pytest.mark.parametrize(

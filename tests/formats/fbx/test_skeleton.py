@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from app.errors import FormatNotSupported, TooLarge, Unreadable
 from app.formats.fbx.reader import read_fbx
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.roles.joint_roles import SUN_ROLES
 from tests.formats.fbx.files import CONSTANT, LINEAR, NEXT, Bone, Curve, Record, Take, fbx
 from tests.formats.fbx.takes import (
@@ -164,7 +164,7 @@ def test_a_person_becomes_a_canonical_motion(convention: str, axes: dict[str, in
         for b in bones
     ]
     animated = {(1, "Lcl Rotation"): np.linspace([0, 0, 0], [3, 2, 1], 40)}
-    motion = canonicalise(read_fbx(clip(bones, animated, settings={"TimeMode": 6, **axes})))
+    motion = canonicalize(read_fbx(clip(bones, animated, settings={"TimeMode": 6, **axes})))
     assert set(SUN_ROLES) <= set(motion.roles)
     assert motion.missing_roles == ()
     left = motion.positions[:, motion.roles[SUN_ROLES[0]]]
@@ -223,7 +223,7 @@ def test_real_clips() -> None:
     assert files
     for file in files:
         recording = read_recording(file.read_bytes())
-        motion = canonicalise(recording)
+        motion = canonicalize(recording)
         assert motion.missing_roles == ()
         assert motion.frame_rate == 30
         assert motion.metres_per_unit == 0.01

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.formats.gltf.writer import write_glb
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.posing.canonical_body import on_canonical_body
 from app.motion.skeleton.animation import Animation, animation_of_positions, animation_of_rotations
 from app.motion.skeleton.skeleton import Skeleton
@@ -42,7 +42,7 @@ def one_still_joint() -> Animation:
 
 
 def on_one_body() -> Animation:
-    return on_canonical_body(canonicalise(person(CONVENTIONS["SMPL"])))
+    return on_canonical_body(canonicalize(person(CONVENTIONS["SMPL"])))
 
 
 ANIMATIONS = {f.__name__: f for f in (a_person, stretching, markers, one_still_joint, on_one_body)}

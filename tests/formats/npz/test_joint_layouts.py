@@ -8,7 +8,7 @@ import pytest
 from app.formats.common.joint_trees import in_tree_order
 from app.formats.npz.joint_layouts import LAYOUTS, JointLayout, layout_of
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
 from tests.formats.npz.files import npy
@@ -79,7 +79,7 @@ def test_names_of_an_order_have_the_roles(title: str) -> None:
     recording = read_recording(npy(moving(BY_TITLE[title])))
     assert [c.code for c in recording.cautions] == ["joint_names_guessed"]
     assert title in recording.cautions[0].detail
-    motion = canonicalise(recording, frame_rate=30.0)
+    motion = canonicalize(recording, frame_rate=30.0)
     assert set(motion.roles) >= set(SUN_ROLES)
     left = motion.names[motion.roles[R.LEFT_KNEE]]
     assert left.startswith("L")
@@ -87,7 +87,7 @@ def test_names_of_an_order_have_the_roles(title: str) -> None:
 
 @pytest.mark.parametrize("title", ["Human3.6M", "Kinect v2", "OpenPose BODY_25"])
 def test_orders_without_some_joints_still_have_the_essential_roles(title: str) -> None:
-    motion = canonicalise(read_recording(npy(moving(BY_TITLE[title]))), frame_rate=30.0)
+    motion = canonicalize(read_recording(npy(moving(BY_TITLE[title]))), frame_rate=30.0)
     assert set(motion.roles) >= set(ESSENTIAL_ROLES)
     assert {motion.names[motion.roles[r]] for r in (R.LEFT_HAND, R.RIGHT_HAND)} <= {
         "LeftHand", "RightHand", "WristLeft", "WristRight",

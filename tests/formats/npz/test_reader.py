@@ -15,7 +15,7 @@ from app.errors import FormatNotSupported, KinedexError, NotHuman, TooLarge, Unr
 from app.formats.npz.reader import read_npz
 from app.formats.npz.writer import write_npz
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.roles.joint_roles import SUN_ROLES
 from tests.cpu_time import cpu_seconds_below
 from tests.formats.npz.files import a_person, npy, npz, person_arrays, zipped
@@ -43,9 +43,9 @@ def test_the_documented_layout() -> None:
     assert recording.rotations is None
     assert recording.cautions == ()
     np.testing.assert_array_equal(recording.positions, PERSON.positions)
-    motion = canonicalise(recording)
+    motion = canonicalize(recording)
     assert motion.missing_roles == ()
-    assert motion.roles == canonicalise(PERSON).roles
+    assert motion.roles == canonicalize(PERSON).roles
 
 
 @pytest.mark.parametrize(
@@ -98,13 +98,13 @@ def test_joints_stand_after_their_parents_in_whatever_order_they_came() -> None:
     for joint, name in enumerate(skeleton.names):
         there = PERSON.skeleton.names.index(name)
         np.testing.assert_array_equal(recording.positions[:, joint], PERSON.positions[:, there])
-    assert canonicalise(recording).missing_roles == ()
+    assert canonicalize(recording).missing_roles == ()
 
 
 def test_without_parents_names_tell_the_roles() -> None:
     recording = read_npz(npz(**{k: v for k, v in ARRAYS.items() if k != "parents"}))
     assert set(recording.skeleton.parents.tolist()) == {-1}
-    assert set(canonicalise(recording).roles) >= set(SUN_ROLES)
+    assert set(canonicalize(recording).roles) >= set(SUN_ROLES)
 
 
 def test_a_root_is_told_as_minus_one_as_itself_or_as_smpl_does() -> None:
@@ -119,7 +119,7 @@ def test_a_root_is_told_as_minus_one_as_itself_or_as_smpl_does() -> None:
 def test_z_up_centimetres_come_out_upright_in_metres() -> None:
     x, y, z = np.moveaxis(PERSON.positions, -1, 0)
     turned = {"positions": 100 * np.stack([x, -z, y], axis=-1), "unit": "cm", "up_axis": "Z"}
-    motion = canonicalise(read_npz(npz(**ARRAYS | turned)))
+    motion = canonicalize(read_npz(npz(**ARRAYS | turned)))
     np.testing.assert_allclose(motion.positions, PERSON.positions, atol=1e-5)
 
 
@@ -188,11 +188,11 @@ def test_a_bare_array_without_a_known_order_takes_roles_that_are_sent() -> None:
     assert recording.frame_rate is None
     assert [c.code for c in recording.cautions] == ["joint_names_missing"]
     with pytest.raises(NotHuman) as refused:
-        canonicalise(recording, frame_rate=30.0)
+        canonicalize(recording, frame_rate=30.0)
     assert refused.value.places[0].location == "roles.hips"
-    roles = canonicalise(PERSON).roles
+    roles = canonicalize(PERSON).roles
     sent = {role.value: f"joint_{joint}" for role, joint in roles.items()}
-    motion = canonicalise(recording, frame_rate=30.0, roles=sent)
+    motion = canonicalize(recording, frame_rate=30.0, roles=sent)
     assert motion.roles == roles
 
 

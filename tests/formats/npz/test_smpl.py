@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from app.errors import Unreadable
 from app.formats.npz.reader import read_npz
 from app.formats.npz.smpl import STATURE, generic_body, read_smpl, rotation_vectors_to_quaternions
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.kinematics import rest_positions
 from app.numerics.arrays import FloatArray
@@ -60,7 +60,7 @@ def test_an_amass_file_stands_upright_with_all_roles_and_says_what_lacks() -> No
     recording = read_npz(content)
     assert recording.frame_rate == 120
     assert recording.rotations is not None
-    motion = canonicalise(recording)
+    motion = canonicalize(recording)
     assert motion.missing_roles == ()
     assert [c.code for c in motion.cautions] == ["body_model_missing"]
     assert "angles are exact" in motion.cautions[0].detail
@@ -73,13 +73,13 @@ def test_an_amass_file_stands_upright_with_all_roles_and_says_what_lacks() -> No
 def test_who_lies_is_not_stood_up() -> None:
     lying = np.zeros((60, 72))
     trans = np.tile([0.0, 0.0, 0.2], (60, 1))
-    motion = canonicalise(read_npz(npz(poses=lying, trans=trans, mocap_framerate=60)))
+    motion = canonicalize(read_npz(npz(poses=lying, trans=trans, mocap_framerate=60)))
     assert np.ptp(motion.positions[0, :, 1]) < 0.3
     assert [c.code for c in motion.cautions] == ["body_model_missing"]
 
 
 def test_y_up_parameters_come_out_upright() -> None:
-    motion = canonicalise(read_npz(npz(poses=np.zeros((60, 72)), fps=60, up_axis="y")))
+    motion = canonicalize(read_npz(npz(poses=np.zeros((60, 72)), fps=60, up_axis="y")))
     assert motion.positions[0, motion.roles[R.HEAD], 1] > motion.positions[0, 0, 1] + 0.3
     assert [c.code for c in motion.cautions] == ["body_model_missing"]
 

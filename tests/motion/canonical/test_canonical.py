@@ -1,4 +1,4 @@
-"""One form for every recording: metres, Y up, roles, rate and unit settled."""
+"""One form for every recording: meters, Y up, roles, rate and unit settled."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.errors import BadContent, BadField, NotHuman, Unreadable
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.recording import Caution, Recording
 from app.motion.skeleton.skeleton import Skeleton
@@ -39,7 +39,7 @@ def test_a_person_in_centimetres_and_z_up() -> None:
     lying_axes = plain.positions[..., [0, 2, 1]] * np.array([100, -100, 100], dtype=np.float32)
     offsets = plain.skeleton.offsets[:, [0, 2, 1]] * np.array([100, -100, 100])
     skeleton = replace(plain.skeleton, offsets=offsets)
-    motion = canonicalise(replace(plain, positions=lying_axes, skeleton=skeleton))
+    motion = canonicalize(replace(plain, positions=lying_axes, skeleton=skeleton))
     assert motion.metres_per_unit == 0.01
     assert np.allclose(motion.positions, plain.positions, atol=1e-5)
     assert motion.positions.dtype == np.float32
@@ -48,7 +48,7 @@ def test_a_person_in_centimetres_and_z_up() -> None:
 
 
 def test_what_the_client_says_wins() -> None:
-    motion = canonicalise(
+    motion = canonicalize(
         person(CONVENTIONS["DAZ"]),
         frame_rate=60,
         metres_per_unit=2.0,
@@ -63,34 +63,34 @@ def test_what_the_client_says_wins() -> None:
 def test_impossible_words_of_a_client_are_refused(value: float) -> None:
     for field in ("frame_rate", "metres_per_unit"):
         with pytest.raises(BadField) as caught:
-            canonicalise(person(), **{field: value})
+            canonicalize(person(), **{field: value})
         assert caught.value.places
 
 
 def test_an_unknown_role_is_refused() -> None:
     with pytest.raises(BadField):
-        canonicalise(person(), roles={"tail": "j0"})
+        canonicalize(person(), roles={"tail": "j0"})
 
 
 def test_no_frame_rate_is_refused_unless_the_client_knows() -> None:
     silent = person(frame_rate=None)
     doubt = Caution("frame_time_unusable", "line 9: expected a frame time in seconds, found '0'")
     with pytest.raises(Unreadable, match="line 9"):
-        canonicalise(replace(silent, cautions=(doubt,)))
-    assert canonicalise(silent, frame_rate=25).frame_rate == 25
+        canonicalize(replace(silent, cautions=(doubt,)))
+    assert canonicalize(silent, frame_rate=25).frame_rate == 25
 
 
 @pytest.mark.parametrize("rate", [0.01, 0.99, 2001.0, 1e9])
 def test_a_frame_rate_of_the_file_that_cannot_be_is_refused(rate: float) -> None:
     with pytest.raises(Unreadable, match="1 to 2000 Hz") as caught:
-        canonicalise(person(frame_rate=rate))
+        canonicalize(person(frame_rate=rate))
     assert caught.value.places[0].location == "frame_rate"
-    assert canonicalise(person(frame_rate=rate), frame_rate=25).frame_rate == 25
+    assert canonicalize(person(frame_rate=rate), frame_rate=25).frame_rate == 25
 
 
-def test_no_arms_are_analysed_as_far_as_it_goes() -> None:
+def test_no_arms_are_analyzed_as_far_as_it_goes() -> None:
     armless = without(person(CONVENTIONS["MotionBuilder"]), "shoulder", "elbow", "hand")
-    motion = canonicalise(armless)
+    motion = canonicalize(armless)
     missing = {role for role in SUN_ROLES if role.endswith(("shoulder", "elbow", "hand"))}
     assert set(motion.missing_roles) == missing
     assert "roles_missing" in [caution.code for caution in motion.cautions]
@@ -100,7 +100,7 @@ def test_no_arms_are_analysed_as_far_as_it_goes() -> None:
 def test_no_legs_are_no_human() -> None:
     legless = without(person(CONVENTIONS["MotionBuilder"]), "leg", "knee", "foot", "toes")
     with pytest.raises(NotHuman, match="left_knee, right_knee"):
-        canonicalise(legless)
+        canonicalize(legless)
 
 
 NAMES = sorted({name for names in CONVENTIONS.values() for name in names.values()})
@@ -123,7 +123,7 @@ def test_strange_skeletons_end_in_a_motion_or_our_own_failure(
         frame_rate=data.draw(st.sampled_from([1.0, 30.0, 2000.0])),
     )
     try:
-        motion = canonicalise(recording)
+        motion = canonicalize(recording)
     except BadContent:
         return
     assert np.isfinite(motion.positions).all()
@@ -133,7 +133,7 @@ def test_strange_skeletons_end_in_a_motion_or_our_own_failure(
 
 @pytest.mark.parametrize("frames", [1, 2, 3])
 def test_the_shortest_clips(frames: int) -> None:
-    motion = canonicalise(person(CONVENTIONS["SMPL"], frames=frames))
+    motion = canonicalize(person(CONVENTIONS["SMPL"], frames=frames))
     assert motion.frames == frames
     assert np.isfinite(motion.positions).all()
 
@@ -153,7 +153,7 @@ def test_of_two_people_in_a_file_one_is_taken_and_it_is_said() -> None:
         ),
         positions=np.concatenate([one.positions, other.positions + np.float32(1)], axis=1),
     )
-    motion = canonicalise(both)
+    motion = canonicalize(both)
     assert "several_people" in [caution.code for caution in motion.cautions]
     same_tree = {joint < count for joint in motion.roles.values()}
     assert len(same_tree) == 1
@@ -170,4 +170,4 @@ def test_a_prop_beside_the_body_is_no_second_person() -> None:
         skeleton=Skeleton(names, np.array(parents), np.zeros((len(names), 3))),
         positions=np.concatenate([body.positions, rope], axis=1),
     )
-    assert "several_people" not in [caution.code for caution in canonicalise(prop).cautions]
+    assert "several_people" not in [caution.code for caution in canonicalize(prop).cautions]

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.analysis.analyse import analyse
+from app.analysis.analyze import analyze
 from app.errors import BadContent
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.skeleton.recording import Recording
 from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
@@ -23,7 +23,7 @@ HIPS, HAND = ROLES.index("hips"), ROLES.index("left_hand")
 def moved(
     change: FloatArray | float, frames: object = slice(None), joint: int | None = None
 ) -> Recording:
-    """A person in metres whose positions are changed in some frames."""
+    """A person in meters whose positions are changed in some frames."""
     recording = person(CONVENTIONS["DAZ"])
     positions = recording.positions.copy()
     positions[frames, slice(None) if joint is None else joint] += np.asarray(change, np.float32)
@@ -43,24 +43,24 @@ def moved(
 )
 def test_a_body_beyond_human_measure(recording: Recording, location: str, found: str) -> None:
     with pytest.raises(BadContent) as caught:
-        canonicalise(recording, metres_per_unit=1.0)
+        canonicalize(recording, metres_per_unit=1.0)
     (place,) = caught.value.places
     assert place.location == location
     assert found in place.message
 
 
 def test_the_units_of_a_client_are_judged_by_what_they_make_of_the_body() -> None:
-    canonicalise(person(scale=100.0), metres_per_unit=0.01)
+    canonicalize(person(scale=100.0), metres_per_unit=0.01)
     with pytest.raises(BadContent, match="Is the unit right"):
-        canonicalise(person(scale=1000.0), metres_per_unit=1.0)
+        canonicalize(person(scale=1000.0), metres_per_unit=1.0)
     # A very small body may not travel further, by its own length, than a large one.
     with pytest.raises(BadContent, match="before"):
-        canonicalise(moved(2000.0, slice(12, None)), metres_per_unit=1e-3)
+        canonicalize(moved(2000.0, slice(12, None)), metres_per_unit=1e-3)
 
 
 def test_a_walk_far_from_the_origin_and_a_cut_are_no_reason() -> None:
-    assert canonicalise(moved(4_000.0), metres_per_unit=1.0).cautions == ()
-    canonicalise(moved(30.0, slice(12, None)), metres_per_unit=1.0)
+    assert canonicalize(moved(4_000.0), metres_per_unit=1.0).cautions == ()
+    canonicalize(moved(30.0, slice(12, None)), metres_per_unit=1.0)
 
 
 def test_a_joint_that_is_no_part_of_the_body_is_only_doubted() -> None:
@@ -72,10 +72,10 @@ def test_a_joint_that_is_no_part_of_the_body_is_only_doubted() -> None:
     )
     camera = np.full((len(plain.positions), 1, 3), 1e8, np.float32)
     positions = np.concatenate([plain.positions, camera], axis=1)
-    motion = canonicalise(replace(plain, skeleton=skeleton, positions=positions))
+    motion = canonicalize(replace(plain, skeleton=skeleton, positions=positions))
     (doubt,) = [caution for caution in motion.cautions if caution.code == "position_suspect"]
     assert "frame 0, joint camera" in doubt.detail
-    _check_arrays(analyse(motion).arrays)
+    _check_arrays(analyze(motion).arrays)
 
 
 def _check_arrays(arrays: dict[str, FloatArray]) -> None:
@@ -109,10 +109,10 @@ def test_what_is_not_refused_can_be_described(
     plain = moved(min(far, 1e9), slice(frame, frame + until), joint)
     positions = np.clip(plain.positions * np.float32(stretch), -1e9, 1e9)
     try:
-        motion = canonicalise(
+        motion = canonicalize(
             replace(plain, positions=positions), metres_per_unit=unit, frame_rate=rate
         )
-        found = analyse(motion)
+        found = analyze(motion)
     except BadContent:
         return
     _check_arrays(found.arrays)

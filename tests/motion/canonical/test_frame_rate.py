@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.formats.bvh.reader import read_bvh
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.canonical.frame_rate import judge_frame_rate
 from app.numerics.arrays import FloatArray
 from tests.bodies import standing, walking, waving
@@ -68,7 +68,7 @@ def test_any_rate_and_length_is_judged_without_a_crash(rate: float, frames: int)
 def test_the_salsa_clips_are_found_out() -> None:
     for number in (1, 2, 3):
         content = (real_clips() / "cmu-daz" / f"salsa_0{number}.bvh").read_bytes()
-        motion = canonicalise(read_bvh(content))
+        motion = canonicalize(read_bvh(content))
         suspect = [caution for caution in motion.cautions if caution.code == "frame_rate_suspect"]
         assert [caution.likely for caution in suspect] == [60]
         assert motion.frame_rate == 120
@@ -80,7 +80,7 @@ def test_no_other_real_clip_is_blamed() -> None:
     for row in manifest():
         if not row["path"].endswith(".bvh"):
             continue
-        motion = canonicalise(read_bvh((real_clips() / row["path"]).read_bytes()))
+        motion = canonicalize(read_bvh((real_clips() / row["path"]).read_bytes()))
         suspect = any(caution.code == "frame_rate_suspect" for caution in motion.cautions)
         if suspect != (abs(motion.frame_rate - float(row["fps"])) > 1):
             blamed.append(row["path"])

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from app.motion.canonical.units import METRES_PER_UNIT, confirm_unit, judge_unit, stature
+from app.motion.canonical.units import METERS_PER_UNIT, confirm_unit, judge_unit, stature
 from tests.people import ROLES, person
 
 EXPECTED = {role: index for index, role in enumerate(ROLES)}
 
 
-@pytest.mark.parametrize("metres_per_unit", METRES_PER_UNIT.values())
+@pytest.mark.parametrize("metres_per_unit", METERS_PER_UNIT.values())
 @pytest.mark.parametrize("size", [0.85, 1.0, 1.2])
 def test_known_units_are_found_for_short_and_tall(metres_per_unit: float, size: float) -> None:
     recording = person(scale=size / metres_per_unit)

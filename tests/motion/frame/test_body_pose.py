@@ -54,7 +54,7 @@ def test_place_heading_and_size_change_nothing(
 
 
 def test_a_missing_joint_counts_with_its_usual_proportion() -> None:
-    """As in a motion that lacks it, where its neighbour stands in for it."""
+    """As in a motion that lacks it, where its neighbor stands in for it."""
     motion = motion_of(walking(1.0))
     lacking = (R.HEAD, R.LEFT_FOOT, R.RIGHT_FOOT)
     roles = {role: joint for role, joint in motion.roles.items() if role not in lacking}

@@ -9,7 +9,7 @@ import pytest
 
 from app.demo import demo_clips
 from app.formats.bvh.reader import read_bvh
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.motion import Motion
 from app.motion.posing.canonical_body import (
     ANKLE_HEIGHT,
@@ -33,7 +33,7 @@ TENTHS_OF_A_DEGREE = 0.1
 
 
 def demo_motion(actor: str, task: str) -> Motion:
-    return canonicalise(read_bvh(next(demo_clips([actor], [task], takes=1)).content))
+    return canonicalize(read_bvh(next(demo_clips([actor], [task], takes=1)).content))
 
 
 def angle(one: FloatArray, other: FloatArray) -> FloatArray:
@@ -78,7 +78,7 @@ def test_demo_people_play_on_the_one_body(actor: str, task: str) -> None:
 
 @pytest.mark.parametrize("name", CONVENTIONS)
 def test_skeletons_of_every_convention_play_on_it(name: str) -> None:
-    check(canonicalise(person(CONVENTIONS[name])))
+    check(canonicalize(person(CONVENTIONS[name])))
 
 
 def test_a_taller_person_makes_the_same_movement() -> None:
@@ -135,4 +135,4 @@ def test_real_clips_play_on_it() -> None:
     folder, rows = real_clips(), manifest()
     bvh = [row["path"] for row in rows if row["path"].endswith(".bvh")]
     for path in bvh[:: len(bvh) // 40]:
-        check(canonicalise(read_bvh((folder / path).read_bytes()), frame_rate=30.0))
+        check(canonicalize(read_bvh((folder / path).read_bytes()), frame_rate=30.0))

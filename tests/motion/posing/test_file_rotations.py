@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from app.formats.bvh.export import write_animation_bvh
 from app.formats.bvh.reader import read_bvh
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.canonical.up_axis import to_y_up
 from app.motion.posing.file_rotations import UP_AXES, animation_of_recording
 from app.motion.skeleton.recording import Recording
@@ -38,7 +38,7 @@ def lying_on(axis: str, recording: Recording) -> Recording:
 def test_positions_come_back_and_rotations_are_the_files(axis: str, scale: float) -> None:
     upright = person(CONVENTIONS["MotionBuilder"], scale=scale)
     recording = lying_on(axis, upright)
-    motion = canonicalise(recording, metres_per_unit=1 / scale)
+    motion = canonicalize(recording, metres_per_unit=1 / scale)
     animation = animation_of_recording(recording, motion)
     assert animation is not None
     assert np.abs(animation.positions() - motion.positions).max() < 1e-5
@@ -61,7 +61,7 @@ def test_near_gimbal_lock_a_file_of_single_precision_still_comes_back_in_place()
             skeleton=skeleton, rotations=rotations, translations=held,
         )
     )  # fmt: skip
-    motion = canonicalise(recording, metres_per_unit=1.0)
+    motion = canonicalize(recording, metres_per_unit=1.0)
     animation = animation_of_recording(recording, motion)
     assert animation is not None
     back = read_bvh(b"".join(write_animation_bvh(animation))).positions / 100
@@ -74,7 +74,7 @@ def test_joints_that_move_keep_their_translations() -> None:
     moved[:, 3, 1] += np.linspace(0, 0.1, 40)
     told = replace(recording, translations=moved.astype(np.float32))
     again = _with_positions(told)
-    animation = animation_of_recording(again, canonicalise(again, metres_per_unit=1.0))
+    animation = animation_of_recording(again, canonicalize(again, metres_per_unit=1.0))
     assert animation is not None
     assert np.flatnonzero(animation.moving_joints()).tolist() == [0, 3]
 
@@ -99,7 +99,7 @@ def test_where_offsets_do_not_lead_there_translations_do() -> None:
     recording = person(CONVENTIONS["MotionBuilder"])
     scaled = recording.positions.copy()
     scaled[:, 5:] += 0.01
-    motion = canonicalise(replace(recording, positions=scaled), metres_per_unit=1.0)
+    motion = canonicalize(replace(recording, positions=scaled), metres_per_unit=1.0)
     animation = animation_of_recording(replace(recording, positions=scaled), motion)
     assert animation is not None
     assert np.abs(animation.positions() - motion.positions).max() < 1e-6
@@ -115,7 +115,7 @@ def test_several_roots_each_go_where_they_went() -> None:
         recording, skeleton=replace(recording.skeleton, parents=parents, offsets=offsets)
     )
     # the trunk now has a root of its own, which moves as before
-    motion = canonicalise(apart, metres_per_unit=1.0)
+    motion = canonicalize(apart, metres_per_unit=1.0)
     animation = animation_of_recording(apart, motion)
     assert animation is not None
     assert np.abs(animation.positions() - motion.positions).max() < 1e-5
@@ -123,7 +123,7 @@ def test_several_roots_each_go_where_they_went() -> None:
 
 def test_what_is_not_the_same_recording_is_none() -> None:
     recording = person(CONVENTIONS["MotionBuilder"])
-    motion = canonicalise(recording, metres_per_unit=1.0)
+    motion = canonicalize(recording, metres_per_unit=1.0)
     moved = replace(recording, positions=recording.positions + np.float32(1.0))
     shorter = replace(recording, positions=recording.positions[:10])
     renamed = person(CONVENTIONS["SMPL"])

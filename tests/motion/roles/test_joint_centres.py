@@ -1,11 +1,11 @@
-"""Joint centres: left stays left, and turning or scaling the markers does so to the joints."""
+"""Joint centers: left stays left, and turning or scaling the markers does so to the joints."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from app.motion.roles.joint_centres import RECIPES, joint_centres
+from app.motion.roles.joint_centres import RECIPES, joint_centers
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.rotations import euler_to_quaternions, rotate
 from tests.formats.c3d.files import marker_person
@@ -15,15 +15,15 @@ TRACKS, _ = marker_person(frames=10)
 
 def test_every_role_has_a_recipe_of_places() -> None:
     assert set(RECIPES) == set(JointRole)
-    assert set(joint_centres(TRACKS)) == set(JointRole)
+    assert set(joint_centers(TRACKS)) == set(JointRole)
 
 
 def test_turning_moving_and_scaling() -> None:
     turn = euler_to_quaternions(np.array([0.3, 1.0, -2.0]), "XYZ")
     moved = {place: 2 * rotate(turn, track) + [1, 2, 3] for place, track in TRACKS.items()}
-    before, after = joint_centres(TRACKS), joint_centres(moved)
-    for role, centre in before.items():
-        assert np.allclose(after[role].positions, 2 * rotate(turn, centre.positions) + [1, 2, 3])
+    before, after = joint_centers(TRACKS), joint_centers(moved)
+    for role, center in before.items():
+        assert np.allclose(after[role].positions, 2 * rotate(turn, center.positions) + [1, 2, 3])
 
 
 def test_a_mirrored_person_has_mirrored_joints() -> None:
@@ -32,20 +32,20 @@ def test_a_mirrored_person_has_mirrored_joints() -> None:
 
     sides = {place: track for place, track in TRACKS.items() if other(place) in TRACKS}
     mirrored = {other(place): track * [-1, 1, 1] for place, track in sides.items()}
-    before, after = joint_centres(sides), joint_centres(mirrored)
-    for role, centre in before.items():
-        assert np.allclose(after[role.mirrored()].positions, centre.positions * [-1, 1, 1])
+    before, after = joint_centers(sides), joint_centers(mirrored)
+    for role, center in before.items():
+        assert np.allclose(after[role.mirrored()].positions, center.positions * [-1, 1, 1])
 
 
 @pytest.mark.parametrize("missing", ["LASI", "LKNE", "C7", "LWRA", "LFHD"])
 def test_without_a_marker_only_its_joints_change(missing: str) -> None:
     fewer = {place: track for place, track in TRACKS.items() if place != missing}
-    before, after = joint_centres(TRACKS), joint_centres(fewer)
-    for role, centre in before.items():
-        if missing not in centre.places:
-            assert np.array_equal(after[role].positions, centre.positions)
+    before, after = joint_centers(TRACKS), joint_centers(fewer)
+    for role, center in before.items():
+        if missing not in center.places:
+            assert np.array_equal(after[role].positions, center.positions)
 
 
 def test_markers_in_one_point_have_no_direction() -> None:
     here = {place: np.zeros((3, 3)) for place in TRACKS}
-    assert all(np.array_equal(c.positions, np.zeros((3, 3))) for c in joint_centres(here).values())
+    assert all(np.array_equal(c.positions, np.zeros((3, 3))) for c in joint_centers(here).values())

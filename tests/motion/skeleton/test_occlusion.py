@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.motion.skeleton.occlusion import LONGEST_GAP, fill_gaps, runs
+from app.motion.skeleton.occlusion import MAX_GAP, fill_gaps, runs
 from app.numerics.arrays import FloatArray
 
 
 def circle(frames: int = 200) -> FloatArray:
-    """(frames, 1, 3): round a metre's circle in two seconds at 100 Hz, millimetres."""
+    """(frames, 1, 3): round a meter's circle in two seconds at 100 Hz, millimeters."""
     t = np.arange(frames) * np.pi / 100
     return np.stack([np.cos(t), np.sin(t), t], axis=-1)[:, None] * 1000
 
@@ -41,7 +41,7 @@ def test_a_long_gap_is_told_and_left() -> None:
 
 @pytest.mark.parametrize("rate", [10.0, 50.0, 240.0])
 def test_what_is_long_is_a_matter_of_seconds(rate: float) -> None:
-    most = round(LONGEST_GAP * rate)
+    most = round(MAX_GAP * rate)
     for length, long_gaps in ((most, 0), (most + 1, 1)):
         holed = circle()
         holed[20 : 20 + length] = np.nan

@@ -80,7 +80,7 @@ def test_many_batches_give_what_one_gives(monkeypatch: pytest.MonkeyPatch) -> No
     rng = np.random.default_rng(2)
     query, candidates = rng.random(30), [rng.random(m) for m in rng.integers(1, 900, size=40)]
     as_usual = max_cross_correlations(query, candidates)
-    monkeypatch.setattr(cross_correlation, "LARGEST_WASTE", 100.0)
+    monkeypatch.setattr(cross_correlation, "MAX_WASTE", 100.0)
     np.testing.assert_allclose(max_cross_correlations(query, candidates), as_usual)
     monkeypatch.setattr(cross_correlation, "CELLS_AT_ONCE", 1)
     np.testing.assert_allclose(max_cross_correlations(query, candidates), as_usual)

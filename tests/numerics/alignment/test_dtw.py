@@ -69,8 +69,8 @@ def test_a_long_pair_in_strips_equals_the_naive_twin(
     a, b = rng.normal(size=(n, dimensions)), rng.normal(size=(m, dimensions))
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(dtw, "CELLS_AT_ONCE", 1)
-        patched.setattr(dtw, "FEWEST_ROWS", rows)
-        patched.setattr(dtw, "MOST_ROWS", rows)
+        patched.setattr(dtw, "MIN_ROWS", rows)
+        patched.setattr(dtw, "MAX_ROWS", rows)
         found = dtw_distances(a, [b], per_step=False)[0]
     assert found == pytest.approx(naive_dtw(a, b), rel=1e-4, abs=1e-6)
 

@@ -61,7 +61,7 @@ def test_many_models_are_scored_as_one_by_one(monkeypatch: pytest.MonkeyPatch) -
     motion = wavy(50, 3)
     one_by_one = [log_likelihood(model, motion) for model in models]
     np.testing.assert_allclose(log_likelihoods(models, motion), one_by_one, rtol=1e-10)
-    monkeypatch.setattr(hmm, "MOST_EMISSIONS", 900)  # two models at once
+    monkeypatch.setattr(hmm, "MAX_EMISSIONS", 900)  # two models at once
     np.testing.assert_allclose(log_likelihoods(models, motion), one_by_one, rtol=1e-10)
     assert log_likelihoods([], motion).shape == (0,)
 

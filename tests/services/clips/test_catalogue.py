@@ -106,7 +106,7 @@ def test_a_file_without_a_name_is_called_clip(lib: Library, name: str) -> None:
     assert (clip.file_name, clip.name) == ("clip", "clip")
 
 
-def test_another_frame_rate_has_the_clip_analysed_again_under_its_id(
+def test_another_frame_rate_has_the_clip_analyzed_again_under_its_id(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     clip = upload(lib, some_demo_clips[0]).clip

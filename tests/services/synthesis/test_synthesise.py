@@ -17,7 +17,7 @@ from app.formats.read import read_recording
 from app.models.synthesis.agreement import AGREED
 from app.models.synthesis.body import embody
 from app.models.synthesis.motion import course_of
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import ANALYSIS_RATE, body_track
 from app.motion.frame.foot_contact import FEET, skating
 from app.motion.motion import Motion
@@ -97,7 +97,7 @@ def test_the_file_is_the_motion_on_the_persons_own_skeleton(fitted: Library) -> 
     assert recording.skeleton.names == theirs.skeleton.names
     bones = [np.linalg.norm(r.skeleton.offsets[1:], axis=1) for r in (recording, theirs)]
     np.testing.assert_allclose(bones[0], bones[1] * (bones[0].sum() / bones[1].sum()), atol=0.05)
-    motion = canonicalise(recording, metres_per_unit=0.01)
+    motion = canonicalize(recording, metres_per_unit=0.01)
     np.testing.assert_allclose(motion.positions, made.motion.positions, atol=2e-3)
 
 

@@ -13,7 +13,7 @@ from app.demo import DemoClip
 from app.errors import BadField, ClipNotFound, ClipNotReady
 from app.formats.bvh.reader import read_bvh
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.motion import Motion
 from app.motion.posing.canonical_body import BODY_ROLES
 from app.numerics.arrays import FloatArray
@@ -75,7 +75,7 @@ def test_a_bvh_that_is_imported_again_is_the_same_motion(
     before = load_motion(ready_library, clip_of("bruno", "kick"))
     for format in ("bvh", "npz"):
         content = exported(ready_library, clip_of("bruno", "kick"), format)
-        after = canonicalise(read_recording(content))
+        after = canonicalize(read_recording(content))
         assert after.roles == before.roles
         assert after.frame_rate == pytest.approx(before.frame_rate, rel=1e-4)
         assert np.abs(after.positions - before.positions).max() < TENTH_OF_MM

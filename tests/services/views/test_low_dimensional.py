@@ -9,7 +9,7 @@ import pytest
 
 from app.errors import BadField, ClipNotFound, NotEnoughKeyposes
 from app.formats.read import read_recording
-from app.motion.canonical.canonical import canonicalise
+from app.motion.canonical.canonical import canonicalize
 from app.motion.posing.canonical_body import BODY_ROLES
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.numerics.arrays import FloatArray
@@ -177,7 +177,7 @@ def test_bones_keep_their_length_on_the_canonical_body(
         ready_library, clip.id, "bvh", skeleton="canonical", fps=15, reduction=Reduction(2)
     )
     assert file.file_name.endswith("-keypose-2dim-canonical.bvh")
-    motion = canonicalise(read_recording(b"".join(file.blocks)))
+    motion = canonicalize(read_recording(b"".join(file.blocks)))
     assert motion.names == tuple(role.value for role in BODY_ROLES)
     assert motion.frame_rate == pytest.approx(15)
     bone = (

@@ -48,7 +48,7 @@ def test_the_descriptor_is_what_searches_compare(ready_library: Library, clip_of
     assert found.analysis_version >= 1
 
 
-def test_a_clip_analysed_before_convergence_was_kept_has_a_descriptor(
+def test_a_clip_analyzed_before_convergence_was_kept_has_a_descriptor(
     ready_library: Library, clip_of: FindClip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(views, "CONVERGENCE", "an array that no clip has")

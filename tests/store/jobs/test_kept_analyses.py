@@ -24,7 +24,7 @@ def make_ready(tx: Tx, name: str) -> ClipRecord:
     return clip
 
 
-def analyse_again(tx: Tx, clip: ClipRecord) -> ClaimedJob:
+def analyze_again(tx: Tx, clip: ClipRecord) -> ClaimedJob:
     """The clip waits for another analysis, and a worker takes it."""
     jobs.enqueue(tx, NewJob(JobKind.INGEST, clip_id=clip.id, max_attempts=2))
     waiting = clips.requeue(tx, clip.id)
@@ -36,7 +36,7 @@ def test_a_ready_clip_stays_ready_until_another_analysis_replaces_the_first(stor
     with store.write() as tx:
         clip = make_ready(tx, "walk")
         before = library.version(tx)
-        claimed = analyse_again(tx, clip)
+        claimed = analyze_again(tx, clip)
         worked_on = clips.get(tx, clip.id)
         assert (worked_on.state, worked_on.reanalysis) == (ClipState.READY, Reanalysis.PROCESSING)
         assert library.version(tx) == before  # nothing that a search could see has changed
@@ -73,7 +73,7 @@ def test_only_a_verdict_after_a_change_takes_a_ready_clip_away(
         clip = make_ready(tx, "walk")
         if is_changed:
             clips.patch(tx, clip.id, {"frame_rate": 12.0})
-        claimed = analyse_again(tx, clip)
+        claimed = analyze_again(tx, clip)
         outcomes.fail_job(tx, claimed, problem, is_verdict=is_verdict)
         found = clips.get(tx, clip.id)
         assert (found.state, jobs.get(tx, claimed.job.id).state) == (state, JobState.FAILED)
@@ -84,13 +84,13 @@ def test_only_a_verdict_after_a_change_takes_a_ready_clip_away(
             assert problem["detail"] in told[code]
             assert arrays.get_one(tx, clip.id, "motion_vector").all()
         # One that works takes the warning away.
-        outcomes.finish_ingest(tx, analyse_again_whatever(tx, clip).lease, clip.id, facts(), FOUND)
+        outcomes.finish_ingest(tx, analyze_again_whatever(tx, clip).lease, clip.id, facts(), FOUND)
         healed = clips.get(tx, clip.id)
         assert (healed.state, healed.reanalysis) == (ClipState.READY, None)
         assert code not in {warning.code for warning in healed.warnings}
 
 
-def analyse_again_whatever(tx: Tx, clip: ClipRecord) -> ClaimedJob:
+def analyze_again_whatever(tx: Tx, clip: ClipRecord) -> ClaimedJob:
     jobs.enqueue(tx, NewJob(JobKind.INGEST, clip_id=clip.id))
     clips.requeue(tx, clip.id)
     return take(tx)
@@ -99,7 +99,7 @@ def analyse_again_whatever(tx: Tx, clip: ClipRecord) -> ClaimedJob:
 def test_a_ready_clip_survives_dead_workers_and_a_cancellation(store: Store) -> None:
     with store.write() as tx:
         clip = make_ready(tx, "walk")
-        analyse_again(tx, clip)
+        analyze_again(tx, clip)
         die(tx)
         assert clips.get(tx, clip.id).reanalysis is Reanalysis.QUEUED
         claimed = take(tx)
@@ -107,6 +107,6 @@ def test_a_ready_clip_survives_dead_workers_and_a_cancellation(store: Store) -> 
         assert jobs.get(tx, claimed.job.id).state is JobState.FAILED
         found = clips.get(tx, clip.id)
         assert (found.state, found.reanalysis) == (ClipState.READY, Reanalysis.FAILED)
-        again = analyse_again(tx, clip)
+        again = analyze_again(tx, clip)
         outcomes.finish_canceled(tx, again)
         assert clips.get(tx, clip.id).state is ClipState.READY

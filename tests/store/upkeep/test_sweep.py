@@ -143,7 +143,7 @@ def test_an_archive_goes_in_the_transaction_that_ends_its_import(store: Store, e
     assert recorded(store) == set()
 
 
-def test_an_archive_goes_when_it_is_unpacked_though_its_clips_are_not_analysed(
+def test_an_archive_goes_when_it_is_unpacked_though_its_clips_are_not_analyzed(
     store: Store,
 ) -> None:
     job, archive = start_import(store)

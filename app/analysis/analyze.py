@@ -1,16 +1,16 @@
-"""Everything that is kept of a clip's motion, by name, with its version.
+"""The analysis of a motion: all arrays that are stored for a clip, by name.
 
-Arrays (float32 unless told otherwise; n frames at 30 Hz, m at 10 Hz):
-role_positions (n, 13, 3) metres, world; features_10hz (m, 82); motion_vector (128,);
+Arrays (float32 if nothing else is said; n frames at 30 Hz, m at 10 Hz):
+role_positions (n, 13, 3) meters, world; features_10hz (m, 82); motion_vector (128,);
 wide_motion_vector (512,); msv_lambda (1,), msv_rho (13,), msv_epsilon (n,), msv_convergence
 (i, 2), the error and the change of lambda after each of i iterations; motion_sample (1250,);
 angle_sample (642,); motion_shape (1378,); symbol_statistics (131,); window_vectors_* (w, 125)
 float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s; beat_times (b,) float64
 seconds, beat_facts (3,) float64 (see `rhythm`); keypose_frames (k,)
-int32, among the n; pose_cover (p, 38), the frame, radius and vector of
-poses that stand for all; segment_spans (s, 2) seconds, segment_vectors (s, 185)
-float16, segment_cycles (c, 3) int32; and of the motion symbol with K states
-symbol_means (K, 26), symbol_variances (K, 26), symbol_transitions (K, K).
+int32, indices of the n frames; pose_cover (p, 38), the frame, radius and vector of
+poses that represent all poses; segment_spans (s, 2) seconds, segment_vectors (s, 185)
+float16, segment_cycles (c, 3) int32. The motion symbol, with K states, has
+symbol_means (K, 26), symbol_variances (K, 26) and symbol_transitions (K, K).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from app.analysis.descriptors.windows import WINDOW_SCALES, window_arrays
 from app.analysis.energy.energy import energies
 from app.analysis.keyposes.keyposes import T1, T2, find_keyposes
 from app.analysis.rhythm.onsets import Onsets
-from app.analysis.rhythm.rhythm import NOTHING, Told, find_rhythm, rhythm_arrays
+from app.analysis.rhythm.rhythm import NOTHING_GIVEN, RhythmInput, find_rhythm, rhythm_arrays
 from app.analysis.segments.keypose_arrays import keypose_arrays
 from app.analysis.symbols.channels import symbol_features, symbol_statistics
 from app.analysis.symbols.symbol import describe_symbol
@@ -46,15 +46,15 @@ from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1
 
 ANALYSIS_VERSION = 4
-"""Raise it with every change of what an array holds; older clips are then analysed again."""
+"""Raise this number if the content of an array changes. Older clips are then analyzed again."""
 
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
     """A motion and its arrays by name (see the module).
 
-    audio_offset: time of the motion, s, at which its recording begins; None where there is no
-    recording or that is not known; cautions: doubts about the recording.
+    audio_offset: the time of the motion, in seconds, at which its audio recording begins; None
+    without a recording or if the time is unknown. cautions: doubts about the recording.
     """
 
     motion: Motion
@@ -63,25 +63,25 @@ class Analysis:
     cautions: tuple[Caution, ...] = ()
 
 
-def analyse(
+def analyze(
     motion: Motion,
     *,
     t1: float = T1,
     t2: float = T2,
-    told: Told = NOTHING,
+    rhythm_input: RhythmInput = NOTHING_GIVEN,
     onsets: Onsets | None = None,
 ) -> Analysis:
-    """All arrays of `motion`; t1, t2: thresholds of its keyposes.
+    """Compute all arrays of `motion`.
 
-    told: what a client says of its beats; onsets: of its recording.
-
-    Deterministic; raises TooShort or NotHuman.
+    t1, t2: the thresholds of its keyposes (see `keyposes`). rhythm_input: what a client says
+    about its beats. onsets: those of its audio recording, None without one. The result is
+    deterministic. Raises TooShort or NotHuman.
     """
     track = body_track(motion)
     parts = _Parts(motion, track)
     arrays: dict[str, NDArray[Any]] = {**_for_search(parts), **describe_symbol(parts.channels)}
     plain = energies(track)
-    rhythm = find_rhythm(track, told, onsets, plain)
+    rhythm = find_rhythm(track, rhythm_input, onsets, plain)
     arrays |= rhythm_arrays(rhythm)
     keyposes = find_keyposes(track, t1=t1, t2=t2, beats=rhythm.beats, plain=plain).frames
     arrays["pose_cover"] = pose_cover(arrays["role_positions"], keyposes)
@@ -91,16 +91,18 @@ def analyse(
 
 
 def describe_for_search(motion: Motion, names: Collection[str] | None = None) -> Analysis:
-    """The arrays that finding and recognizing need: no keyposes, no motion symbol (it is slow).
+    """Compute only the arrays that search and recognition need.
 
-    names: only these arrays; None: all of them, in some 10 ms for 5 s of motion. Each array is
-    the same as from `analyse`. Raises KeyError for a name that `analyse` alone computes.
+    Keyposes and the motion symbol, which is slow, are left out. names: the arrays to compute;
+    None computes all that search needs, in about 10 ms for 5 s of motion. Each array is the same
+    as from `analyze`. Raises KeyError for a name that only `analyze` computes, and TooShort or
+    NotHuman.
     """
     return Analysis(motion, {**_for_search(_Parts(motion, body_track(motion)), names)})
 
 
 class _Parts:
-    """What the arrays of a motion are made of; each part is computed once, if it is needed."""
+    """Parts from which the arrays are made. Each is computed once, when it is first needed."""
 
     def __init__(self, motion: Motion, track: BodyTrack) -> None:
         self.motion = motion
@@ -108,17 +110,17 @@ class _Parts:
 
     @cached_property
     def features(self) -> FloatArray:
-        """(n, 82) at 30 Hz."""
+        """(n, 82) the frame features at 30 Hz."""
         return frame_features(self.track)
 
     @cached_property
     def features_10hz(self) -> FloatArray:
-        """(m, 82) at 10 Hz."""
+        """(m, 82) the frame features at 10 Hz."""
         return features_at_10hz(self.features, self.track.rate)
 
     @cached_property
     def described(self) -> FloatArray:
-        """What motion vectors are projected from."""
+        """(3606,) the numbers from which motion vectors are projected."""
         return describe(self.features)
 
     @cached_property
@@ -128,12 +130,12 @@ class _Parts:
 
     @cached_property
     def channels(self) -> FloatArray:
-        """(n, 26) the features of the motion symbol."""
+        """(n, 26) the channels of the motion symbol."""
         return symbol_features(self.track)
 
     @cached_property
     def cycles(self) -> list[tuple[float, float]]:
-        """The gait cycles, (begin, end) in frames."""
+        """The gait cycles: start and end in frames."""
         return exact_gait_cycles(self.track)
 
     @cached_property
@@ -156,7 +158,7 @@ _FLOAT32: dict[str, Callable[[_Parts], FloatArray]] = {
     "motion_shape": lambda parts: motion_shape(parts.track, parts.cycles),
     "symbol_statistics": lambda parts: symbol_statistics(parts.channels, parts.track.rate),
 }
-"""How each array is computed that is kept as float32."""
+"""How each array that is stored as float32 is computed."""
 _WINDOWS = tuple(name for scale in WINDOW_SCALES for name in (scale.vectors, scale.spans))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.analysis.analyse import analyse, describe_for_search
+from app.analysis.analyze import analyze, describe_for_search
 from app.analysis.array_shapes import SHAPES, is_usable
 from app.analysis.descriptors.windows import WINDOW_SCALES, window_frames
 from app.analysis.rhythm.rhythm import BEAT_ARRAYS
@@ -22,7 +22,7 @@ SEGMENT_TYPES = {
 
 @pytest.mark.parametrize("body", BODIES.values(), ids=BODIES.keys())
 def test_every_array_has_the_shape_that_comparisons_ask_for(body: FloatArray) -> None:
-    arrays = analyse(motion_of(body)).arrays
+    arrays = analyze(motion_of(body)).arrays
     assert arrays.keys() == SHAPES.keys()
     for name, array in arrays.items():
         assert is_usable(name, array), (name, array.shape)
@@ -32,7 +32,7 @@ def test_every_array_has_the_shape_that_comparisons_ask_for(body: FloatArray) ->
 
 @pytest.mark.parametrize("body", BODIES.values(), ids=BODIES.keys())
 def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray) -> None:
-    arrays = dict(analyse(motion_of(body)).arrays)
+    arrays = dict(analyze(motion_of(body)).arrays)
     keyposes = arrays.pop("keypose_frames")
     beats = {name: arrays.pop(name) for name in BEAT_ARRAYS}
     windows = {scale: arrays.pop(scale.vectors) for scale in WINDOW_SCALES}
@@ -66,12 +66,12 @@ def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray
 
 
 def test_the_same_motion_gives_the_same_bytes() -> None:
-    one, other = (analyse(motion_of(BODIES["walk"])).arrays for _ in range(2))
+    one, other = (analyze(motion_of(BODIES["walk"])).arrays for _ in range(2))
     assert all(one[name].tobytes() == other[name].tobytes() for name in one)
 
 
 def test_a_query_is_described_as_a_stored_clip_is() -> None:
-    stored = analyse(motion_of(BODIES["walk"])).arrays
+    stored = analyze(motion_of(BODIES["walk"])).arrays
     query = describe_for_search(motion_of(BODIES["walk"])).arrays
     assert set(stored) - set(query) == {
         "keypose_frames", "pose_cover", "symbol_means", "symbol_variances", "symbol_transitions",

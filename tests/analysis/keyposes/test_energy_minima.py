@@ -7,7 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.analysis.energy.energy import EnergyCurve
-from app.analysis.keyposes.rests import STILL, Rest, find_rests, usual_length
+from app.analysis.keyposes.energy_minima import (
+    STILL,
+    EnergyMinimum,
+    find_energy_minima,
+    usual_length,
+)
 from app.numerics.arrays import FloatArray
 
 
@@ -16,7 +21,7 @@ def curve(values: FloatArray, noise: float = 0.0) -> EnergyCurve:
 
 
 def humps(heights: list[float], width: int = 20, hold: int = 6) -> FloatArray:
-    """Rest, hump, rest, hump, ..., rest; rests of `hold` frames at zero."""
+    """EnergyMinimum, hump, rest, hump, ..., rest; rests of `hold` frames at zero."""
     parts = [np.zeros(hold)]
     for height in heights:
         parts += [height * np.sin(np.pi * np.arange(1, width) / width) ** 2, np.zeros(hold)]
@@ -24,12 +29,12 @@ def humps(heights: list[float], width: int = 20, hold: int = 6) -> FloatArray:
 
 
 def test_every_hold_is_one_rest_and_knows_its_ends() -> None:
-    rests = find_rests(curve(humps([1.0, 0.8, 1.2])))
-    assert [rest.energy for rest in rests] == [0.0] * 4
-    assert [(rest.at_start, rest.at_end) for rest in rests] == [
+    minima = find_energy_minima(curve(humps([1.0, 0.8, 1.2])))
+    assert [minimum.energy for minimum in minima] == [0.0] * 4
+    assert [(minimum.at_start, minimum.at_end) for minimum in minima] == [
         (True, False), (False, False), (False, False), (False, True),
     ]  # fmt: skip
-    inner = rests[1]
+    inner = minima[1]
     assert inner.first <= 25 <= 30 <= inner.last
     assert inner.length < 6 + 8
     assert inner.drop == 0.8  # the lower maximum beside it; the median maximum is 1
@@ -38,25 +43,25 @@ def test_every_hold_is_one_rest_and_knows_its_ends() -> None:
 def test_a_hand_that_plays_in_a_hold_does_not_part_it() -> None:
     values = humps([1.0, 1.0, 1.0], hold=20)
     values[48:52] += 0.15
-    assert len(find_rests(curve(values))) == 4
+    assert len(find_energy_minima(curve(values))) == 4
     values[48:52] += 0.3
-    assert len(find_rests(curve(values))) == 5
+    assert len(find_energy_minima(curve(values))) == 5
 
 
 def test_a_clip_cut_in_movement_neither_begins_nor_ends_at_rest() -> None:
     values = humps([1.0, 1.0, 1.0])[12:-12]
-    first, *_, last = find_rests(curve(values))
+    first, *_, last = find_energy_minima(curve(values))
     assert not first.at_start
     assert not last.at_end
     assert first.lowest > 5
 
 
 def test_what_does_not_move_has_none() -> None:
-    assert find_rests(curve(np.zeros(50))) == ()
-    assert find_rests(curve(np.linspace(0, 1, 50))) == ()
-    assert find_rests(curve(0.5 * STILL * humps([1.0, 1.0]))) == ()
+    assert find_energy_minima(curve(np.zeros(50))) == ()
+    assert find_energy_minima(curve(np.linspace(0, 1, 50))) == ()
+    assert find_energy_minima(curve(0.5 * STILL * humps([1.0, 1.0]))) == ()
     shaking = np.abs(np.random.default_rng(0).normal(size=300))
-    assert find_rests(curve(0.1 * shaking, noise=0.3)) == ()
+    assert find_energy_minima(curve(0.1 * shaking, noise=0.3)) == ()
 
 
 @given(st.floats(0.1, 50.0), st.lists(st.floats(0.7, 1.3), min_size=3, max_size=8))
@@ -64,22 +69,22 @@ def test_size_changes_nothing_and_time_may_run_backwards(
     scale: float, heights: list[float]
 ) -> None:
     values = humps(heights)
-    rests = find_rests(curve(values))
-    scaled = find_rests(curve(scale * values))
+    minima = find_energy_minima(curve(values))
+    scaled = find_energy_minima(curve(scale * values))
     assert [(r.first, r.last, r.at_start) for r in scaled] == [
-        (r.first, r.last, r.at_start) for r in rests
+        (r.first, r.last, r.at_start) for r in minima
     ]
-    backwards = find_rests(curve(values[::-1]))
+    backwards = find_energy_minima(curve(values[::-1]))
     last = len(values) - 1
     assert [(last - r.last, last - r.first) for r in backwards[::-1]] == [
-        (r.first, r.last) for r in rests
+        (r.first, r.last) for r in minima
     ]
 
 
 def test_the_usual_length_is_that_of_sure_rests_within_the_clip() -> None:
-    def rest(length: int, energy: float = 0.0, *, at_end: bool = False) -> Rest:
-        return Rest(0, 0, length, energy, 1.0, at_start=False, at_end=at_end)
+    def minimum(length: int, energy: float = 0.0, *, at_end: bool = False) -> EnergyMinimum:
+        return EnergyMinimum(0, 0, length, energy, 1.0, at_start=False, at_end=at_end)
 
-    rests = (rest(3), rest(5), rest(9), rest(90, at_end=True), rest(40, energy=0.6))
-    assert usual_length(rests) == 5.0
-    assert usual_length(rests[3:]) == 4.0
+    minima = (minimum(3), minimum(5), minimum(9), minimum(90, at_end=True), minimum(40, energy=0.6))
+    assert usual_length(minima) == 5.0
+    assert usual_length(minima[3:]) == 4.0

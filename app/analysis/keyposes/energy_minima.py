@@ -1,0 +1,127 @@
+"""The minima of an energy curve: one between any two clear maxima.
+
+A dancer who holds a pose shakes, breathes and moves a hand. So the energy has many small local
+minima in one valley; here a valley is one minimum. Energies are given in units of the curve's
+median maximum. So one threshold fits calm and wild dances.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import scipy
+
+from app.analysis.energy.energy import EnergyCurve
+from app.numerics.arrays import FloatArray
+
+STANDS_OUT = 0.25
+"""Units by which a maximum must rise above the minima on both sides to separate them."""
+
+HIGH = 0.9
+"""The quantile of a curve that is its unit until its median maximum is known."""
+
+NEAR_MINIMUM = 0.045
+"""Units above the least energy that still belong to the minimum."""
+
+NOISE_NEAR_MINIMUM = 0.6
+"""The share of the subtracted noise that may still be in the curve."""
+
+END_OF_CLIP = 0.35
+"""Units. If the energy between an end of the clip and a minimum is lower, the minimum reaches to
+that end."""
+
+STILL = 0.03
+"""Body lengths per second. A body whose maxima are lower only breathes and sways."""
+
+SURE_MINIMUM = 0.25
+"""Units. A minimum with a lower energy certainly is a rest of the body."""
+
+USUAL_LENGTH = 4.0
+"""Frames: the usual length if no minimum is certain."""
+
+
+@dataclass(frozen=True, slots=True)
+class EnergyMinimum:
+    """A minimum of an energy curve; energies are in units of the median maximum.
+
+    lowest: the frame of least energy. first, last: the frames between which the energy stays
+    near it. energy: that at `lowest`. drop: from the lower of the two neighboring maxima down to
+    `lowest`. at_start, at_end: whether the clip begins or ends at this minimum.
+    """
+
+    lowest: int
+    first: int
+    last: int
+    energy: float
+    drop: float
+    at_start: bool
+    at_end: bool
+
+    @property
+    def length(self) -> int:
+        """The frames from first to last."""
+        return self.last - self.first
+
+
+def find_energy_minima(curve: EnergyCurve) -> tuple[EnergyMinimum, ...]:
+    """The minima of an energy curve in order of time; none if the body does not move."""
+    values = curve.values
+    unit, maxima = median_maximum(values)
+    if not len(maxima) or unit < max(STILL, curve.noise):
+        return ()
+    near = max(NEAR_MINIMUM * unit, NOISE_NEAR_MINIMUM * curve.noise)
+    walls = [None, *(int(frame) for frame in maxima), None]
+    return tuple(_minimum(values, left, right, near, unit) for left, right in pairwise(walls))
+
+
+def median_maximum(values: FloatArray) -> tuple[float, FloatArray]:
+    """The median of the clear maxima of `values` (n,), and their frames.
+
+    Without a clear maximum, the largest value and no frames are returned.
+    """
+    high = float(np.quantile(values, HIGH))
+    maxima, _ = scipy.signal.find_peaks(values, prominence=max(STANDS_OUT * high, 1e-12))
+    if not len(maxima):
+        return float(values.max()), maxima
+    unit = float(np.median(values[maxima]))
+    standing, _ = scipy.signal.find_peaks(values, prominence=STANDS_OUT * unit)
+    return unit, standing
+
+
+def usual_length(minima: tuple[EnergyMinimum, ...]) -> float:
+    """The frames that a minimum usually lasts: the median of the certain ones within the clip."""
+    lengths = [
+        minimum.length
+        for minimum in minima
+        if minimum.energy < SURE_MINIMUM and not minimum.at_start and not minimum.at_end
+    ]
+    return float(np.median(lengths)) if lengths else USUAL_LENGTH
+
+
+def _minimum(
+    values: FloatArray, left: int | None, right: int | None, near: float, unit: float
+) -> EnergyMinimum:
+    """The minimum between maxima at frames `left` and `right`; None stands for an end of the clip.
+
+    near: how far above the least energy the minimum reaches. unit: the median maximum.
+    """
+    start, stop = left or 0, len(values) if right is None else right + 1
+    lowest = start + int(np.argmin(values[start:stop]))
+    least = float(values[lowest])
+    low = start + np.flatnonzero(values[start:stop] <= least + near)
+    first, last = int(low[0]), int(low[-1])
+    quiet = least + max(near, END_OF_CLIP * unit)
+    at_start = left is None and bool(values[:first].max(initial=0.0) <= quiet)
+    at_end = right is None and bool(values[last:].max(initial=0.0) <= quiet)
+    beside = min(float(values[wall]) for wall in (left, right) if wall is not None)
+    return EnergyMinimum(
+        lowest=lowest,
+        first=0 if at_start else first,
+        last=len(values) - 1 if at_end else last,
+        energy=least / unit,
+        drop=(beside - least) / unit,
+        at_start=at_start,
+        at_end=at_end,
+    )
