@@ -120,16 +120,16 @@ def recognize(
 ) -> None:
     """Tell who it is, what they do, and in which words."""
     from app.api.schemas.recognition import Recognition
-    from app.services.recognition import recognise
+    from app.services.recognition import recognize
 
     with (
         open_library(context) as lib,
         content_of(query) as (clip_id, content),
         companion_of(skeleton) as asf,
     ):
-        found = recognise.recognise(
+        found = recognize.recognize(
             lib,
-            recognise.RecogniseQuery(
+            recognize.RecognizeQuery(
                 clip_id=clip_id,
                 content=content,
                 known_person=known_person,

@@ -12,7 +12,7 @@ from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 
 if TYPE_CHECKING:
-    from app.services.synthesis.synthesise import Synthesised
+    from app.services.synthesis.synthesize import Synthesized
 
 
 def synthesize(
@@ -32,7 +32,7 @@ def synthesize(
     as_json: AsJson = False,
 ) -> None:
     """Make a motion that a person never recorded, as a BVH file, and tell what to expect."""
-    from app.services.synthesis.synthesise import SynthesisQuery, synthesise
+    from app.services.synthesis.synthesize import SynthesisQuery, synthesize
 
     if (person is None) == (not clip):
         raise typer.BadParameter("give either --person or --clip")
@@ -44,7 +44,7 @@ def synthesize(
         store=store,
     )
     with open_library(context) as lib:
-        made = synthesise(lib, query)
+        made = synthesize(lib, query)
     whose = made.person or "someone"
     path = output or Path(f"{_safe(f'{whose} {made.name}')}.bvh")
     write_whole(path, [made.bvh])
@@ -57,7 +57,7 @@ def synthesize(
     _tell(made, path)
 
 
-def _tell(made: Synthesised, path: Path) -> None:
+def _tell(made: Synthesized, path: Path) -> None:
     quality = made.quality
     rows: list[tuple[str, object]] = [
         ("file", f"{path}: {len(made.bvh)} bytes, {made.motion.duration:.2f} s"),
@@ -72,7 +72,7 @@ def _tell(made: Synthesised, path: Path) -> None:
     print_table(("", ""), rows)
 
 
-def _made_of(made: Synthesised) -> str:
+def _made_of(made: Synthesized) -> str:
     from app.services.synthesis.plan import SynthesisKind
 
     quality = made.quality
@@ -85,7 +85,7 @@ def _made_of(made: Synthesised) -> str:
     return f"{tasks} of their tasks, and {persons} other persons' takes of this one"
 
 
-def _expectation(made: Synthesised) -> str:
+def _expectation(made: Synthesized) -> str:
     quality = made.quality
     if quality.expected_hit is None:
         return "not measured"

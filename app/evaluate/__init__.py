@@ -14,7 +14,7 @@ from app.evaluate.keyposes.evaluation import (
 )
 from app.evaluate.low_dimensional.evaluation import LowDimensionalEvaluation, judge_low_dimensional
 from app.evaluate.recognition.evaluation import judge_recognition
-from app.evaluate.recognition.methods import METHODS as RECOGNISERS
+from app.evaluate.recognition.methods import METHODS as RECOGNIZERS
 from app.evaluate.recognition.results import RecognitionEvaluation
 from app.evaluate.retrieval.evaluation import (
     JUDGED,
@@ -33,7 +33,7 @@ __all__ = [
     "JUDGED",
     "JUDGED_KEYPOSES",
     "MOST_QUERIES",
-    "RECOGNISERS",
+    "RECOGNIZERS",
     "JudgedClip",
     "JudgedKeyposes",
     "JudgedWay",

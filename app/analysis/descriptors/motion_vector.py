@@ -8,7 +8,7 @@ as a matrix logarithm (where such matrices have a Euclidean geometry: Arsigny et
 which tells more of manner. All through one fixed random projection: nothing is fitted on a
 library, so vectors stay comparable for years. The wide motion vector is the same through a
 projection of 512: slower to search by, it keeps finer differences, by which the recogniser
-tells whom and what it knows (app.models.recognition.recogniser).
+tells whom and what it knows (app.models.recognition.recognizer).
 
 The weights were chosen by hand on half of dataset 2's styles, dataset 1, CMU's clips and the
 demo library (`tests/bench/test_retrieval.py` has the curve). None of it depends on the phase

@@ -12,8 +12,8 @@ from app.api.guard.admission import heavy
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, exactly_one, file_of
 from app.api.schemas.recognition import Recognition, Recognize, RecognizeForm
-from app.services.recognition import recognise
-from app.services.recognition.recognise import RecogniseQuery
+from app.services.recognition.recognize import RecognizeQuery
+from app.services.recognition.recognize import recognize as recognize_motion
 
 router = APIRouter(prefix="/v1/recognize", tags=["recognition"])
 
@@ -23,10 +23,10 @@ _EXAMPLES = {
 }
 
 
-async def _query(request: Request) -> RecogniseQuery:
+async def _query(request: Request) -> RecognizeQuery:
     if not is_multipart(request):
         sent = await read_json(request, Recognize)
-        return RecogniseQuery(
+        return RecognizeQuery(
             clip_id=sent.clip_id,
             known_person=sent.known_person,
             known_task=sent.known_task,
@@ -34,7 +34,7 @@ async def _query(request: Request) -> RecogniseQuery:
         )
     form, uploads = await read_form(request, RecognizeForm, QUERY_FILES)
     exactly_one(form.clip_id, uploads)
-    return RecogniseQuery(
+    return RecognizeQuery(
         clip_id=form.clip_id,
         content=file_of(uploads, "file"),
         known_person=form.known_person,
@@ -54,7 +54,7 @@ async def _query(request: Request) -> RecogniseQuery:
     responses=refusals(400, 404, 409, 413, 415, 503, 507),
     openapi_extra=body(model=Recognize, examples=_EXAMPLES, form=RecognizeForm, files=QUERY_FILES),
 )
-def recognize(lib: Lib, query: Annotated[RecogniseQuery, Depends(_query)]) -> Recognition:
+def recognize(lib: Lib, query: Annotated[RecognizeQuery, Depends(_query)]) -> Recognition:
     """Say who it is, what they do and in which words; `label` is null when it is unknown."""
-    found = recognise.recognise(lib, query)
+    found = recognize_motion(lib, query)
     return Recognition.of(found)

@@ -10,7 +10,7 @@ from app.api.schemas.base import Incoming, Label, Outgoing
 from app.api.schemas.labels import WORD_SCORE
 from app.api.schemas.search import ClipId, UploadFields
 from app.models.recognition.answers import Answer as FoundAnswer
-from app.services.recognition.recognise import Recognised
+from app.services.recognition.recognize import Recognized
 
 _NEW = "One that the library does not know is taken to be new: its label in the answer is null."
 
@@ -84,7 +84,7 @@ class Recognition(Outgoing):
     words: list[WordScore]
 
     @classmethod
-    def of(cls, found: Recognised) -> Recognition:
+    def of(cls, found: Recognized) -> Recognition:
         """A recognition as it goes over the wire."""
         return cls(
             person=Answer.of(found.person),

@@ -14,7 +14,7 @@ from app.api.schemas.views import Motion, plain
 from app.services.library.synthesized import SYNTHESIZED
 from app.services.synthesis.plan import SynthesisKind
 from app.services.synthesis.quality import Quality as FoundQuality
-from app.services.synthesis.synthesise import MOST_CLIPS, SECONDS, Synthesised
+from app.services.synthesis.synthesize import MOST_CLIPS, SECONDS, Synthesized
 
 
 class Synthesize(Incoming):
@@ -158,7 +158,7 @@ class Synthesis(Outgoing):
     bvh: str | None = Field(description="The BVH file where it was asked for: centimetres, Y up.")
 
     @classmethod
-    def of(cls, made: Synthesised, *, with_bvh: bool) -> Synthesis:
+    def of(cls, made: Synthesized, *, with_bvh: bool) -> Synthesis:
         """A synthesis as it goes over the wire."""
         view = made.view
         return cls(
@@ -176,7 +176,7 @@ class Synthesis(Outgoing):
         )
 
 
-def _draft(made: Synthesised) -> SynthesizedClip:
+def _draft(made: Synthesized) -> SynthesizedClip:
     motion = made.motion
     return SynthesizedClip(
         id=None,

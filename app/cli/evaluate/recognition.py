@@ -52,7 +52,7 @@ def recognition(
         found = evaluate.judge_recognition(
             lib,
             wanted,
-            tuple(method or evaluate.RECOGNISERS),
+            tuple(method or evaluate.RECOGNIZERS),
             false_accept_rate=false_accept_rate,
             progress=progress,
         )

@@ -14,7 +14,7 @@ from app.evaluate.recognition.clips import names_of
 from app.evaluate.recognition.perera import PereraEvaluation
 from app.evaluate.recognition.results import HeldOut, Judged, WhenTold
 from app.evaluate.recognition.rounds import DRAWS, LeftOut
-from app.evaluate.recognition.shares import Recognised, Share, Unknown
+from app.evaluate.recognition.shares import Recognized, Share, Unknown
 
 _WAYS = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
 MOST_SHOWN = 40
@@ -27,7 +27,7 @@ def print_tables(found: RecognitionEvaluation) -> None:
     kinds = {"person": clips.persons, "task": clips.tasks, "source": clips.sources}
     told = ", ".join(_counted(len(names_of(labels)), kind) for kind, labels in kinds.items())
     typer.echo(f"{len(clips)} clips: {told}. No method has seen what it is asked about.")
-    _print_recognised(found)
+    _print_recognized(found)
     _print_told(found.told)
     for way, factor in _WAYS.items():
         if way in found.held_out:
@@ -42,7 +42,7 @@ def print_tables(found: RecognitionEvaluation) -> None:
     print_text("\n" + "\n".join(_remarks(found)))
 
 
-def _print_recognised(found: RecognitionEvaluation) -> None:
+def _print_recognized(found: RecognitionEvaluation) -> None:
     if LeftOut.TAKE in found.held_out:
         _print_shares("A fifth of the takes left out in turn", found.held_out[LeftOut.TAKE])
     for takes, held in found.takes.items():
@@ -56,14 +56,14 @@ def _counted(number: int, noun: str) -> str:
 def _print_shares(title: str, held: HeldOut) -> None:
     typer.echo(f"\n{title}; neither person nor task told, the best candidate counts:\n")
     rows: list[list[object]] = [
-        [one.method, *_values(one.recognised), one.recognised.both.of] for one in held.methods
+        [one.method, *_values(one.recognized), one.recognized.both.of] for one in held.methods
     ]
     person, task, both = held.chance
-    rows.append(["chance", task, person, both, held.methods[0].recognised.both.of])
+    rows.append(["chance", task, person, both, held.methods[0].recognized.both.of])
     print_table(["method", "task", "person", "both", "clips"], rows)
 
 
-def _values(found: Recognised) -> list[object]:
+def _values(found: Recognized) -> list[object]:
     return [found.task.value, found.person.value, found.both.value]
 
 
@@ -147,7 +147,7 @@ def _print_sources(held: HeldOut) -> None:
             [
                 one.method,
                 *(one.by_name[name].task.value for name in names),
-                one.recognised.task.value,
+                one.recognized.task.value,
             ]
             for one in held.methods
         ],

@@ -80,7 +80,7 @@ def read_judged_clips(lib: Library, wanted: ClipFilter | None) -> JudgedClips:
 def read_training(lib: Library, wanted: ClipFilter | None) -> TrainingSet:
     """The ready clips that pass the filter.
 
-    Where persons are not to be recognised (setting `recognize_persons`) they are not told.
+    Where persons are not to be recognized (setting `recognize_persons`) they are not told.
     """
     training = read_training_set(lib.store, ready_only(wanted))
     return replace(training, is_anonymous=not lib.settings.recognize_persons)

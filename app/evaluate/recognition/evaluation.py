@@ -38,11 +38,11 @@ from app.evaluate.recognition.rounds import (
     rounds_by_takes,
 )
 from app.evaluate.recognition.shares import (
-    Recognised,
+    Recognized,
     Unknown,
     chance,
     confusion,
-    recognised,
+    recognized,
     unknown,
 )
 from app.evaluate.recognition.trials import Stopwatch, Trial, run, run_told
@@ -181,7 +181,7 @@ class _Asking:
             except NotEnoughLabels as reason:
                 self.reasons[f"{TOLD}, {method}"] = reason.detail
             else:
-                judged.append(WhenTold(method, recognised(neither), recognised(told)))
+                judged.append(WhenTold(method, recognized(neither), recognized(told)))
         return tuple(judged)
 
     def _seen_by(self, method: str) -> JudgedClips:
@@ -223,8 +223,8 @@ def _judged(method: str, trials: Sequence[Trial], way: str) -> Judged:
         of_new = [t for t in trials if t.of(factor).new]
     return Judged(
         method=method,
-        recognised=recognised(trials),
-        of_new=recognised(of_new),
+        recognized=recognized(trials),
+        of_new=recognized(of_new),
         unknown=_unknown(trials, way),
         confusion={name: confusion(trials, name) for name in FACTORS},
         by_name=_by_left_out(trials),
@@ -238,10 +238,10 @@ def _unknown(trials: Sequence[Trial], way: str) -> dict[str, Unknown]:
     return {name: one for name, one in found.items() if one is not None}
 
 
-def _by_left_out(trials: Sequence[Trial]) -> dict[str, Recognised]:
+def _by_left_out(trials: Sequence[Trial]) -> dict[str, Recognized]:
     """Shares by the labels that were left out, joined by commas."""
     parties = sorted({trial.left_out for trial in trials if trial.left_out})
     return {
-        ", ".join(party): recognised([t for t in trials if t.left_out == party])
+        ", ".join(party): recognized([t for t in trials if t.left_out == party])
         for party in parties
     }

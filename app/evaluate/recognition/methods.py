@@ -18,15 +18,15 @@ import numpy as np
 from app.analysis.descriptors.motion_sample import SAMPLES
 from app.models.held_out.recognition import Clips
 from app.models.recognition.answers import Answer, Recognition
-from app.models.recognition.flat_pca import fit_flat_pca, recognise_flat
-from app.models.recognition.multilinear import fit_multilinear, recognise_multilinear
+from app.models.recognition.flat_pca import fit_flat_pca, recognize_flat
+from app.models.recognition.multilinear import fit_multilinear, recognize_multilinear
 from app.models.recognition.perera import (
-    TensorRecogniser,
-    fit_tensor_recogniser,
-    recognise_by_tensor,
+    TensorRecognizer,
+    fit_tensor_recognizer,
+    recognize_by_tensor,
     uncalibrated,
 )
-from app.models.recognition.recogniser import fit_recogniser, recognise_many
+from app.models.recognition.recognizer import fit_recognizer, recognize_many
 from app.numerics.arrays import FloatArray
 
 Labels = Sequence[str | None]
@@ -61,15 +61,15 @@ Method = Callable[[Clips], Judge]
 
 
 def default(clips: Clips, false_accept_rate: float | None = None) -> Judge:
-    """The recogniser that `POST /v1/recognize` asks, at this rate where one is given."""
-    record = fit_recogniser(*clips)
+    """The recognizer that `POST /v1/recognize` asks, at this rate where one is given."""
+    record = fit_recognizer(*clips)
     if false_accept_rate is not None:
         record = record.accepting(false_accept_rate)
 
     def judge(
         samples: FloatArray, person: str | None = None, task: str | None = None
     ) -> list[tuple[Guess, Guess]]:
-        return [_guesses(found) for found in recognise_many(record, samples, person, task)]
+        return [_guesses(found) for found in recognize_many(record, samples, person, task)]
 
     return judge
 
@@ -81,14 +81,14 @@ def pca(clips: Clips) -> Judge:
     def judge(
         samples: FloatArray, person: str | None = None, task: str | None = None
     ) -> list[tuple[Guess, Guess]]:
-        return [_guesses(recognise_flat(record, one, person, task)) for one in samples]
+        return [_guesses(recognize_flat(record, one, person, task)) for one in samples]
 
     return judge
 
 
 def perera(clips: Clips, false_accept_rate: float | None = None) -> Judge:
     """Perera's objective (eqs 13-14), and what is new by eqs 15-16 with learned thresholds."""
-    record = fit_tensor_recogniser(*clips)
+    record = fit_tensor_recognizer(*clips)
     if false_accept_rate is not None:
         record = record.accepting(false_accept_rate)
     return _by_tensor(record)
@@ -99,11 +99,11 @@ def perera_ranking(clips: Clips) -> Judge:
     return _by_tensor(uncalibrated(clips.samples, clips.persons, clips.tasks))
 
 
-def _by_tensor(record: TensorRecogniser) -> Judge:
+def _by_tensor(record: TensorRecognizer) -> Judge:
     def judge(
         samples: FloatArray, person: str | None = None, task: str | None = None
     ) -> list[tuple[Guess, Guess]]:
-        return [_guesses(found) for found in recognise_by_tensor(record, samples, person, task)]
+        return [_guesses(found) for found in recognize_by_tensor(record, samples, person, task)]
 
     return judge
 
@@ -121,7 +121,7 @@ def multilinear(clips: Clips, moments: int | None = None) -> Judge:
     ) -> list[tuple[Guess, Guess]]:
         told = []
         for sample in samples:
-            found = recognise_multilinear(record, sample, person, task)
+            found = recognize_multilinear(record, sample, person, task)
             nearest = np.linalg.norm(cells - record.axes.project(sample), axis=1).min()
             beyond = float(nearest / max(record.radius, 1e-12)) - 1.0
             told.append((_guess(found.person, beyond), _guess(found.task, beyond)))

@@ -41,10 +41,10 @@ def judge_perera(lib: Library, wanted: ClipFilter | None = None) -> PereraEvalua
     """The experiments on the ready clips that pass the filter and carry both labels.
 
     Raises NotEnoughLabels where too few persons do the same tasks twice, or where persons are
-    not to be recognised.
+    not to be recognized.
     """
     if not lib.settings.recognize_persons:
-        raise NotEnoughLabels("Persons are not to be recognised here (recognize_persons).")
+        raise NotEnoughLabels("Persons are not to be recognized here (recognize_persons).")
     danced, used = _read(lib, wanted)
     return PereraEvaluation(
         segments=len(danced),

@@ -30,7 +30,7 @@ def confusion_figure(judged: Judged, factor: str, form: Format) -> bytes | None:
     names, shares = judged.confusion[factor]
     if not names:
         return None
-    share = judged.recognised.person if factor == "person" else judged.recognised.task
+    share = judged.recognized.person if factor == "person" else judged.recognized.task
     title = f"{factor}s by {judged.method}, takes left out: {share.right} of {share.of} right"
     return confusion_picture(shares, names, form, title=title, rows=f"true {factor}")
 

@@ -9,7 +9,7 @@ from typing import Any
 from app.evaluate.recognition.clips import JudgedClips
 from app.evaluate.recognition.perera import PereraEvaluation
 from app.evaluate.recognition.rounds import LeftOut
-from app.evaluate.recognition.shares import Recognised, Unknown
+from app.evaluate.recognition.shares import Recognized, Unknown
 from app.numerics.arrays import FloatArray
 
 Made = Mapping[str, Sequence[Mapping[str, Any]]]
@@ -20,19 +20,19 @@ Made = Mapping[str, Sequence[Mapping[str, Any]]]
 class Judged:
     """One method where something is held out in one way.
 
-    recognised: of clips whose label had been seen, the best candidate counts, be it called
+    recognized: of clips whose label had been seen, the best candidate counts, be it called
     known or not; of_new: the same of those clips alone whose label was left out (of the
     other factor, then); unknown: by factor, where new and known clips were asked about;
-    confusion: by factor, C labels and (C, C) shares; by_name: `recognised` by what was left
+    confusion: by factor, C labels and (C, C) shares; by_name: `recognized` by what was left
     out.
     """
 
     method: str
-    recognised: Recognised
-    of_new: Recognised
+    recognized: Recognized
+    of_new: Recognized
     unknown: Mapping[str, Unknown]
     confusion: Mapping[str, tuple[tuple[str, ...], FloatArray]]
-    by_name: Mapping[str, Recognised]
+    by_name: Mapping[str, Recognized]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +53,8 @@ class WhenTold:
     """A method with each recording left out (Vasilescu): neither label told, or the other."""
 
     method: str
-    neither: Recognised
-    told: Recognised
+    neither: Recognized
+    told: Recognized
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class RecognitionEvaluation:
 
     clips: what is judged; held_out: by what was left out; takes: by takes a cell; told:
     Vasilescu's; seconds: by method; perera: his tables; made: Vasilescu's check of what is
-    synthesised (section 7), see `held_out_synthesis`; not_judged: why what is missing is
+    synthesized (section 7), see `held_out_synthesis`; not_judged: why what is missing is
     missing, by its name.
     """
 

@@ -42,7 +42,7 @@ class Share:
 
 
 @dataclass(frozen=True, slots=True)
-class Recognised:
+class Recognized:
     """Shares of clips whose best candidate is right.
 
     person, task: of the clips whose label the method has seen; both: of the clips whose person
@@ -120,11 +120,11 @@ class Unknown:
         return min(judged, key=lambda one: one.balanced_accuracy or 0.0, default=None)
 
 
-def recognised(trials: Iterable[Trial]) -> Recognised:
+def recognized(trials: Iterable[Trial]) -> Recognized:
     """Closed-set shares of trials."""
     judged = list(trials)
     both = [t for t in judged if _is_judged(t.person) and _is_judged(t.task)]
-    return Recognised(
+    return Recognized(
         person=Share.that(t.person.right for t in judged if _is_judged(t.person)),
         task=Share.that(t.task.right for t in judged if _is_judged(t.task)),
         both=Share.that(t.person.right and t.task.right for t in both),

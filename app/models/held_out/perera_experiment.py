@@ -41,7 +41,7 @@ LEAST_LABELS = 2
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A line of the paper's Tables 3-5: segments probed and recognised, over all rounds.
+    """A line of the paper's Tables 3-5: segments probed and recognized, over all rounds.
 
     paper: the accuracy printed there; known_probed, known_accepted: in Table 4 besides, how
     many segments of known persons (tasks) were probed, and found to be known.
@@ -58,7 +58,7 @@ class Row:
 
     @property
     def accuracy(self) -> float:
-        """Share recognised, 0..1."""
+        """Share recognized, 0..1."""
         return self.correct / max(self.probed, 1)
 
     @property

@@ -50,7 +50,7 @@ LEAST_RECORDINGS = 5
 """That carry a word, for it to be judged by itself: about one a fold."""
 
 TOP_WORDS = 3
-"""Takano counts a clip as recognised when one of its words is among so many."""
+"""Takano counts a clip as recognized when one of its words is among so many."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Answers to who does what: value types shared by every recogniser."""
+"""Answers to who does what: value types shared by every recognizer."""
 
 from __future__ import annotations
 

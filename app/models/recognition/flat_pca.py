@@ -45,7 +45,7 @@ def fit_flat_pca(
     return FlatPCA(cells, axes, cell_means(axes.project(np.asarray(samples)[use]), cells))
 
 
-def recognise_flat(
+def recognize_flat(
     record: FlatPCA,
     sample: FloatArray,
     known_person: str | None = None,

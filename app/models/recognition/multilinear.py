@@ -177,7 +177,7 @@ def complete_tensor(means: FloatArray, cells: Cells) -> FloatArray:
     return tensor
 
 
-def recognise_multilinear(
+def recognize_multilinear(
     record: Multilinear,
     sample: FloatArray,
     known_person: str | None = None,
@@ -198,7 +198,7 @@ def recognise_multilinear(
         own = record.signature(record.aligned(sample, known_task), known_task)
         to_persons = np.linalg.norm(own - people, axis=1)
     elif record.task_means is not None:
-        # who does it is recognised without the timing, what is done with it
+        # who does it is recognized without the timing, what is done with it
         likely = int(to_tasks.argmin())
         point = record.axes.project(record.aligned(sample, record.tasks[likely]))
         to_persons = np.linalg.norm(record.svd.reconstruct()[:, likely] - point, axis=1)

@@ -21,7 +21,7 @@ from app.models.recognition.calibration import NEW, Calibration, fit_calibration
 from app.models.recognition.task_model import JOINTS, Reading, TaskModel, fit_task_model, objective
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
-TENSOR_RECOGNISER_VERSION = 1
+TENSOR_RECOGNIZER_VERSION = 1
 
 SHARPNESS = 20.0
 """Of evidence and novelty, in logarithms of the objective: of what calibration divides."""
@@ -33,7 +33,7 @@ Labels = Sequence[str | None]
 
 
 @dataclass(frozen=True, slots=True)
-class TensorRecogniser:
+class TensorRecognizer:
     """reach_of_persons (P,), reach_of_tasks (T,): F*_k of the model's categories."""
 
     model: TaskModel
@@ -42,7 +42,7 @@ class TensorRecogniser:
     person_calibration: Calibration
     task_calibration: Calibration
 
-    def accepting(self, false_accept_rate: float) -> TensorRecogniser:
+    def accepting(self, false_accept_rate: float) -> TensorRecognizer:
         """The same, calling something new known at this rate at most (of held-out clips)."""
         return replace(
             self,
@@ -56,13 +56,13 @@ class TensorRecogniser:
         person, meta["person_calibration"] = self.person_calibration.to_arrays("person")
         task, meta["task_calibration"] = self.task_calibration.to_arrays("task")
         reach = {"persons_reach": self.reach_of_persons, "tasks_reach": self.reach_of_tasks}
-        return arrays | person | task | reach, meta | {"version": TENSOR_RECOGNISER_VERSION}
+        return arrays | person | task | reach, meta | {"version": TENSOR_RECOGNIZER_VERSION}
 
     @classmethod
-    def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> TensorRecogniser:
+    def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> TensorRecognizer:
         """The record that to_arrays took apart. Raises ValueError on another version."""
-        if meta["version"] != TENSOR_RECOGNISER_VERSION:
-            raise ValueError(f"tensor recogniser of version {meta['version']}")
+        if meta["version"] != TENSOR_RECOGNIZER_VERSION:
+            raise ValueError(f"tensor recognizer of version {meta['version']}")
         return cls(
             TaskModel.from_arrays(arrays, meta),
             arrays["persons_reach"],
@@ -72,9 +72,9 @@ class TensorRecogniser:
         )
 
 
-def fit_tensor_recogniser(
+def fit_tensor_recognizer(
     samples: FloatArray, persons: Labels, tasks: Labels, groups: Sequence[str] | None = None
-) -> TensorRecogniser:
+) -> TensorRecognizer:
     """Fit on motion samples (clips, 1250); those without both labels are left out.
 
     groups: (clips,) clips of one recording share a value and are held out together.
@@ -95,19 +95,19 @@ def fit_tensor_recogniser(
     calibrations = [
         _calibrated(each, reach) for each, reach in zip((people, doings), reaches, strict=True)
     ]
-    return TensorRecogniser(model, *reaches, *calibrations)
+    return TensorRecognizer(model, *reaches, *calibrations)
 
 
-def uncalibrated(samples: FloatArray, persons: Labels, tasks: Labels) -> TensorRecogniser:
+def uncalibrated(samples: FloatArray, persons: Labels, tasks: Labels) -> TensorRecognizer:
     """The same without holding anything out: its candidates are in the right order, what it calls
     unknown and its scores tell nothing. Raises NotEnoughLabels."""
     model = fit_task_model(poses_of(samples), persons, tasks)
     people, doings = np.ones(len(model.persons)), np.ones(len(model.tasks))
-    return TensorRecogniser(model, people, doings, _calibrated([], people), _calibrated([], doings))
+    return TensorRecognizer(model, people, doings, _calibrated([], people), _calibrated([], doings))
 
 
-def recognise_by_tensor(
-    record: TensorRecogniser,
+def recognize_by_tensor(
+    record: TensorRecognizer,
     samples: FloatArray,
     known_person: str | None = None,
     known_task: str | None = None,

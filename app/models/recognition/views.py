@@ -1,4 +1,4 @@
-"""The two ways in which the default recogniser looks at a clip, and what hypotheses say of both.
+"""The two ways in which the default recognizer looks at a clip, and what hypotheses say of both.
 
 A full sample (1762,) is the motion sample (1250,), whose 32 poses are of known phases, followed
 by the wide motion vector (512,), to which it is all one when a hand waves. The views overlap:

@@ -3,7 +3,7 @@
 The likelihood of a motion under every symbol of a library of 500 costs .2 s, so only the NEAREST
 by divergence from the motion's own symbol are asked. On 501 real clips, among symbols of other
 recordings, the likeliest of all was the very nearest for 72 %, among the 20 nearest for 95.8 %,
-among 60 for 96.8 %. Through it no more is recognised than through the nearest: the two share a
+among 60 for 96.8 %. Through it no more is recognized than through the nearest: the two share a
 word in 90.0 and 91.6 %, the task in 84.8 and 87.8 %.
 """
 

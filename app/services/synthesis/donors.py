@@ -1,4 +1,4 @@
-"""What a synthesised motion takes from real clips beside its shape: a body, its habits, and
+"""What a synthesized motion takes from real clips beside its shape: a body, its habits, and
 the quick detail of a take."""
 
 from __future__ import annotations

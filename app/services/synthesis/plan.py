@@ -59,7 +59,7 @@ def plan_of(
     person: str | None,
     clip_ids: tuple[str, ...] | None,
 ) -> Plan:
-    """What is made of what. Raises as `synthesise`."""
+    """What is made of what. Raises as `synthesize`."""
     if task not in model.tasks:
         raise _unknown("task", task, model.tasks)
     if clip_ids is not None:

@@ -1,4 +1,4 @@
-"""How far a synthesised motion can be trusted: what it looks like, and what to expect."""
+"""How far a synthesized motion can be trusted: what it looks like, and what to expect."""
 
 from __future__ import annotations
 

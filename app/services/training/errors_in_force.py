@@ -1,4 +1,4 @@
-"""How often a recogniser errs on what is new, at the threshold that is in force."""
+"""How often a recognizer errs on what is new, at the threshold that is in force."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from app.errors import ModelNotFitted
 from app.models.recognition.calibration import Calibration
-from app.models.recognition.perera import TensorRecogniser
-from app.models.recognition.recogniser import Recogniser
+from app.models.recognition.perera import TensorRecognizer
+from app.models.recognition.recognizer import Recognizer
 from app.services.library.fitted_models import TELLING_UNKNOWN, Fitted, ModelKind
 from app.services.library.library import Library
 from app.store.models import ModelRecord
@@ -43,10 +43,10 @@ def errors_in_force(lib: Library, record: ModelRecord) -> Mapping[str, Errors] |
     return {factor: _errors(one) for factor, one in calibrations.items() if _is_judged(one)}
 
 
-def _in_force(lib: Library, kind: str) -> Fitted[Recogniser] | Fitted[TensorRecogniser]:
+def _in_force(lib: Library, kind: str) -> Fitted[Recognizer] | Fitted[TensorRecognizer]:
     if kind == ModelKind.PERERA:
         return lib.models.perera(lib.store)
-    return lib.models.recogniser(lib.store)
+    return lib.models.recognizer(lib.store)
 
 
 def _is_judged(calibration: Calibration) -> bool:

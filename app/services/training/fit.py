@@ -19,8 +19,8 @@ from app.models.held_out.recognition import (
 from app.models.held_out.words import held_out_word_figures
 from app.models.metric.learned_metric import Factor, LearnedMetric, fit_axes
 from app.models.recognition.multilinear import fit_multilinear
-from app.models.recognition.perera import fit_tensor_recogniser
-from app.models.recognition.recogniser import fit_recogniser
+from app.models.recognition.perera import fit_tensor_recognizer
+from app.models.recognition.recognizer import fit_recognizer
 from app.models.words.language.wordnet import Meanings
 from app.models.words.library import fit_library_words
 from app.services.library.fitted_models import SHAPES_FITTED, ModelKind, holds_persons, input_shapes
@@ -67,7 +67,7 @@ def fit_library(store: Store, *, wordnet: bool = False, persons: bool = True) ->
     The result holds `library_version` and `library_size` of what was fitted on, and for each
     kind its `outcome`: "fitted" with version and figures, or "skipped" with the reason. A model
     that fails does not keep the others from being fitted. wordnet: look new words up there
-    (seconds); persons: whether persons may be recognised.
+    (seconds); persons: whether persons may be recognized.
     """
     training = replace(read_training_set(store), is_anonymous=not persons)
     outcomes = {kind.value: _fit_one(store, training, kind, wordnet) for kind in ModelKind}
@@ -155,22 +155,22 @@ def word_figures(training: TrainingSet) -> Meta:
 
 
 def recognition_figures(training: TrainingSet) -> dict[str, dict[str, float]]:
-    """Held-out shares recognised by method: "default", "multilinear", "perera", "pca" and
+    """Held-out shares recognized by method: "default", "multilinear", "perera", "pca" and
     "prior"."""
     return held_out_recognition_figures(
         training.samples, training.persons, training.tasks, training.groups, wide=training.wide
     )
 
 
-def _fit_recogniser(training: TrainingSet, _: Before) -> Fit:
-    model = fit_recogniser(training.full_samples, training.persons, training.tasks, training.groups)
+def _fit_recognizer(training: TrainingSet, _: Before) -> Fit:
+    model = fit_recognizer(training.full_samples, training.persons, training.tasks, training.groups)
     arrays, meta = model.to_arrays()
     figures: Meta = {"held_out": recognition_figures(training)}
     return Fit(arrays, meta, figures | {"unknown": unknown_figures(model)})
 
 
 def _fit_multilinear(training: TrainingSet, _: Before) -> Fit:
-    # Its held-out figures stand beside those of the default recogniser.
+    # Its held-out figures stand beside those of the default recognizer.
     model = fit_multilinear(training.samples, training.persons, training.tasks)
     arrays, meta = model.to_arrays()
     return Fit(arrays, meta, {})
@@ -184,7 +184,7 @@ def _fit_signatures(training: TrainingSet, _: Before) -> Fit:
 
 
 def _fit_perera(training: TrainingSet, _: Before) -> Fit:
-    model = fit_tensor_recogniser(
+    model = fit_tensor_recognizer(
         training.samples, training.persons, training.tasks, training.groups
     )
     arrays, meta = model.to_arrays()
@@ -216,7 +216,7 @@ def _fit_metric(factor: Factor, training: TrainingSet, _: Before) -> Fit:
 
 _FITS: dict[ModelKind, Callable[[TrainingSet, Before], Fit]] = {
     ModelKind.WORDS: _fit_words,
-    ModelKind.RECOGNISER: _fit_recogniser,
+    ModelKind.RECOGNIZER: _fit_recognizer,
     ModelKind.MULTILINEAR: _fit_multilinear,
     ModelKind.SIGNATURES: _fit_signatures,
     ModelKind.PERERA: _fit_perera,

@@ -53,7 +53,7 @@ def list_unfitted(lib: Library) -> tuple[Unfitted, ...]:
 
 
 def set_false_accept_rate(lib: Library, model_id: str, rate: float | None) -> ModelRecord:
-    """How often a recogniser may call something new known; None: where both errors weigh alike.
+    """How often a recognizer may call something new known; None: where both errors weigh alike.
 
     Takes effect with the next question, on every replica, and stays when the model is fitted
     anew. Raises NotFound, BadField for another kind of model or a rate outside 0..1.

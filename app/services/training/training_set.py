@@ -35,7 +35,7 @@ class TrainingSet:
     groups: (N,) clips of one recording share a name; symbols: N; statistics: (N, 131);
     samples: (N, 1250); vectors: (N, 128); wide: (N, 512); angles: (642,) by clip id, of those that
     have been analysed since there are joint angles; is_anonymous: persons are not told, since none
-    is to be recognised.
+    is to be recognized.
     """
 
     library_version: int
@@ -80,7 +80,7 @@ class TrainingSet:
 
     @property
     def full_samples(self) -> FloatArray:
-        """(N, 1762) what the default recogniser looks at."""
+        """(N, 1762) what the default recognizer looks at."""
         return full_samples(self.samples, self.wide)
 
     @property
@@ -100,7 +100,7 @@ def ready_only(wanted: ClipFilter | None) -> ClipFilter:
 def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
     """All clips that pass a filter, ready ones by default, in one snapshot.
 
-    Synthesised clips are left out: nothing is to be learned from them.
+    Synthesized clips are left out: nothing is to be learned from them.
     """
     with store.read() as tx:
         version = library.version(tx)

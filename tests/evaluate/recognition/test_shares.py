@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.evaluate.recognition.methods import NO_GUESS, Guess
-from app.evaluate.recognition.shares import Share, chance, confusion, recognised, unknown
+from app.evaluate.recognition.shares import Share, chance, confusion, recognized, unknown
 from app.evaluate.recognition.trials import Told, Trial
 
 NOBODY = Told(None, True, NO_GUESS, 0)
@@ -30,13 +30,13 @@ def test_shares_count_clips_whose_label_was_seen() -> None:
         trial(told("hop", "run", new=True), told("ada", "ada")),
         trial(told(None, "walk"), told("ada", "ada")),
     ]
-    found = recognised(trials)
+    found = recognized(trials)
     assert (found.task, found.person, found.both) == (Share(2, 3), Share(4, 5), Share(1, 3))
     assert chance(trials) == (0.25, 0.25, 0.0625)
 
 
 def test_nothing_judged_has_no_share() -> None:
-    found = recognised([trial(told(None, "walk"))])
+    found = recognized([trial(told(None, "walk"))])
     assert found.task.value is None
     assert found.task.interval == (0.0, 1.0)
     assert chance([]) == (None, None, None)

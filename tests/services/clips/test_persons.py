@@ -12,8 +12,8 @@ from app.services.clips import catalogue as clips
 from app.services.clips import jobs, labels, persons
 from app.services.find.find import MotionQuery, find_motion
 from app.services.library.library import Library
-from app.services.recognition import recognise
-from app.services.recognition.recognise import RecogniseQuery
+from app.services.recognition import recognize
+from app.services.recognition.recognize import RecognizeQuery
 from app.services.training import models
 from app.services.training.fit import fit_library
 from app.store.clips.record import ClipState
@@ -43,7 +43,7 @@ def _bytes_of(folder: Path) -> bytes:
 def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoClip]) -> None:
     ids = _library(lib, some_demo_clips)
     theirs = ids[f"{NAME} wave"]
-    before = recognise.recognise(lib, RecogniseQuery(theirs))
+    before = recognize.recognize(lib, RecognizeQuery(theirs))
     assert NAME in {candidate.label for candidate in before.person.candidates}
     assert NAME.encode() in _bytes_of(lib.settings.data_dir)
 
@@ -55,7 +55,7 @@ def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoCl
     with pytest.raises(
         ModelBeingFitted, match="removed: a person whom it held was removed"
     ) as refused:
-        recognise.recognise(lib, RecogniseQuery(theirs))
+        recognize.recognize(lib, RecognizeQuery(theirs))
     (waiting,) = jobs.list_jobs(lib, kind=JobKind.FIT, state=JobState.QUEUED).items
     assert f"ask again when the job {waiting.id} has ended" in refused.value.detail
     assert NAME not in refused.value.detail
@@ -63,7 +63,7 @@ def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoCl
     assert NAME.encode() not in _bytes_of(lib.settings.data_dir)
 
     work(lib.settings)
-    after = recognise.recognise(lib, RecogniseQuery(theirs))
+    after = recognize.recognize(lib, RecognizeQuery(theirs))
     assert NAME not in {candidate.label for candidate in after.person.candidates}
     assert after.task.candidates[0].label == "wave"
     with pytest.raises(NotFound):
@@ -116,10 +116,10 @@ def test_switched_off_no_model_holds_a_person(
     with_persons.close()
     lib = Library.open(settings_for(tmp_path, recognize_persons=False))
     try:
-        early = recognise.recognise(lib, RecogniseQuery(ids["bruno bow"]))
+        early = recognize.recognize(lib, RecognizeQuery(ids["bruno bow"]))
         assert (early.person.label, early.person.candidates) == (None, ())
         work(lib.settings)
-        found = recognise.recognise(lib, RecogniseQuery(ids["bruno bow"]))
+        found = recognize.recognize(lib, RecognizeQuery(ids["bruno bow"]))
         assert (found.person.label, found.person.candidates) == (None, ())
         assert found.task.candidates[0].label == "bow"
         for record in models.list_models(lib):

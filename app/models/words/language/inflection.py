@@ -101,7 +101,7 @@ IsWord = Callable[[str], bool]
 def base_form(word: str, is_word: IsWord) -> str | None:
     """The likeliest base form of `word` that is a word; the word itself comes first.
 
-    None where neither it nor any base form is one. Words are normalised (word_vocabulary).
+    None where neither it nor any base form is one. Words are normalized (word_vocabulary).
     """
     return next(filter(is_word, (word, *base_forms(word))), None)
 

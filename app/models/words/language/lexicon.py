@@ -205,12 +205,12 @@ def _broader() -> dict[int, frozenset[int]]:
 
 
 def is_known(word: str) -> bool:
-    """Whether the lexicon has `word` (normalised)."""
+    """Whether the lexicon has `word` (normalized)."""
     return word in _meaning_of()
 
 
 def likeness(one: str, other: str) -> float:
-    """0..1, symmetric: how near two normalised words are in meaning; 0 for unknown ones."""
+    """0..1, symmetric: how near two normalized words are in meaning; 0 for unknown ones."""
     if one == other:
         return 1.0
     meaning = _meaning_of()

@@ -25,7 +25,7 @@ class Neighbour:
 def neighbours(
     word: str, library: Iterable[str], related: Mapping[str, Mapping[str, float]]
 ) -> tuple[Neighbour, ...]:
-    """The words of the library nearest to a normalised `word` that it lacks, best first.
+    """The words of the library nearest to a normalized `word` that it lacks, best first.
 
     library: its words; related: those that WordNet knows, by foreign word (wordnet). Our
     lexicon comes first where it says anything. Empty where nothing is near.

@@ -12,7 +12,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
-from app.models.words.language.normalise import normalise_word
+from app.models.words.language.normalize import normalize_word
 
 LONGEST_PHRASE = 4
 """Words of a phrase that is looked for in a sentence."""
@@ -45,7 +45,7 @@ NEGATIONS = frozenset({"no", "not", "never", "without"})
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """Normalised words that are wanted, and those to be left out, each once, in order."""
+    """Normalized words that are wanted, and those to be left out, each once, in order."""
 
     wanted: tuple[str, ...]
     excluded: tuple[str, ...]
@@ -54,7 +54,7 @@ class Asked:
 def read_query(texts: Iterable[str], is_word: Callable[[str], bool]) -> Asked:
     """What `texts` ask for; each is a word, a phrase or a sentence.
 
-    is_word: whether the library has a normalised word, inflected or not.
+    is_word: whether the library has a normalized word, inflected or not.
     """
     wanted: list[str] = []
     excluded: list[str] = []
@@ -65,14 +65,14 @@ def read_query(texts: Iterable[str], is_word: Callable[[str], bool]) -> Asked:
 
 
 def _words_of(text: str, is_word: Callable[[str], bool]) -> Iterator[tuple[str, bool]]:
-    """(normalised word, whether it is to be left out) of each word of `text`."""
-    whole = normalise_word(text)
+    """(normalized word, whether it is to be left out) of each word of `text`."""
+    whole = normalize_word(text)
     if whole and not text.startswith("-") and is_word(whole):
         yield whole, False
         return
     tokens = [token.replace("’", "'") for token in _TOKEN.findall(text)]
     if len(tokens) == 1:  # asked for by itself: no word is too small
-        word = normalise_word(tokens[0])
+        word = normalize_word(tokens[0])
         if word:
             yield word, tokens[0].startswith("-")
         return
@@ -92,7 +92,7 @@ def _longest(tokens: list[str], is_word: Callable[[str], bool]) -> tuple[str, in
     for length in range(min(LONGEST_PHRASE, len(tokens)), 1, -1):
         if any(token.startswith("-") for token in tokens[1:length]):
             continue
-        phrase = normalise_word(" ".join(tokens[:length]))
+        phrase = normalize_word(" ".join(tokens[:length]))
         if is_word(phrase):
             return phrase, length
-    return normalise_word(tokens[0]).removesuffix("'s"), 1
+    return normalize_word(tokens[0]).removesuffix("'s"), 1

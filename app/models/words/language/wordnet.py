@@ -28,7 +28,7 @@ PARTS_OF_SPEECH = ("v", "n", "a")
 class Meanings:
     """What WordNet was asked: words of a library, and the foreign words near them.
 
-    looked_up: normalised words; related: foreign words near those, with their likeness.
+    looked_up: normalized words; related: foreign words near those, with their likeness.
     """
 
     looked_up: tuple[str, ...] = ()
@@ -68,7 +68,7 @@ def is_installed() -> bool:
 
 
 def related_words(words: Iterable[str]) -> Related:
-    """Foreign words near each of `words` (normalised), by their likeness.
+    """Foreign words near each of `words` (normalized), by their likeness.
 
     Raises ModuleNotFoundError without the extra `words`.
     """

@@ -51,7 +51,7 @@ class SynthesisQuery:
 
 
 @dataclass(frozen=True, slots=True)
-class Synthesised:
+class Synthesized:
     """person, task: of whom, doing what; name: for a file; clip, job: where it was stored;
     is_new: False where the same motion was stored before; motion; bvh: the file's bytes;
     cycles: how often it goes round, 0 where it does not; license: of all that it is made of,
@@ -76,7 +76,7 @@ class Synthesised:
         return MotionView(self.motion.frame_rate, self.motion.names, parents, self.motion.positions)
 
 
-def synthesise(lib: Library, query: SynthesisQuery) -> Synthesised:
+def synthesize(lib: Library, query: SynthesisQuery) -> Synthesized:
     """The motion asked for, and how far it can be trusted.
 
     Raises BadField, NotFound for a person or task that the model does not know, ClipNotFound,
@@ -96,7 +96,7 @@ def synthesise(lib: Library, query: SynthesisQuery) -> Synthesised:
     animation = embody(course, material.donors)
     motion = _as_motion(animation, material.donors[0].joints)
     quality = judge(lib, fitted, plan, motion, motion_shape(body_track(motion)))
-    made = Synthesised(
+    made = Synthesized(
         person=plan.person,
         task=plan.task,
         # Without the person, whose name must go when they are forgotten.
@@ -150,7 +150,7 @@ def _as_motion(animation: Animation, joints: dict[JointRole, int]) -> Motion:
     )
 
 
-def _stored(lib: Library, made: Synthesised, material: Material, plan: Plan) -> Synthesised:
+def _stored(lib: Library, made: Synthesized, material: Material, plan: Plan) -> Synthesized:
     """The motion as a clip like any other, marked by its source."""
     given = clips.NewClip(
         filename=f"{made.name}.bvh",

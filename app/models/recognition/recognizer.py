@@ -1,4 +1,4 @@
-"""The default recogniser: which person does which task, or that it is someone or something new.
+"""The default recognizer: which person does which task, or that it is someone or something new.
 
 Clips are looked at in two ways (app.models.recognition.views), each brought to PCA coordinates
 and held against all hypotheses (app.models.recognition.hypotheses). Evidence of a label is the sum
@@ -35,7 +35,7 @@ from app.models.recognition.views import (
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.principal_axes import principal_axes
 
-RECOGNISER_VERSION = 3
+RECOGNIZER_VERSION = 3
 
 MOSTLY_REPEATED = 0.5
 """Share of clips beside which there must be another of the same person at the same task for takes
@@ -48,7 +48,7 @@ _Arrays = dict[str, np.ndarray[Any, Any]]
 
 
 @dataclass(frozen=True, slots=True)
-class Recogniser:
+class Recognizer:
     """persons, tasks: sorted labels, to which indices elsewhere refer; sample, wide: the two
     ways of looking, whose hypotheses are of the same kinds and labels in the same order;
     persons_by_both: whether new persons are told by both (see Logs)."""
@@ -61,7 +61,7 @@ class Recogniser:
     person_calibration: Calibration
     task_calibration: Calibration
 
-    def accepting(self, false_accept_rate: float) -> Recogniser:
+    def accepting(self, false_accept_rate: float) -> Recognizer:
         """The same, calling something new known at this rate at most (of held-out clips)."""
         return replace(
             self,
@@ -72,7 +72,7 @@ class Recogniser:
     def to_arrays(self) -> tuple[_Arrays, dict[str, Any]]:
         """Arrays and JSON-able meta from which from_arrays makes the same record."""
         arrays = self.sample.to_arrays("sample") | self.wide.to_arrays("wide")
-        meta: dict[str, Any] = {"version": RECOGNISER_VERSION}
+        meta: dict[str, Any] = {"version": RECOGNIZER_VERSION}
         meta |= {"persons": list(self.persons), "tasks": list(self.tasks)}
         meta["persons_by_both"] = self.persons_by_both
         for name in ("person", "task"):
@@ -82,10 +82,10 @@ class Recogniser:
         return arrays, meta
 
     @classmethod
-    def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> Recogniser:
+    def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> Recognizer:
         """The record that to_arrays took apart. Raises ValueError on another version."""
-        if meta["version"] != RECOGNISER_VERSION:
-            raise ValueError(f"recogniser of version {meta['version']}")
+        if meta["version"] != RECOGNIZER_VERSION:
+            raise ValueError(f"recognizer of version {meta['version']}")
         return cls(
             tuple(meta["persons"]),
             tuple(meta["tasks"]),
@@ -97,13 +97,13 @@ class Recogniser:
         )
 
 
-def fit_recogniser(
+def fit_recognizer(
     samples: FloatArray,
     persons: Sequence[str | None],
     tasks: Sequence[str | None],
     groups: Sequence[str] | None = None,
     sample_length: int = SAMPLE_LENGTH,
-) -> Recogniser:
+) -> Recognizer:
     """Fit on full samples with their labels, None where there is none.
 
     samples: (clips, 1762), motion samples of `sample_length` (1250) each followed by the clip's
@@ -127,11 +127,11 @@ def fit_recogniser(
     repeated = int(cells.takes[cells.takes > 1].sum())
     by_both = repeated < MOSTLY_REPEATED * len(use)
     person, task = _calibrations(points, persons, tasks, together, views, by_both)
-    return Recogniser(cells.persons, cells.tasks, *views, by_both, person, task)
+    return Recognizer(cells.persons, cells.tasks, *views, by_both, person, task)
 
 
-def recognise(
-    record: Recogniser,
+def recognize(
+    record: Recognizer,
     sample: FloatArray,
     known_person: str | None = None,
     known_task: str | None = None,
@@ -140,16 +140,16 @@ def recognise(
 
     A known label that the library lacks is taken at its word: someone, or something, new.
     """
-    return recognise_many(record, np.asarray(sample)[None], known_person, known_task)[0]
+    return recognize_many(record, np.asarray(sample)[None], known_person, known_task)[0]
 
 
-def recognise_many(
-    record: Recogniser,
+def recognize_many(
+    record: Recognizer,
     samples: FloatArray,
     known_person: str | None = None,
     known_task: str | None = None,
 ) -> list[Recognition]:
-    """`recognise` for each of `samples` (n, 1762)."""
+    """`recognize` for each of `samples` (n, 1762)."""
     rows = both_views(samples, len(record.sample.axes.centre))
     sample, wide = record.sample, record.wide
     points = Seen(sample.axes.project(rows.sample), wide.axes.project(rows.wide))

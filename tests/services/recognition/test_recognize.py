@@ -11,8 +11,8 @@ import pytest
 from app.demo import DemoClip
 from app.errors import BadField, ModelNotFitted
 from app.services.library.library import Library
-from app.services.recognition import recognise
-from app.services.recognition.recognise import METHODS, RecogniseQuery
+from app.services.recognition import recognize
+from app.services.recognition.recognize import METHODS, RecognizeQuery
 from app.services.training import models
 from app.services.training.errors_in_force import errors_in_force
 from app.store.jobs.record import JobKind, JobState
@@ -21,11 +21,11 @@ from tests.libraries import FindClip, settings_for, upload, work
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_stored_clip_is_recognised(
+def test_a_stored_clip_is_recognized(
     ready_library: Library, clip_of: FindClip, method: str
 ) -> None:
-    asked = RecogniseQuery(clip_of("ada", "wave").id, method=method)
-    found = recognise.recognise(ready_library, asked)
+    asked = RecognizeQuery(clip_of("ada", "wave").id, method=method)
+    found = recognize.recognize(ready_library, asked)
     assert found.task.candidates[0].label == "wave"
     assert found.person.candidates[0].label == "ada"
     scores = [score for _, score in found.words]
@@ -34,24 +34,24 @@ def test_a_stored_clip_is_recognised(
 
 
 def test_what_is_known_is_taken_as_given(ready_library: Library, clip_of: FindClip) -> None:
-    asked = RecogniseQuery(clip_of("ada", "wave").id, known_person="ada", known_task=" wave ")
-    found = recognise.recognise(ready_library, asked)
+    asked = RecognizeQuery(clip_of("ada", "wave").id, known_person="ada", known_task=" wave ")
+    found = recognize.recognize(ready_library, asked)
     assert (found.person.label, found.task.label) == ("ada", "wave")
 
 
-def test_an_upload_is_recognised_as_its_stored_twin(
+def test_an_upload_is_recognized_as_its_stored_twin(
     ready_library: Library, some_demo_clips: list[DemoClip], clip_of: FindClip
 ) -> None:
     demo = next(c for c in some_demo_clips if (c.person, c.task) == ("chika", "bow"))
-    theirs = recognise.recognise(ready_library, RecogniseQuery(content=io.BytesIO(demo.content)))
-    ours = recognise.recognise(ready_library, RecogniseQuery(clip_of("chika", "bow").id))
+    theirs = recognize.recognize(ready_library, RecognizeQuery(content=io.BytesIO(demo.content)))
+    ours = recognize.recognize(ready_library, RecognizeQuery(clip_of("chika", "bow").id))
     assert theirs.task.candidates[0].label == ours.task.candidates[0].label == "bow"
     assert theirs.words[0] == pytest.approx(ours.words[0])
 
 
 def test_another_method_is_refused(ready_library: Library, clip_of: FindClip) -> None:
     with pytest.raises(BadField, match="method"):
-        recognise.recognise(ready_library, RecogniseQuery(clip_of("ada", "bow").id, method="x"))
+        recognize.recognize(ready_library, RecognizeQuery(clip_of("ada", "bow").id, method="x"))
 
 
 def test_models_tell_what_they_were_fitted_on_and_how_good_they_are(
@@ -85,7 +85,7 @@ def test_what_cannot_be_fitted_is_skipped_with_its_reason(
     assert outcomes["recogniser"]["reason"]
     clip = upload(lib, some_demo_clips[0]).clip
     with pytest.raises(ModelNotFitted):
-        recognise.recognise(lib, RecogniseQuery(clip.id))
+        recognize.recognize(lib, RecognizeQuery(clip.id))
 
 
 def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
@@ -98,11 +98,11 @@ def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
     (record,) = (r for r in models.list_models(lib) if r.kind == "recogniser")
     curve = record.meta["figures"]["unknown"]["person"]["curve"]
     assert {"threshold", "false_acceptance", "false_rejection"} == set(curve[0])
-    threshold = lib.models.recogniser(lib.store).model.person_calibration.threshold
+    threshold = lib.models.recognizer(lib.store).model.person_calibration.threshold
 
     changed = models.set_false_accept_rate(lib, record.id, 0.001)
     assert changed.settings == {"false_accept_rate": 0.001}
-    strict = lib.models.recogniser(lib.store).model.person_calibration
+    strict = lib.models.recognizer(lib.store).model.person_calibration
     assert strict.error_rates()[0] == 0.0
     assert strict.threshold <= threshold
     told = errors_in_force(lib, changed)
@@ -131,11 +131,11 @@ def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
 
 
 @pytest.mark.parametrize("method", sorted(set(METHODS) - {"default"}))
-def test_methods_that_need_persons_say_so_where_persons_are_not_recognised(
+def test_methods_that_need_persons_say_so_where_persons_are_not_recognized(
     ready_library: Library, clip_of: FindClip, method: str
 ) -> None:
     closed = replace(
         ready_library, settings=settings_for(Path("/nowhere"), recognize_persons=False)
     )
     with pytest.raises(ModelNotFitted, match="switched off"):
-        recognise.recognise(closed, RecogniseQuery(clip_of("ada", "wave").id, method=method))
+        recognize.recognize(closed, RecognizeQuery(clip_of("ada", "wave").id, method=method))

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 _JOINERS = re.compile(r"[\s\-_]+")
 
 
-def normalise_word(word: str) -> str:
+def normalize_word(word: str) -> str:
     """`word` in lower case, hyphens and blanks as single underscores: "High-Kick" -> "high_kick".
 
     Empty where nothing is left.
@@ -16,6 +16,6 @@ def normalise_word(word: str) -> str:
     return _JOINERS.sub("_", word.strip().casefold()).strip("_")
 
 
-def normalise_words(words: Iterable[str]) -> tuple[str, ...]:
-    """Normalised words in their order, each once, empty ones left out."""
-    return tuple(dict.fromkeys(filter(None, map(normalise_word, words))))
+def normalize_words(words: Iterable[str]) -> tuple[str, ...]:
+    """Normalized words in their order, each once, empty ones left out."""
+    return tuple(dict.fromkeys(filter(None, map(normalize_word, words))))
