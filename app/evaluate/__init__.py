@@ -18,7 +18,7 @@ from app.evaluate.recognition.methods import METHODS as RECOGNIZERS
 from app.evaluate.recognition.results import RecognitionEvaluation
 from app.evaluate.retrieval.evaluation import (
     JUDGED,
-    MOST_QUERIES,
+    MAX_QUERIES,
     JudgedWay,
     K,
     RetrievalEvaluation,
@@ -32,7 +32,7 @@ from app.evaluate.words.symbols import draw_symbols, judge_symbols
 __all__ = [
     "JUDGED",
     "JUDGED_KEYPOSES",
-    "MOST_QUERIES",
+    "MAX_QUERIES",
     "RECOGNIZERS",
     "JudgedClip",
     "JudgedKeyposes",

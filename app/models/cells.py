@@ -16,7 +16,7 @@ import numpy as np
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 EFFECT_RIDGE = 0.5
-"""Pull of an effect towards none, in cells; settles effects that no data tell apart."""
+"""Pull of an effect toward none, in cells; settles effects that no data tell apart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class Cells:
     """Which clip is in which cell.
 
     persons, tasks: sorted labels; member: (clips,) cell of each clip, -1 without any label;
-    person, task: (cells,) index of the label, -1 where not labelled; takes: (cells,).
+    person, task: (cells,) index of the label, -1 where not labeled; takes: (cells,).
     A clip that lacks one of the labels is a cell of its own: its fellows may be anyone.
     """
 
@@ -45,25 +45,25 @@ class Cells:
 
 
 def find_cells(persons: Sequence[str | None], tasks: Sequence[str | None]) -> Cells:
-    """The cells of clips labelled `persons` and `tasks`, (clips,) each; None or "" is none."""
+    """The cells of clips labeled `persons` and `tasks`, (clips,) each; None or "" is none."""
     person_names, person = _indexed(persons)
     task_names, task = _indexed(tasks)
     partial = (person < 0) | (task < 0)
     own = np.where(partial, np.arange(1, len(person) + 1), 0)
-    labelled = (person >= 0) | (task >= 0)
-    keys = np.stack([person, task, own], axis=1)[labelled]
+    labeled = (person >= 0) | (task >= 0)
+    keys = np.stack([person, task, own], axis=1)[labeled]
     unique, inverse = np.unique(keys, axis=0, return_inverse=True)
     member = np.full(len(person), -1)
-    member[labelled] = inverse.reshape(-1)
-    takes = np.bincount(member[labelled], minlength=len(unique))
+    member[labeled] = inverse.reshape(-1)
+    takes = np.bincount(member[labeled], minlength=len(unique))
     return Cells(person_names, task_names, member, unique[:, 0], unique[:, 1], takes)
 
 
 def cell_means(points: FloatArray, cells: Cells) -> FloatArray:
     """(cells, d) means of `points` (clips, d)."""
-    labelled = cells.member >= 0
+    labeled = cells.member >= 0
     means = np.zeros((len(cells), points.shape[1]))
-    np.add.at(means, cells.member[labelled], points[labelled])
+    np.add.at(means, cells.member[labeled], points[labeled])
     return np.asarray(means / np.maximum(cells.takes, 1)[:, None])
 
 

@@ -13,10 +13,10 @@ from app.numerics.arrays import IntArray
 FOLDS = 5
 """Parts that clips, tasks and persons are each dealt into."""
 
-LEAST_LABELS = 3
+MIN_LABELS = 3
 """With fewer tasks (or persons) none is held out: what remains would be no choice."""
 
-MOST_PROBES = 400
+MAX_PROBES = 400
 """Clips probed in one round; more would cost time and tell nothing new."""
 
 
@@ -39,7 +39,7 @@ def rounds(
     yield from _splits(Held.CLIPS, grouped_folds(groups, FOLDS))
     for held, labels in ((Held.TASKS, tasks), (Held.PERSONS, persons)):
         names = sorted({label for label in labels if label})
-        if len(names) < LEAST_LABELS:
+        if len(names) < MIN_LABELS:
             continue
         deal = {name: i % min(FOLDS, len(names)) for i, name in enumerate(names)}
         yield from _splits(held, np.array([deal[label] if label else -1 for label in labels]))
@@ -49,5 +49,5 @@ def _splits(held: Held, fold: IntArray) -> Iterator[Round]:
     for each in range(int(fold.max(initial=-1)) + 1):
         train, probe = np.flatnonzero(fold != each), np.flatnonzero(fold == each)
         if len(train) >= 2 and len(probe):
-            chosen = np.linspace(0, len(probe) - 1, min(len(probe), MOST_PROBES))
+            chosen = np.linspace(0, len(probe) - 1, min(len(probe), MAX_PROBES))
             yield held, train, probe[chosen.astype(np.int64)]

@@ -14,7 +14,7 @@ from app.api.schemas.views import Motion, plain
 from app.services.library.synthesized import SYNTHESIZED
 from app.services.synthesis.plan import SynthesisKind
 from app.services.synthesis.quality import Quality as FoundQuality
-from app.services.synthesis.synthesize import MOST_CLIPS, SECONDS, Synthesized
+from app.services.synthesis.synthesize import MAX_CLIPS, SECONDS, Synthesized
 
 
 class Synthesize(Incoming):
@@ -22,7 +22,7 @@ class Synthesize(Incoming):
 
     task: Annotated[Label, Field(min_length=1, description="What they are to do.")]
     person: Label | None = Field(None, description="A person of the library.")
-    clip_ids: Annotated[list[ClipId], Field(min_length=1, max_length=MOST_CLIPS)] | None = Field(
+    clip_ids: Annotated[list[ClipId], Field(min_length=1, max_length=MAX_CLIPS)] | None = Field(
         None,
         description="Clips of one person, known or not, labelled with what is done in them; the"
         " motion is made as though the library held no others of that person.",

@@ -11,8 +11,8 @@ from app.cli.output import WIDEST, print_table
 from app.evaluate import charts as pictures
 from app.numerics.arrays import FloatArray
 
-MOST_PAIRS = 25
-LEAST_SHOWN = 0.005
+MAX_PAIRS = 25
+MIN_SHOWN = 0.005
 """Share that rounds to one per cent."""
 
 
@@ -28,7 +28,7 @@ def print_confusion(classes: Sequence[str], shares: FloatArray) -> None:
         return
     typer.echo(" " * width + "".join(f"{number:>4}" for number in range(1, len(names) + 1)))
     for name, row in zip(names, shares, strict=True):
-        cells = [f"{100 * share:>4.0f}" if share >= LEAST_SHOWN else "   ." for share in row]
+        cells = [f"{100 * share:>4.0f}" if share >= MIN_SHOWN else "   ." for share in row]
         typer.echo(f"{name:<{width}}" + "".join(cells))
 
 
@@ -37,8 +37,8 @@ def _print_largest(classes: Sequence[str], shares: FloatArray) -> None:
     confused = shares * ~np.eye(len(classes), dtype=bool)
     order = np.argsort(-confused, axis=None, kind="stable")
     pairs = [divmod(int(place), len(classes)) for place in order]
-    told = [pair for pair in pairs if confused[pair] >= LEAST_SHOWN]
-    shown = told[:MOST_PAIRS]
+    told = [pair for pair in pairs if confused[pair] >= MIN_SHOWN]
+    shown = told[:MAX_PAIRS]
     if shown:
         print_table(
             ["true", "taken for", "%", "right, %"], [_row(classes, shares, *p) for p in shown]

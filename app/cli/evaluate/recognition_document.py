@@ -17,7 +17,7 @@ def document(found: RecognitionEvaluation) -> dict[str, Any]:
     return {
         "clips": {
             "judged": len(found.clips),
-            "unlabelled": found.clips.unlabelled,
+            "unlabelled": found.clips.unlabeled,
             "persons": names_of(found.clips.persons),
             "tasks": names_of(found.clips.tasks),
             "sources": names_of(found.clips.sources),

@@ -17,7 +17,7 @@ from app.evaluate.recognition.rounds import DRAWS, LeftOut
 from app.evaluate.recognition.shares import Recognized, Share, Unknown
 
 _WAYS = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
-MOST_SHOWN = 40
+MAX_SHOWN = 40
 """Labels in a printed table; --json has all."""
 
 
@@ -129,11 +129,11 @@ def _print_categories(method: str, found: Unknown, factor: str) -> None:
         [f"{factor} left out", "clips", "called new", "balanced", "else taken for"],
         [
             [one.label, one.refused.of, one.refused.value, one.balanced_accuracy, one.taken_for]
-            for one in ordered[:MOST_SHOWN]
+            for one in ordered[:MAX_SHOWN]
         ],
     )
-    if len(ordered) > MOST_SHOWN:
-        typer.echo(f"... and {len(ordered) - MOST_SHOWN} more: --json tells all.")
+    if len(ordered) > MAX_SHOWN:
+        typer.echo(f"... and {len(ordered) - MAX_SHOWN} more: --json tells all.")
 
 
 def _print_sources(held: HeldOut) -> None:
@@ -218,6 +218,6 @@ def _remarks(found: RecognitionEvaluation) -> list[str]:
         "after its features (medians)."
         for method, seconds in found.seconds.items()
     ]
-    if found.clips.unlabelled:
-        remarks.append(f"{found.clips.unlabelled} clips carry neither label and were left out.")
+    if found.clips.unlabeled:
+        remarks.append(f"{found.clips.unlabeled} clips carry neither label and were left out.")
     return remarks + [f"Not judged, {name}: {why}" for name, why in found.not_judged.items()]

@@ -52,7 +52,7 @@ def retrieval(
     method: Methods = None,
     k: K = evaluate.K,
     eta: Eta = 0.0,
-    queries: Queries = evaluate.MOST_QUERIES,
+    queries: Queries = evaluate.MAX_QUERIES,
     filter_json: FilterJson = None,
     picture: Picture = None,
     pictures_dir: Pictures = None,
@@ -107,7 +107,7 @@ def _document(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> dict[str
             "k": found.k,
             "methods": {way.figures.method: way.confusion.tolist() for way in found.ways},
         },
-        "left_out": {"unlabelled": found.unlabelled, "alone": found.alone},
+        "left_out": {"unlabelled": found.unlabeled, "alone": found.alone},
         "volumes": {
             "q": volumes.q,
             "eta": volumes.threshold,
@@ -154,6 +154,6 @@ def _remarks(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> list[str]
         remarks.append(
             f"{found.alone} clips are the only recording of their task: they asked nothing."
         )
-    if found.unlabelled:
-        remarks.append(f"{found.unlabelled} clips carry no task and were left out.")
+    if found.unlabeled:
+        remarks.append(f"{found.unlabeled} clips carry no task and were left out.")
     return remarks

@@ -17,7 +17,7 @@ from app.cli.output import AsJson, print_json, print_table, print_text
 from app.cli.settings import open_library
 from app.evaluate import WordExample
 from app.models.held_out.words import (
-    LEAST_RECORDINGS,
+    MIN_RECORDINGS,
     RECALLS,
     JudgedWord,
     WordEvaluation,
@@ -35,7 +35,7 @@ Queries = Annotated[
 Picture = Annotated[
     Path | None, typer.Option(help="Draw recall against precision: a .svg, .png or .pdf file.")
 ]
-MOST_SHOWN = 40
+MAX_SHOWN = 40
 """Words in the printed table; --json has all."""
 
 
@@ -62,7 +62,7 @@ def _document(found: WordEvaluation, examples: Sequence[WordExample]) -> dict[st
     document = asdict(found)
     return document | {
         "recalls": RECALLS.tolist(),
-        "least_recordings": LEAST_RECORDINGS,
+        "least_recordings": MIN_RECORDINGS,
         "examples": [asdict(example) for example in examples],
     }
 
@@ -116,17 +116,17 @@ def _print_words(by_word: Sequence[JudgedWord]) -> None:
         ["word", "clips", "recordings", "AP", "F", "AUC"],
         [
             [o.word, o.clips, o.recordings, o.average_precision, o.f, o.area_under_curve]
-            for o in judged[:MOST_SHOWN]
+            for o in judged[:MAX_SHOWN]
         ],
     )
-    if len(judged) > MOST_SHOWN:
-        typer.echo(f"... and {len(judged) - MOST_SHOWN} words more: --json tells all.")
+    if len(judged) > MAX_SHOWN:
+        typer.echo(f"... and {len(judged) - MAX_SHOWN} words more: --json tells all.")
     rare = [one.word for one in by_word if one.too_rare]
     if rare:
-        more = "" if len(rare) <= MOST_SHOWN else f" and {len(rare) - MOST_SHOWN} more"
+        more = "" if len(rare) <= MAX_SHOWN else f" and {len(rare) - MAX_SHOWN} more"
         print_text(
-            f"Too rare to judge one by one, in fewer than {LEAST_RECORDINGS} recordings: "
-            f"{', '.join(rare[:MOST_SHOWN])}{more}."
+            f"Too rare to judge one by one, in fewer than {MIN_RECORDINGS} recordings: "
+            f"{', '.join(rare[:MAX_SHOWN])}{more}."
         )
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.evaluate.charts.drawing import MOST_INCHES, Format, drawn, shown
+from app.evaluate.charts.drawing import MAX_INCHES, Format, drawn, shown
 from app.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 CELL = 0.42
-"""Inches; cells shrink when there are more than MOST_LARGE classes."""
-MOST_LARGE = 30
-MOST_WITH_NUMBERS = 60
+"""Inches; cells shrink when there are more than MAX_FULL_SIZE classes."""
+MAX_FULL_SIZE = 30
+MAX_NUMBERED = 60
 USUAL_LETTERS = 9.0
 """Points; names are smaller where that is more than a cell is high."""
 LETTERS_A_CELL = 0.75 * 72
@@ -55,9 +55,9 @@ def confusions_picture(
     count = len(classes)
     if not count or not by_title or {m.shape for m in by_title.values()} != {(count, count)}:
         raise ValueError("a confusion matrix has one row and one column a class")
-    side = CELL * max(min(count, MOST_LARGE), 4) + 0.2 * max(count - MOST_LARGE, 0)
+    side = CELL * max(min(count, MAX_FULL_SIZE), 4) + 0.2 * max(count - MAX_FULL_SIZE, 0)
     width, height = (side + 0.3) * len(by_title) + 2.6, side + 1.6
-    fitting = min(1.0, MOST_INCHES / width, MOST_INCHES / height)
+    fitting = min(1.0, MAX_INCHES / width, MAX_INCHES / height)
     letters = min(USUAL_LETTERS, LETTERS_A_CELL * fitting * side / count)
 
     def draw(figure: Figure) -> None:
@@ -88,8 +88,8 @@ def _fill(
     axes.grid(visible=False)
     axes.tick_params(length=0, labelsize=letters)
     axes.spines[:].set_visible(False)
-    if count <= MOST_WITH_NUMBERS:
-        _number(axes, shares, size=min(letters, 8.0 if count <= MOST_LARGE else 5.0))
+    if count <= MAX_NUMBERED:
+        _number(axes, shares, size=min(letters, 8.0 if count <= MAX_FULL_SIZE else 5.0))
     return mesh
 
 

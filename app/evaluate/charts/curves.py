@@ -1,4 +1,4 @@
-"""Curves as a picture: one panel or several side by side, groups told by colour and dashes."""
+"""Curves as a picture: one panel or several side by side, groups told by color and dashes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.evaluate.charts.drawing import Format, add_legend, colour, dashes, drawn, shown
+from app.evaluate.charts.drawing import Format, add_legend, color, dashes, drawn, shown
 from app.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def _draw(axes: Axes, panel: Panel, groups: Sequence[str]) -> dict[str, Line2D]:
         (line,) = axes.plot(
             curve.x,
             curve.y,
-            color=colour(number),
+            color=color(number),
             linestyle=dashes(number),
             linewidth=0.7 if crowded else 1.4,
             alpha=0.55 if crowded else 1.0,

@@ -1,7 +1,7 @@
-"""What all pictures share: matplotlib without its global state, colours, names, bytes.
+"""What all pictures share: matplotlib without its global state, colors, names, bytes.
 
-Colours are those of Okabe and Ito, told apart by people of every colour vision; beyond
-seven groups, and for print without colour, markers and dashes differ too.
+Colors are those of Okabe and Ito, told apart by people of every color vision; beyond
+seven groups, and for print without color, markers and dashes differ too.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 Format = Literal["svg", "png", "pdf"]
 
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#4D4D4D")
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#4D4D4D")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", "*", ">")
 DASHES: tuple[str | tuple[int, tuple[int, ...]], ...] = (
     "-",
@@ -27,12 +27,12 @@ DASHES: tuple[str | tuple[int, tuple[int, ...]], ...] = (
     (0, (2, 1)),
     (0, (6, 2, 1, 2)),
 )
-LONGEST_NAME = 24
+MAX_NAME_LENGTH = 24
 """Characters of a name in a picture; a longer one loses its middle."""
 LEGEND_ROW = 0.19
 """Inches that a row of a legend takes."""
 PNG_DOTS_PER_INCH = 150
-MOST_INCHES = 40.0
+MAX_INCHES = 40.0
 """Of a side: 6,000 dots."""
 
 _STYLE: Any = {
@@ -85,7 +85,7 @@ def drawn(draw: Callable[[Figure], None], inches: tuple[float, float], form: For
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    width, height = (min(side, MOST_INCHES) for side in inches)
+    width, height = (min(side, MAX_INCHES) for side in inches)
     with mpl.rc_context(_STYLE), warnings.catch_warnings():
         # A letter that the font lacks is drawn as a box; that is no reason to fail.
         warnings.filterwarnings("ignore", message="Glyph .* missing", category=UserWarning)
@@ -102,28 +102,28 @@ def drawn(draw: Callable[[Figure], None], inches: tuple[float, float], form: For
     return content.getvalue()
 
 
-def colour(group: int) -> str:
-    """The colour of the group with this number."""
-    return COLOURS[group % len(COLOURS)]
+def color(group: int) -> str:
+    """The color of the group with this number."""
+    return COLORS[group % len(COLORS)]
 
 
 def marker(group: int) -> str:
-    """The marker of the group with this number; with the colour unlike any of 69 others."""
+    """The marker of the group with this number; with the color unlike any of 69 others."""
     return MARKERS[group % len(MARKERS)]
 
 
 def dashes(group: int) -> Any:
-    """The line style of the group with this number; with the colour unlike any of 27 others."""
+    """The line style of the group with this number; with the color unlike any of 27 others."""
     return DASHES[group % len(DASHES)]
 
 
 def shown(name: str) -> str:
     """`name` fit for a picture: on one line, printable, its middle left out when it is long."""
     clean = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name)
-    if len(clean) <= LONGEST_NAME:
+    if len(clean) <= MAX_NAME_LENGTH:
         return clean
-    head = LONGEST_NAME * 2 // 3
-    return f"{clean[:head]}…{clean[head + 1 - LONGEST_NAME :]}"
+    head = MAX_NAME_LENGTH * 2 // 3
+    return f"{clean[:head]}…{clean[head + 1 - MAX_NAME_LENGTH :]}"
 
 
 def add_legend(figure: Figure, handles: Sequence[Any], names: Sequence[str]) -> None:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-COLOURS = {Scope.GLOBAL: "#D55E00", Scope.LOCAL: "#009E73"}
+COLORS = {Scope.GLOBAL: "#D55E00", Scope.LOCAL: "#009E73"}
 NAMED = "#0072B2"
 BEAT = "#888888"
 INCHES_PER_SECOND = 0.9
@@ -37,7 +37,7 @@ FIGURES_PER_INCH = 1.4
 ASIDE = 0.6
 """Radians by which figures are turned from the front, so that arms before the body show."""
 STEP = 1.3
-"""Metres from one stick figure to the next."""
+"""Meters from one stick figure to the next."""
 
 _LIMBS = [
     (SUN_ROLES.index(role), SUN_ROLES.index(role.towards_trunk()))
@@ -109,8 +109,8 @@ def _legend(seen: KeyposesView) -> dict[str, Line2D]:
     from matplotlib.lines import Line2D
 
     lines = {
-        f"keypose by {scope.value} energy": Line2D([], [], color=colour, linewidth=1.8)
-        for scope, colour in COLOURS.items()
+        f"keypose by {scope.value} energy": Line2D([], [], color=color, linewidth=1.8)
+        for scope, color in COLORS.items()
     }
     if seen.named is not None:
         lines["named keypose"] = Line2D([], [], color=NAMED, linestyle=(0, (6, 2)))
@@ -128,7 +128,7 @@ def _draw_energy(axes: Axes, seen: KeyposesView, values: FloatArray, scope: Scop
     for beat in seen.found.beats.times:
         axes.axvline(beat, color=BEAT, linestyle=":", linewidth=0.8)
     for time, by in zip(seen.found.times, seen.found.chosen_by, strict=True):
-        axes.axvline(time, color=COLOURS[by], linewidth=1.8 if by is scope else 0.8)
+        axes.axvline(time, color=COLORS[by], linewidth=1.8 if by is scope else 0.8)
     for time in seen.named or ():
         axes.axvline(time, color=NAMED, linestyle=(0, (6, 2)), linewidth=1.2)
 

@@ -36,9 +36,9 @@ from app.store.clips import repository as stored
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
 
-MOST_DIMENSIONS = 10
+MAX_DIMENSIONS = 10
 """Rows of the table."""
-FEWEST_KEYPOSES = SHOWN + 1
+MIN_KEYPOSES = SHOWN + 1
 """Of a clip that is judged: fewer span less than the three dimensions of the paper."""
 ORIGINAL = "original"
 
@@ -126,7 +126,7 @@ class WorstPose:
 class LowDimensionalEvaluation:
     """What `kinedex evaluate low-dimensional` tells.
 
-    clips: judged; left_out: ready clips with fewer than FEWEST_KEYPOSES keyposes;
+    clips: judged; left_out: ready clips with fewer than MIN_KEYPOSES keyposes;
     more_clustered: share of clips whose keyposes cluster better than their uniform poses;
     shown: the clip with most keyposes, for the pictures; shown_group: the clips of the largest
     group; worst: an implausible pose, None where none is drawn.
@@ -156,7 +156,7 @@ def judge_low_dimensional(
     judged = list(_judged(lib, ready, progress))
     if not judged:
         raise NotEnoughKeyposes(
-            f"No ready clip has {FEWEST_KEYPOSES} keyposes; {len(ready)} were looked at."
+            f"No ready clip has {MIN_KEYPOSES} keyposes; {len(ready)} were looked at."
         )
     groups = _groups(judged)
     silhouettes = {basis: [_silhouette(one, basis) for one in judged] for basis in Basis}
@@ -186,7 +186,7 @@ def _judged(
     for done, clip in enumerate(ready, 1):
         track = body_track(load_motion(lib, clip))
         frames = keypose_frames(lib, clip.id, track)
-        if len(frames) >= FEWEST_KEYPOSES:
+        if len(frames) >= MIN_KEYPOSES:
             uniform = uniform_frames(track.frames, len(frames))
             models = {
                 Basis.KEYPOSE: eigen_model(track.local[frames]),
@@ -204,7 +204,7 @@ def _dimension_rows(judged: Sequence[JudgedClip]) -> Iterator[DimensionRow]:
         b: [1000 * reconstruction_errors(one.models[b], one.track) for one in judged] for b in Basis
     }
     best = [1000 * reconstruction_errors(eigen_model(o.track.local), o.track) for o in judged]
-    for row in range(MOST_DIMENSIONS):
+    for row in range(MAX_DIMENSIONS):
         there = [i for i, one in enumerate(judged) if len(one.keyposes) > row]
         if not there:
             return
@@ -290,7 +290,7 @@ def _group_row(task: str, clips: Sequence[JudgedClip]) -> GroupRow:
 
 
 def _joint_error(model: EigenModel, clips: Sequence[JudgedClip]) -> float:
-    """Metres, over all frames of all clips."""
+    """Meters, over all frames of all clips."""
     squares = [
         one.track.frames * reconstruction_errors(model, one.track)[SHOWN - 1] ** 2 for one in clips
     ]

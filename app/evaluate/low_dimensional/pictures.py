@@ -19,7 +19,7 @@ from app.services.views.animations import role_figure
 AXES = ("first axis", "second axis", "third axis")
 PLAYED = (1, 2, 3, 4)
 """Dimensions of the motions in figure 10."""
-MOST_PLAYED = 40 * 30
+MAX_PLAYED_FRAMES = 40 * 30
 """Frames of a motion that is played: 40 s."""
 
 
@@ -61,7 +61,7 @@ def variance_figure(found: LowDimensionalEvaluation, form: Format) -> bytes:
 
 
 def eigen_poses_figure(clips: Sequence[JudgedClip], basis: Basis, form: Format) -> bytes:
-    """Figure 7 or 8: the poses of all clips along the first axes; colours tell clusters."""
+    """Figure 7 or 8: the poses of all clips along the first axes; colors tell clusters."""
     poses = np.concatenate([one.poses(basis) for one in clips])
     points = eigen_model(poses).coordinates(poses, SHOWN)
     found = best_clusters(points)
@@ -90,7 +90,7 @@ def eigen_motion_figure(one: JudgedClip, form: Format) -> bytes:
 
 def dimensions_figure(one: JudgedClip) -> bytes:
     """Figure 10, moving: from one dimension to four, and the original."""
-    track = one.track.part(0, MOST_PLAYED)
+    track = one.track.part(0, MAX_PLAYED_FRAMES)
     model = one.models[Basis.KEYPOSE]
     figures = [
         role_figure(low_dimensional(model, track, count).positions, _counted(count))

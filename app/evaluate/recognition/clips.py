@@ -24,7 +24,7 @@ class JudgedClips:
 
     samples: (N, 1250) motion samples; persons, tasks: (N,) labels, None where there is none;
     groups: (N,) clips of one recording share a value, and are never on both sides; sources:
-    (N,) where they come from, None where nobody knows; unlabelled: clips that were left out;
+    (N,) where they come from, None where nobody knows; unlabeled: clips that were left out;
     angles: (N, 642) angle samples, None where a clip has none; wide: (N, 512) wide motion vectors.
     """
 
@@ -33,7 +33,7 @@ class JudgedClips:
     tasks: Labels
     groups: Sequence[str]
     sources: Labels
-    unlabelled: int = 0
+    unlabeled: int = 0
     angles: FloatArray | None = None
     wide: FloatArray | None = None
 
@@ -99,7 +99,7 @@ def judged_clips(training: TrainingSet) -> JudgedClips:
         tasks=[tasks[i] for i in use],
         groups=[training.groups[i] for i in use],
         sources=[training.clips[i].source for i in use],
-        unlabelled=len(training) - len(use),
+        unlabeled=len(training) - len(use),
         angles=np.stack(told) if told and len(told) == len(use) else None,
         wide=training.wide[use] if use else None,
     )

@@ -74,7 +74,7 @@ def judge_recognition(
     """Of the ready clips that pass the filter, by each method.
 
     false_accept_rate: above 0, below 1, of default and perera; where None its own threshold.
-    Raises BadField for an unknown method or a wrong rate, NotEnoughLabels below two labelled
+    Raises BadField for an unknown method or a wrong rate, NotEnoughLabels below two labeled
     clips.
     """
     _check(methods, false_accept_rate)

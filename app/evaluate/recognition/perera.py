@@ -73,6 +73,6 @@ def _read(lib: Library, wanted: ClipFilter | None) -> tuple[DancedTasks, int]:
 
 
 def _of_clip(found: Mapping[str, Mapping[str, Any]], clip_id: str) -> dict[str, Any]:
-    """A clip that was analysed before segments were stored counts as one that repeats nothing."""
+    """A clip that was analyzed before segments were stored counts as one that repeats nothing."""
     none = {SEGMENT_SPANS: np.zeros((0, 2)), SEGMENT_CYCLES: np.zeros((0, 3))}
     return {name: found[name].get(clip_id, none.get(name)) for name in _NAMES}

@@ -11,10 +11,10 @@ import numpy as np
 
 from app.errors import NotEnoughLabels
 from app.evaluate.recognition.clips import JudgedClips, Labels, names_of
-from app.models.holding_out import FOLDS, LEAST_LABELS
+from app.models.holding_out import FOLDS, MIN_LABELS
 from app.numerics.arrays import IntArray
 
-MOST_ROUNDS = 40
+MAX_ROUNDS = 40
 """Labels (or recordings) beyond so many leave in parties, dealt evenly."""
 
 DRAWS = 5
@@ -63,7 +63,7 @@ def rounds_by_recording(clips: JudgedClips) -> list[Round]:
     Raises NotEnoughLabels where no cell has a second take.
     """
     both = _both(clips)
-    folds = min(MOST_ROUNDS, len({clips.groups[i] for i in both}))
+    folds = min(MAX_ROUNDS, len({clips.groups[i] for i in both}))
     found = [
         Round((), np.intersect1d(one.train, both), np.intersect1d(one.probe, both))
         for one in _by_fold(clips, max(folds, 1))
@@ -133,9 +133,9 @@ def _by_label(clips: JudgedClips, factor: str) -> Iterator[Round]:
     """All clips of a label are new; a fold of the others is held out as known ones."""
     labels = clips.labels(factor)
     names = names_of(labels)
-    if len(names) < LEAST_LABELS:
+    if len(names) < MIN_LABELS:
         raise NotEnoughLabels(
-            f"{LEAST_LABELS} {factor}s are needed to leave one out; there are {len(names)}."
+            f"{MIN_LABELS} {factor}s are needed to leave one out; there are {len(names)}."
         )
     fold = _folds(clips, FOLDS)
     for number, party in enumerate(_parties(names)):
@@ -156,8 +156,8 @@ def _by_source(clips: JudgedClips) -> Iterator[Round]:
 
 
 def _parties(names: Sequence[str]) -> list[list[str]]:
-    """Each name alone, or with others where they are more than MOST_ROUNDS."""
-    count = min(len(names), MOST_ROUNDS)
+    """Each name alone, or with others where they are more than MAX_ROUNDS."""
+    count = min(len(names), MAX_ROUNDS)
     return [list(names[place::count]) for place in range(count)]
 
 

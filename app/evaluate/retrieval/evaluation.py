@@ -1,4 +1,4 @@
-"""Query by example: each labelled clip asks for the others of its task (Sun 2011, section 5)."""
+"""Query by example: each labeled clip asks for the others of its task (Sun 2011, section 5)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.evaluate.retrieval.labelled import LabelledClips, read_labelled
+from app.evaluate.retrieval.labelled import LabeledClips, read_labeled
 from app.evaluate.retrieval.rankings import Volumes, Way, by_method
 from app.models.held_out.class_rankings import JudgedRanking, confusion_matrix, true_positive_rates
 from app.numerics.arrays import FloatArray
@@ -25,7 +25,7 @@ HIDDEN_CLASSES = 4
 SUNS = (Method.MSV_DTW, Method.MSV_XCORR)
 JUDGED = tuple(method for method in Method if not method.value.startswith("metric-"))
 """A metric that was learned from the very labels would be judged by what it was told."""
-MOST_QUERIES = 1000
+MAX_QUERIES = 1000
 """Each asks the whole library by every method; more take hours and change no figure."""
 
 Progress = Callable[[int, int], None]
@@ -70,9 +70,9 @@ class JudgedWay:
 class RetrievalEvaluation:
     """What `kinedex evaluate retrieval` tells.
 
-    ways: by method; chosen: the classes hidden in the mixture of all `mixture` labelled
+    ways: by method; chosen: the classes hidden in the mixture of all `mixture` labeled
     clips; classes: (C,) of the confusion; k: how many of the nearest both look at;
-    unlabelled, alone: clips without a task, and those whose task no other recording carries
+    unlabeled, alone: clips without a task, and those whose task no other recording carries
     (they ask nothing, but stand in the mixture).
     """
 
@@ -81,7 +81,7 @@ class RetrievalEvaluation:
     classes: tuple[str, ...]
     k: int
     mixture: int
-    unlabelled: int
+    unlabeled: int
     alone: int
 
 
@@ -93,7 +93,7 @@ def judge_retrieval(
     classes: Sequence[str] | None = None,
     k: int = K,
     threshold: float = 0.0,
-    most_queries: int = MOST_QUERIES,
+    most_queries: int = MAX_QUERIES,
     progress: Progress | None = None,
 ) -> RetrievalEvaluation:
     """Clips that pass the filter ask for the others, by each method.
@@ -105,29 +105,29 @@ def judge_retrieval(
     """
     _check(k, threshold, most_queries)
     lib.index.catch_up(lib.store)
-    labelled = read_labelled(lib, wanted)
-    chosen = labelled.chosen(classes, HIDDEN_CLASSES)
-    queries = labelled.queries(most_queries)
+    labeled = read_labeled(lib, wanted)
+    chosen = labeled.chosen(classes, HIDDEN_CLASSES)
+    queries = labeled.queries(most_queries)
     suns = [method for method in methods if method in SUNS]
     settings = _settings(threshold) if suns else []
     step = _stepper(
         len(queries) * (len(methods) + len(suns) * len(settings))
-        + len(labelled.clips) * len(settings),
+        + len(labeled.clips) * len(settings),
         progress,
     )
 
     def judge(way: Way) -> Iterator[JudgedRanking]:
         for clip in queries:
-            yield labelled.judge(clip, way(clip), k)
+            yield labeled.judge(clip, way(clip), k)
             step()
 
     found = {method.value: list(judge(by_method(lib, method, wanted))) for method in methods}
     for q, eta in settings:
-        volumes = Volumes.of(lib, labelled.clips, q=q, threshold=eta, step=step)
+        volumes = Volumes.of(lib, labeled.clips, q=q, threshold=eta, step=step)
         for method in suns:
             told = f"{method.value} q={q}" + (f" eta={eta:g}" if eta else "")
             found[told] = list(judge(volumes.by(method)))
-    return _evaluation(labelled, chosen, k, found)
+    return _evaluation(labeled, chosen, k, found)
 
 
 def _check(k: int, threshold: float, most_queries: int) -> None:
@@ -156,13 +156,13 @@ def _stepper(total: int, progress: Progress | None) -> Callable[[], None]:
 
 
 def _evaluation(
-    labelled: LabelledClips,
+    labeled: LabeledClips,
     chosen: Sequence[str],
     k: int,
     found: Mapping[str, Sequence[JudgedRanking]],
 ) -> RetrievalEvaluation:
-    of_class = [labelled.classes.index(name) for name in chosen]
-    count = len(labelled.classes)
+    of_class = [labeled.classes.index(name) for name in chosen]
+    count = len(labeled.classes)
     return RetrievalEvaluation(
         ways=tuple(
             JudgedWay(
@@ -173,11 +173,11 @@ def _evaluation(
             for name, judged in found.items()
         ),
         chosen=tuple(chosen),
-        classes=labelled.classes,
+        classes=labeled.classes,
         k=k,
-        mixture=len(labelled.clips),
-        unlabelled=labelled.unlabelled,
-        alone=len(labelled.clips) - len(labelled.in_a_class),
+        mixture=len(labeled.clips),
+        unlabeled=labeled.unlabeled,
+        alone=len(labeled.clips) - len(labeled.in_a_class),
     )
 
 

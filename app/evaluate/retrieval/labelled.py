@@ -23,12 +23,12 @@ SHOWN_TASKS = 30
 
 
 @dataclass(frozen=True, slots=True)
-class LabelledClips:
+class LabeledClips:
     """The ready clips that carry a task.
 
     clips: (N,) by id; classes: (C,) tasks of which two recordings are there, so that one can
     ask for another, the largest first; code: by clip id, the number of its class, C where it
-    is of none; recording: by clip id, what files of one recording share; unlabelled: clips
+    is of none; recording: by clip id, what files of one recording share; unlabeled: clips
     without a task, of which nobody knows whether they would be right answers.
     """
 
@@ -36,7 +36,7 @@ class LabelledClips:
     classes: tuple[str, ...]
     code: dict[str, int]
     recording: dict[str, str]
-    unlabelled: int
+    unlabeled: int
 
     @property
     def in_a_class(self) -> tuple[ClipRecord, ...]:
@@ -76,19 +76,19 @@ class LabelledClips:
         return tuple(dict.fromkeys(names))
 
 
-def read_labelled(lib: Library, wanted: ClipFilter | None) -> LabelledClips:
+def read_labeled(lib: Library, wanted: ClipFilter | None) -> LabeledClips:
     """What there is to judge. Raises NotEnoughLabels unless two classes can be told apart."""
     with lib.store.read() as tx:
         ids = sorted(clip_listing.list_ids(tx, ready_only(wanted)))
-        return labelled_among(tuple(clips.get_many(tx, ids).values()))
+        return labeled_among(tuple(clips.get_many(tx, ids).values()))
 
 
-def labelled_among(ready: Sequence[ClipRecord]) -> LabelledClips:
+def labeled_among(ready: Sequence[ClipRecord]) -> LabeledClips:
     """Of these clips, those to judge. Raises NotEnoughLabels as above."""
-    labelled = tuple(clip for clip in ready if clip.task)
-    recording = {clip.id: recording_of_clip(clip) for clip in labelled}
-    takes = Counter(task for task, _ in {(clip.task, recording[clip.id]) for clip in labelled})
-    sizes = Counter(clip.task for clip in labelled if takes[clip.task] > 1)
+    labeled = tuple(clip for clip in ready if clip.task)
+    recording = {clip.id: recording_of_clip(clip) for clip in labeled}
+    takes = Counter(task for task, _ in {(clip.task, recording[clip.id]) for clip in labeled})
+    sizes = Counter(clip.task for clip in labeled if takes[clip.task] > 1)
     classes = tuple(sorted(filter(None, sizes), key=lambda task: (-sizes[task], task)))
     if not classes:
         raise NotEnoughLabels("No two ready clips carry the same task, so nothing can be judged.")
@@ -98,10 +98,10 @@ def labelled_among(ready: Sequence[ClipRecord]) -> LabelledClips:
             "Clips of a second task are needed."
         )
     codes = {task: number for number, task in enumerate(classes)}
-    return LabelledClips(
-        clips=labelled,
+    return LabeledClips(
+        clips=labeled,
         classes=classes,
-        code={clip.id: codes.get(clip.task or "", len(classes)) for clip in labelled},
+        code={clip.id: codes.get(clip.task or "", len(classes)) for clip in labeled},
         recording=recording,
-        unlabelled=len(ready) - len(labelled),
+        unlabeled=len(ready) - len(labeled),
     )

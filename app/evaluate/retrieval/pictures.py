@@ -20,7 +20,7 @@ SIDE_BY_SIDE = (Method.MSV_XCORR, Method.MSV_DTW, Method.FUSED)
 """Figure 8's two, and the default of searches."""
 ENOUGH_ITERATIONS = 5
 """So many suffice, says the paper."""
-SMALLEST_DRAWN = 1e-16
+MIN_DRAWN = 1e-16
 """Changes of lambda below are rounding."""
 
 
@@ -79,7 +79,7 @@ def convergence_figure(volumes: VolumeEvaluation, form: Format) -> bytes:
         marked=[ENOUGH_ITERATIONS],
     )
     changes = Panel(
-        _by_iteration(volumes, lambda one: np.maximum(one.changes, SMALLEST_DRAWN)),
+        _by_iteration(volumes, lambda one: np.maximum(one.changes, MIN_DRAWN)),
         title="change of λ / λ",
         x_label="iteration",
         marked=[ENOUGH_ITERATIONS],

@@ -9,7 +9,7 @@ import numpy as np
 
 from app.analysis.descriptors.motion_volume import compression_ratio
 from app.evaluate.retrieval.evaluation import HIDDEN_CLASSES
-from app.evaluate.retrieval.labelled import LabelledClips, read_labelled
+from app.evaluate.retrieval.labelled import LabeledClips, read_labeled
 from app.evaluate.retrieval.rankings import Volumes
 from app.numerics.tensors.rank1 import Rank1
 from app.search.example.distances import EPSILON, RHO
@@ -18,7 +18,7 @@ from app.store.clips import arrays
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
 
-MOST_OF_A_CLASS = 40
+MAX_PER_CLASS = 40
 """Clips of a class whose vectors are told and drawn; more would only cover one another."""
 AT_ONCE = 256
 """Clips whose arrays are measured at a time."""
@@ -42,7 +42,7 @@ class Compression:
 class VolumeEvaluation:
     """Rank-1 factors of clips of some classes, by class, and what is saved by them.
 
-    q, threshold: of the self-similarity matrices; factors: at most MOST_OF_A_CLASS a class.
+    q, threshold: of the self-similarity matrices; factors: at most MAX_PER_CLASS a class.
     """
 
     q: int
@@ -71,10 +71,10 @@ def judge_volumes(
     step: Callable[[], None] = lambda: None,
 ) -> VolumeEvaluation:
     """Of the classes told, or of the largest four. Raises NotEnoughLabels, BadField."""
-    labelled = read_labelled(lib, wanted)
+    labeled = read_labeled(lib, wanted)
     some = {
-        name: _some(labelled, name, MOST_OF_A_CLASS)
-        for name in labelled.chosen(classes, HIDDEN_CLASSES)
+        name: _some(labeled, name, MAX_PER_CLASS)
+        for name in labeled.chosen(classes, HIDDEN_CLASSES)
     }
     return VolumeEvaluation(
         q=q,
@@ -85,13 +85,13 @@ def judge_volumes(
             )
             for name, members in some.items()
         },
-        compression=_compression(lib, labelled.clips),
+        compression=_compression(lib, labeled.clips),
     )
 
 
-def _some(labelled: LabelledClips, name: str, most: int) -> list[ClipRecord]:
+def _some(labeled: LabeledClips, name: str, most: int) -> list[ClipRecord]:
     """Clips of a class, evenly spread over its clips by id where there are too many."""
-    members = [clip for clip in labelled.clips if clip.task == name]
+    members = [clip for clip in labeled.clips if clip.task == name]
     places = np.unique(np.linspace(0, len(members) - 1, min(most, len(members))).round())
     return [members[int(place)] for place in places]
 

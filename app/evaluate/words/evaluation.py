@@ -69,7 +69,7 @@ def judge_words(lib: Library, wanted: ClipFilter | None = None) -> WordEvaluatio
 def word_examples(
     lib: Library, queries: Sequence[str] | None = None, wanted: ClipFilter | None = None
 ) -> tuple[WordExample, ...]:
-    """Table 2: distance ratios in the canonical space of motions, fitted on all labelled clips.
+    """Table 2: distance ratios in the canonical space of motions, fitted on all labeled clips.
 
     queries: each of one or several words; by default the most frequent words.
     Raises BadField where no word of a query is carried, NotEnoughLabels.

@@ -23,13 +23,13 @@ from app.models.metric.learned_metric import Described, Factor, check_labels, fi
 from app.models.metric.pair_calibration import PairCalibration, calibrate_pairs
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
-MOST_CLIPS = 2000
-"""Larger libraries are judged on a random part of so many labelled clips."""
+MAX_CLIPS = 2000
+"""Larger libraries are judged on a random part of so many labeled clips."""
 
 NEAREST = 20
 """Precision is told among so many of the nearest, fewer where fewer are relevant."""
 
-MOST_PAIRS = 200_000
+MAX_PAIRS = 200_000
 """Pairs that a calibration sees."""
 
 TOLD_LABELS = 200
@@ -105,7 +105,7 @@ def calibration_error(
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """The labelled clips that are judged."""
+    """The labeled clips that are judged."""
 
     described: Described
     persons: list[str | None]
@@ -116,7 +116,7 @@ class _Part:
 
 def _judged_clips(labels: Labels) -> IntArray:
     known = np.array([i for i, label in enumerate(labels) if label])
-    return np.sort(np.random.RandomState(0).permutation(known)[:MOST_CLIPS])
+    return np.sort(np.random.RandomState(0).permutation(known)[:MAX_CLIPS])
 
 
 def _judge_round(
@@ -145,10 +145,10 @@ def _judge_round(
 
 
 def _pairs(judged: _Judged) -> tuple[FloatArray, BoolArray]:
-    """Distances (m,) and whether the labels are the same (m,), at most MOST_PAIRS, spread."""
+    """Distances (m,) and whether the labels are the same (m,), at most MAX_PAIRS, spread."""
     distances = np.concatenate([np.zeros(0), *judged.distances])
     same = np.concatenate([np.zeros(0, dtype=bool), *judged.same])
-    step = max(1, -(-len(distances) // MOST_PAIRS))
+    step = max(1, -(-len(distances) // MAX_PAIRS))
     return distances[::step], same[::step]
 
 

@@ -29,13 +29,13 @@ NEW_THRESHOLD = 0.05
 NAMED_THRESHOLD = 0.12
 """Of both, where something known is also to be named (Table 5)."""
 
-MOST_ROUNDS = 3
+MAX_ROUNDS = 3
 """Choices of the cycles; each is trained on once."""
 
-MOST_LEFT_OUT = 12
+MAX_LEFT_OUT = 12
 """Persons, or tasks, left out in turn in one round."""
 
-LEAST_LABELS = 2
+MIN_LABELS = 2
 """Persons and tasks that must be there, and that must remain where some are left out."""
 
 
@@ -71,7 +71,7 @@ def perera_tables(danced: DancedTasks, reading: Reading = Reading.LEAST) -> tupl
     """Tables 3, 4 and 5 of the paper in its order, as far as cycles allow.
 
     Table 3 takes segments of which there are two cycles, Tables 4 and 5 those with three, and
-    they leave out each person and each task in turn (MOST_LEFT_OUT at most).
+    they leave out each person and each task in turn (MAX_LEFT_OUT at most).
     Raises NotEnoughLabels without two persons and two tasks with two cycles each.
     """
     tables: dict[str, Row] = {}
@@ -98,7 +98,7 @@ def _sum(one: Row | None, other: Row) -> Row:
 def _known(danced: DancedTasks, reading: Reading) -> Iterator[Row]:
     """Table 3, a round for each choice of the training cycle."""
     use = _with_cycles(danced, 2)
-    if min(len(set(use.persons)), len(set(use.tasks))) < LEAST_LABELS:
+    if min(len(set(use.persons)), len(set(use.tasks))) < MIN_LABELS:
         raise NotEnoughLabels(
             "Perera's experiment needs two persons who do the same two tasks twice each: "
             "twice in one clip, or in two clips."
@@ -117,7 +117,7 @@ def _known(danced: DancedTasks, reading: Reading) -> Iterator[Row]:
 def _alien(danced: DancedTasks, reading: Reading) -> Iterator[Row]:
     """Tables 4 and 5, a round for each choice of the three cycles."""
     use = _with_cycles(danced, 3)
-    for first in range(MOST_ROUNDS):
+    for first in range(MAX_ROUNDS):
         train, again, probe = ((use.cycle == (first + k) % 3) for k in range(3))
         for person in _left_out(use.persons):
             stays = np.array([name != person for name in use.persons])
@@ -144,9 +144,9 @@ def _with_cycles(danced: DancedTasks, least: int) -> DancedTasks:
 def _left_out(labels: Sequence[str]) -> list[str]:
     """The labels left out in turn, spread over all; none where too few would remain."""
     names = sorted(set(labels))
-    if len(names) <= LEAST_LABELS:
+    if len(names) <= MIN_LABELS:
         return []
-    chosen = np.linspace(0, len(names) - 1, min(len(names), MOST_LEFT_OUT)).round()
+    chosen = np.linspace(0, len(names) - 1, min(len(names), MAX_LEFT_OUT)).round()
     return [names[int(i)] for i in np.unique(chosen)]
 
 

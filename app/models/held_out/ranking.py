@@ -43,7 +43,7 @@ def f_where_recall_is_precision(scores: FloatArray, is_relevant: BoolArray) -> f
 
 
 def top_k_rate(scores: FloatArray, labels: BoolArray, k: int) -> float:
-    """Share of the labelled rows of (N, V) of which a true label is among the k best."""
+    """Share of the labeled rows of (N, V) of which a true label is among the k best."""
     rows = np.flatnonzero(labels.any(axis=1))
     found = [labels[row, _best_first(scores[row])[:k]].any() for row in rows]
     return float(np.mean(found)) if found else 0.0

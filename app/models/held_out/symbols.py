@@ -22,12 +22,12 @@ from app.numerics.hmm.model import GaussianHMM
 from app.numerics.mds import classical_mds, metric_mds, place, stress
 from app.numerics.smacof import smacof
 
-MOST_SYMBOLS = 200
+MAX_SYMBOLS = 200
 """Scaled at once; of more, randomly picked ones."""
-MOST_DIMENSIONS = 15
+MAX_DIMENSIONS = 15
 COMPARED = 12
 DRAWS = 10
-LEAST_SYMBOLS = 5
+MIN_SYMBOLS = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,14 +64,14 @@ def symbol_figures(
 
     compared: symbols of which every pair is drawn by Monte Carlo, which is slow.
 
-    Raises NotEnoughLabels below LEAST_SYMBOLS symbols.
+    Raises NotEnoughLabels below MIN_SYMBOLS symbols.
     """
-    if len(symbols) < LEAST_SYMBOLS:
+    if len(symbols) < MIN_SYMBOLS:
         raise NotEnoughLabels(
-            f"A symbol space needs {LEAST_SYMBOLS} clips, there are {len(symbols)}."
+            f"A symbol space needs {MIN_SYMBOLS} clips, there are {len(symbols)}."
         )
     rng = np.random.RandomState(seed)
-    rows = np.sort(rng.permutation(len(symbols))[:MOST_SYMBOLS])
+    rows = np.sort(rng.permutation(len(symbols))[:MAX_SYMBOLS])
     chosen = [symbols[int(row)] for row in rows]
     distances = symbol_distances(chosen, chosen)
     fitting, placing = _placing_errors(distances, rng)
@@ -90,7 +90,7 @@ _Scaling = Callable[[FloatArray, int], FloatArray]
 
 
 def _errors(distances: FloatArray) -> tuple[SpaceErrors, ...]:
-    most = min(MOST_DIMENSIONS, len(distances) - 1)
+    most = min(MAX_DIMENSIONS, len(distances) - 1)
     pairs = len(distances) * (len(distances) - 1) / 2
     ways: tuple[_Scaling, ...] = (classical_mds, smacof, metric_mds)
     found = [
@@ -110,7 +110,7 @@ def _gamma(error: float, following: list[list[float]]) -> float | None:
 def _placing_errors(distances: FloatArray, rng: np.random.RandomState) -> tuple[float, float]:
     """Relative errors of distances among landmarks, and from other symbols to landmarks."""
     order = rng.permutation(len(distances))
-    landmarks = order[: max(len(landmark_rows(len(order))) // 2, LEAST_SYMBOLS - 1)]
+    landmarks = order[: max(len(landmark_rows(len(order))) // 2, MIN_SYMBOLS - 1)]
     others = np.setdiff1d(order, landmarks)
     among, across = distances[np.ix_(landmarks, landmarks)], distances[np.ix_(others, landmarks)]
     points = metric_mds(among, min(DIMENSIONS, len(landmarks) - 1))

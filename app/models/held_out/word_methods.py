@@ -1,4 +1,4 @@
-"""The methods that words are judged by, each fitted on some labelled clips, scoring others."""
+"""The methods that words are judged by, each fitted on some labeled clips, scoring others."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ PRIOR, DEFAULT, CCA_SCORE = "prior", "default", "cca-score"
 
 
 @dataclass(frozen=True, slots=True)
-class LabelledClips:
-    """Labelled clips: distances (N, N) of their symbols, statistics (N, p), labels (N, V),
+class LabeledClips:
+    """Labeled clips: distances (N, N) of their symbols, statistics (N, p), labels (N, V),
     groups (N), fold (N,); likelihoods (N, N) of each motion under each symbol, where known.
     """
 
@@ -40,7 +40,7 @@ class Scores:
     clips: Callable[[FloatArray], FloatArray]
 
 
-def score(clips: LabelledClips, training: IntArray, held: IntArray) -> dict[str, Scores]:
+def score(clips: LabeledClips, training: IntArray, held: IntArray) -> dict[str, Scores]:
     """Scores of the held-out rows by each method, fitted on the training rows.
 
     "cca" is the mode as it ranks, by angle, "cca-score" by the probabilities that it tells
@@ -76,7 +76,7 @@ def score(clips: LabelledClips, training: IntArray, held: IntArray) -> dict[str,
     return found
 
 
-def symbol_points(clips: LabelledClips, training: IntArray) -> FloatArray:
+def symbol_points(clips: LabeledClips, training: IntArray) -> FloatArray:
     """(N, d) where all clips lie in the symbol space of the training rows.
 
     As fit_symbol_space does, but from distances that are computed once for all folds.

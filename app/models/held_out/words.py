@@ -28,11 +28,11 @@ from app.models.held_out.word_methods import (
     CCA_SCORE,
     DEFAULT,
     PRIOR,
-    LabelledClips,
+    LabeledClips,
     score,
     symbol_points,
 )
-from app.models.words.correlated_space import LEAST_CLIPS, RIDGE, fit_correlated_space
+from app.models.words.correlated_space import MIN_CLIPS, RIDGE, fit_correlated_space
 from app.models.words.likeliest_symbols import likelihoods_of_symbols
 from app.models.words.symbol_space import symbol_distances
 from app.models.words.vocabulary import WordVocabulary
@@ -41,12 +41,12 @@ from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.hmm.model import GaussianHMM
 
 FOLDS = 5
-MOST_CLIPS = 1000
+MAX_CLIPS = 1000
 """Larger libraries are judged on a random part of so many clips."""
 
 RECALLS = np.linspace(0.0, 1.0, 21)
 
-LEAST_RECORDINGS = 5
+MIN_RECORDINGS = 5
 """That carry a word, for it to be judged by itself: about one a fold."""
 
 TOP_WORDS = 3
@@ -83,7 +83,7 @@ class Reliability:
 class JudgedWord:
     """Held-out figures of clips for one word; clips, recordings: that carry it.
 
-    too_rare: fewer recordings than LEAST_RECORDINGS, so that its figures are mostly chance;
+    too_rare: fewer recordings than MIN_RECORDINGS, so that its figures are mostly chance;
     they count in the figures over all words.
     """
 
@@ -154,7 +154,7 @@ def held_out_word_figures(
         likelihoods = likelihoods_of_symbols(
             own_symbols, distances, lambda row: channels(int(chosen[row]))
         )
-    clips = LabelledClips(
+    clips = LabeledClips(
         distances,
         np.asarray(statistics)[chosen],
         vocabulary.label_matrix(labels),
@@ -184,18 +184,18 @@ def held_out_word_figures(
 
 
 def _chosen(label_sets: Sequence[Sequence[str]], seed: int) -> IntArray:
-    """Rows of labelled clips, sorted; at most MOST_CLIPS."""
-    labelled = np.array([row for row, labels in enumerate(label_sets) if labels], dtype=np.int64)
-    return np.sort(np.random.RandomState(seed).permutation(labelled)[:MOST_CLIPS])
+    """Rows of labeled clips, sorted; at most MAX_CLIPS."""
+    labeled = np.array([row for row, labels in enumerate(label_sets) if labels], dtype=np.int64)
+    return np.sort(np.random.RandomState(seed).permutation(labeled)[:MAX_CLIPS])
 
 
-def _check_size(clips: LabelledClips, folds: int) -> None:
+def _check_size(clips: LabeledClips, folds: int) -> None:
     training = len(clips.fold) - int(np.bincount(clips.fold, minlength=1).max(initial=0))
-    if folds < 2 or training < LEAST_CLIPS:
+    if folds < 2 or training < MIN_CLIPS:
         raise NotEnoughLabels(f"{len(clips.fold)} labelled clips are too few to hold some out.")
 
 
-def _tables(clips: LabelledClips, parts: Sequence[tuple[IntArray, IntArray]]) -> dict[str, _Tables]:
+def _tables(clips: LabeledClips, parts: Sequence[tuple[IntArray, IntArray]]) -> dict[str, _Tables]:
     """By method; parts: rows to fit on and rows to score, which together are all."""
     count, vocabulary = clips.labels.shape
     tables: dict[str, _Tables] = {}
@@ -247,7 +247,7 @@ def _reliability(tables: dict[str, _Tables], method: str, labels: FloatArray) ->
 
 
 def _by_word(
-    singles: FloatArray, clips: LabelledClips, words: Sequence[str]
+    singles: FloatArray, clips: LabeledClips, words: Sequence[str]
 ) -> tuple[JudgedWord, ...]:
     """The most carried first; singles: (V, N)."""
     found = []
@@ -260,13 +260,13 @@ def _by_word(
             average_precision=average_precision(scores, carries),
             f=f_where_recall_is_precision(scores, carries),
             area_under_curve=area_under_curve(scores[carries], scores[~carries]),
-            too_rare=recordings < LEAST_RECORDINGS,
+            too_rare=recordings < MIN_RECORDINGS,
         )
         found.append(judged)
     return tuple(sorted(found, key=lambda one: (-one.clips, one.word)))
 
 
-def _correlations(clips: LabelledClips) -> dict[str, tuple[float, ...]]:
+def _correlations(clips: LabeledClips) -> dict[str, tuple[float, ...]]:
     points = symbol_points(clips, np.arange(len(clips.labels)))
     return {
         name: tuple(

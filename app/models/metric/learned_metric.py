@@ -4,7 +4,7 @@ Linear discriminants (app.numerics.discriminant) of three descriptors of a clip:
 vector, its motion sample (one gait cycle, or the whole) and its symbol statistics. Coordinates
 are brought to unit length, so that their Euclidean distance, 0 to 2, ranks as their cosine does.
 Directions that part none of the known labels keep a small weight: tasks that nobody has
-labelled yet must not fall together.
+labeled yet must not fall together.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ COORDINATES = 64
 UNPARTED = 0.05
 """Weight of a direction that parts no labels, as a variance beside that within a label."""
 
-LEAST_LABELS = 2
+MIN_LABELS = 2
 """Labels with at least two clips each that a metric needs."""
 
-MOST_CLIPS = 20_000
-"""Labelled clips that are fitted on, drawn by a fixed seed; more would hardly move it."""
+MAX_CLIPS = 20_000
+"""Labeled clips that are fitted on, drawn by a fixed seed; more would hardly move it."""
 
 _SMALLEST = 1e-9
 
@@ -97,14 +97,14 @@ class Described:
 
 @dataclass(frozen=True, slots=True)
 class MetricAxes:
-    """From descriptors to coordinates. centre: (d,) of `Described.beside`; axes: (d, k)."""
+    """From descriptors to coordinates. center: (d,) of `Described.beside`; axes: (d, k)."""
 
-    centre: FloatArray
+    center: FloatArray
     axes: FloatArray
 
     def project(self, described: Described) -> FloatArray:
-        """(n, k) coordinates, of unit length (0 where a clip is the very centre)."""
-        points = (described.beside() - self.centre) @ self.axes
+        """(n, k) coordinates, of unit length (0 where a clip is the very center)."""
+        points = (described.beside() - self.center) @ self.axes
         lengths = np.linalg.norm(points, axis=1, keepdims=True)
         return np.asarray(points / np.maximum(lengths, _SMALLEST))
 
@@ -119,7 +119,7 @@ class LearnedMetric:
     def to_arrays(self) -> tuple[dict[str, Any], dict[str, Any]]:
         """Arrays and JSON-able meta from which from_arrays makes the same record."""
         meta = {"level": self.calibration.level, "slope": self.calibration.slope}
-        arrays = {"centre": self.axes.centre, "axes": self.axes.axes.astype(np.float32)}
+        arrays = {"centre": self.axes.center, "axes": self.axes.axes.astype(np.float32)}
         return arrays, {"version": METRIC_VERSION, **meta}
 
     @classmethod
@@ -140,32 +140,32 @@ def fit_axes(described: Described, labels: Sequence[str | None], factor: Factor)
     known = _drawn([i for i, label in enumerate(labels) if label])
     part = described.part(known)
     rows = part.beside()
-    centre = rows.mean(axis=0)
-    rows -= centre
+    center = rows.mean(axis=0)
+    rows -= center
     scales = _scales(rows, part.widths(), factor)
     found = principal_axes(rows * scales, DIMENSIONS, centred=False)
     _, classes = np.unique([str(labels[i]) for i in known], return_inverse=True)
     parted = discriminants(found.project(rows * scales), classes, COORDINATES)
     strength = parted.between + UNPARTED
     weights = np.sqrt(strength / (1.0 + strength))
-    return MetricAxes(centre, scales[:, None] * (found.axes @ (parted.axes * weights)))
+    return MetricAxes(center, scales[:, None] * (found.axes @ (parted.axes * weights)))
 
 
 def check_labels(labels: Sequence[str | None], factor: Factor) -> None:
     """Raise NotEnoughLabels where no metric can be learned from `labels`."""
     counts = Counter(label for label in labels if label)
     several = sum(count > 1 for count in counts.values())
-    if several < LEAST_LABELS:
+    if several < MIN_LABELS:
         raise NotEnoughLabels(
-            f"It takes {LEAST_LABELS} {factor}s with two clips each to learn what tells "
+            f"It takes {MIN_LABELS} {factor}s with two clips each to learn what tells "
             f"{factor}s apart; {several} of {len(counts)} {factor}s have two."
         )
 
 
 def _drawn(known: list[int]) -> IntArray:
-    if len(known) <= MOST_CLIPS:
+    if len(known) <= MAX_CLIPS:
         return np.array(known)
-    return np.sort(np.random.RandomState(0).permutation(known)[:MOST_CLIPS])
+    return np.sort(np.random.RandomState(0).permutation(known)[:MAX_CLIPS])
 
 
 def _scales(centred: FloatArray, widths: tuple[int, ...], factor: Factor) -> FloatArray:

@@ -24,10 +24,10 @@ SCALES = np.geomspace(0.5, 100.0, 25)
 USUAL_FALSE_REJECTION = 0.02
 """Known clips refused where the library is too small to hold anything out as unknown."""
 
-LEAST_USUAL = 20
+MIN_USUAL = 20
 """Clips of both kinds that tell their median and spread."""
 
-LEAST_BELIEF = 1e-9
+MIN_BELIEF = 1e-9
 """Of being known: of what is surely new the labels still keep their order as candidates."""
 
 TAIL = 0.02
@@ -77,7 +77,7 @@ class Calibration:
 
     def beliefs(self, evidence: FloatArray, novelty: FloatArray) -> FloatArray:
         """(n, labels) belief in each label, 0..1, each row's sum = belief in being known."""
-        known = np.maximum(sigmoid((self.threshold - novelty) / self.scale), LEAST_BELIEF)
+        known = np.maximum(sigmoid((self.threshold - novelty) / self.scale), MIN_BELIEF)
         return np.asarray(softmax(evidence / self.temperature) * known[:, None])
 
     def at_false_acceptance(self, rate: float) -> Calibration:
@@ -123,15 +123,15 @@ def fit_calibration(
     seen: (n,) whether the same person at the same task was among the training clips; if not
     given, none was. A known clip that was not seen looks newer than the clips that will be asked
     about. So the threshold and the error rates come from the clips that were seen, where there
-    are LEAST_USUAL of them; else from `imagined`: (m,) novelties that further takes of the
+    are MIN_USUAL of them; else from `imagined`: (m,) novelties that further takes of the
     recorded cells would have.
     """
     known = truth != NEW
     new, around = novelty[~known], novelty[known]
     judged = novelty[known & seen] if seen is not None else novelty[:0]
-    if len(judged) < LEAST_USUAL and imagined is not None:
+    if len(judged) < MIN_USUAL and imagined is not None:
         judged = around = imagined
-    if min(len(judged), len(new)) >= LEAST_USUAL:
+    if min(len(judged), len(new)) >= MIN_USUAL:
         threshold = _alike(judged, new)
         if judged is not imagined:
             threshold = _in_the_gap(threshold, judged, new)

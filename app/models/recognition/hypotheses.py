@@ -32,10 +32,10 @@ SHRINKAGE = 0.1
 """Share of each covariance that is replaced by a sphere of the same volume of variance; within
 cells more where repeated takes are too few to tell its shape."""
 
-SMALLEST_VARIANCE = 1e-6
+MIN_VARIANCE = 1e-6
 """Floor of a mean variance, body lengths squared: identical takes must not divide by 0."""
 
-LEAST_FREEDOM = 5
+MIN_FREEDOM = 5
 """Repeated takes below which the covariance within cells is taken from elsewhere."""
 
 WITHIN_SHARE = 0.2
@@ -45,7 +45,7 @@ are not repeated: .18 in dataset 2, .19 in the demo, .24 in dataset 1."""
 SEED = 2009
 """Of imagined takes."""
 
-MOST_UNSEEN = 20_000
+MAX_UNSEEN = 20_000
 """Combinations never recorded; in a library with more they are left out."""
 
 
@@ -129,7 +129,7 @@ class _Group:
 
 
 def fit_hypotheses(points: FloatArray, cells: Cells) -> Hypotheses:
-    """All hypotheses that the labelled `points` (clips, d) in `cells` allow."""
+    """All hypotheses that the labeled `points` (clips, d) in `cells` allow."""
     means = cell_means(points, cells)
     total = shrunk(np.cov(means.T, bias=True).reshape(2 * [points.shape[1]]))
     unseen = _unseen(means, cells, total)
@@ -137,15 +137,15 @@ def fit_hypotheses(points: FloatArray, cells: Cells) -> Hypotheses:
     strangers = _like_others(means, cells, total)
     persons = _new_task(means, cells, total)
     nobody = np.array([-1])
-    centre = means.mean(axis=0, keepdims=True)
-    new = _Group(Kind.NEW_BOTH, centre, nobody, nobody, total, np.ones(1))
+    center = means.mean(axis=0, keepdims=True)
+    new = _Group(Kind.NEW_BOTH, center, nobody, nobody, total, np.ones(1))
     return _whitened([*seen, unseen, strangers, persons, new])
 
 
 def shrunk(covariance: FloatArray, share: float = SHRINKAGE) -> FloatArray:
-    """(d, d) pulled towards the sphere of its mean variance, so that it can be inverted."""
+    """(d, d) pulled toward the sphere of its mean variance, so that it can be inverted."""
     size = max(len(covariance), 1)
-    mean = max(float(np.trace(covariance)) / size, SMALLEST_VARIANCE)
+    mean = max(float(np.trace(covariance)) / size, MIN_VARIANCE)
     return (1 - share) * covariance + share * mean * np.eye(len(covariance))
 
 
@@ -160,7 +160,7 @@ def _seen(
     inside = np.flatnonzero(np.isin(cells.member, full))
     deviations = points[inside] - means[cells.member[inside]]
     freedom = len(deviations) - len(full)
-    if freedom < LEAST_FREEDOM:
+    if freedom < MIN_FREEDOM:
         scatter = Scatter.same(stand_in, cells)
     else:
         within = deviations.T @ deviations / freedom
@@ -177,7 +177,7 @@ def _seen(
 def _unseen(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
     effects = fit_effects(means, cells)
     person, task = np.nonzero(_missing(cells))
-    enough = len(effects.errors) >= LEAST_FREEDOM
+    enough = len(effects.errors) >= MIN_FREEDOM
     spread = _second_moment(effects.errors) if enough else stand_in
     predicted = effects.predict(person, task)
     return _Group(Kind.UNSEEN, predicted, person, task, spread, np.ones(len(person)))
@@ -188,7 +188,7 @@ def _missing(cells: Cells) -> BoolArray:
     missing = np.ones((len(cells.persons), len(cells.tasks)), dtype=bool)
     full = cells.full
     missing[cells.person[full], cells.task[full]] = False
-    return np.asarray(missing & (missing.sum() <= MOST_UNSEEN))
+    return np.asarray(missing & (missing.sum() <= MAX_UNSEEN))
 
 
 def _like_others(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
@@ -198,10 +198,10 @@ def _like_others(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Grou
     task = cells.task[has]
     counts = np.bincount(task, minlength=len(cells.tasks))
     pairs = int((counts * (counts - 1)).sum())
-    deviations = means[has] - _centres(means, cells.task, len(cells.tasks))[task]
+    deviations = means[has] - _centers(means, cells.task, len(cells.tasks))[task]
     # of n points, all n (n - 1) differences: their sum of squares is 2 n that about the mean
     errors = deviations * np.sqrt(2 * counts[task] / max(pairs, 1))[:, None]
-    enough = (counts[task] > 1).sum() >= LEAST_FREEDOM
+    enough = (counts[task] > 1).sum() >= MIN_FREEDOM
     covariance = shrunk(errors.T @ errors) if enough else stand_in
     nobody = np.full(len(has), -1)
     return _Group(Kind.NEW_PERSON, means[has], nobody, task, covariance, np.ones(len(has)))
@@ -212,21 +212,21 @@ def _new_task(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
     label, labels = cells.person, len(cells.persons)
     has = np.flatnonzero(label >= 0)
     counts = np.bincount(label[has], minlength=labels)
-    centres = _centres(means, label, labels)
+    centers = _centers(means, label, labels)
     several = has[counts[label[has]] > 1]
     others = counts[label[several]] - 1
-    errors = (means[several] - centres[label[several]]) * (1 + 1 / others)[:, None]
-    covariance = _second_moment(errors) if len(errors) >= LEAST_FREEDOM else stand_in
+    errors = (means[several] - centers[label[several]]) * (1 + 1 / others)[:, None]
+    covariance = _second_moment(errors) if len(errors) >= MIN_FREEDOM else stand_in
     index, nothing = np.arange(labels), np.full(labels, -1)
-    return _Group(Kind.NEW_TASK, centres, index, nothing, covariance, np.ones(labels))
+    return _Group(Kind.NEW_TASK, centers, index, nothing, covariance, np.ones(labels))
 
 
-def _centres(means: FloatArray, label: IntArray, labels: int) -> FloatArray:
+def _centers(means: FloatArray, label: IntArray, labels: int) -> FloatArray:
     """(labels, d) the mean of each label's cells."""
     has = np.flatnonzero(label >= 0)
-    centres = np.zeros((labels, means.shape[1]))
-    np.add.at(centres, label[has], means[has])
-    return np.asarray(centres / np.maximum(np.bincount(label[has], minlength=labels), 1)[:, None])
+    centers = np.zeros((labels, means.shape[1]))
+    np.add.at(centers, label[has], means[has])
+    return np.asarray(centers / np.maximum(np.bincount(label[has], minlength=labels), 1)[:, None])
 
 
 def _second_moment(errors: FloatArray) -> FloatArray:

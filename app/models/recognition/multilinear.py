@@ -30,11 +30,11 @@ MULTILINEAR_VERSION = 2
 DIMENSIONS = 100
 """Coordinates of the sample mode."""
 
-SMALLEST_SINGULAR = 0.005
+MIN_SINGULAR = 0.005
 """Relative cut-off of the pseudo-inverses of B_a and C_p: slices filled by completion are
 nearly of low rank, and inverting what is left would magnify noise."""
 
-MOST_CELLS = 20_000
+MAX_CELLS = 20_000
 """Persons x tasks; the tensor of a larger library would not fit a small machine."""
 
 RADIUS_SHARE = 95.0
@@ -135,14 +135,14 @@ def fit_multilinear(
     out. ranks: the numbers of columns to keep of the person and the action matrices; None keeps
     all. moments: the number of poses at the start of each sample, which are warped onto the mean
     of the clip's task; None leaves them as they are.
-    Raises NotEnoughLabels without two persons or two tasks, or with more than MOST_CELLS cells.
+    Raises NotEnoughLabels without two persons or two tasks, or with more than MAX_CELLS cells.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
     cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
     if min(len(cells.persons), len(cells.tasks)) < 2:
         raise NotEnoughLabels("The multilinear model needs two persons and two tasks.")
-    if len(cells.persons) * len(cells.tasks) > MOST_CELLS:
-        raise NotEnoughLabels(f"The multilinear model holds {MOST_CELLS} persons x tasks.")
+    if len(cells.persons) * len(cells.tasks) > MAX_CELLS:
+        raise NotEnoughLabels(f"The multilinear model holds {MAX_CELLS} persons x tasks.")
     chosen, task_means = np.asarray(samples)[use], None
     if moments is not None:
         chosen, task_means = _aligned(chosen, [tasks[i] for i in use], moments)
@@ -214,7 +214,7 @@ def recognize_multilinear(
 
 def _coordinates(basis: FloatArray, point: FloatArray) -> FloatArray:
     """The row c with c @ basis nearest to `point`: (R, d) and (d,) -> (R,)."""
-    return np.asarray(point @ np.linalg.pinv(basis, rcond=SMALLEST_SINGULAR))
+    return np.asarray(point @ np.linalg.pinv(basis, rcond=MIN_SINGULAR))
 
 
 def shares(distances: FloatArray) -> FloatArray:

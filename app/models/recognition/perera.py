@@ -1,6 +1,6 @@
 """Perera's recognition on a library (2009, section 5.3): method "perera".
 
-A clip's motion sample is probed against the task model of all labelled clips; the category with
+A clip's motion sample is probed against the task model of all labeled clips; the category with
 the least objective (eq. 14) is the best. Whether a category holds it is told by eqs 15-16: its
 objective beside F*_k, what clips of that category from another recording have. Where the paper
 sets thresholds by hand, the largest ratio that passes is chosen on clips, tasks and persons that

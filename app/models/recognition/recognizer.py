@@ -18,7 +18,7 @@ import numpy as np
 from app.analysis.descriptors.motion_sample import SAMPLE_LENGTH
 from app.errors import NotEnoughLabels
 from app.models.cells import find_cells
-from app.models.holding_out import MOST_PROBES, Held, rounds
+from app.models.holding_out import MAX_PROBES, Held, rounds
 from app.models.recognition.answers import Answer, Recognition, answer, given
 from app.models.recognition.calibration import NEW, Calibration, fit_calibration
 from app.models.recognition.hypotheses import fit_hypotheses
@@ -108,7 +108,7 @@ def fit_recognizer(
 
     samples: (clips, 1762), motion samples of `sample_length` (1250) each followed by the clip's
     wide motion vector; groups: (clips,) clips of one recording share a value and are held out
-    together. Raises NotEnoughLabels below two labelled clips.
+    together. Raises NotEnoughLabels below two labeled clips.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if any(labels)]
     if len(use) < 2:
@@ -216,7 +216,7 @@ def _calibrations(
     # Judged by clips of whom and what were recorded together, at the cost of strangers: unless a
     # gap parts new tasks from known ones, their walk is called unknown, with `walk` the best.
     sample, h = (view.hypotheses for view in views)
-    further = Seen(*(each.further_takes(IMAGINED, MOST_PROBES) for each in (sample, h)))
+    further = Seen(*(each.further_takes(IMAGINED, MAX_PROBES) for each in (sample, h)))
     imagined = Logs.under(sample, h, further, persons_by_both=persons_by_both)
     return (
         _calibrated(of_persons, len(names[0]), newness(imagined.new_person, h.person)),
@@ -233,7 +233,7 @@ def _held_out(
     names: tuple[str, ...],
     again: BoolArray,
 ) -> _HeldOut:
-    """What a round said of its labelled probes; labels not `seen` have no evidence."""
+    """What a round said of its labeled probes; labels not `seen` have no evidence."""
     has = np.array([bool(name) for name in truth], dtype=bool)
     if not seen or not has.any():
         return _nothing(len(names))

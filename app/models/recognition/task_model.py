@@ -21,7 +21,7 @@ import numpy as np
 
 from app.errors import NotEnoughLabels
 from app.models.cells import cell_means, find_cells
-from app.models.recognition.multilinear import MOST_CELLS, complete_tensor
+from app.models.recognition.multilinear import MAX_CELLS, complete_tensor
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.euclidean import squared_distances
@@ -42,7 +42,7 @@ LINKS: dict[JointRole, int] = {
 }
 """Links from the body's centre: the paper gives the waist one."""
 
-MOST_AXES = 200
+MAX_AXES = 200
 """Columns of S_position; the motions of a paper's library span fewer."""
 
 
@@ -139,11 +139,11 @@ def fit_task_model(
     cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
     if not len(cells):
         raise NotEnoughLabels("The task model needs motions with a person and a task.")
-    if len(cells.persons) * len(cells.tasks) > MOST_CELLS:
-        raise NotEnoughLabels(f"The task model holds {MOST_CELLS} persons x tasks.")
+    if len(cells.persons) * len(cells.tasks) > MAX_CELLS:
+        raise NotEnoughLabels(f"The task model holds {MAX_CELLS} persons x tasks.")
     flat = np.asarray(poses, dtype=np.float64)[use].reshape(len(use), -1)
     means = cell_means(flat, cells)
-    axes = principal_axes(means, MOST_AXES, centred=False)
+    axes = principal_axes(means, MAX_AXES, centred=False)
     tensor = np.moveaxis(complete_tensor(axes.project(means), cells), 2, 0)
     svd = nmode_svd(tensor, ranks)
     recorded = svd.reconstruct()[:, cells.person, cells.task].T @ axes.axes.T

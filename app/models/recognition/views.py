@@ -22,7 +22,7 @@ from app.numerics.principal_axes import PrincipalAxes
 SAMPLE_DIMENSIONS = 80
 """PCA coordinates of motion samples."""
 
-LEAST_WIDE, MOST_WIDE = 20, 60
+MIN_WIDTH, MAX_WIDTH = 20, 60
 """PCA coordinates of wide motion vectors."""
 
 FREEDOM = 50.0
@@ -39,7 +39,7 @@ def wide_dimensions(cells: int) -> int:
     they can tell of, what is new looked known (of libraries of 35 cells drawn from dataset 2,
     in 60 coordinates .79 of new tasks were told, in 20 .97).
     """
-    return min(max(cells // 2, LEAST_WIDE), MOST_WIDE)
+    return min(max(cells // 2, MIN_WIDTH), MAX_WIDTH)
 
 
 def full_samples(samples: FloatArray, wide: FloatArray) -> FloatArray:

@@ -2,11 +2,11 @@
 
 One covariance for all cells takes every walk for like and half of the waves for strange: takes
 of a wave differ in when the hand goes, of a walk hardly at all. So each task has its own, pulled
-towards the pooled one: its size soon, since all d numbers of a take tell of it, its shape later.
+toward the pooled one: its size soon, since all d numbers of a take tell of it, its shape later.
 A person may besides be more even than others, at whatever they do: a factor.
 
 Shapes: deviations (n, d), of n takes from the means of their cells, in the coordinates of one
-view. Covariances of classes drawn towards the pooled one are regularised discriminant analysis
+view. Covariances of classes drawn toward the pooled one are regularised discriminant analysis
 (Friedman 1989); size and shape apart, and the factor of persons, are our own.
 """
 
@@ -25,7 +25,7 @@ PRIOR_OF_SIZE = 5.0
 PRIOR_OF_SHAPE = 10.0
 """Repeated takes that the pooled shape of a covariance counts as."""
 
-MOST_FORMS = 256
+MAX_FORMS = 256
 """Tasks with a covariance of their own, those of most repeated takes; the rest have the pooled
 shape (7 MB of whitening in 60 dimensions)."""
 
@@ -65,7 +65,7 @@ def scatter_within(
         for label, names in ((task, cells.tasks), (person, cells.persons))
     )
     freedom = np.bincount(task, weight, minlength=len(cells.tasks))
-    own = np.argsort(-freedom, kind="stable")[:MOST_FORMS]
+    own = np.argsort(-freedom, kind="stable")[:MAX_FORMS]
     own = np.sort(own[freedom[own] > 0])
     shapes = [_shape(white[task == each], float(freedom[each])) for each in own]
     form = np.full(len(cells.tasks) + 1, len(own))
@@ -76,7 +76,7 @@ def scatter_within(
 
 
 def _sizes(squares: FloatArray, weight: FloatArray, label: IntArray, labels: int) -> FloatArray:
-    """(labels,) mean square of each label's takes, 1 being usual, pulled towards 1."""
+    """(labels,) mean square of each label's takes, 1 being usual, pulled toward 1."""
     total = np.bincount(label, squares, minlength=labels)
     return np.asarray(
         (PRIOR_OF_SIZE + total) / (PRIOR_OF_SIZE + np.bincount(label, weight, minlength=labels))

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from app.models.synthesis.feet import LOWEST_QUANTILE, feet_of, floor_of, on_the_floor, sole_depths
+from app.models.synthesis.feet import MIN_QUANTILE, feet_of, floor_of, on_the_floor, sole_depths
 from app.models.synthesis.motion import Course
 from app.motion.frame.body_frame import ANALYSIS_RATE, BodyTrack, turned
 from app.motion.frame.foot_contact import FEET, planted
@@ -26,11 +26,11 @@ from app.motion.skeleton.rotations import conjugate, identity_quaternions, multi
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.euclidean import squared_distances
 
-NEIGHBOURS = 12
+MAX_NEIGHBORS = 12
 """Moments of the person's that a pose starts from."""
 
 SMOOTHING = 1.5
-"""Frames (standard deviation): neighbours change from one frame to the next."""
+"""Frames (standard deviation): neighbors change from one frame to the next."""
 
 _HIPS = SUN_ROLES.index(JointRole.HIPS)
 
@@ -72,7 +72,7 @@ def embody(course: Course, donors: Sequence[Donor]) -> Animation:
         if soles:
             deep = sole_depths(soles, [donor.animation.positions() for donor in donors])
             return on_the_floor(_lowered(posed, floor_of(reached, soles, deep)), soles)
-    return _lowered(posed, float(np.quantile(reached[:, :, 1].min(axis=1), LOWEST_QUANTILE)))
+    return _lowered(posed, float(np.quantile(reached[:, :, 1].min(axis=1), MIN_QUANTILE)))
 
 
 def _lowered(posed: Animation, floor: float) -> Animation:
@@ -84,7 +84,7 @@ def _lowered(posed: Animation, floor: float) -> Animation:
 def _start(course: Course, donors: Sequence[Donor]) -> Animation:
     """Kernel means of the donors' turns at the moments most like those of the course."""
     local = np.concatenate([donor.track.local for donor in donors])
-    turns = np.concatenate([_towards_heading(donor) for donor in donors])
+    turns = np.concatenate([_toward_heading(donor) for donor in donors])
     places = np.concatenate([donor.animation.translations for donor in donors])
     near, weights = _alike(_poses(course), local)
     rotations = _mean_turns(turns[near], weights)
@@ -115,7 +115,7 @@ def _alike(poses: FloatArray, others: FloatArray) -> tuple[IntArray, FloatArray]
     rows = rows * (np.linalg.norm(table) / len(table) ** 0.5)
     rows /= max(np.linalg.norm(poses) / len(poses) ** 0.5, 1e-9)
     squares = squared_distances(rows, table)
-    count = min(NEIGHBOURS, len(table))
+    count = min(MAX_NEIGHBORS, len(table))
     near = np.argsort(squares, axis=1, kind="stable")[:, :count]
     away = np.take_along_axis(squares, near, axis=1)
     weights = np.exp(-0.5 * away / np.maximum(away.mean(axis=1, keepdims=True), 1e-9))
@@ -133,7 +133,7 @@ def _mean_turns(turns: FloatArray, weights: FloatArray) -> FloatArray:
     return np.asarray(smooth / np.maximum(np.linalg.norm(smooth, axis=-1, keepdims=True), 1e-9))
 
 
-def _towards_heading(donor: Donor) -> FloatArray:
+def _toward_heading(donor: Donor) -> FloatArray:
     """(n, joints, 4) the donor's turns, those of the hips seen from the body's heading."""
     rotations = np.array(donor.animation.rotations, dtype=np.float64)
     hips = donor.joints[JointRole.HIPS]

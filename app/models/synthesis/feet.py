@@ -23,13 +23,13 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 GIVING = 0.03
-"""Metres by which an ankle may miss a foot's length to where its tip stands: farther or nearer,
+"""Meters by which an ankle may miss a foot's length to where its tip stands: farther or nearer,
 the tip leaves the floor."""
 
 RELEASE = 2.0
 """Frames (standard deviation) over which a tip is let go, and comes to stand."""
 
-LOWEST_QUANTILE = 0.01
+MIN_QUANTILE = 0.01
 """Hands, knees and all else but feet go under the floor in this share of frames at most."""
 
 
@@ -57,7 +57,7 @@ def feet_of(skeleton: Skeleton, ankles: Sequence[int]) -> list[Foot]:
 
 
 def sole_depths(feet: Sequence[Foot], clips: Sequence[FloatArray]) -> FloatArray:
-    """(feet,) metres from each ankle down to the lowest joint of its foot where it stands, the
+    """(feet,) meters from each ankle down to the lowest joint of its foot where it stands, the
     median of real clips, positions (n, joints, 3) each."""
     deep = [
         [_level(clip[:, foot.ankle, 1]) - _level(_lowest(clip, foot)) for foot in feet]
@@ -67,13 +67,13 @@ def sole_depths(feet: Sequence[Foot], clips: Sequence[FloatArray]) -> FloatArray
 
 
 def floor_of(positions: FloatArray, feet: Sequence[Foot], depths: FloatArray) -> float:
-    """Y of the floor, metres: under the foot that stands lowest, if nothing else is lower."""
+    """Y of the floor, meters: under the foot that stands lowest, if nothing else is lower."""
     stands = [
         _level(positions[:, foot.ankle, 1]) - deep for foot, deep in zip(feet, depths, strict=True)
     ]
     of_feet = [joint for foot in feet for joint in foot.below]
     others = np.delete(positions[:, :, 1], of_feet, axis=1).min(axis=1)
-    return float(min(*stands, np.quantile(others, LOWEST_QUANTILE)))
+    return float(min(*stands, np.quantile(others, MIN_QUANTILE)))
 
 
 def on_the_floor(animation: Animation, feet: Sequence[Foot]) -> Animation:

@@ -32,7 +32,7 @@ SYNTHESIS_VERSION = 2
 DIMENSIONS = 64
 """Coordinates in which real clips are compared with what was made."""
 
-MOST_CELLS = 20_000
+MAX_CELLS = 20_000
 """Cells that are kept: some 220 MB."""
 
 
@@ -248,8 +248,8 @@ def _check(cells: Cells) -> None:
         raise NotEnoughLabels("Synthesis needs clips of two persons and of two tasks.")
     if np.bincount(cells.task).max() < 2:
         raise NotEnoughLabels("Synthesis needs a task that two persons did.")
-    if len(cells) > MOST_CELLS:
-        raise NotEnoughLabels(f"Synthesis holds {MOST_CELLS} combinations of person and task.")
+    if len(cells) > MAX_CELLS:
+        raise NotEnoughLabels(f"Synthesis holds {MAX_CELLS} combinations of person and task.")
 
 
 def _of_one_kind(rows: FloatArray, cells: Cells) -> IntArray:

@@ -34,12 +34,12 @@ TIME_SMOOTHING = 2.0
 """Of 32 moments: a take is not hurried more suddenly. Unsmoothed, made motions of the bench jerk
 by a quarter more, and are hit no more often."""
 
-SHORTEST_SECONDS = 0.2
+MIN_SECONDS = 0.2
 
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """A body at ANALYSIS_RATE: positions (n, 13, 3) metres, Y up, in SUN_ROLES order, and its
+    """A body at ANALYSIS_RATE: positions (n, 13, 3) meters, Y up, in SUN_ROLES order, and its
     heading (n,) radians about Y; cycles: how often it goes round, 0 where it does not."""
 
     positions: FloatArray
@@ -55,7 +55,7 @@ def course_of(
     take: FloatArray | None = None,
     take_shape: FloatArray | None = None,
 ) -> Course:
-    """The motion of a shape (1378,) by a body of `body_length` metres.
+    """The motion of a shape (1378,) by a body of `body_length` meters.
 
     seconds: wished for; a cycle is repeated to about that long, anything else is stretched to
     it; by default as long as the shape says. take: (n, 43) moments of a real take that is not
@@ -83,7 +83,7 @@ def _repeated(shape: FloatArray, told: Shape, seconds: float | None) -> tuple[Fl
 def _stretched(
     shape: FloatArray, seconds: float, take: FloatArray | None, take_shape: FloatArray | None
 ) -> FloatArray:
-    frames = max(round(max(seconds, SHORTEST_SECONDS) * ANALYSIS_RATE), 2)
+    frames = max(round(max(seconds, MIN_SECONDS) * ANALYSIS_RATE), 2)
     wanted = _moments(shape)
     if take is None or take_shape is None:
         return resample_to(wanted, frames)

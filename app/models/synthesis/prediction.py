@@ -25,10 +25,10 @@ from app.models.synthesis.tensor import (
 from app.models.synthesis.timing import Timed, in_own_time
 from app.numerics.arrays import FloatArray
 
-MOST_TASKS = 24
+MAX_TASKS = 24
 """Tasks of which one is made: the most alike; more only cost time."""
 
-MOST_PERSONS = 64
+MAX_PERSONS = 64
 """Persons of whose motions one is made: those who did most of the same tasks."""
 
 TEMPO_SLACK = 0.15
@@ -119,21 +119,21 @@ def _off_the_floor(shape: FloatArray, wanted: FloatArray) -> FloatArray:
 
 def _most_alike(record: Synthesis, told: Mapping[str, FloatArray], task: str) -> list[str]:
     """The told tasks that are most like the wanted one, themselves or mirrored."""
-    if len(told) <= MOST_TASKS:
+    if len(told) <= MAX_TASKS:
         return list(told)
     scale, aim = weights(), record.reference(task)
     means = np.stack([record.reference(name) for name in told])
     away = [np.linalg.norm((rows - aim) * scale, axis=1) for rows in (means, mirrored(means))]
-    near = np.argsort(np.min(away, axis=0), kind="stable")[:MOST_TASKS]
+    near = np.argsort(np.min(away, axis=0), kind="stable")[:MAX_TASKS]
     names = list(told)
     return [names[i] for i in np.sort(near)]
 
 
 def _who_shares_most(record: Synthesis, persons: list[str], tasks: list[str]) -> list[str]:
     """The persons who did most of these tasks: of them there is least to be completed."""
-    if len(persons) <= MOST_PERSONS:
+    if len(persons) <= MAX_PERSONS:
         return persons
     wanted = np.isin(record.task, [record.tasks.index(name) for name in tasks])
     shared = np.bincount(record.person[wanted], minlength=len(record.persons))
     count = [shared[record.persons.index(name)] for name in persons]
-    return [persons[i] for i in np.sort(np.argsort(-np.array(count), kind="stable")[:MOST_PERSONS])]
+    return [persons[i] for i in np.sort(np.argsort(-np.array(count), kind="stable")[:MAX_PERSONS])]

@@ -22,7 +22,7 @@ LEFT_OF_SCATTER = 0.8
 On all tasks of real clips but a dance 1.00 were left; of the demo's kicks .45, of waves .23."""
 
 ROUNDS = 4
-"""Of changing sides towards the mean; few takes change after the first."""
+"""Of changing sides toward the mean; few takes change after the first."""
 
 
 def sides(shapes: FloatArray) -> IntArray:

@@ -8,7 +8,7 @@ nearer to what was left out:
 - what w leaves over of the others' motions is carried over as their mean ("residual");
 - how the asked person moves otherwise than the others is carried over as far as the tasks'
   movements tell of each other: a kick's does not belong into a bow, how one stands in both does;
-- the parts of the body have weights of their own, drawn towards those of the whole;
+- the parts of the body have weights of their own, drawn toward those of the whole;
 - a mirrored task is a task: raising the left hand tells how one raises the right.
 Where the others do not agree on the task no weights make it of other tasks: one of the others is
 followed, and only the asked person's posture carried over.
@@ -26,10 +26,10 @@ from app.models.synthesis.basis import parts, weights
 from app.numerics.arrays import FloatArray
 
 WHOLE_RIDGE = 0.01
-"""Pull of the weights of the whole towards the mean of the tasks, in mean squares of a task."""
+"""Pull of the weights of the whole toward the mean of the tasks, in mean squares of a task."""
 
 PART_RIDGE = 0.02
-"""Pull of a part's weights towards those of the whole, likewise."""
+"""Pull of a part's weights toward those of the whole, likewise."""
 
 EXPLAINED = 0.5
 """Share of a task's movement that must come of the other tasks for a person's own way of moving
@@ -106,7 +106,7 @@ def _normal(basis: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArr
 
 
 def _ridge(gram: FloatArray, aim: FloatArray, prior: FloatArray, ridge: float) -> FloatArray:
-    """(2T,) weights nearest to the aim, drawn towards `prior`."""
+    """(2T,) weights nearest to the aim, drawn toward `prior`."""
     size = len(gram)
     pull = ridge * float(np.trace(gram)) / size + 1e-12
     return np.asarray(prior + np.linalg.solve(gram + pull * np.eye(size), aim - gram @ prior))

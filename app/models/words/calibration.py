@@ -20,12 +20,12 @@ from app.numerics.arrays import FloatArray
 from app.numerics.isotonic import rising_means
 
 FOLDS = 5
-MOST_CLIPS = 2000
+MAX_CLIPS = 2000
 """Clips on which the calibration is learned: more do not change the curve."""
 SMOOTHING = 1e-3
 """Share of a logistic curve in the calibration: where no held-out output lay, and below those
 that were ever right, more is still likelier than less."""
-MOST_SETS = 300
+MAX_SETS = 300
 _DEPENDENCES = np.linspace(0.0, 1.0, 21)
 
 
@@ -86,7 +86,7 @@ def calibrate(
     model: fitted on all; its kernel's width and penalty serve the folds. statistics: (n, p);
     labels: (n, V); groups: n, whose members are never parted. Deterministic for a seed.
     """
-    chosen = np.sort(np.random.RandomState(seed).permutation(len(statistics))[:MOST_CLIPS])
+    chosen = np.sort(np.random.RandomState(seed).permutation(len(statistics))[:MAX_CLIPS])
     rows, truth = np.asarray(statistics)[chosen], labels[chosen]
     own = [groups[row] for row in chosen]
     folds = min(FOLDS, len(set(own)))
@@ -109,7 +109,7 @@ def _dependence(probabilities: FloatArray, labels: FloatArray, seed: int) -> flo
     sets = np.unique(labels[labels.sum(axis=1) > 1.0], axis=0)
     if not len(sets):
         return 1.0
-    sets = sets[np.random.RandomState(seed).permutation(len(sets))[:MOST_SETS]]
+    sets = sets[np.random.RandomState(seed).permutation(len(sets))[:MAX_SETS]]
     losses = np.zeros(len(_DEPENDENCES))
     for wanted in sets > 0.0:
         is_so = labels[:, wanted].all(axis=1)

@@ -26,8 +26,8 @@ CORRELATED_SPACE_VERSION = 1
 RIDGE = 0.1
 """Share of the mean variance added to each side's covariance in CCA, C and D."""
 
-LEAST_CLIPS = 3
-"""Labelled clips below which there is nothing to correlate."""
+MIN_CLIPS = 3
+"""Labeled clips below which there is nothing to correlate."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,14 +108,14 @@ class CorrelatedSpace:
 def fit_correlated_space(
     points: FloatArray, labels: FloatArray, *, ridge: float = RIDGE
 ) -> CorrelatedSpace:
-    """Fit on symbol coordinates (n, d) and label vectors (n, V) of the labelled clips.
+    """Fit on symbol coordinates (n, d) and label vectors (n, V) of the labeled clips.
 
     ridge: 0 for the pseudo-inverse, as printed: then the covariance of g is the identity, and
     C is the diagonal of canonical correlations (eq. 16).
-    Raises NotEnoughLabels below LEAST_CLIPS clips or without words.
+    Raises NotEnoughLabels below MIN_CLIPS clips or without words.
     """
-    if len(points) < LEAST_CLIPS or labels.shape[1] == 0:
-        raise NotEnoughLabels(f"{len(points)} clips have words; {LEAST_CLIPS} are needed.")
+    if len(points) < MIN_CLIPS or labels.shape[1] == 0:
+        raise NotEnoughLabels(f"{len(points)} clips have words; {MIN_CLIPS} are needed.")
     pair = fit_cca(points, labels, ridge=ridge)
     motions = (points - pair.x_mean) @ pair.a
     words = (labels - pair.y_mean) @ pair.b

@@ -19,11 +19,11 @@ import numpy as np
 import scipy
 
 from app.models.folds import grouped_folds
-from app.models.words.correlated_space import LEAST_CLIPS, CorrelatedSpace, fit_correlated_space
+from app.models.words.correlated_space import MIN_CLIPS, CorrelatedSpace, fit_correlated_space
 from app.numerics.arrays import FloatArray
 
 FOLDS = 5
-MOST_CLIPS = 2000
+MAX_CLIPS = 2000
 """Clips on which the curve is learned: more do not change three numbers."""
 
 LEVELS, SLOPES, WEIGHTS = (-10.0, 10.0), (0.5, 50.0), (0.0, 2.0)
@@ -89,13 +89,13 @@ def calibrate_cosines(
     parted. Deterministic for a seed.
     """
     shares = (labels.sum(axis=0) + 0.5) / (len(labels) + 1.0)
-    chosen = np.sort(np.random.RandomState(seed).permutation(len(points))[:MOST_CLIPS])
+    chosen = np.sort(np.random.RandomState(seed).permutation(len(points))[:MAX_CLIPS])
     rows, truth, own = points[chosen], labels[chosen], [groups[row] for row in chosen]
     folds = min(FOLDS, len(set(own)))
     if folds < 2:
         return CosineCalibration(shares, *START)
     fold = grouped_folds(own, folds, seed=seed)
-    if np.bincount(fold).max() > len(rows) - LEAST_CLIPS:
+    if np.bincount(fold).max() > len(rows) - MIN_CLIPS:
         return CosineCalibration(shares, *START)
     cosines = np.zeros(truth.shape)
     for one in range(folds):

@@ -1,7 +1,7 @@
 """All that a library has learned about words, as one record that is fitted and swapped whole.
 
 Holds the vocabulary, the default word model, and for the mode `cca` the symbol space and
-the correlated space, which need LEAST_CLIPS labelled clips. Shapes: clips N, words V.
+the correlated space, which need MIN_CLIPS labeled clips. Shapes: clips N, words V.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from app.errors import NotEnoughLabels
 from app.models.words.calibration import WordCalibration, calibrate
-from app.models.words.correlated_space import LEAST_CLIPS, CorrelatedSpace, fit_correlated_space
+from app.models.words.correlated_space import MIN_CLIPS, CorrelatedSpace, fit_correlated_space
 from app.models.words.cosine_calibration import CosineCalibration, calibrate_cosines
 from app.models.words.language.wordnet import Meanings
 from app.models.words.model import WordModel, fit_word_model
@@ -97,7 +97,7 @@ class LibraryWords:
 
     def _correlated(self) -> tuple[CorrelatedSpace, CosineCalibration, CosineCalibration]:
         if self.correlated is None or self.cosines is None or self.back_cosines is None:
-            raise NotEnoughLabels(f"The mode cca needs {LEAST_CLIPS} clips that have words.")
+            raise NotEnoughLabels(f"The mode cca needs {MIN_CLIPS} clips that have words.")
         return self.correlated, self.cosines, self.back_cosines
 
     def to_arrays(self) -> tuple[Arrays, dict[str, Any]]:
@@ -162,7 +162,7 @@ def fit_library_words(
     *,
     seed: int = 0,
 ) -> FittedWords:
-    """Fit on all clips: symbols N, statistics (N, p), label sets N (empty: not labelled).
+    """Fit on all clips: symbols N, statistics (N, p), label sets N (empty: not labeled).
 
     groups: N, equal for files of one recording, that scores are not calibrated on copies.
 
@@ -170,16 +170,16 @@ def fit_library_words(
     """
     vocabulary = WordVocabulary.of(label_sets)
     labels = vocabulary.label_matrix(label_sets)
-    labelled = np.flatnonzero(labels.any(axis=1))
-    rows, truth = np.asarray(statistics)[labelled], labels[labelled]
+    labeled = np.flatnonzero(labels.any(axis=1))
+    rows, truth = np.asarray(statistics)[labeled], labels[labeled]
     model = fit_word_model(rows, truth, seed=seed)
-    own = [str(row) if groups is None else groups[row] for row in labelled]
+    own = [str(row) if groups is None else groups[row] for row in labeled]
     calibration = calibrate(model, rows, truth, own, seed=seed)
     space = fit_symbol_space(symbols, seed=seed)
     points = space.place(symbols)
     correlated, cosines, back = None, None, None
-    if len(labelled) >= LEAST_CLIPS:
-        there = points[labelled]
+    if len(labeled) >= MIN_CLIPS:
+        there = points[labeled]
         correlated = fit_correlated_space(there, truth)
         cosines = calibrate_cosines(there, truth, own, seed=seed)
         back = calibrate_cosines(there, truth, own, CorrelatedSpace.word_cosines, seed=seed)

@@ -19,7 +19,7 @@ from app.numerics.kernel_ridge import KernelRidge, fit_kernel_ridge, refit_kerne
 
 WORD_MODEL_VERSION = 1
 
-MOST_DEVIATIONS = 10.0
+MAX_DEVIATIONS = 10.0
 """Standardised statistics saturate here: one broken clip must not stretch the kernel."""
 
 
@@ -69,7 +69,7 @@ class WordModel:
 
 
 def fit_word_model(statistics: FloatArray, labels: FloatArray, *, seed: int = 0) -> WordModel:
-    """Fit on `statistics` (n, p) and label vectors (n, V) of the labelled clips.
+    """Fit on `statistics` (n, p) and label vectors (n, V) of the labeled clips.
 
     Raises NotEnoughLabels where there is no clip or no word.
     """
@@ -92,9 +92,9 @@ def refit_word_model(
 
 
 def standardise(statistics: FloatArray, mean: FloatArray, scale: FloatArray) -> FloatArray:
-    """(N, p) `statistics` about `mean` in units of `scale`, limited to MOST_DEVIATIONS."""
+    """(N, p) `statistics` about `mean` in units of `scale`, limited to MAX_DEVIATIONS."""
     deviations = (np.asarray(statistics, dtype=np.float64) - mean) / scale
-    return np.clip(deviations, -MOST_DEVIATIONS, MOST_DEVIATIONS)
+    return np.clip(deviations, -MAX_DEVIATIONS, MAX_DEVIATIONS)
 
 
 def clip_cosines(predicted: FloatArray, query: FloatArray) -> FloatArray:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from app.models.words.language.meaning import neighbours
+from app.models.words.language.meaning import neighbors
 from app.models.words.language.sentence import read_query
 from app.models.words.vocabulary import WordVocabulary
 
@@ -36,7 +36,7 @@ def understand(
 ) -> WordsAsked:
     """What `texts` (words, phrases, sentences) ask of a library with this vocabulary.
 
-    related: neighbours in meaning that WordNet knows (models.language.wordnet), may be empty.
+    related: neighbors in meaning that WordNet knows (models.language.wordnet), may be empty.
     """
     asked = read_query(texts, lambda word: vocabulary.find(word) is not None)
     weights: dict[str, float] = {}
@@ -67,4 +67,4 @@ def _meant(
     found = vocabulary.find(word)
     if found is not None:
         return {found: 1.0}
-    return {near.word: near.likeness for near in neighbours(word, vocabulary.words, related)}
+    return {near.word: near.likeness for near in neighbors(word, vocabulary.words, related)}

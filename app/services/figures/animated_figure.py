@@ -5,7 +5,7 @@ as a file. A viewer that knows no SMIL shows the first frame. Several figures st
 side, in one time, seen from one side and in one scale, as in Perera 2009, fig. 12.
 
 The side is the one from which most is seen to move. Who stays in place is seen by a camera
-that stands still; who goes far is followed, and the marks on the floor, half a metre apart,
+that stands still; who goes far is followed, and the marks on the floor, half a meter apart,
 pass by. The bar below fills as time goes.
 """
 
@@ -19,15 +19,15 @@ import numpy as np
 from app.motion.skeleton.resampling import resample
 from app.numerics.arrays import FloatArray
 from app.services.figures.camera import HEIGHT, MARGIN, WIDTH, Camera, Figure, camera_for
-from app.services.figures.stick_figure import GROUND, LEFT, PAPER, RIGHT, TRUNK, colour, limbs, text
+from app.services.figures.stick_figure import GROUND, LEFT, PAPER, RIGHT, TRUNK, color, limbs, text
 
 RATE = 15.0
 """Frames a second; browsers draw straight lines in time between them."""
-MOST_FRAMES = 1200
+MAX_FRAMES = 1200
 """Of one picture; longer motions have fewer frames a second."""
 MARKS_APART = 0.5
-"""Metres."""
-MOST_MARKS = 400
+"""Meters."""
+MAX_MARKS = 400
 HEAD = "head"
 BAR = 4
 """Pixels."""
@@ -40,7 +40,7 @@ def animated_svg(figures: Sequence[Figure], rate: float, title: str) -> str:
     """
     if not figures or not all(len(figure.positions) for figure in figures):
         raise ValueError("nothing can be animated without a frame")
-    shown = min(rate, RATE, MOST_FRAMES * rate / len(figures[0].positions))
+    shown = min(rate, RATE, MAX_FRAMES * rate / len(figures[0].positions))
     moving = [
         replace(f, positions=resample(f.positions.astype(np.float64), rate, shown)) for f in figures
     ]
@@ -88,9 +88,9 @@ def _panel(figure: Figure, camera: Camera, time: _Time) -> str:
     points = camera.pixels(figure)
     order = (LEFT, TRUNK, RIGHT)  # as if seen from the right
     lines = sorted(
-        limbs(np.asarray(figure.parents)), key=lambda line: order.index(colour(line, figure.names))
+        limbs(np.asarray(figure.parents)), key=lambda line: order.index(color(line, figure.names))
     )
-    drawn = "".join(_limb(points[:, line], colour(line, figure.names), time) for line in lines)
+    drawn = "".join(_limb(points[:, line], color(line, figure.names), time) for line in lines)
     return (
         f"{_floor(figure, camera, time)}"
         '<g fill="none" stroke-width="5" stroke-linecap="round" stroke-linejoin="round">'
@@ -117,14 +117,14 @@ def _floor(figure: Figure, camera: Camera, time: _Time) -> str:
     """The floor with its marks, which pass by where the camera goes along."""
     passed = camera.passed(figure)
     reach = 0.5 * WIDTH / camera.scale
-    first, last = passed.min() + camera.centre - reach, passed.max() + camera.centre + reach
+    first, last = passed.min() + camera.center - reach, passed.max() + camera.center + reach
     apart = MARKS_APART
-    while (last - first) / apart > MOST_MARKS:
+    while (last - first) / apart > MAX_MARKS:
         apart *= 2
     places = apart * np.arange(np.ceil(first / apart), np.floor(last / apart) + 1)
     marks = "".join(
         f"M{x} {camera.ground:.1f}v6"
-        for x in _numbers(0.5 * WIDTH + camera.scale * (places - camera.centre))
+        for x in _numbers(0.5 * WIDTH + camera.scale * (places - camera.center))
     )
     shifts = [f"{x} 0" for x in _numbers(-camera.scale * passed)]
     return (

@@ -24,8 +24,8 @@ _SMALLEST = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """One body: positions (frames, joints, 3) metres, Y up; parents (joints,), -1 for a root;
-    names of joints, by which limbs get their colour and a head is drawn; a label to stand
+    """One body: positions (frames, joints, 3) meters, Y up; parents (joints,), -1 for a root;
+    names of joints, by which limbs get their color and a head is drawn; a label to stand
     above it."""
 
     positions: FloatArray
@@ -43,26 +43,26 @@ class Figure:
 @dataclass(frozen=True, slots=True)
 class Camera:
     """direction: (2,) horizontal unit vector (x, z), the picture's x axis; scale: pixels a
-    metre; centre: metres along `direction` in the middle of the panel; floor: metres above 0;
+    meter; center: meters along `direction` in the middle of the panel; floor: meters above 0;
     ground: its y in pixels; head: radius in pixels; follows: whether it goes with the root."""
 
     direction: FloatArray
     scale: float
-    centre: float
+    center: float
     floor: float
     ground: float
     head: float
     follows: bool
 
     def passed(self, figure: Figure) -> FloatArray:
-        """(frames,) metres along `direction` that the camera has gone."""
+        """(frames,) meters along `direction` that the camera has gone."""
         gone = figure.root[:, [0, 2]] @ self.direction
         return np.asarray(gone if self.follows else np.zeros(len(gone)))
 
     def pixels(self, figure: Figure) -> FloatArray:
         """(frames, joints, 2) x and y in the figure's panel."""
         across = figure.positions[..., [0, 2]] @ self.direction - self.passed(figure)[:, None]
-        x = 0.5 * WIDTH + self.scale * (across - self.centre)
+        x = 0.5 * WIDTH + self.scale * (across - self.center)
         y = self.ground - self.scale * (figure.positions[..., 1] - self.floor)
         return np.stack([x, y], axis=-1)
 
@@ -84,7 +84,7 @@ def camera_for(figures: Sequence[Figure]) -> Camera:
     return Camera(
         direction=direction,
         scale=scale,
-        centre=0.5 * float(seen.min() + seen.max()),
+        center=0.5 * float(seen.min() + seen.max()),
         floor=float(heights.min()),
         ground=HEIGHT - MARGIN - (most - scale) * tall / 3,
         head=HEAD_SIZE * scale * tall,
@@ -93,6 +93,6 @@ def camera_for(figures: Sequence[Figure]) -> Camera:
 
 
 def _scale(across: FloatArray, tall: float, most: float) -> float:
-    """Pixels a metre, so that what extends over `across` (m) and is `tall` fits."""
+    """Pixels a meter, so that what extends over `across` (m) and is `tall` fits."""
     wide = max(float(np.ptp(across)), _SMALLEST) + 2 * HEAD_SIZE * tall
     return min(most, (WIDTH - 2 * MARGIN) / wide)

@@ -1,4 +1,4 @@
-"""What pictures of bodies share: colours, the side that shows most, text that XML allows."""
+"""What pictures of bodies share: colors, the side that shows most, text that XML allows."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ PAPER, GROUND = "#f6f4ef", "#d5cfc2"
 EXTENT_WEIGHT = 0.05
 """Of how far the body extends, beside how far it moves: settles the side of a still one."""
 STAYS = 0.05
-"""Metres along the picture's x axis below which nobody is said to travel."""
+"""Meters along the picture's x axis below which nobody is said to travel."""
 
 
 def widest_direction(around: FloatArray, travelled: FloatArray) -> FloatArray:
     """(2,) horizontal unit vector (x, z) along which a body moves most, and extends.
 
-    around: (frames, joints, 3) metres from the hips; travelled: (3,) from the first to the
+    around: (frames, joints, 3) meters from the hips; travelled: (3,) from the first to the
     last frame. Whoever travels goes to the right; else the sign is fixed, so that pictures
     are stable.
     """
@@ -57,7 +57,7 @@ def limbs(parents: IntArray) -> list[list[int]]:
     return lines
 
 
-def colour(line: Sequence[int], names: Sequence[str]) -> str:
+def color(line: Sequence[int], names: Sequence[str]) -> str:
     """Of a line, by the name of its last joint (`left_...`, `right_...`); the trunk's else."""
     name = names[line[-1]] if names else ""
     return LEFT if name.startswith("left_") else RIGHT if name.startswith("right_") else TRUNK

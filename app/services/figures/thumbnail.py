@@ -38,14 +38,14 @@ _LIMBS: tuple[tuple[str, tuple[JointRole, ...]], ...] = (
     ("near", (_R.HIPS, _R.RIGHT_KNEE, _R.RIGHT_FOOT)),
     ("near", (_R.NECK, _R.RIGHT_SHOULDER, _R.RIGHT_ELBOW, _R.RIGHT_HAND)),
 )
-_COLOURS = {"far": LEFT, "trunk": TRUNK, "near": RIGHT}
+_COLORS = {"far": LEFT, "trunk": TRUNK, "near": RIGHT}
 _COLUMN = {role: index for index, role in enumerate(SUN_ROLES)}
 
 
 def thumbnail(positions: FloatArray, title: str) -> str:
-    """An SVG of 320 x 180 from (frames, 13, 3) metres, Y up, in Sun's order of roles.
+    """An SVG of 320 x 180 from (frames, 13, 3) meters, Y up, in Sun's order of roles.
 
-    Time runs from left to right and from pale to full colour; the left limbs are orange,
+    Time runs from left to right and from pale to full color; the left limbs are orange,
     the right ones blue.
     """
     chosen = _spread(positions)
@@ -79,13 +79,13 @@ def _spread(positions: FloatArray) -> FloatArray:
 
 
 def _around_hips(positions: FloatArray) -> FloatArray:
-    """(frames, 13, 3) metres from the hips."""
+    """(frames, 13, 3) meters from the hips."""
     hips = positions[:, [_COLUMN[_R.HIPS]], :]
     return np.asarray(positions - hips, dtype=np.float64)
 
 
 def _project(poses: FloatArray, direction: FloatArray) -> FloatArray:
-    """(poses, 13, 2) metres: along `direction` from the hips, and height above the floor."""
+    """(poses, 13, 2) meters: along `direction` from the hips, and height above the floor."""
     across = _around_hips(poses)[:, :, [0, 2]] @ direction
     height = poses[:, :, 1] - poses[:, :, 1].min()
     return np.stack([across, height], axis=-1)
@@ -109,10 +109,10 @@ def _place(flat: FloatArray) -> tuple[FloatArray, float, float]:
 def _figure(points: FloatArray, head: float, opacity: float) -> str:
     """One figure from its 13 points (13, 2) in pixels."""
     limbs = "".join(
-        f'<path d="{_line(points, roles)}" stroke="{_COLOURS[side]}"/>' for side, roles in _LIMBS
+        f'<path d="{_line(points, roles)}" stroke="{_COLORS[side]}"/>' for side, roles in _LIMBS
     )
     x, y = points[_COLUMN[_R.HEAD]]
-    circle = f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{head:.1f}" fill="{_COLOURS["trunk"]}"/>'
+    circle = f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{head:.1f}" fill="{_COLORS["trunk"]}"/>'
     return f'<g opacity="{opacity:.2f}">{limbs}{circle}</g>'
 
 

@@ -28,13 +28,13 @@ from app.services.training.synthesis_fit import SHAPE
 from app.services.views.export import own_animation
 from app.store.clips.record import ClipRecord
 
-MOST_DONORS = 5
+MAX_DONORS = 5
 """Clips of the person whose poses are looked at: those most like what is to be made."""
 
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """donors: of one body; body_length: metres; take: (n, 43) moments of a real take and
+    """donors: of one body; body_length: meters; take: (n, 43) moments of a real take and
     take_shape (1378,), None where the motion goes round; license, words: what all sources and
     takes share; roles: joint names by role where a client had to say them."""
 
@@ -54,7 +54,7 @@ def material_of(lib: Library, model: Synthesis, plan: Plan) -> Material:
     takes = _still_there(lib, sorted(plan.takes, key=lambda clip: away.get(clip, np.inf)))
     if not own or not takes:
         raise NotEnoughLabels("The clips that this would be made of are gone: fit the models.")
-    donors = same_body([_donor(lib, clip) for clip in own[:MOST_DONORS]])
+    donors = same_body([_donor(lib, clip) for clip in own[:MAX_DONORS]])
     take, take_shape = None, None
     if plan.shape[-1] < 0.5:
         take, take_shape = _detail(lib, takes, plan.shape)
@@ -77,7 +77,7 @@ def _still_there(lib: Library, clip_ids: list[str]) -> list[ClipRecord]:
         try:
             found.append(ready_clip(lib, clip_id))
         except (ClipNotFound, ClipNotReady):
-            continue  # removed, or being analysed again, since the models were fitted
+            continue  # removed, or being analyzed again, since the models were fitted
     return found
 
 
@@ -100,7 +100,7 @@ def detail_of(
     """(n, 43) moments of a take and its shape (1378,), to be led to the wanted shape (1378,).
 
     A take that begins in a pose which is no part of it is followed from its second frame. Its
-    shape has that pose as first moment, and so may the wanted one, learnt of such takes: there
+    shape has that pose as first moment, and so may the wanted one, learned of such takes: there
     the way to lead is that of the second moment.
     """
     moving = without_posed_start(motion)

@@ -19,7 +19,7 @@ from app.store import models
 from app.store.clips import repository as clips
 from app.store.clips.record import ClipRecord, ClipState
 
-MOST_TAKES = 5
+MAX_TAKES = 5
 """Real takes whose feet are looked at."""
 
 
@@ -27,7 +27,7 @@ MOST_TAKES = 5
 class Quality:
     """kind, given_persons, given_tasks: see Plan.
 
-    nearest: the real clip that is most like the made motion, analysed as any other, None where
+    nearest: the real clip that is most like the made motion, analyzed as any other, None where
     it is gone; nearest_person, nearest_task: its labels; distance to it; person_is_right,
     task_is_right: whether the labels are those asked for.
     follows, agreement: see Plan.
@@ -62,7 +62,7 @@ class Quality:
 def judge(
     lib: Library, fitted: Fitted[Synthesis], plan: Plan, motion: Motion, shape: FloatArray
 ) -> Quality:
-    """The quality of a made motion; shape: (1378,) as it was analysed."""
+    """The quality of a made motion; shape: (1378,) as it was analyzed."""
     model = fitted.model
     away = model.distances(shape)
     first = int(np.argmin(away))
@@ -112,6 +112,6 @@ def _skate(motion: Motion) -> float:
 
 
 def _real_skate(lib: Library, takes: list[ClipRecord]) -> float | None:
-    ready = [clip for clip in takes if clip.state is ClipState.READY][:MOST_TAKES]
+    ready = [clip for clip in takes if clip.state is ClipState.READY][:MAX_TAKES]
     found = [_skate(load_motion(lib, clip)) for clip in ready]
     return float(np.mean(found)) if found else None

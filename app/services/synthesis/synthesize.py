@@ -33,7 +33,7 @@ from app.store.jobs.record import JobRecord
 SECONDS = (0.5, 60.0)
 """Between which a length may be wished for."""
 
-MOST_CLIPS = 100
+MAX_CLIPS = 100
 """Of a new person; more are refused."""
 
 
@@ -120,8 +120,8 @@ def _tidied(query: SynthesisQuery) -> SynthesisQuery:
     query = replace(query, task=task, person=person)
     if (query.person is None) == (query.clip_ids is None):
         raise fields.bad_field("person", "send exactly one of person and clip_ids")
-    if query.clip_ids is not None and not 1 <= len(query.clip_ids) <= MOST_CLIPS:
-        raise fields.bad_field("clip_ids", f"must be 1 to {MOST_CLIPS} clips")
+    if query.clip_ids is not None and not 1 <= len(query.clip_ids) <= MAX_CLIPS:
+        raise fields.bad_field("clip_ids", f"must be 1 to {MAX_CLIPS} clips")
     if query.seconds is not None and not SECONDS[0] <= query.seconds <= SECONDS[1]:
         raise fields.bad_field("seconds", f"must be from {SECONDS[0]:g} to {SECONDS[1]:g}")
     return query

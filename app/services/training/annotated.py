@@ -24,7 +24,7 @@ from app.store.store import Store
 @dataclass(frozen=True, slots=True)
 class AnnotatedClip:
     """A ready clip; true: (k,) seconds, its keyposes as a person named them; beats: of the
-    clip, None where it was analysed before they were kept; group: what files of one recording
+    clip, None where it was analyzed before they were kept; group: what files of one recording
     share."""
 
     clip: ClipRecord

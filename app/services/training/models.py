@@ -19,7 +19,7 @@ from app.store.models import ModelRecord
 
 FIT_PRIORITY = 30
 """After every ingest."""
-LEAST_CLIPS = 2
+MIN_CLIPS = 2
 """Ready clips below which nothing is fitted unasked: a model of one clip tells nothing."""
 FIT_KEY = "fit"
 _READY = ClipFilter(state=(ClipState.READY,))
@@ -82,11 +82,11 @@ def enqueue_fit(tx: Tx) -> JobRecord:
 def is_fit_due(tx: Tx, growth: float) -> bool:
     """Whether the library has changed by the part `growth` since its last fit.
 
-    Counts clips that were added, analysed again or labelled anew, and those that are gone.
-    Never due while a fit or an ingest is still to end, or below LEAST_CLIPS ready clips.
+    Counts clips that were added, analyzed again or labeled anew, and those that are gone.
+    Never due while a fit or an ingest is still to end, or below MIN_CLIPS ready clips.
     """
     ready = count_clips(tx, _READY)
-    if ready < LEAST_CLIPS or _is_open(tx, JobKind.FIT) or _is_open(tx, JobKind.INGEST):
+    if ready < MIN_CLIPS or _is_open(tx, JobKind.FIT) or _is_open(tx, JobKind.INGEST):
         return False
     last = _last_fit(tx)
     if last is None:

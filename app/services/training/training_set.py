@@ -34,7 +34,7 @@ class TrainingSet:
 
     groups: (N,) clips of one recording share a name; symbols: N; statistics: (N, 131);
     samples: (N, 1250); vectors: (N, 128); wide: (N, 512); angles: (642,) by clip id, of those that
-    have been analysed since there are joint angles; is_anonymous: persons are not told, since none
+    have been analyzed since there are joint angles; is_anonymous: persons are not told, since none
     is to be recognized.
     """
 

@@ -9,13 +9,13 @@ class ExportFormat(StrEnum):
     """What a clip can be exported as."""
 
     BVH = "bvh"
-    """Text, centimetres, Y up."""
+    """Text, centimeters, Y up."""
     GLB = "glb"
-    """Binary glTF 2.0 with a skinned body of sticks, metres, Y up."""
+    """Binary glTF 2.0 with a skinned body of sticks, meters, Y up."""
     NPZ = "npz"
-    """NumPy arrays (see `app.formats.npz.reader`), metres, Y up."""
+    """NumPy arrays (see `app.formats.npz.reader`), meters, Y up."""
     CSV = "csv"
-    """A row a frame: time, then x, y, z of each joint; seconds, metres, Y up."""
+    """A row a frame: time, then x, y, z of each joint; seconds, meters, Y up."""
 
 
 class ExportSkeleton(StrEnum):

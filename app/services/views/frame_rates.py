@@ -8,10 +8,10 @@ from app.services import fields
 from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
 
-LEAST_FPS, MOST_FPS = 1.0, 1000.0
+MIN_FPS, MAX_FPS = 1.0, 1000.0
 """Frames a second that can be asked for."""
 
-MOST_POSITIONS = 30_000_000
+MAX_POSITIONS = 30_000_000
 """Frames times joints that are resampled, or made, for one call: an hour at 120 Hz with 60
 joints has 26 million. As float32 they take 360 MB."""
 
@@ -26,15 +26,15 @@ def wanted_rate(
     """
     if fps is None or fps == source:
         return source
-    if not (math.isfinite(fps) and LEAST_FPS <= fps <= MOST_FPS):
-        raise fields.bad_field("fps", f"must be from {LEAST_FPS:g} to {MOST_FPS:g}")
+    if not (math.isfinite(fps) and MIN_FPS <= fps <= MAX_FPS):
+        raise fields.bad_field("fps", f"must be from {MIN_FPS:g} to {MAX_FPS:g}")
     seconds, most = clip.duration or 0.0, max(lib.settings.max_frames, clip.frames or 0)
     if fps * seconds > most:
         raise fields.bad_field("fps", f"would make more than {most} frames")
-    if max(fps, source) * seconds * joints > MOST_POSITIONS:
+    if max(fps, source) * seconds * joints > MAX_POSITIONS:
         message = (
             f"{seconds:.0f} s of {joints} joints from {source:g} to {fps:g} Hz are too much work: "
-            f"at most {MOST_POSITIONS:,} positions, frames times joints, are read or made"
+            f"at most {MAX_POSITIONS:,} positions, frames times joints, are read or made"
         )
         raise fields.bad_field("fps", message)
     return fps

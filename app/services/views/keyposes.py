@@ -55,7 +55,7 @@ class UsedThresholds:
 class KeyposesView:
     """Keyposes at the analysis rate (30 Hz), with the pose at each.
 
-    found: frames, times, beats and energy curves; poses: (keyposes, 13, 3) metres; named: the
+    found: frames, times, beats and energy curves; poses: (keyposes, 13, 3) meters; named: the
     keyposes that a person named, seconds, None where nobody did.
     """
 

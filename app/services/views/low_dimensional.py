@@ -33,10 +33,10 @@ from app.services.views.frame_rates import wanted_rate
 from app.services.views.views import MotionView
 from app.store.clips.record import ClipRecord
 
-FEWEST_POSES = 2
+MIN_POSES = 2
 """Of a model: one pose spans no dimension."""
-MOST_MODEL_CLIPS = 50
-MOST_POSES = 1000
+MAX_MODEL_CLIPS = 50
+MAX_POSES = 1000
 """Uniform poses of one clip that can be asked for."""
 
 Keyposes = dict[str, list[int]]
@@ -74,7 +74,7 @@ class Reduced:
 
     model: made of `poses` (K of them); eigen_poses: (K, 3) where those lie along the first
     axes (figs 7, 8); original, reduced: the motion before and after, at 30 Hz; eigen_motion:
-    (n, 3) its curve (fig. 9); variance_kept, errors: (K,) at K' = 1..K, the errors in metres.
+    (n, 3) its curve (fig. 9); variance_kept, errors: (K,) at K' = 1..K, the errors in meters.
     """
 
     basis: Basis
@@ -220,7 +220,7 @@ def _model_poses(
             frames = uniform_frames(found.frames, min(count, found.frames))
         poses += [ModelPose(clip_id, float(frame / found.rate)) for frame in frames]
         local.append(found.local[frames])
-    if len(poses) < FEWEST_POSES:
+    if len(poses) < MIN_POSES:
         raise _too_few(counts, len(poses))
     return tuple(poses), np.concatenate(local)
 
@@ -232,7 +232,7 @@ def _within(frames: Sequence[int], track: BodyTrack) -> IntArray:
 
 def _too_few(counts: dict[str, int], poses: int) -> NotEnoughKeyposes:
     return NotEnoughKeyposes(
-        f"A model needs at least {FEWEST_POSES} poses; found {poses}. Take other model_clips, "
+        f"A model needs at least {MIN_POSES} poses; found {poses}. Take other model_clips, "
         "or basis=uniform and say how many poses, or tell which frames are keyposes.",
         places=[Place("model_clips", f"{clip_id}: keyposes: {n}") for clip_id, n in counts.items()],
     )
@@ -249,14 +249,14 @@ def _checked(wanted: Reduction) -> Basis:
     _check_clips(wanted.model_clips)
     if wanted.poses is not None and basis is not Basis.UNIFORM:
         raise fields.bad_field("poses", "goes with basis=uniform; keyposes are as many as they are")
-    if wanted.poses is not None and not 1 <= wanted.poses <= MOST_POSES:
-        raise fields.bad_field("poses", f"must be from 1 to {MOST_POSES}")
+    if wanted.poses is not None and not 1 <= wanted.poses <= MAX_POSES:
+        raise fields.bad_field("poses", f"must be from 1 to {MAX_POSES}")
     return basis
 
 
 def _check_clips(model_clips: Sequence[str]) -> None:
-    if len(model_clips) > MOST_MODEL_CLIPS:
-        raise fields.bad_field("model_clips", f"must be at most {MOST_MODEL_CLIPS} clips")
+    if len(model_clips) > MAX_MODEL_CLIPS:
+        raise fields.bad_field("model_clips", f"must be at most {MAX_MODEL_CLIPS} clips")
 
 
 def _shown(model: EigenModel, poses: FloatArray) -> FloatArray:

@@ -76,7 +76,7 @@ def list_segments(lib: Library, clip_id: str) -> Segments:
 
 def segment_arrays(lib: Library, clip: ClipRecord) -> dict[str, NDArray[Any]]:
     """What is stored of a ready clip's segments, by name (see `describe_segments`); described
-    anew for a clip that was analysed before they were stored."""
+    anew for a clip that was analyzed before they were stored."""
     try:
         with lib.store.read() as tx:
             return {name: arrays.get_one(tx, clip.id, name) for name in _NAMES}

@@ -33,9 +33,9 @@ from app.store.clips import repository as stored_clips
 from app.store.database.paging import Page
 from app.store.studies import Choice, PairRecord, VoteCount
 
-MOST_SEQUENCES = 1000
+MAX_SEQUENCES = 1000
 """Sequences that a tally tells one by one; those of one clip can be asked for by themselves."""
-MOST_VOTER = 200
+MAX_VOTER = 200
 """Characters of what a page calls a voter."""
 
 
@@ -166,8 +166,8 @@ def vote(lib: Library, pair_id: str, choice: Choice | str, voter: str | None = N
         chosen = Choice(choice)
     except ValueError:
         raise fields.bad_field("choice", f"must be one of {', '.join(Choice)}") from None
-    if voter is not None and not 0 < len(voter) <= MOST_VOTER:
-        raise fields.bad_field("voter", f"must have from 1 to {MOST_VOTER} characters")
+    if voter is not None and not 0 < len(voter) <= MAX_VOTER:
+        raise fields.bad_field("voter", f"must have from 1 to {MAX_VOTER} characters")
     known = None if voter is None else hashlib.sha256(voter.encode()).hexdigest()
     with lib.store.write() as tx:
         return stored.add_vote(tx, stored.get_pair(tx, pair_id), chosen, known)
@@ -193,7 +193,7 @@ def tally(lib: Library, clip_id: str | None = None) -> StudyTally:
     left = sum(count.votes for count in counts if count.choice is Choice.LEFT)
     told = sum(count.votes for count in counts if count.choice is not Choice.SAME)
     return StudyTally(
-        tuple(sequences[:MOST_SEQUENCES]), _tally(counts), left / told if told else None
+        tuple(sequences[:MAX_SEQUENCES]), _tally(counts), left / told if told else None
     )
 
 

@@ -24,7 +24,7 @@ CONVERGENCE = "msv_convergence"
 
 @dataclass(frozen=True, slots=True)
 class MotionView:
-    """A motion to draw: positions (frames, joints, 3) float32, metres, Y up; parents, -1 a root."""
+    """A motion to draw: positions (frames, joints, 3) float32, meters, Y up; parents, -1 a root."""
 
     frame_rate: float
     joint_names: tuple[str, ...]
@@ -37,7 +37,7 @@ class DescriptorView:
     """A clip's descriptors.
 
     msv_lambda: weight; msv_rho: (13,); msv_epsilon: (n,); msv_convergence: (iterations, 2)
-    error and change of lambda, None of a clip analysed before they were kept;
+    error and change of lambda, None of a clip analyzed before they were kept;
     motion_vector: (128,);
     symbol_states: K; symbol_means, symbol_variances: (K, 26); analysis_version: of them all.
     """

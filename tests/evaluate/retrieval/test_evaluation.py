@@ -53,7 +53,7 @@ def test_the_tables_of_the_paper(ready_library: Library) -> None:
     )
     (way,) = found.ways
     assert (found.chosen, found.mixture, found.k) == (("kick", "walk"), 12, 2)
-    assert (found.unlabelled, found.alone) == (0, 0)
+    assert (found.unlabeled, found.alone) == (0, 0)
     assert found.classes == ("bow", "kick", "walk", "wave")
     assert way.confusion.shape == (4, 4)
     np.testing.assert_allclose(way.confusion.sum(axis=1), 1.0)

@@ -107,7 +107,7 @@ def test_a_made_walk_stands_on_the_floor_as_a_real_one_does(fitted: Library) -> 
     lowest = made.positions[:, :, 1].min(axis=1)
     assert lowest.min() > -1e-3
     assert np.median(lowest) < 5e-3
-    assert toe_speed(real) < 0.05  # metres per second
+    assert toe_speed(real) < 0.05  # meters per second
     assert toe_speed(made) < 0.15
 
 

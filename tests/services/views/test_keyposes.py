@@ -117,7 +117,7 @@ def test_times_outside_the_clip_are_refused(
         assert keypose_annotations.annotated(tx) == ()
 
 
-def test_a_clip_may_be_annotated_before_it_is_analysed(
+def test_a_clip_may_be_annotated_before_it_is_analyzed(
     lib: Library, dances: list[DemoClip]
 ) -> None:
     queued = clips.create_clip(lib, io.BytesIO(dances[0].content), NewClip("a.bvh")).clip
@@ -149,7 +149,7 @@ def test_thresholds_are_given_or_learned_or_usual_and_say_so(
     assert view(danced, ids[0], t1=1.0, t2=1.0).thresholds.model_version is None
 
 
-def test_learned_thresholds_count_in_new_analyses(danced: Library, ids: list[str]) -> None:
+def test_learned_thresholds_count_in_new_analyzes(danced: Library, ids: list[str]) -> None:
     before = stored(danced, ids[1], "keypose_frames")
     arrays, meta = KeyposeThresholds({"rms": Thresholds(1e-6, 99.0)}).to_arrays()
     with danced.store.write() as tx:

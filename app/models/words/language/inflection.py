@@ -92,7 +92,7 @@ IRREGULAR: dict[str, str] = {
 _VOWELS = frozenset("aeiouy")
 _SHORTEST = 2
 """Letters of a base form."""
-_MOST_PHRASES = 64
+_MAX_PHRASES = 64
 """Combinations of base forms of a phrase's words that are looked at."""
 
 IsWord = Callable[[str], bool]
@@ -110,7 +110,7 @@ def base_forms(word: str) -> tuple[str, ...]:
     """Candidates for the base form of `word`, other than itself, the likeliest first."""
     parts = word.split("_")
     choices = [tuple(dict.fromkeys((part, *_of_one(part)))) for part in parts]
-    phrases = islice(("_".join(chosen) for chosen in product(*choices)), _MOST_PHRASES)
+    phrases = islice(("_".join(chosen) for chosen in product(*choices)), _MAX_PHRASES)
     return tuple(phrase for phrase in phrases if phrase != word)
 
 

@@ -1,4 +1,4 @@
-"""A word that no clip carries finds its neighbours in meaning (DESIGN 6, Words)."""
+"""A word that no clip carries finds its neighbors in meaning (DESIGN 6, Words)."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from app.models.words.language.inflection import base_forms
 from app.models.words.language.lexicon import is_known, likeness
 
-LEAST_LIKENESS = 0.5
+MIN_LIKENESS = 0.5
 WITHIN = 0.05
 """Of the best: words of the library that are hardly less alike are used too."""
-MOST_WORDS = 5
+MAX_WORDS = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +22,7 @@ class Neighbour:
     likeness: float
 
 
-def neighbours(
+def neighbors(
     word: str, library: Iterable[str], related: Mapping[str, Mapping[str, float]]
 ) -> tuple[Neighbour, ...]:
     """The words of the library nearest to a normalized `word` that it lacks, best first.
@@ -33,10 +33,10 @@ def neighbours(
     ours = tuple(library)
     for form in (word, *base_forms(word)):
         found = {one: likeness(form, one) for one in ours} if is_known(form) else {}
-        if max(found.values(), default=0.0) < LEAST_LIKENESS:
+        if max(found.values(), default=0.0) < MIN_LIKENESS:
             found = {one: near for one, near in related.get(form, {}).items() if one in ours}
         best = max(found.values(), default=0.0)
-        if best >= LEAST_LIKENESS:
+        if best >= MIN_LIKENESS:
             near = [Neighbour(one, near) for one, near in found.items() if near >= best - WITHIN]
-            return tuple(sorted(near, key=lambda n: (-n.likeness, n.word))[:MOST_WORDS])
+            return tuple(sorted(near, key=lambda n: (-n.likeness, n.word))[:MAX_WORDS])
     return ()

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from app.models.words.language.normalize import normalize_word
 
-LONGEST_PHRASE = 4
+MAX_PHRASE_WORDS = 4
 """Words of a phrase that is looked for in a sentence."""
 
 _TOKEN = re.compile(r"(?<![\w-])-?[\w'’]+(?:-[\w'’]+)*")
@@ -89,7 +89,7 @@ def _words_of(text: str, is_word: Callable[[str], bool]) -> Iterator[tuple[str, 
 
 def _longest(tokens: list[str], is_word: Callable[[str], bool]) -> tuple[str, int]:
     """The longest known phrase at the beginning of `tokens`, else the first word; its length."""
-    for length in range(min(LONGEST_PHRASE, len(tokens)), 1, -1):
+    for length in range(min(MAX_PHRASE_WORDS, len(tokens)), 1, -1):
         if any(token.startswith("-") for token in tokens[1:length]):
             continue
         phrase = normalize_word(" ".join(tokens[:length]))

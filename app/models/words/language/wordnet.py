@@ -77,14 +77,14 @@ def related_words(words: Iterable[str]) -> Related:
     wordnet = WordNet()
     related: Related = {}
     for word in sorted(set(words)):
-        for foreign, likeness in _neighbours(wordnet, word):
+        for foreign, likeness in _neighbors(wordnet, word):
             if foreign != word:
                 known = related.setdefault(foreign, {})
                 known[word] = max(known.get(word, 0.0), likeness)
     return related
 
 
-def _neighbours(wordnet: Any, word: str) -> Iterator[tuple[str, float]]:
+def _neighbors(wordnet: Any, word: str) -> Iterator[tuple[str, float]]:
     for part in PARTS_OF_SPEECH:
         for synset in wordnet.synsets(word, part)[:USUAL_SENSES]:
             for near, likeness in _around(synset):
