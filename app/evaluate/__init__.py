@@ -19,7 +19,7 @@ from app.evaluate.recognition.results import RecognitionEvaluation
 from app.evaluate.retrieval.evaluation import (
     JUDGED,
     MAX_QUERIES,
-    JudgedWay,
+    JudgedMethod,
     K,
     RetrievalEvaluation,
     RetrievalFigures,
@@ -36,7 +36,7 @@ __all__ = [
     "RECOGNIZERS",
     "JudgedClip",
     "JudgedKeyposes",
-    "JudgedWay",
+    "JudgedMethod",
     "K",
     "KeyposeEvaluation",
     "LowDimensionalEvaluation",

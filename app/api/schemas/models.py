@@ -11,7 +11,7 @@ from pydantic import Field
 from app.api.schemas.base import Incoming, Outgoing
 from app.services.library.fitted_models import FALSE_ACCEPT_RATE
 from app.services.training import models as services
-from app.services.training.errors_in_force import Errors
+from app.services.training.active_errors import Errors
 from app.store.models import ModelRecord
 
 

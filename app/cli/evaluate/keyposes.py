@@ -11,7 +11,7 @@ import typer
 
 from app import evaluate
 from app.cli.evaluate.drawing import Drawing
-from app.cli.evaluate.running import wanted_of
+from app.cli.evaluate.running import parsed_filter
 from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json, print_table, progress_bar
 from app.cli.settings import open_library
@@ -21,7 +21,7 @@ from app.evaluate.keyposes import pictures as keypose_pictures
 from app.models.keyposes.matching import TOLERANCE
 from app.models.keyposes.thresholds import USUAL, ThresholdCurve
 from app.services.library.library import Library
-from app.services.training.keypose_learning import told
+from app.services.training.keypose_learning import counts_document
 from app.store.clips.record import ClipRecord
 
 Tolerance = Annotated[
@@ -52,16 +52,16 @@ def keyposes(
     as_json: AsJson = False,
 ) -> None:
     """Keyposes found against those that people named (Perera 2009, table 1, figs 3 to 6)."""
-    wanted = wanted_of(filter_json)
+    filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(picture, pictures_dir, picture_format)
     with open_library(context) as lib:
         if pictures_dir is not None:
-            clips = keypose_pictures.clips_to_draw(lib, wanted)
+            clips = keypose_pictures.clips_to_draw(lib, filter)
             drawing.draw_all(lambda form: _clip_figures(lib, clips, form))
             typer.echo(f"{len(clips)} pictures are in {pictures_dir}.\n", err=as_json)
-            if not evaluate.is_any_annotated(lib, wanted):
+            if not evaluate.is_any_annotated(lib, filter):
                 return  # the pictures were all that could be had
-        found = evaluate.judge_keyposes(lib, wanted, tolerance)
+        found = evaluate.judge_keyposes(lib, filter, tolerance)
     if as_json:
         print_json(_document(found))
     else:
@@ -97,8 +97,8 @@ def _document(found: KeyposeEvaluation) -> dict[str, Any]:
         ],
         "methods": {
             judged.method: {
-                "held_out": told(judged.counts),
-                "usual_thresholds": told(judged.usual),
+                "held_out": counts_document(judged.counts),
+                "usual_thresholds": counts_document(judged.usual),
                 "learned": asdict(judged.learned),
                 "over_t1": _curve(judged.t1),
                 "over_t2": _curve(judged.t2),

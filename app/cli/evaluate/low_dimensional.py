@@ -10,7 +10,7 @@ import typer
 from app import evaluate
 from app.analysis.low_dimensional.eigen_motion import Basis
 from app.cli.evaluate.drawing import Drawing
-from app.cli.evaluate.running import judging, wanted_of
+from app.cli.evaluate.running import judging, parsed_filter
 from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json, print_table
 from app.evaluate import LowDimensionalEvaluation
@@ -29,10 +29,10 @@ def low_dimensional(
     as_json: AsJson = False,
 ) -> None:
     """Motions drawn from few dimensions of keyposes, and of uniform poses (Perera 2009)."""
-    wanted = wanted_of(filter_json)
+    filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
     with judging(context, "drawing") as (lib, progress):
-        found = evaluate.judge_low_dimensional(lib, wanted, progress)
+        found = evaluate.judge_low_dimensional(lib, filter, progress)
     if as_json:
         print_json(_document(found))
     else:

@@ -11,7 +11,7 @@ from app import evaluate
 from app.cli.evaluate.drawing import Drawing
 from app.cli.evaluate.recognition_document import document
 from app.cli.evaluate.recognition_tables import print_tables
-from app.cli.evaluate.running import judging, wanted_of
+from app.cli.evaluate.running import judging, parsed_filter
 from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json
 from app.evaluate.recognition import pictures as recognition_pictures
@@ -46,12 +46,12 @@ def recognition(
     as_json: AsJson = False,
 ) -> None:
     """Person and task, held out by take, person, task and source (Vasilescu; Perera, 5)."""
-    wanted = wanted_of(filter_json)
+    filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
     with judging(context, "asking") as (lib, progress):
         found = evaluate.judge_recognition(
             lib,
-            wanted,
+            filter,
             tuple(method or evaluate.RECOGNIZERS),
             false_accept_rate=false_accept_rate,
             progress=progress,

@@ -27,10 +27,10 @@ def document(found: RecognitionEvaluation) -> dict[str, Any]:
         "told": {
             one.method: {
                 "neither": _recognized(one.neither),
-                "person_where_task_is_told": _share(one.told.person),
-                "task_where_person_is_told": _share(one.told.task),
+                "person_where_task_is_told": _share(one.given.person),
+                "task_where_person_is_told": _share(one.given.task),
             }
-            for one in found.told
+            for one in found.label_given
         },
         "perera": _perera(found.perera),
         "made": found.made,

@@ -12,7 +12,7 @@ from app.cli.output import print_table, print_text
 from app.evaluate import RecognitionEvaluation
 from app.evaluate.recognition.clips import names_of
 from app.evaluate.recognition.perera import PereraEvaluation
-from app.evaluate.recognition.results import HeldOut, Judged, WhenTold
+from app.evaluate.recognition.results import HeldOut, Judged, LabelGiven
 from app.evaluate.recognition.rounds import DRAWS, LeftOut
 from app.evaluate.recognition.shares import Recognized, Share, Unknown
 
@@ -25,10 +25,10 @@ def print_tables(found: RecognitionEvaluation) -> None:
     """The tables, the confusions of the first method, and what could not be judged."""
     clips = found.clips
     kinds = {"person": clips.persons, "task": clips.tasks, "source": clips.sources}
-    told = ", ".join(_counted(len(names_of(labels)), kind) for kind, labels in kinds.items())
-    typer.echo(f"{len(clips)} clips: {told}. No method has seen what it is asked about.")
+    counted = ", ".join(_counted(len(names_of(labels)), kind) for kind, labels in kinds.items())
+    typer.echo(f"{len(clips)} clips: {counted}. No method has seen what it is asked about.")
     _print_recognized(found)
-    _print_told(found.told)
+    _print_label_given(found.label_given)
     for way, factor in _WAYS.items():
         if way in found.held_out:
             _print_new(found.held_out[way], factor)
@@ -67,8 +67,8 @@ def _values(found: Recognized) -> list[object]:
     return [found.task.value, found.person.value, found.both.value]
 
 
-def _print_told(told: Sequence[WhenTold]) -> None:
-    if not told:
+def _print_label_given(judged: Sequence[LabelGiven]) -> None:
+    if not judged:
         return
     typer.echo("\nEach recording left out, the other label told or not (Vasilescu, 5):\n")
     print_table(
@@ -77,11 +77,11 @@ def _print_told(told: Sequence[WhenTold]) -> None:
             [
                 one.method,
                 one.neither.task.value,
-                one.told.task.value,
+                one.given.task.value,
                 one.neither.person.value,
-                one.told.person.value,
+                one.given.person.value,
             ]
-            for one in told
+            for one in judged
         ],
     )
 

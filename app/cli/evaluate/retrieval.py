@@ -12,7 +12,7 @@ import typer
 from app import evaluate
 from app.cli.evaluate.confusion_table import print_confusion
 from app.cli.evaluate.drawing import Drawing
-from app.cli.evaluate.running import judging, wanted_of
+from app.cli.evaluate.running import judging, parsed_filter
 from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json, print_table, print_text
 from app.evaluate import RetrievalEvaluation, VolumeEvaluation
@@ -60,13 +60,13 @@ def retrieval(
     as_json: AsJson = False,
 ) -> None:
     """Each clip asks for the others; relevant is what carries the same task (Sun 2011)."""
-    wanted = wanted_of(filter_json)
+    filter = parsed_filter(filter_json)
     names = None if classes is None else [name.strip() for name in classes.split(",")]
     drawing = Drawing.prepared(picture, pictures_dir, picture_format)
     with judging(context, "asking") as (lib, progress):
         found = evaluate.judge_retrieval(
             lib,
-            wanted,
+            filter,
             method or evaluate.JUDGED,
             classes=names,
             k=k,
@@ -74,7 +74,7 @@ def retrieval(
             most_queries=queries,
             progress=progress,
         )
-        volumes = evaluate.judge_volumes(lib, wanted, classes=names, threshold=eta)
+        volumes = evaluate.judge_volumes(lib, filter, classes=names, threshold=eta)
     if as_json:
         print_json(_document(found, volumes))
     else:
@@ -84,28 +84,28 @@ def retrieval(
 
 
 def _confusions(found: RetrievalEvaluation, form: pictures.Format) -> bytes:
-    return retrieval_pictures.confusion_figure(found, retrieval_pictures.shown_ways(found), form)
+    return retrieval_pictures.confusion_figure(found, retrieval_pictures.shown_methods(found), form)
 
 
 def _document(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> dict[str, Any]:
     return {
-        "figures": [asdict(way.figures) for way in found.ways],
+        "figures": [asdict(judged.figures) for judged in found.methods],
         "true_positive_rates": {
             "classes": found.chosen,
             "k": found.k,
             "mixture": found.mixture,
             "methods": {
-                way.figures.method: {
-                    **dict(zip(found.chosen, way.rates.tolist(), strict=True)),
-                    "overall": way.overall,
+                judged.figures.method: {
+                    **dict(zip(found.chosen, judged.rates.tolist(), strict=True)),
+                    "overall": judged.overall,
                 }
-                for way in found.ways
+                for judged in found.methods
             },
         },
         "confusion": {
             "classes": found.classes,
             "k": found.k,
-            "methods": {way.figures.method: way.confusion.tolist() for way in found.ways},
+            "methods": {one.figures.method: one.confusion.tolist() for one in found.methods},
         },
         "left_out": {"unlabelled": found.unlabeled, "alone": found.alone},
         "volumes": {
@@ -121,21 +121,26 @@ def _document(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> dict[str
 
 
 def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
-    queries = found.ways[0].figures.queries if found.ways else 0
+    queries = found.methods[0].figures.queries if found.methods else 0
     typer.echo(f"{queries} clips ask for the others of their task, among {found.mixture}:\n")
     print_table(
         ["method", "1-NN", "P@4", "P@20", "MAP"],
-        [list(asdict(way.figures).values())[:5] for way in found.ways],
+        [list(asdict(judged.figures).values())[:5] for judged in found.methods],
     )
     typer.echo(f"\nTrue-positive rates: of the {found.k} nearest in the mixture (table 1):\n")
     print_table(
         ["method", *found.chosen, "overall"],
-        [[way.figures.method, *way.rates.tolist(), way.overall] for way in found.ways],
+        [
+            [judged.figures.method, *judged.rates.tolist(), judged.overall]
+            for judged in found.methods
+        ],
     )
-    for way in found.ways:
-        if way.figures.method in retrieval_pictures.shown_ways(found):
-            typer.echo(f"\nWhat the {found.k} nearest are by {way.figures.method}, % (figure 8):\n")
-            print_confusion(found.classes, way.confusion)
+    for judged in found.methods:
+        if judged.figures.method in retrieval_pictures.shown_methods(found):
+            typer.echo(
+                f"\nWhat the {found.k} nearest are by {judged.figures.method}, % (figure 8):\n"
+            )
+            print_confusion(found.classes, judged.confusion)
     print_text("\n" + "\n".join(_remarks(found, volumes)))
 
 

@@ -18,7 +18,7 @@ Progress = Callable[[int, int], None]
 """Is told how many steps are done, of how many."""
 
 
-def wanted_of(filter_json: str | None) -> ClipFilter:
+def parsed_filter(filter_json: str | None) -> ClipFilter:
     """The clips that `--filter` means, all without it. Raises BadField."""
     return parse_filter(filter_of(filter_json))
 

@@ -10,7 +10,7 @@ import typer
 
 from app import evaluate
 from app.cli.evaluate.drawing import Drawing
-from app.cli.evaluate.running import wanted_of
+from app.cli.evaluate.running import parsed_filter
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table, print_text
 from app.cli.settings import open_library
@@ -28,9 +28,9 @@ def symbols(
     as_json: AsJson = False,
 ) -> None:
     """How many dimensions motion symbols need, and how well new ones are placed (Takano)."""
-    wanted, drawing = wanted_of(filter_json), Drawing.prepared(picture)
+    filter, drawing = parsed_filter(filter_json), Drawing.prepared(picture)
     with open_library(context) as lib:
-        found = evaluate.judge_symbols(lib, wanted)
+        found = evaluate.judge_symbols(lib, filter)
     if as_json:
         print_json(asdict(found))
     else:

@@ -11,7 +11,7 @@ import typer
 
 from app import evaluate
 from app.cli.evaluate.drawing import Drawing
-from app.cli.evaluate.running import wanted_of
+from app.cli.evaluate.running import parsed_filter
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table, print_text
 from app.cli.settings import open_library
@@ -47,10 +47,10 @@ def words(
     as_json: AsJson = False,
 ) -> None:
     """Words for clips and clips for words, held out and in-sample, beside their frequency."""
-    wanted, drawing = wanted_of(filter_json), Drawing.prepared(picture)
+    filter, drawing = parsed_filter(filter_json), Drawing.prepared(picture)
     with open_library(context) as lib:
-        found = evaluate.judge_words(lib, wanted)
-        examples = evaluate.word_examples(lib, query, wanted)
+        found = evaluate.judge_words(lib, filter)
+        examples = evaluate.word_examples(lib, query, filter)
     if as_json:
         print_json(_document(found, examples))
     else:

@@ -21,7 +21,7 @@ from app.models.keyposes.thresholds import (
     Thresholds,
     curve_of_t1,
     curve_of_t2,
-    lesson,
+    threshold_grid,
 )
 from app.services import fields
 from app.services.library.library import Library
@@ -77,23 +77,23 @@ class KeyposeEvaluation:
     methods: tuple[JudgedKeyposes, ...]
 
 
-def is_any_annotated(lib: Library, wanted: ClipFilter | None = None) -> bool:
+def is_any_annotated(lib: Library, filter: ClipFilter | None = None) -> bool:
     """Whether there is anything to judge."""
-    return bool(annotated_ids(lib.store, wanted))
+    return bool(annotated_ids(lib.store, filter))
 
 
 def judge_keyposes(
-    lib: Library, wanted: ClipFilter | None = None, tolerance: float = TOLERANCE
+    lib: Library, filter: ClipFilter | None = None, tolerance: float = TOLERANCE
 ) -> KeyposeEvaluation:
     """Every annotated clip that passes the filter. Raises BadField, NotEnoughLabels."""
     if not 0 < tolerance <= 1:
         raise fields.bad_field("tolerance", "must be above 0 and at most 1 s")
-    annotated = read_annotated(lib.store, wanted)
+    annotated = read_annotated(lib.store, filter)
     if not annotated:
         raise NotEnoughLabels(HOW)
     groups = [clip.group for clip in annotated]
     examples = {method: _examples(annotated, method) for method in JUDGED_KEYPOSES}
-    lessons = {method: lesson(some, tolerance) for method, some in examples.items()}
+    lessons = {method: threshold_grid(some, tolerance) for method, some in examples.items()}
     counts = {
         method: [found for _, found in taught.held_out(groups)]
         for method, taught in lessons.items()

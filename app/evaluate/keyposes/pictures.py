@@ -67,10 +67,10 @@ def threshold_figure(evaluation: KeyposeEvaluation, form: Format) -> bytes:
     return curves_picture(panels, form, title=title)
 
 
-def clips_to_draw(lib: Library, wanted: ClipFilter | None) -> tuple[ClipRecord, ...]:
+def clips_to_draw(lib: Library, filter: ClipFilter | None) -> tuple[ClipRecord, ...]:
     """The ready clips that pass a filter, annotated or not."""
     with lib.store.read() as tx:
-        ids = sorted(clip_listing.list_ids(tx, ready_only(wanted)))
+        ids = sorted(clip_listing.list_ids(tx, ready_only(filter)))
         return tuple(clips.get_many(tx, ids).values())
 
 

@@ -144,14 +144,14 @@ class LowDimensionalEvaluation:
 
 
 def judge_low_dimensional(
-    lib: Library, wanted: ClipFilter | None = None, progress: Progress | None = None
+    lib: Library, filter: ClipFilter | None = None, progress: Progress | None = None
 ) -> LowDimensionalEvaluation:
     """Both bases on the clips that pass the filter.
 
     Raises NotEnoughKeyposes where no clip has enough.
     """
     with lib.store.read() as tx:
-        ids = sorted(clip_listing.list_ids(tx, ready_only(wanted)))
+        ids = sorted(clip_listing.list_ids(tx, ready_only(filter)))
         ready = list(stored.get_many(tx, ids).values())
     judged = list(_judged(lib, ready, progress))
     if not judged:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.evaluate.retrieval.labelled import LabeledClips, read_labeled
-from app.evaluate.retrieval.rankings import Volumes, Way, by_method
+from app.evaluate.retrieval.rankings import Ranker, Volumes, by_method
 from app.models.held_out.class_rankings import JudgedRanking, confusion_matrix, true_positive_rates
 from app.numerics.arrays import FloatArray
 from app.search.example.methods import Method
@@ -49,7 +49,7 @@ class RetrievalFigures:
 
 
 @dataclass(frozen=True, slots=True)
-class JudgedWay:
+class JudgedMethod:
     """One method's part of the tables.
 
     rates: (chosen,) true-positive rates of experiment 1; confusion: (C, C) of experiment 2,
@@ -76,7 +76,7 @@ class RetrievalEvaluation:
     (they ask nothing, but stand in the mixture).
     """
 
-    ways: tuple[JudgedWay, ...]
+    methods: tuple[JudgedMethod, ...]
     chosen: tuple[str, ...]
     classes: tuple[str, ...]
     k: int
@@ -87,7 +87,7 @@ class RetrievalEvaluation:
 
 def judge_retrieval(
     lib: Library,
-    wanted: ClipFilter | None = None,
+    filter: ClipFilter | None = None,
     methods: Sequence[Method] = JUDGED,
     *,
     classes: Sequence[str] | None = None,
@@ -105,7 +105,7 @@ def judge_retrieval(
     """
     _check(k, threshold, most_queries)
     lib.index.catch_up(lib.store)
-    labeled = read_labeled(lib, wanted)
+    labeled = read_labeled(lib, filter)
     chosen = labeled.chosen(classes, HIDDEN_CLASSES)
     queries = labeled.queries(most_queries)
     suns = [method for method in methods if method in SUNS]
@@ -116,12 +116,12 @@ def judge_retrieval(
         progress,
     )
 
-    def judge(way: Way) -> Iterator[JudgedRanking]:
+    def judge(ranker: Ranker) -> Iterator[JudgedRanking]:
         for clip in queries:
-            yield labeled.judge(clip, way(clip), k)
+            yield labeled.judge(clip, ranker(clip), k)
             step()
 
-    found = {method.value: list(judge(by_method(lib, method, wanted))) for method in methods}
+    found = {method.value: list(judge(by_method(lib, method, filter))) for method in methods}
     for q, eta in settings:
         volumes = Volumes.of(lib, labeled.clips, q=q, threshold=eta, step=step)
         for method in suns:
@@ -164,8 +164,8 @@ def _evaluation(
     of_class = [labeled.classes.index(name) for name in chosen]
     count = len(labeled.classes)
     return RetrievalEvaluation(
-        ways=tuple(
-            JudgedWay(
+        methods=tuple(
+            JudgedMethod(
                 figures=_figures(name, judged),
                 rates=true_positive_rates(judged, count)[of_class],
                 confusion=confusion_matrix(judged, count),

@@ -76,10 +76,10 @@ class LabeledClips:
         return tuple(dict.fromkeys(names))
 
 
-def read_labeled(lib: Library, wanted: ClipFilter | None) -> LabeledClips:
+def read_labeled(lib: Library, filter: ClipFilter | None) -> LabeledClips:
     """What there is to judge. Raises NotEnoughLabels unless two classes can be told apart."""
     with lib.store.read() as tx:
-        ids = sorted(clip_listing.list_ids(tx, ready_only(wanted)))
+        ids = sorted(clip_listing.list_ids(tx, ready_only(filter)))
         return labeled_among(tuple(clips.get_many(tx, ids).values()))
 
 

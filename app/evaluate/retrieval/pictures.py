@@ -24,18 +24,18 @@ MIN_DRAWN = 1e-16
 """Changes of lambda below are rounding."""
 
 
-def shown_ways(evaluation: RetrievalEvaluation) -> tuple[str, ...]:
+def shown_methods(evaluation: RetrievalEvaluation) -> tuple[str, ...]:
     """Of which methods the confusion is shown where nothing else is wanted: all when few."""
-    there = tuple(way.figures.method for way in evaluation.ways)
+    there = tuple(judged.figures.method for judged in evaluation.methods)
     return tuple(name for name in SIDE_BY_SIDE if name in there) or there[: len(SIDE_BY_SIDE)]
 
 
 def confusion_figure(evaluation: RetrievalEvaluation, names: Sequence[str], form: Format) -> bytes:
     """The confusion matrices of these methods beside one another."""
     matrices = {
-        f"{way.figures.method}, {evaluation.k} nearest": way.confusion
-        for way in evaluation.ways
-        if way.figures.method in names
+        f"{judged.figures.method}, {evaluation.k} nearest": judged.confusion
+        for judged in evaluation.methods
+        if judged.figures.method in names
     }
     return confusions_picture(matrices, evaluation.classes, form, columns="retrieved")
 
@@ -104,10 +104,10 @@ def all_figures(
 ) -> dict[str, bytes]:
     """Every picture by file name; one confusion matrix a method."""
     figures = {
-        f"confusion-{_file_name(way.figures.method)}.{form}": confusion_figure(
-            evaluation, [way.figures.method], form
+        f"confusion-{_file_name(judged.figures.method)}.{form}": confusion_figure(
+            evaluation, [judged.figures.method], form
         )
-        for way in evaluation.ways
+        for judged in evaluation.methods
     }
     figures[f"vectors.{form}"] = vectors_figure(volumes, form)
     figures[f"convergence.{form}"] = convergence_figure(volumes, form)

@@ -21,17 +21,17 @@ from app.store.clips import arrays
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
 
-Way = Callable[[ClipRecord], Sequence[str]]
+Ranker = Callable[[ClipRecord], Sequence[str]]
 """Ids of all clips that pass the filter, the nearest first; the clip itself may be there."""
 
 
-def by_method(lib: Library, method: Method, wanted: ClipFilter | None) -> Way:
+def by_method(lib: Library, method: Method, filter: ClipFilter | None) -> Ranker:
     """The very ranking that searches use."""
     load = partial(lib.arrays.get_many, lib.store)
 
     def rank(clip: ClipRecord) -> Sequence[str]:
         query, itself = _query(lib, clip), frozenset({clip.id})
-        found = rank_by_example(lib.index, query, method, wanted or ClipFilter(), itself, load)
+        found = rank_by_example(lib.index, query, method, filter or ClipFilter(), itself, load)
         return list(found.ids)
 
     return rank
@@ -67,7 +67,7 @@ class Volumes:
             step()
         return cls(factors)
 
-    def by(self, method: Method) -> Way:
+    def by(self, method: Method) -> Ranker:
         """By D_dtw (eq. 7, smallest first) or by D_xcorr (eq. 6, largest first)."""
         compare = {
             Method.MSV_DTW: warping_distances,

@@ -63,7 +63,7 @@ class VolumeEvaluation:
 
 def judge_volumes(
     lib: Library,
-    wanted: ClipFilter | None = None,
+    filter: ClipFilter | None = None,
     *,
     classes: Sequence[str] | None = None,
     q: int = 2,
@@ -71,7 +71,7 @@ def judge_volumes(
     step: Callable[[], None] = lambda: None,
 ) -> VolumeEvaluation:
     """Of the classes told, or of the largest four. Raises NotEnoughLabels, BadField."""
-    labeled = read_labeled(lib, wanted)
+    labeled = read_labeled(lib, filter)
     some = {
         name: _some(labeled, name, MAX_PER_CLASS)
         for name in labeled.chosen(classes, HIDDEN_CLASSES)

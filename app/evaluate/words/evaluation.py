@@ -50,9 +50,9 @@ class WordExample:
     nearest: tuple[NearClip, ...]
 
 
-def judge_words(lib: Library, wanted: ClipFilter | None = None) -> WordEvaluation:
+def judge_words(lib: Library, filter: ClipFilter | None = None) -> WordEvaluation:
     """Figures of the word models beside the prior. Raises NotEnoughLabels."""
-    training = read_training_set(lib.store, ready_only(wanted))
+    training = read_training_set(lib.store, ready_only(filter))
 
     def channels(row: int) -> FloatArray:
         return symbol_features(body_track(load_motion(lib, training.clips[row])))
@@ -67,14 +67,14 @@ def judge_words(lib: Library, wanted: ClipFilter | None = None) -> WordEvaluatio
 
 
 def word_examples(
-    lib: Library, queries: Sequence[str] | None = None, wanted: ClipFilter | None = None
+    lib: Library, queries: Sequence[str] | None = None, filter: ClipFilter | None = None
 ) -> tuple[WordExample, ...]:
     """Table 2: distance ratios in the canonical space of motions, fitted on all labeled clips.
 
     queries: each of one or several words; by default the most frequent words.
     Raises BadField where no word of a query is carried, NotEnoughLabels.
     """
-    training = read_training_set(lib.store, ready_only(wanted))
+    training = read_training_set(lib.store, ready_only(filter))
     rows = [row for row, words in enumerate(training.label_sets) if words]
     label_sets = [training.label_sets[row] for row in rows]
     vocabulary = WordVocabulary.of(label_sets)

@@ -11,9 +11,9 @@ from app.services.training.training_set import read_training_set, ready_only
 from app.store.clips.filter import ClipFilter
 
 
-def judge_symbols(lib: Library, wanted: ClipFilter | None = None) -> SymbolFigures:
+def judge_symbols(lib: Library, filter: ClipFilter | None = None) -> SymbolFigures:
     """The figures of the ready clips' symbols. Raises NotEnoughLabels."""
-    return symbol_figures(read_training_set(lib.store, ready_only(wanted)).symbols)
+    return symbol_figures(read_training_set(lib.store, ready_only(filter)).symbols)
 
 
 def draw_symbols(found: SymbolFigures, form: Format) -> bytes:

@@ -141,10 +141,10 @@ def _judged(
         yield marks, predicted.follows is not None
 
 
-Way = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+Baseline = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
 
 
-def baseline(record: Synthesis, kind: str, trial: Trial, by: Way) -> FloatArray:
+def baseline(record: Synthesis, kind: str, trial: Trial, by: Baseline) -> FloatArray:
     """(1378,) the cell of a trial made in another way; only cells that are there are used."""
     own = record.tasks_of(trial.person)
     own.pop(trial.task)

@@ -88,7 +88,7 @@ class KeyposeThresholds:
 
 
 @dataclass(frozen=True, slots=True)
-class Lesson:
+class ThresholdGrid:
     """What every pair of thresholds makes of each example.
 
     counts: (examples, T1, T2, 3) true, found and correct.
@@ -114,11 +114,11 @@ class Lesson:
         return tuple(found)
 
 
-def lesson(examples: Sequence[Example], within: float = TOLERANCE) -> Lesson:
+def threshold_grid(examples: Sequence[Example], within: float = TOLERANCE) -> ThresholdGrid:
     """Try every pair on the grid; some 50 ms for half a minute of dance."""
     pairs = list(product(TRIED_T1, TRIED_T2))
     counts = np.array([_counts(example, pairs, within) for example in examples], dtype=np.int64)
-    return Lesson(counts.reshape(len(examples), len(TRIED_T1), len(TRIED_T2), 3))
+    return ThresholdGrid(counts.reshape(len(examples), len(TRIED_T1), len(TRIED_T2), 3))
 
 
 def curve_of_t1(

@@ -34,16 +34,16 @@ class AnnotatedClip:
     true: FloatArray
 
 
-def annotated_ids(store: Store, wanted: ClipFilter | None = None) -> tuple[str, ...]:
+def annotated_ids(store: Store, filter: ClipFilter | None = None) -> tuple[str, ...]:
     """The ready clips that carry an annotation and pass a filter."""
     with store.read() as tx:
-        return _annotated_ids(tx, wanted)
+        return _annotated_ids(tx, filter)
 
 
-def read_annotated(store: Store, wanted: ClipFilter | None = None) -> tuple[AnnotatedClip, ...]:
+def read_annotated(store: Store, filter: ClipFilter | None = None) -> tuple[AnnotatedClip, ...]:
     """The ready clips that carry an annotation and pass a filter, by name and id."""
     with store.read() as tx:
-        ids = _annotated_ids(tx, wanted)
+        ids = _annotated_ids(tx, filter)
         found = clips.get_many(tx, ids)
         named = keypose_annotations.get_many(tx, ids)
         tracks = {clip.id: body_track(read_motion(tx, clip)) for clip in found.values()}
@@ -60,6 +60,6 @@ def read_annotated(store: Store, wanted: ClipFilter | None = None) -> tuple[Anno
     )
 
 
-def _annotated_ids(tx: Tx, wanted: ClipFilter | None) -> tuple[str, ...]:
-    ready = set(clip_listing.list_ids(tx, ready_only(wanted)))
+def _annotated_ids(tx: Tx, filter: ClipFilter | None) -> tuple[str, ...]:
+    ready = set(clip_listing.list_ids(tx, ready_only(filter)))
     return tuple(clip_id for clip_id in keypose_annotations.annotated(tx) if clip_id in ready)

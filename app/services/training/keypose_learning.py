@@ -10,7 +10,13 @@ from app.analysis.energy.energy import EnergyMethod
 from app.analysis.keyposes.keyposes import find_candidates
 from app.errors import NotEnoughLabels
 from app.models.keyposes.matching import TOLERANCE, Counts, match, total
-from app.models.keyposes.thresholds import USUAL, Example, KeyposeThresholds, Lesson, lesson
+from app.models.keyposes.thresholds import (
+    USUAL,
+    Example,
+    KeyposeThresholds,
+    ThresholdGrid,
+    threshold_grid,
+)
 from app.services.training.annotated import AnnotatedClip
 
 NOBODY = "No ready clip carries keyposes that a person named."
@@ -30,9 +36,9 @@ def learn_keyposes(
     learned, figures = {}, {}
     for method in EnergyMethod:
         examples = examples_of(annotated, method)
-        taught = lesson(examples)
-        learned[method.value] = taught.learned()
-        figures[method.value] = _figures(examples, taught, groups)
+        grid = threshold_grid(examples)
+        learned[method.value] = grid.learned()
+        figures[method.value] = _figures(examples, grid, groups)
     return KeyposeThresholds(learned), _framed(figures, groups)
 
 
@@ -44,19 +50,21 @@ def examples_of(annotated: Sequence[AnnotatedClip], method: EnergyMethod) -> lis
     ]
 
 
-def told(counts: Counts) -> dict[str, Any]:
+def counts_document(counts: Counts) -> dict[str, Any]:
     """Counts with what follows from them, for JSON."""
     shares = {"precision": counts.precision, "recall": counts.recall, "f": counts.f}
     return asdict(counts) | shares
 
 
-def _figures(examples: Sequence[Example], taught: Lesson, groups: Sequence[str]) -> dict[str, Any]:
+def _figures(
+    examples: Sequence[Example], grid: ThresholdGrid, groups: Sequence[str]
+) -> dict[str, Any]:
     usual = total(
         match(example.candidates.times(USUAL.t1, USUAL.t2), example.true) for example in examples
     )
-    figures = {"usual": told(usual)}
+    figures = {"usual": counts_document(usual)}
     if len(set(groups)) > 1:
-        figures["learned"] = told(total(counts for _, counts in taught.held_out(groups)))
+        figures["learned"] = counts_document(total(counts for _, counts in grid.held_out(groups)))
     return figures
 
 

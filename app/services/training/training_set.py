@@ -89,22 +89,22 @@ class TrainingSet:
         return Described(self.vectors, self.samples, self.statistics)
 
 
-def ready_only(wanted: ClipFilter | None) -> ClipFilter:
+def ready_only(filter: ClipFilter | None) -> ClipFilter:
     """A filter that besides lets only ready clips pass, and none that we made ourselves: they
     would tell of the methods what the methods think."""
-    given = wanted or READY
+    given = filter or READY
     refused = (*given.not_source, SYNTHESIZED)
     return replace(given, state=READY.state, not_source=refused)
 
 
-def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
+def read_training_set(store: Store, filter: ClipFilter = READY) -> TrainingSet:
     """All clips that pass a filter, ready ones by default, in one snapshot.
 
     Synthesized clips are left out: nothing is to be learned from them.
     """
     with store.read() as tx:
         version = library.version(tx)
-        ids = sorted(clip_listing.list_ids(tx, wanted))
+        ids = sorted(clip_listing.list_ids(tx, filter))
         found = {name: usable_arrays.get_many(tx, ids, name) for name in NAMES}
         whole = [clip_id for clip_id in ids if all(clip_id in part for part in found.values())]
         records = clips.get_many(tx, whole)

@@ -28,7 +28,7 @@ def judged() -> RecognitionEvaluation:
 def test_all_that_can_be_judged_is(judged: RecognitionEvaluation) -> None:
     assert set(judged.held_out) == set(LeftOut)
     assert set(judged.takes) == {3, 1}
-    assert [one.method for one in judged.told] == list(QUICK)
+    assert [one.method for one in judged.label_given] == list(QUICK)
     assert judged.not_judged == {}
     assert all(seconds.fit >= 0 and seconds.probe > 0 for seconds in judged.seconds.values())
 
@@ -67,9 +67,9 @@ def test_no_person_spans_sources(judged: RecognitionEvaluation) -> None:
 
 
 def test_told_the_other_label_the_mean_motion_knows_more(judged: RecognitionEvaluation) -> None:
-    mean_motion = judged.told[1]
-    assert (mean_motion.told.person.value or 0) > (mean_motion.neither.person.value or 0)
-    assert mean_motion.told.person.of == 48
+    mean_motion = judged.label_given[1]
+    assert (mean_motion.given.person.value or 0) > (mean_motion.neither.person.value or 0)
+    assert mean_motion.given.person.of == 48
 
 
 def test_the_same_again(judged: RecognitionEvaluation) -> None:

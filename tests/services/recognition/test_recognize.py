@@ -14,7 +14,7 @@ from app.services.library.library import Library
 from app.services.recognition import recognize
 from app.services.recognition.recognize import METHODS, RecognizeQuery
 from app.services.training import models
-from app.services.training.errors_in_force import errors_in_force
+from app.services.training.active_errors import active_errors
 from app.store.jobs.record import JobKind, JobState
 from app.store.jobs.repository import list_jobs
 from tests.libraries import FindClip, settings_for, upload, work
@@ -105,7 +105,7 @@ def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
     strict = lib.models.recognizer(lib.store).model.person_calibration
     assert strict.error_rates()[0] == 0.0
     assert strict.threshold <= threshold
-    told = errors_in_force(lib, changed)
+    told = active_errors(lib, changed)
     assert told is not None
     person = told["person"]
     assert (person.threshold, person.false_acceptance) == (strict.threshold, 0.0)

@@ -24,7 +24,7 @@ class Errors:
     false_rejection: float
 
 
-def errors_in_force(lib: Library, record: ModelRecord) -> Mapping[str, Errors] | None:
+def active_errors(lib: Library, record: ModelRecord) -> Mapping[str, Errors] | None:
     """The errors by "person" and "task" at the false-accept rate that is set, or at the usual
     threshold; without a factor of which nothing was held out.
 
