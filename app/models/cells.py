@@ -1,9 +1,9 @@
-"""Cells: the takes of one task by one person, and what can be said of missing ones.
+"""Cells: the takes of one task by one person, and the prediction of missing cells.
 
-A library seldom has every person do every task. The missing cells are predicted by person
-and task effects added up, fitted by ridge regression: deterministic, never wild where few
-cells overlap. Iterating a low-rank N-mode model from there (EM) predicted held-out real
-cells less well, so we do not.
+A library seldom has every person do every task. A missing cell is predicted by the sum of a
+person effect and a task effect, fitted by ridge regression. This is deterministic and stable
+even if few cells overlap. Iterating a low-rank N-mode model from there (EM) predicted held-out
+real cells less well.
 """
 
 from __future__ import annotations
@@ -16,16 +16,17 @@ import numpy as np
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 EFFECT_RIDGE = 0.5
-"""Pull of an effect toward none, in cells; settles effects that no data tell apart."""
+"""Ridge penalty of an effect, in cells. It also decides between effects that the data cannot
+separate."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cells:
-    """Which clip is in which cell.
+    """The cell of each clip.
 
     persons, tasks: sorted labels; member: (clips,) cell of each clip, -1 without any label;
     person, task: (cells,) index of the label, -1 where not labeled; takes: (cells,).
-    A clip that lacks one of the labels is a cell of its own: its fellows may be anyone.
+    A clip that lacks one of the labels is a cell of its own.
     """
 
     persons: tuple[str, ...]
@@ -40,12 +41,12 @@ class Cells:
 
     @property
     def full(self) -> BoolArray:
-        """(cells,) whether both labels are there."""
+        """(cells,) whether the cell has both labels."""
         return (self.person >= 0) & (self.task >= 0)
 
 
 def find_cells(persons: Sequence[str | None], tasks: Sequence[str | None]) -> Cells:
-    """The cells of clips labeled `persons` and `tasks`, (clips,) each; None or "" is none."""
+    """The cells of clips with the labels `persons`, `tasks` (clips,); None or "" is no label."""
     person_names, person = _indexed(persons)
     task_names, task = _indexed(tasks)
     partial = (person < 0) | (task < 0)
@@ -69,8 +70,10 @@ def cell_means(points: FloatArray, cells: Cells) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class Effects:
-    """mean (d,) + persons (P, d) + tasks (T, d); errors: (full cells, d), each cell against
-    its prediction from all the others."""
+    """A cell's prediction is mean (d,) + its row of persons (P, d) + its row of tasks (T, d).
+
+    errors: (full cells, d), each cell minus its prediction from all other cells.
+    """
 
     mean: FloatArray
     persons: FloatArray
@@ -78,7 +81,7 @@ class Effects:
     errors: FloatArray
 
     def predict(self, person: IntArray, task: IntArray) -> FloatArray:
-        """(n, d) for the combinations `person`, `task`, indices (n,) each."""
+        """(n, d) predictions for the pairs `person`, `task`, label indices (n,) each."""
         return np.asarray(self.mean + self.persons[person] + self.tasks[task])
 
 

@@ -31,8 +31,8 @@ DIMENSIONS = 100
 """Coordinates of the sample mode."""
 
 MIN_SINGULAR = 0.005
-"""Relative cut-off of the pseudo-inverses of B_a and C_p: slices filled by completion are
-nearly of low rank, and inverting what is left would magnify noise."""
+"""Relative cut-off of the pseudo-inverses of B_a and C_p. Slices filled by completion have nearly
+low rank; without a cut-off the inverse would amplify noise."""
 
 MAX_CELLS = 20_000
 """Persons x tasks; the tensor of a larger library would not fit a small machine."""
@@ -41,7 +41,7 @@ RADIUS_SHARE = 95.0
 """Percentile of the training clips' distances that counts as near."""
 
 RADIUS_SLACK = 1.5
-"""Held-out takes lie further out than those of the fit."""
+"""Factor on the radius: held-out takes lie farther out than the takes of the fit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ class Multilinear:
         return _coordinates(basis, self.axes.project(sample))
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
-        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        """Arrays and JSON-able metadata for `from_arrays`."""
         people, actions, motions = self.svd.factors
         arrays = {
             "centre": self.axes.centre,
@@ -108,7 +108,7 @@ class Multilinear:
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> Multilinear:
-        """The record that to_arrays took apart. Raises ValueError on another version."""
+        """The model from the result of `to_arrays`. Raises ValueError on another version."""
         if meta["version"] != MULTILINEAR_VERSION:
             raise ValueError(f"multilinear model of version {meta['version']}")
         factors = (arrays["people"], arrays["actions"], arrays["motions"])
@@ -198,7 +198,7 @@ def recognize_multilinear(
         own = record.signature(record.aligned(sample, known_task), known_task)
         to_persons = np.linalg.norm(own - people, axis=1)
     elif record.task_means is not None:
-        # who does it is recognized without the timing, what is done with it
+        # the person is recognized without the timing, the task with it
         likely = int(to_tasks.argmin())
         point = record.axes.project(record.aligned(sample, record.tasks[likely]))
         to_persons = np.linalg.norm(record.svd.reconstruct()[:, likely] - point, axis=1)

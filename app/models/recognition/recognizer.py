@@ -1,10 +1,11 @@
-"""The default recognizer: which person does which task, or that it is someone or something new.
+"""The default recognizer: which person does which task, or whether the person or task is new.
 
-Clips are looked at in two ways (app.models.recognition.views), each brought to PCA coordinates
-and held against all hypotheses (app.models.recognition.hypotheses). Evidence of a label is the sum
-over the hypotheses that name it. Novelty weighs those that say "new" against those that do not; it
-separates new from known better than the distance to the nearest cell over the radius of that cell.
-Both are calibrated on clips, persons and tasks held out at fit.
+A clip has two views (app.models.recognition.views). Each is projected to PCA coordinates and
+compared with all hypotheses (app.models.recognition.hypotheses). The evidence of a label is the
+sum of the densities of its hypotheses. The novelty is the log ratio of the hypotheses that say
+"new" to the others; it separates new from known better than the distance to the nearest cell
+divided by the radius of that cell. Both are calibrated on clips, persons and tasks that are held
+out of the fit.
 """
 
 from __future__ import annotations
@@ -38,20 +39,23 @@ from app.numerics.principal_axes import principal_axes
 RECOGNIZER_VERSION = 3
 
 MOSTLY_REPEATED = 0.5
-"""Share of clips beside which there must be another of the same person at the same task for takes
-to count as repeated."""
+"""The takes of a library count as repeated if at least this share of its clips has another clip of
+the same person at the same task."""
 
 IMAGINED = 3
-"""Takes of each cell that are imagined, by which novelty is judged where takes are not repeated."""
+"""Simulated takes of each cell, by which novelty is calibrated if takes are not repeated."""
 
 _Arrays = dict[str, np.ndarray[Any, Any]]
 
 
 @dataclass(frozen=True, slots=True)
 class Recognizer:
-    """persons, tasks: sorted labels, to which indices elsewhere refer; sample, wide: the two
-    ways of looking, whose hypotheses are of the same kinds and labels in the same order;
-    persons_by_both: whether new persons are told by both (see Logs)."""
+    """A fitted recognizer.
+
+    persons, tasks: sorted labels; label indices refer to them. sample, wide: the two views;
+    their hypotheses have the same kinds and labels in the same order. persons_by_both: whether
+    both views decide that a person is new (see Logs).
+    """
 
     persons: tuple[str, ...]
     tasks: tuple[str, ...]
@@ -62,7 +66,8 @@ class Recognizer:
     task_calibration: Calibration
 
     def accepting(self, false_accept_rate: float) -> Recognizer:
-        """The same, calling something new known at this rate at most (of held-out clips)."""
+        """The same recognizer with the threshold at which at most this share (0..1) of new
+        held-out clips is called known."""
         return replace(
             self,
             person_calibration=self.person_calibration.at_false_acceptance(false_accept_rate),
@@ -70,7 +75,7 @@ class Recognizer:
         )
 
     def to_arrays(self) -> tuple[_Arrays, dict[str, Any]]:
-        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        """Arrays and JSON-able metadata for `from_arrays`."""
         arrays = self.sample.to_arrays("sample") | self.wide.to_arrays("wide")
         meta: dict[str, Any] = {"version": RECOGNIZER_VERSION}
         meta |= {"persons": list(self.persons), "tasks": list(self.tasks)}
@@ -83,7 +88,7 @@ class Recognizer:
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> Recognizer:
-        """The record that to_arrays took apart. Raises ValueError on another version."""
+        """The recognizer from the result of `to_arrays`. Raises ValueError on another version."""
         if meta["version"] != RECOGNIZER_VERSION:
             raise ValueError(f"recognizer of version {meta['version']}")
         return cls(
@@ -104,7 +109,7 @@ def fit_recognizer(
     groups: Sequence[str] | None = None,
     sample_length: int = SAMPLE_LENGTH,
 ) -> Recognizer:
-    """Fit on full samples with their labels, None where there is none.
+    """Fit on full samples with their labels (None: no label).
 
     samples: (clips, 1762), motion samples of `sample_length` (1250) each followed by the clip's
     wide motion vector; groups: (clips,) clips of one recording share a value and are held out
@@ -136,9 +141,10 @@ def recognize(
     known_person: str | None = None,
     known_task: str | None = None,
 ) -> Recognition:
-    """Who does what in one full sample (1762,), given what the asker knows.
+    """Recognize who does what in one full sample (1762,).
 
-    A known label that the library lacks is taken at its word: someone, or something, new.
+    known_person, known_task: the label that the caller knows. A known label that the library
+    does not have counts as a new person or task.
     """
     return recognize_many(record, np.asarray(sample)[None], known_person, known_task)[0]
 
@@ -172,7 +178,7 @@ def _answers(
     calibration: Calibration,
     known: str | None,
 ) -> list[Answer]:
-    """From log densities (n, h) by which labels are ranked and by which is told what is new."""
+    """Answers from two arrays of log densities (n, h): one ranks labels, one decides novelty."""
     if known is not None or not names:
         return [given(known or "", names)] * len(ranking)
     new = newness(novelty, label)
@@ -195,8 +201,11 @@ def _calibrations(
     views: tuple[View, View],
     persons_by_both: bool,
 ) -> tuple[Calibration, Calibration]:
-    """For persons and for tasks, from rounds that hold out clips, persons and tasks, and from
-    further takes as the `views` on all clips imagine them."""
+    """The calibrations for persons and for tasks.
+
+    They come from rounds that hold out clips, persons and tasks, and from simulated takes of the
+    `views` of all clips.
+    """
     of_persons, of_tasks = [], []
     names = [tuple(sorted({label for label in labels if label})) for labels in (persons, tasks)]
     for held, train, probe in rounds(persons, tasks, groups):
@@ -210,11 +219,12 @@ def _calibrations(
             new = newness(logs.new_person, h.person)
             ranked = logs.ranking, h.person, seen.persons
             of_persons.append(_held_out(*ranked, new, who, names[0], again))
-        # A stranger's walk is a walk: persons held out count as known tasks.
+        # the task of a new person can be known: held-out persons count as known tasks
         new = newness(logs.new_task, h.task)
         of_tasks.append(_held_out(logs.ranking, h.task, seen.tasks, new, what, names[1], again))
-    # Judged by clips of whom and what were recorded together, at the cost of strangers: unless a
-    # gap parts new tasks from known ones, their walk is called unknown, with `walk` the best.
+    # The error rates are those of clips whose person and task were recorded together. A task of a
+    # new person may then be called unknown (with the right best candidate), unless there is a gap
+    # between new and known tasks.
     sample, h = (view.hypotheses for view in views)
     further = Seen(*(each.further_takes(IMAGINED, MAX_PROBES) for each in (sample, h)))
     imagined = Logs.under(sample, h, further, persons_by_both=persons_by_both)
@@ -233,7 +243,7 @@ def _held_out(
     names: tuple[str, ...],
     again: BoolArray,
 ) -> _HeldOut:
-    """What a round said of its labeled probes; labels not `seen` have no evidence."""
+    """The results of a round for its labeled probes; labels that are not `seen` get no evidence."""
     has = np.array([bool(name) for name in truth], dtype=bool)
     if not seen or not has.any():
         return _nothing(len(names))

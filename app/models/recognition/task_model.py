@@ -40,7 +40,7 @@ LINKS: dict[JointRole, int] = {
     **dict.fromkeys((JointRole.LEFT_KNEE, JointRole.RIGHT_KNEE), 2),
     **dict.fromkeys((JointRole.LEFT_FOOT, JointRole.RIGHT_FOOT), 3),
 }
-"""Links from the body's centre: the paper gives the waist one."""
+"""Number of links from the center of the body; the paper gives the waist one."""
 
 MAX_AXES = 200
 """Columns of S_position; the motions of a paper's library span fewer."""
@@ -56,7 +56,7 @@ class Reading(StrEnum):
 
 
 def link_weights() -> FloatArray:
-    """(13,) W of eq. 14 in SUN_ROLES order: by number of links to the body's centre; sum 1."""
+    """(13,) W of eq. 14 in SUN_ROLES order, by the number of links to the body's center; sum 1."""
     links = np.array([LINKS[role] for role in SUN_ROLES], dtype=np.float64)
     return np.asarray(links / links.sum())
 
@@ -96,7 +96,7 @@ class TaskModel:
         return _by_joint(points @ position @ position.T @ self.axes.axes.T)
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
-        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        """Arrays and JSON-able metadata for `from_arrays`."""
         position, people, tasks = self.svd.factors
         arrays = {
             "centre": self.axes.centre,
@@ -111,7 +111,7 @@ class TaskModel:
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> TaskModel:
-        """The record that to_arrays took apart."""
+        """The model from the result of `to_arrays`."""
         modes = (arrays["position_mode"], arrays["people_mode"], arrays["task_mode"])
         return cls(
             tuple(meta["persons"]),
@@ -128,12 +128,13 @@ def fit_task_model(
     tasks: Sequence[str | None],
     ranks: tuple[int | None, int | None, int | None] = (None, None, None),
 ) -> TaskModel:
-    """Fit on motions (n, samples, 13, 3) in the body frame; those without both labels are left
-    out, takes of one cell are averaged.
+    """Fit on motions (n, samples, 13, 3) in the body frame.
+
+    Motions without both labels are left out; the takes of one cell are averaged.
 
     Cells that nobody recorded are completed for the factorization (app.models.cells), and never
     compared with a probe. ranks: columns kept of S_position, S_people and S_task, None for all.
-    Raises NotEnoughLabels without a cell, or with too many.
+    Raises NotEnoughLabels without a cell, or with more than MAX_CELLS cells.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
     cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
