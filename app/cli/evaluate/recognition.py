@@ -20,7 +20,7 @@ Methods = Annotated[
     list[str] | None,
     typer.Option(
         "--method",
-        help=f"Judge this one; may be repeated. One of {', '.join(evaluate.RECOGNISERS)}.",
+        help=f"Judge this one; may be repeated. One of {', '.join(evaluate.RECOGNIZERS)}.",
     ),
 ]
 Rate = Annotated[

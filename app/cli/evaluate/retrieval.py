@@ -138,7 +138,8 @@ def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
     for judged in found.methods:
         if judged.figures.method in retrieval_pictures.shown_methods(found):
             typer.echo(
-                f"\nWhat the {found.k} nearest are by {judged.figures.method}, % (figure 8):\n"
+                f"\nTrue classes, and classes of the {found.k} nearest clips by"
+                f" {judged.figures.method}, % (figure 8):\n"
             )
             print_confusion(found.classes, judged.confusion)
     print_text("\n" + "\n".join(_remarks(found, volumes)))

@@ -1,4 +1,4 @@
-"""How well persons and tasks are recognized on clips that the models have not seen."""
+"""Held-out figures of recognition: persons and tasks on clips that the models have not seen."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ _CURVE = ("threshold", "false_acceptance", "false_rejection")
 
 
 class Clips(NamedTuple):
-    """Training clips: samples (clips, 1250), or what else the method looks at; labels and groups
-    (clips,) each."""
+    """Training clips: samples (clips, 1250), or of another width if the method needs it; labels
+    and groups (clips,) each."""
 
     samples: FloatArray
     persons: Labels
@@ -49,14 +49,14 @@ def held_out_recognition_figures(
     *,
     wide: FloatArray | None = None,
 ) -> dict[str, dict[str, float]]:
-    """Shares recognized, each clip by a model of the other folds; known factors not told.
+    """Shares of recognized clips; each clip is judged by a model of the other folds.
 
-    samples: (clips, 1250); wide: (clips, 512) wide motion vectors, at which the default looks
-    too; groups: (clips,) clips of one recording share a value, and a fold.
+    samples: (clips, 1250); wide: (clips, 512) wide motion vectors, for the default method;
+    groups: (clips,) clips of one recording share a value and a fold. No label is given.
     Returns for "default", "multilinear", "perera", "pca" (flat PCA) and "prior" (the most frequent
     label of the training folds) the shares "person", "task" and "both" over the clips that have
-    the label: the best candidate counts, whether called known or not; and "clips", how many have
-    both labels. A method that cannot be fitted is left out.
+    the label, and "clips", the number with both labels. The best candidate counts, even if the
+    method calls it new. A method that cannot be fitted is left out.
     """
     seen = samples if wide is None else full_samples(samples, wide)
     default = _figures({"default": _default}, seen, persons, tasks, groups, folds, seed)
@@ -77,7 +77,7 @@ def signature_figures(
     folds: int = FOLDS,
     seed: int = 0,
 ) -> dict[str, dict[str, float]]:
-    """The same of "signatures" and "pca" on angle samples (clips, 642), beside "prior"."""
+    """The same figures of "signatures", "pca" and "prior" on angle samples (clips, 642)."""
     methods = {"signatures": _signatures, "pca": _flat_pca, "prior": _prior}
     return _figures(methods, angles, persons, tasks, groups, folds, seed)
 
@@ -106,9 +106,9 @@ def unknown_figures(record: Recognizer | TensorRecognizer) -> dict[str, dict[str
     """False acceptance, false rejection, balanced accuracy and area under the curve for "person"
     and "task", and "curve", from which a false-accept rate can be chosen.
 
-    From the clips, persons and tasks that were held out when `record` was fitted; the
-    threshold was chosen on them, so these are a little too good. Where takes were hardly
-    repeated, what is known are further takes as the recognizer imagines them.
+    They come from the clips, persons and tasks that were held out when `record` was fitted. The
+    threshold was chosen on them too, so the figures are slightly too good. If takes were hardly
+    repeated, the known clips are simulated takes.
     """
     figures: dict[str, dict[str, Any]] = {}
     for name in ("person", "task"):
@@ -176,7 +176,7 @@ def _signatures(clips: Clips, probes: FloatArray) -> list[Recognition]:
 
 
 def _perera(clips: Clips, probes: FloatArray) -> list[Recognition]:
-    # what it calls unknown is not asked here: what that takes is left out
+    # the decision on unknown labels is not needed here, so its costly calibration is left out
     return recognize_by_tensor(uncalibrated(clips.samples, clips.persons, clips.tasks), probes)
 
 

@@ -1,9 +1,9 @@
-"""How well words are predicted (Takano, section 3), held out and in-sample.
+"""Figures of word prediction (Takano, section 3), held out and in-sample.
 
-Held out, every method is fitted on all folds but one and scored on that one; in-sample, as
-the paper did for retrieval, it is scored on the very clips that it was fitted on. Judged are
-the words of a clip (top-3 recognition), clips for a single word (F where recall = precision
-over all words at once, fig. 7) and clips for the label set of each clip (MAP, eq. 20).
+Held out, a method is fitted on all folds but one and scored on that one. In-sample, as in the paper
+for retrieval, it is scored on the clips of its fit. The figures are of the words of a clip (top-3
+recognition), of clips for a single word (F at recall = precision over all words, fig. 7), and of
+clips for the label set of each clip (MAP, eq. 20).
 """
 
 from __future__ import annotations
@@ -42,20 +42,20 @@ from app.numerics.hmm.model import GaussianHMM
 
 FOLDS = 5
 MAX_CLIPS = 1000
-"""Larger libraries are judged on a random part of so many clips."""
+"""Larger libraries are judged on a random subset of this many clips."""
 
 RECALLS = np.linspace(0.0, 1.0, 21)
 
 MIN_RECORDINGS = 5
-"""That carry a word, for it to be judged by itself: about one a fold."""
+"""Recordings with a word that are needed to judge the word by itself: about one in each fold."""
 
 TOP_WORDS = 3
-"""Takano counts a clip as recognized when one of its words is among so many."""
+"""Takano counts a clip as recognized if one of its words is among this many best words."""
 
 
 @dataclass(frozen=True, slots=True)
 class WordFigures:
-    """Figures of one method, each 0..1; precision: of single words at the recalls RECALLS."""
+    """Figures of one method, each 0..1; precision: for single words, at the recalls RECALLS."""
 
     method: str
     top_3_recognition: float
@@ -69,7 +69,7 @@ class WordFigures:
 @dataclass(frozen=True, slots=True)
 class Reliability:
     """Expected calibration error and Brier score of scores for single words, and for whole
-    label sets; 0 is perfect. prior_brier: of the words' frequency.
+    label sets; 0 is perfect. prior_brier: the Brier score of the words' frequencies.
     """
 
     word_error: float
@@ -81,10 +81,10 @@ class Reliability:
 
 @dataclass(frozen=True, slots=True)
 class JudgedWord:
-    """Held-out figures of clips for one word; clips, recordings: that carry it.
+    """Held-out figures of one word; clips, recordings: the numbers that carry it.
 
-    too_rare: fewer recordings than MIN_RECORDINGS, so that its figures are mostly chance;
-    they count in the figures over all words.
+    too_rare: it is in fewer than MIN_RECORDINGS recordings, so its own figures are mostly
+    chance. The figures over all words include it.
     """
 
     word: str
@@ -98,10 +98,12 @@ class JudgedWord:
 
 @dataclass(frozen=True, slots=True)
 class WordEvaluation:
-    """figures: held out, one a method; on so many clips, words and folds; in_sample: as the
-    paper's; reliability: of the held-out scores of DEFAULT and CCA_SCORE as probabilities;
-    correlations: canonical ones of all clips by kind of inverse, falling; by_word: the default,
-    held out.
+    """Figures of word prediction.
+
+    figures: held out, one for each method; clips, words, folds: their numbers; in_sample: as in
+    the paper; reliability: of the held-out scores of DEFAULT and CCA_SCORE as probabilities;
+    correlations: canonical correlations of all clips by kind of inverse, falling; by_word: of
+    the default method, held out.
     """
 
     figures: tuple[WordFigures, ...]
@@ -132,14 +134,15 @@ def held_out_word_figures(
     sequence: Callable[[int], FloatArray] | None = None,
     seed: int = 0,
 ) -> WordEvaluation:
-    """Figures of the prior (word frequency), the default word model and the cca mode, which
-    stands in several forms (see word_methods).
+    """Figures of the prior (word frequency), the default word model, and the variants of the cca
+    mode (see word_methods).
 
-    symbols: N; statistics: (N, p); label_sets: N; groups: N, equal for files of one
-    recording (see folds.recording_of); sequence: the channels (T, D) of the motion at a row, of
-    which its symbol was made; without it, recognition through the most likely symbol is left
-    out. Clips without words are left out.
-    Raises NotEnoughLabels where there are too few clips to hold some out.
+    symbols: N; statistics: (N, p); label_sets: N; groups: N, equal for files of one recording
+    (see folds.recording_of); sequence: a function from a row to the channels (T, D) of its
+    motion. Without it, recognition through the most likely symbol is left out. Clips without
+    words are left out.
+
+    Raises NotEnoughLabels if there are too few clips to hold some out.
     """
     chosen = _chosen(label_sets, seed)
     labels = [label_sets[row] for row in chosen]
@@ -150,7 +153,7 @@ def held_out_word_figures(
     distances = symbol_distances(own_symbols, own_symbols)
     likelihoods = None
     if sequence is not None:
-        channels = sequence  # of the rows that were chosen
+        channels = sequence  # the function for the chosen rows
         likelihoods = likelihoods_of_symbols(
             own_symbols, distances, lambda row: channels(int(chosen[row]))
         )
@@ -184,7 +187,7 @@ def held_out_word_figures(
 
 
 def _chosen(label_sets: Sequence[Sequence[str]], seed: int) -> IntArray:
-    """Rows of labeled clips, sorted; at most MAX_CLIPS."""
+    """Sorted rows of at most MAX_CLIPS labeled clips."""
     labeled = np.array([row for row, labels in enumerate(label_sets) if labels], dtype=np.int64)
     return np.sort(np.random.RandomState(seed).permutation(labeled)[:MAX_CLIPS])
 
@@ -192,11 +195,14 @@ def _chosen(label_sets: Sequence[Sequence[str]], seed: int) -> IntArray:
 def _check_size(clips: LabeledClips, folds: int) -> None:
     training = len(clips.fold) - int(np.bincount(clips.fold, minlength=1).max(initial=0))
     if folds < 2 or training < MIN_CLIPS:
-        raise NotEnoughLabels(f"{len(clips.fold)} labelled clips are too few to hold some out.")
+        raise NotEnoughLabels(f"{len(clips.fold)} labeled clips are too few to hold some out.")
 
 
 def _tables(clips: LabeledClips, parts: Sequence[tuple[IntArray, IntArray]]) -> dict[str, _Tables]:
-    """By method; parts: rows to fit on and rows to score, which together are all."""
+    """Score tables by method; parts: pairs of rows to fit on and rows to score.
+
+    The rows to score of all parts together are all rows.
+    """
     count, vocabulary = clips.labels.shape
     tables: dict[str, _Tables] = {}
     for training, held in parts:
@@ -249,7 +255,7 @@ def _reliability(tables: dict[str, _Tables], method: str, labels: FloatArray) ->
 def _by_word(
     singles: FloatArray, clips: LabeledClips, words: Sequence[str]
 ) -> tuple[JudgedWord, ...]:
-    """The most carried first; singles: (V, N)."""
+    """The figures of each word, the most frequent first; singles: (V, N)."""
     found = []
     for word, scores, carries in zip(words, singles, clips.labels.T > 0.0, strict=True):
         recordings = len({clips.groups[row] for row in np.flatnonzero(carries)})

@@ -129,7 +129,7 @@ def _cosines(left: FloatArray, right: FloatArray) -> FloatArray:
 
 
 def _regress(inputs: FloatArray, outputs: FloatArray, ridge: float) -> FloatArray:
-    """(k, k) T minimising |outputs - inputs T|^2 under the ridge (eq. 15)."""
+    """(k, k) T minimizing |outputs - inputs T|^2 under the ridge (eq. 15)."""
     normal = inputs.T @ inputs
     if ridge == 0.0:
         return np.asarray(np.linalg.lstsq(inputs, outputs, rcond=None)[0])

@@ -20,12 +20,12 @@ from app.numerics.kernel_ridge import KernelRidge, fit_kernel_ridge, refit_kerne
 WORD_MODEL_VERSION = 1
 
 MAX_DEVIATIONS = 10.0
-"""Standardised statistics saturate here: one broken clip must not stretch the kernel."""
+"""Standardized statistics saturate here: one broken clip must not stretch the kernel."""
 
 
 @dataclass(frozen=True, slots=True)
 class WordModel:
-    """mean, scale: (p,) standardise the statistics; ridge: maps them to V outputs."""
+    """mean, scale: (p,) standardize the statistics; ridge: maps them to V outputs."""
 
     mean: FloatArray
     scale: FloatArray
@@ -33,7 +33,7 @@ class WordModel:
 
     def outputs(self, statistics: FloatArray) -> FloatArray:
         """(N, V) of the words for clips' `statistics` (N, p): about 0..1, not limited to it."""
-        return self.ridge.predict(standardise(statistics, self.mean, self.scale))
+        return self.ridge.predict(standardize(statistics, self.mean, self.scale))
 
     def predict(self, statistics: FloatArray) -> FloatArray:
         """(N, V) the same, limited to 0..1."""
@@ -78,7 +78,7 @@ def fit_word_model(statistics: FloatArray, labels: FloatArray, *, seed: int = 0)
     rows = np.asarray(statistics, dtype=np.float64)
     mean, scale = rows.mean(axis=0), rows.std(axis=0)
     scale = np.where(scale > 1e-6, scale, 1.0)  # a channel that never varies says nothing
-    ridge = fit_kernel_ridge(standardise(rows, mean, scale), labels, seed=seed)
+    ridge = fit_kernel_ridge(standardize(rows, mean, scale), labels, seed=seed)
     return WordModel(mean, scale, ridge)
 
 
@@ -86,12 +86,12 @@ def refit_word_model(
     like: WordModel, statistics: FloatArray, labels: FloatArray, *, seed: int = 0
 ) -> WordModel:
     """On some of the clips (n >= 1) that another was fitted on: its kernel and scales kept."""
-    rows = standardise(statistics, like.mean, like.scale)
+    rows = standardize(statistics, like.mean, like.scale)
     ridge = refit_kernel_ridge(like.ridge, rows, labels, seed=seed)
     return WordModel(like.mean, like.scale, ridge)
 
 
-def standardise(statistics: FloatArray, mean: FloatArray, scale: FloatArray) -> FloatArray:
+def standardize(statistics: FloatArray, mean: FloatArray, scale: FloatArray) -> FloatArray:
     """(N, p) `statistics` about `mean` in units of `scale`, limited to MAX_DEVIATIONS."""
     deviations = (np.asarray(statistics, dtype=np.float64) - mean) / scale
     return np.clip(deviations, -MAX_DEVIATIONS, MAX_DEVIATIONS)

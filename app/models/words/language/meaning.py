@@ -15,7 +15,7 @@ MAX_WORDS = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Neighbour:
+class Neighbor:
     """A word of the library and how near it is in meaning, 0..1."""
 
     word: str
@@ -24,7 +24,7 @@ class Neighbour:
 
 def neighbors(
     word: str, library: Iterable[str], related: Mapping[str, Mapping[str, float]]
-) -> tuple[Neighbour, ...]:
+) -> tuple[Neighbor, ...]:
     """The words of the library nearest to a normalized `word` that it lacks, best first.
 
     library: its words; related: those that WordNet knows, by foreign word (wordnet). Our
@@ -37,6 +37,6 @@ def neighbors(
             found = {one: near for one, near in related.get(form, {}).items() if one in ours}
         best = max(found.values(), default=0.0)
         if best >= MIN_LIKENESS:
-            near = [Neighbour(one, near) for one, near in found.items() if near >= best - WITHIN]
+            near = [Neighbor(one, near) for one, near in found.items() if near >= best - WITHIN]
             return tuple(sorted(near, key=lambda n: (-n.likeness, n.word))[:MAX_WORDS])
     return ()

@@ -1,4 +1,4 @@
-"""Neighbours in meaning from WordNet, for words that our own lexicon lacks (extra `words`).
+"""Neighbors in meaning from WordNet, for words that our own lexicon lacks (extra `words`).
 
 Loading WordNet takes seconds and some 350 MB, so it is done when a library is fitted, in the
 fit's own process, and only for words that were not looked up before. What is kept is a table
