@@ -1,12 +1,12 @@
-"""Stick figures that move: an SVG animated by itself (SMIL), without a script.
+"""Animated stick figures as SVG with SMIL animation, without a script.
 
-Any page can show it as an image, under any content security policy, and any browser opens it
-as a file. A viewer that knows no SMIL shows the first frame. Several figures stand side by
-side, in one time, seen from one side and in one scale, as in Perera 2009, fig. 12.
+Any page can show the SVG as an image, under any content security policy, and any browser opens it
+as a file. A viewer without SMIL shows the first frame. Several figures are side by side, with the
+same time, direction and scale, as in Perera 2009, fig. 12.
 
-The side is the one from which most is seen to move. Who stays in place is seen by a camera
-that stands still; who goes far is followed, and the marks on the floor, half a meter apart,
-pass by. The bar below fills as time goes.
+The direction is the one that shows most of the movement. If the body stays in place, the camera
+does not move. Otherwise it follows the body, and marks on the floor, half a meter apart, pass by.
+The bar at the bottom shows the time.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from app.services.figures.camera import HEIGHT, MARGIN, WIDTH, Camera, Figure, c
 from app.services.figures.stick_figure import GROUND, LEFT, PAPER, RIGHT, TRUNK, color, limbs, text
 
 RATE = 15.0
-"""Frames a second; browsers draw straight lines in time between them."""
+"""Frames per second; browsers interpolate linearly between them."""
 MAX_FRAMES = 1200
-"""Of one picture; longer motions have fewer frames a second."""
+"""Largest number of frames of a picture; longer motions have fewer frames per second."""
 MARKS_APART = 0.5
 """Meters."""
 MAX_MARKS = 400
@@ -34,7 +34,7 @@ BAR = 4
 
 
 def animated_svg(figures: Sequence[Figure], rate: float, title: str) -> str:
-    """An endless animation of figures of as many frames each, `rate` Hz, side by side.
+    """An endless animation of figures side by side; all have the same frames, at `rate` Hz.
 
     Raises ValueError without a figure or a frame.
     """
@@ -62,22 +62,22 @@ def animated_svg(figures: Sequence[Figure], rate: float, title: str) -> str:
 
 
 class _Time:
-    """How long one round takes."""
+    """Makes animations with the duration of one round."""
 
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
 
     def animate(self, attribute: str, values: Sequence[str]) -> str:
-        """An attribute that takes values at equal times; nothing where nothing changes."""
-        told = self._told(values)
-        return told and f'<animate attributeName="{attribute}" {told}/>'
+        """Animates an attribute with values at equal intervals; empty if they do not change."""
+        timing = self._timing(values)
+        return timing and f'<animate attributeName="{attribute}" {timing}/>'
 
     def move(self, values: Sequence[str]) -> str:
-        """A translation that takes values at equal times."""
-        told = self._told(values)
-        return told and f'<animateTransform attributeName="transform" type="translate" {told}/>'
+        """Animates a translation with values at equal intervals; empty if they do not change."""
+        timing = self._timing(values)
+        return timing and f'<animateTransform attributeName="transform" type="translate" {timing}/>'
 
-    def _told(self, values: Sequence[str]) -> str:
+    def _timing(self, values: Sequence[str]) -> str:
         if self._seconds <= 0 or len(set(values)) < 2:
             return ""
         listed = ";".join(values)
@@ -114,7 +114,7 @@ def _head(figure: Figure, points: FloatArray, camera: Camera, time: _Time) -> st
 
 
 def _floor(figure: Figure, camera: Camera, time: _Time) -> str:
-    """The floor with its marks, which pass by where the camera goes along."""
+    """The floor with its marks, which pass by if the camera follows the body."""
     passed = camera.passed(figure)
     reach = 0.5 * WIDTH / camera.scale
     first, last = passed.min() + camera.center - reach, passed.max() + camera.center + reach

@@ -1,4 +1,4 @@
-"""Thresholds of keyposes from the clips that people annotated, each method its own."""
+"""Learns the keypose thresholds of each energy method from clips that people annotated."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from app.models.keyposes.thresholds import (
 )
 from app.services.training.annotated import AnnotatedClip
 
-NOBODY = "No ready clip carries keyposes that a person named."
+NOBODY = "No ready clip has keyposes that a person annotated."
 
 
 def learn_keyposes(
     annotated: Sequence[AnnotatedClip],
 ) -> tuple[KeyposeThresholds, dict[str, Any]]:
-    """Thresholds under which most of what people named is found, and figures as JSON.
+    """Learn the thresholds that find the annotated keyposes best; returns figures as JSON too.
 
-    Figures by method: thresholds `learned` on the other recordings beside the `usual` ones.
-    Raises NotEnoughLabels.
+    Figures by method: of the thresholds `learned` from the other recordings, and of the `usual`
+    ones. Raises NotEnoughLabels without annotated clips.
     """
     if not annotated:
         raise NotEnoughLabels(NOBODY)
@@ -43,7 +43,7 @@ def learn_keyposes(
 
 
 def examples_of(annotated: Sequence[AnnotatedClip], method: EnergyMethod) -> list[Example]:
-    """The candidates of each clip by that energy, with what is true."""
+    """The candidates of each clip by the energy method, with the annotated times."""
     return [
         Example(find_candidates(clip.track, method=method, beats=clip.beats), clip.true)
         for clip in annotated
@@ -51,7 +51,7 @@ def examples_of(annotated: Sequence[AnnotatedClip], method: EnergyMethod) -> lis
 
 
 def counts_document(counts: Counts) -> dict[str, Any]:
-    """Counts with what follows from them, for JSON."""
+    """The counts with precision, recall and F, for JSON."""
     shares = {"precision": counts.precision, "recall": counts.recall, "f": counts.f}
     return asdict(counts) | shares
 
@@ -71,5 +71,5 @@ def _figures(
 def _framed(figures: dict[str, Any], groups: Sequence[str]) -> dict[str, Any]:
     framed = {"clips": len(groups), "tolerance": TOLERANCE, "methods": figures}
     if len(set(groups)) < 2:
-        framed["reason"] = "Thresholds can be held out from two annotated recordings on."
+        framed["reason"] = "Held-out figures need two annotated recordings."
     return framed

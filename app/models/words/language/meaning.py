@@ -1,4 +1,4 @@
-"""A word that no clip carries finds its neighbors in meaning (DESIGN 6, Words)."""
+"""Finds words of the library that are similar in meaning to a word that no clip carries."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from app.models.words.language.lexicon import is_known, likeness
 
 MIN_LIKENESS = 0.5
 WITHIN = 0.05
-"""Of the best: words of the library that are hardly less alike are used too."""
+"""Words whose likeness is at most this much below the best are used too."""
 MAX_WORDS = 5
 
 
 @dataclass(frozen=True, slots=True)
 class Neighbor:
-    """A word of the library and how near it is in meaning, 0..1."""
+    """A word of the library and its likeness in meaning, 0..1."""
 
     word: str
     likeness: float
@@ -25,10 +25,10 @@ class Neighbor:
 def neighbors(
     word: str, library: Iterable[str], related: Mapping[str, Mapping[str, float]]
 ) -> tuple[Neighbor, ...]:
-    """The words of the library nearest to a normalized `word` that it lacks, best first.
+    """The words of the library that are nearest to a normalized `word`, the best first.
 
-    library: its words; related: those that WordNet knows, by foreign word (wordnet). Our
-    lexicon comes first where it says anything. Empty where nothing is near.
+    library: its words; related: WordNet's likeness by foreign word (see `wordnet`). Our lexicon
+    has priority. The result is empty if no word is near.
     """
     ours = tuple(library)
     for form in (word, *base_forms(word)):
