@@ -1,7 +1,7 @@
-"""How good the methods are on a library's own labels: the figures of the papers.
+"""Judges the methods on a library's own labels with the figures of the papers.
 
-Retrieval goes through the very ranking that searches use. Words and recognition are held
-out: no clip is judged by a model that has seen it, or another file of its recording.
+Retrieval uses the same rankings as searches. Words and recognition are held out: no clip is judged
+by a model that has seen it, or another file of its recording.
 """
 
 from app.evaluate.keyposes.evaluation import (

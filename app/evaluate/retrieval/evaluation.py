@@ -19,25 +19,26 @@ from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
 
 K = 20
-"""Of the paper: so many of the nearest are looked at."""
+"""Number of nearest clips in the paper's figures."""
 HIDDEN_CLASSES = 4
-"""Of the paper's experiment 1: walk, run, jump, kick."""
+"""Number of classes in the paper's experiment 1: walk, run, jump, kick."""
 SUNS = (Method.MSV_DTW, Method.MSV_XCORR)
 JUDGED = tuple(method for method in Method if not method.value.startswith("metric-"))
-"""A metric that was learned from the very labels would be judged by what it was told."""
+"""All methods except the metrics, which are learned from the same labels."""
 MAX_QUERIES = 1000
-"""Each asks the whole library by every method; more take hours and change no figure."""
+"""Largest number of queries. Each ranks the whole library by each method; more take hours and do
+not change the figures."""
 
 Progress = Callable[[int, int], None]
-"""Told after each step: done, in all."""
+"""Called after each step with the number of steps done and the total."""
 
 
 @dataclass(frozen=True, slots=True)
 class RetrievalFigures:
-    """Query by example with one method; relevant is what carries the query's task.
+    """Figures of query by example with one method; clips with the query's task are relevant.
 
     nearest: share of queries whose nearest clip is relevant; precision_at_4, precision_at_20
-    and mean_average_precision: means over the queries; queries: how many asked.
+    and mean_average_precision: means over the queries; queries: their number.
     """
 
     method: str
@@ -68,12 +69,12 @@ class JudgedMethod:
 
 @dataclass(frozen=True, slots=True)
 class RetrievalEvaluation:
-    """What `kinedex evaluate retrieval` tells.
+    """The results of `kinedex evaluate retrieval`.
 
-    ways: by method; chosen: the classes hidden in the mixture of all `mixture` labeled
-    clips; classes: (C,) of the confusion; k: how many of the nearest both look at;
-    unlabeled, alone: clips without a task, and those whose task no other recording carries
-    (they ask nothing, but stand in the mixture).
+    methods: results by method; chosen: the classes hidden in the mixture of all `mixture`
+    labeled clips; classes: (C,) of the confusion matrix; k: number of nearest clips in both
+    experiments; unlabeled: number of clips without a task; alone: number of clips whose task is
+    in no other recording (they are in the mixture, but are not queries).
     """
 
     methods: tuple[JudgedMethod, ...]
@@ -96,12 +97,12 @@ def judge_retrieval(
     most_queries: int = MAX_QUERIES,
     progress: Progress | None = None,
 ) -> RetrievalEvaluation:
-    """Clips that pass the filter ask for the others, by each method.
+    """Judge each method with the clips that pass the filter as queries for each other.
 
-    Sun's two are judged with q = 1 too, and with a threshold eta > 0 (body lengths) with
-    both q again. classes: those of table 1, the largest four where None. Another file of the
-    query's own recording is neither right nor wrong, nor is a clip without a task.
-    Raises NotEnoughLabels, BadField for a class that cannot be judged or a wrong number.
+    Sun's two methods are also judged with q = 1, and with a threshold eta > 0 (body lengths) with
+    both q again. classes: those of table 1, None for the largest four. Other files of the query's
+    recording, and clips without a task, are ignored. Raises NotEnoughLabels, and BadField for a
+    class that cannot be judged or a wrong number.
     """
     _check(k, threshold, most_queries)
     lib.index.catch_up(lib.store)
@@ -140,12 +141,12 @@ def _check(k: int, threshold: float, most_queries: int) -> None:
 
 
 def _settings(threshold: float) -> list[tuple[int, float]]:
-    """(q, eta) to judge besides q = 2 without a threshold, which searches use."""
+    """Pairs (q, eta) to judge in addition to (2, 0), which searches use."""
     return [(1, 0.0)] + ([(1, threshold), (2, threshold)] if threshold else [])
 
 
 def _stepper(total: int, progress: Progress | None) -> Callable[[], None]:
-    """To be called after each of `total` steps."""
+    """A function to call after each of `total` steps; it reports the progress."""
     done = itertools.count(1)
 
     def step() -> None:

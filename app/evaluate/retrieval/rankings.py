@@ -1,4 +1,4 @@
-"""Ways to rank the library for a clip: the methods of searches, and Sun's with other settings."""
+"""Functions that rank the library for a clip: the search methods, and Sun's with other settings."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
 
 Ranker = Callable[[ClipRecord], Sequence[str]]
-"""Ids of all clips that pass the filter, the nearest first; the clip itself may be there."""
+"""Returns the ids of all clips that pass the filter for a query clip, the nearest first. The query
+itself may be among them."""
 
 
 def by_method(lib: Library, method: Method, filter: ClipFilter | None) -> Ranker:
-    """The very ranking that searches use."""
+    """The same ranking as in searches."""
     load = partial(lib.arrays.get_many, lib.store)
 
     def rank(clip: ClipRecord) -> Sequence[str]:
@@ -59,7 +60,7 @@ class Volumes:
         threshold: float,
         step: Callable[[], None] = lambda: None,
     ) -> Volumes:
-        """Computed anew from the stored motions; `step` is called after each."""
+        """Compute the factors from the stored motions; `step` is called after each clip."""
         factors = {}
         for clip in chosen:
             track = body_track(load_motion(lib, clip))
@@ -68,7 +69,7 @@ class Volumes:
         return cls(factors)
 
     def by(self, method: Method) -> Ranker:
-        """By D_dtw (eq. 7, smallest first) or by D_xcorr (eq. 6, largest first)."""
+        """A ranker by D_dtw (eq. 7, smallest first) or by D_xcorr (eq. 6, largest first)."""
         compare = {
             Method.MSV_DTW: warping_distances,
             Method.MSV_XCORR: lambda *volumes: -cross_correlations(*volumes),

@@ -1,4 +1,4 @@
-"""What becomes of a library's motions as volumes: figures 6 and 7 and section 5.3 of Sun 2011."""
+"""Motion volumes of a library's clips: figures 6 and 7 and section 5.3 of Sun 2011."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
 
 MAX_PER_CLASS = 40
-"""Clips of a class whose vectors are told and drawn; more would only cover one another."""
+"""Largest number of clips of a class whose vectors are drawn; more would hide each other."""
 AT_ONCE = 256
-"""Clips whose arrays are measured at a time."""
+"""Number of clips whose arrays are loaded at a time."""
 
 
 @dataclass(frozen=True, slots=True)
 class Compression:
-    """What the factors of `clips` clips of `frames` frames in all take, of their 13 joints.
+    """Compression ratio of the factors of `clips` clips with `frames` frames in total, 13 joints.
 
-    formula: section 5.3; measured: bytes of rho and epsilon by bytes of the joints'
-    positions, as the store holds them.
+    formula: by section 5.3; measured: bytes of rho and epsilon divided by bytes of the joint
+    positions in the store.
     """
 
     clips: int
@@ -40,9 +40,10 @@ class Compression:
 
 @dataclass(frozen=True, slots=True)
 class VolumeEvaluation:
-    """Rank-1 factors of clips of some classes, by class, and what is saved by them.
+    """Rank-1 factors of clips by class, and their compression ratio.
 
-    q, threshold: of the self-similarity matrices; factors: at most MAX_PER_CLASS a class.
+    q, threshold: of the self-similarity matrices; factors: of at most MAX_PER_CLASS clips of
+    each class.
     """
 
     q: int
@@ -52,12 +53,12 @@ class VolumeEvaluation:
 
     @property
     def iterations(self) -> tuple[int, ...]:
-        """Of each clip, how many iterations were made."""
+        """The number of iterations of each clip."""
         return tuple(one.iterations for some in self.factors.values() for one in some)
 
     @property
     def converged(self) -> int:
-        """How many of the clips came to rest."""
+        """The number of clips whose iteration converged."""
         return sum(one.converged for some in self.factors.values() for one in some)
 
 
@@ -70,7 +71,7 @@ def judge_volumes(
     threshold: float = 0.0,
     step: Callable[[], None] = lambda: None,
 ) -> VolumeEvaluation:
-    """Of the classes told, or of the largest four. Raises NotEnoughLabels, BadField."""
+    """Judge the given classes, or the largest four. Raises NotEnoughLabels, BadField."""
     labeled = read_labeled(lib, filter)
     some = {
         name: _some(labeled, name, MAX_PER_CLASS)
@@ -90,7 +91,7 @@ def judge_volumes(
 
 
 def _some(labeled: LabeledClips, name: str, most: int) -> list[ClipRecord]:
-    """Clips of a class, evenly spread over its clips by id where there are too many."""
+    """Clips of a class; if there are too many, an even selection by id."""
     members = [clip for clip in labeled.clips if clip.task == name]
     places = np.unique(np.linspace(0, len(members) - 1, min(most, len(members))).round())
     return [members[int(place)] for place in places]

@@ -1,4 +1,4 @@
-"""What a clip can be exported as: names alone, so that `kinedex export --help` starts at once."""
+"""The names of export formats. The module imports nothing slow, for `kinedex export --help`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import StrEnum
 
 
 class ExportFormat(StrEnum):
-    """What a clip can be exported as."""
+    """The format of an export."""
 
     BVH = "bvh"
     """Text, centimeters, Y up."""
@@ -19,9 +19,9 @@ class ExportFormat(StrEnum):
 
 
 class ExportSkeleton(StrEnum):
-    """On which body."""
+    """The skeleton of an export."""
 
     OWN = "own"
     """The clip's own joints."""
     CANONICAL = "canonical"
-    """One body for all clips: 18 joints called by role, 1.7 m tall."""
+    """The same body for all clips: 18 joints named by role, 1.7 m tall."""

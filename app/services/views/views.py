@@ -1,4 +1,4 @@
-"""Ready clips to look at: their motion, descriptors, and a small picture."""
+"""Views of a ready clip: its motion, its descriptors, and a small picture."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ class DescriptorView:
     """A clip's descriptors.
 
     msv_lambda: weight; msv_rho: (13,); msv_epsilon: (n,); msv_convergence: (iterations, 2)
-    error and change of lambda, None of a clip analyzed before they were kept;
-    motion_vector: (128,);
-    symbol_states: K; symbol_means, symbol_variances: (K, 26); analysis_version: of them all.
+    error and change of lambda, None if the analysis is older than their storage;
+    motion_vector: (128,); symbol_states: K; symbol_means, symbol_variances: (K, 26);
+    analysis_version: of all of them.
     """
 
     msv_lambda: float

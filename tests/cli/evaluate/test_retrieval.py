@@ -56,7 +56,7 @@ def test_pictures_go_where_they_are_wanted(kinedex: Kinedex, tmp_path: Path) -> 
     ("words", "told"),
     [
         (("--classes", "walk,fly"), "'fly'; they do of kick, walk, wave"),
-        (("--filter", '{"task": "walk"}'), "'walk': whatever is found is right"),
+        (("--filter", '{"task": "walk"}'), "'walk', so every answer would be right"),
         (("--filter", '{"task": "nothing"}'), "nothing can be judged"),
         (("--picture", "figure.gif"), ".svg, .png, .pdf"),
         (("--pictures", "figures", "--picture-format", "bmp"), ".svg, .png, .pdf"),

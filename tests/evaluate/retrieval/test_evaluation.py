@@ -100,7 +100,7 @@ def test_a_library_without_labels_cannot_be_judged(lib: Library) -> None:
 
 
 def test_one_task_alone_cannot_be_judged(ready_library: Library) -> None:
-    with pytest.raises(NotEnoughLabels, match="'walk': whatever is found is right"):
+    with pytest.raises(NotEnoughLabels, match="'walk', so every answer would be right"):
         evaluate.judge_retrieval(ready_library, ClipFilter(task=("walk",)))
 
 

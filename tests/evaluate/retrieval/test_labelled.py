@@ -76,7 +76,7 @@ def test_the_classes_of_table_1_are_those_told_or_the_largest(some: list[ClipRec
         ([], "No two ready clips carry the same task"),
         ([None, None], "No two ready clips carry the same task"),
         (["walk", "run"], "No two ready clips carry the same task"),
-        (["walk", "walk"], "All labelled clips carry the task 'walk'"),
+        (["walk", "walk"], "All labeled clips carry the task 'walk'"),
     ],
 )
 def test_what_cannot_be_judged_is_said(
