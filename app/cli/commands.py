@@ -1,4 +1,4 @@
-"""The list of commands: the name, the place and one line of help of each.
+"""The list of commands: the name, the module and one line of help of each.
 
 The help is the first line of the command's docstring (a test compares them). It is written here
 too, so that `kinedex --help` does not import what the commands need.

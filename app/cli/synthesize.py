@@ -1,4 +1,4 @@
-"""Making motions that nobody recorded."""
+"""The command that synthesizes motions that nobody recorded."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def synthesize(
     context: typer.Context,
-    task: Annotated[str, typer.Argument(help="What they are to do.")],
+    task: Annotated[str, typer.Argument(help="The task of the motion.")],
     person: Annotated[str | None, typer.Option(help="A person of the library.")] = None,
     clip: Annotated[
         list[str] | None,
@@ -25,9 +25,11 @@ def synthesize(
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="BVH file to write; default: by its name, here."),
+        typer.Option(
+            "--output", "-o", help="BVH file to write; default: its name, in this folder."
+        ),
     ] = None,
-    seconds: Annotated[float | None, typer.Option(help="How long; default: as usual.")] = None,
+    seconds: Annotated[float | None, typer.Option(help="Duration; default: the usual one.")] = None,
     store: Annotated[bool, typer.Option("--store", help="Keep the motion as a clip.")] = False,
     as_json: AsJson = False,
 ) -> None:

@@ -13,13 +13,13 @@ from app.numerics.arrays import FloatArray
 
 MAX_PAIRS = 25
 MIN_SHOWN = 0.005
-"""Share that rounds to one per cent."""
+"""Smallest share that rounds to one percent."""
 
 
 def print_confusion(classes: Sequence[str], shares: FloatArray) -> None:
-    """`shares` (C, C), 0..1, as per cent; a row is a true class, columns are their numbers.
+    """Print `shares` (C, C), 0..1, in percent; a row is a true class, columns have its number.
 
-    Where that would be wider than WIDEST, the classes that are taken for others most often.
+    If the table would be wider than WIDEST, print the most frequent confusions instead.
     """
     names = [f"{number:>2} {pictures.shown(name)}" for number, name in enumerate(classes, 1)]
     width = max(map(len, names), default=0)
@@ -33,7 +33,7 @@ def print_confusion(classes: Sequence[str], shares: FloatArray) -> None:
 
 
 def _print_largest(classes: Sequence[str], shares: FloatArray) -> None:
-    """The pairs of classes that are confused, the most often first."""
+    """The pairs of confused classes, the most frequent first."""
     confused = shares * ~np.eye(len(classes), dtype=bool)
     order = np.argsort(-confused, axis=None, kind="stable")
     pairs = [divmod(int(place), len(classes)) for place in order]

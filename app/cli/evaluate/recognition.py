@@ -20,14 +20,14 @@ Methods = Annotated[
     list[str] | None,
     typer.Option(
         "--method",
-        help=f"Judge this one; may be repeated. One of {', '.join(evaluate.RECOGNIZERS)}.",
+        help=f"Judge this method; may be repeated. One of {', '.join(evaluate.RECOGNIZERS)}.",
     ),
 ]
 Rate = Annotated[
     float | None,
     typer.Option(
         "--false-accept-rate",
-        help="Of default and perera, 0..1: how often something new may be called known.",
+        help="For default and perera, 0..1: how often something new may be called known.",
     ),
 ]
 Pictures = Annotated[

@@ -13,7 +13,7 @@ from app.evaluate.recognition.shares import Category, Recognized, Share, Unknown
 
 
 def document(found: RecognitionEvaluation) -> dict[str, Any]:
-    """Everything that was found, with how many clips each share is of."""
+    """All results, with the number of clips of each share."""
     return {
         "clips": {
             "judged": len(found.clips),

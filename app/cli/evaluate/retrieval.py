@@ -25,9 +25,9 @@ Classes = Annotated[
     typer.Option(help="Tasks of table 1, as walk,run,jump,kick; default: the four largest."),
 ]
 Methods = Annotated[
-    list[Method] | None, typer.Option("--method", help="Judge this one; may be repeated.")
+    list[Method] | None, typer.Option("--method", help="Judge this method; may be repeated.")
 ]
-K = Annotated[int, typer.Option("--k", min=1, help="Look at so many of the nearest.")]
+K = Annotated[int, typer.Option("--k", min=1, help="Number of nearest clips to judge.")]
 Eta = Annotated[
     float,
     typer.Option(
@@ -35,7 +35,7 @@ Eta = Annotated[
     ),
 ]
 Queries = Annotated[
-    int, typer.Option(min=1, help="At most so many clips ask, drawn evenly from the tasks.")
+    int, typer.Option(min=1, help="Largest number of query clips, evenly from the tasks.")
 ]
 Picture = Annotated[
     Path | None, typer.Option(help="Draw the confusion matrices: a .svg, .png or .pdf file.")
@@ -127,7 +127,7 @@ def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
         ["method", "1-NN", "P@4", "P@20", "MAP"],
         [list(asdict(judged.figures).values())[:5] for judged in found.methods],
     )
-    typer.echo(f"\nTrue-positive rates: of the {found.k} nearest in the mixture (table 1):\n")
+    typer.echo(f"\nTrue-positive rates among the {found.k} nearest in the mixture (table 1):\n")
     print_table(
         ["method", *found.chosen, "overall"],
         [
@@ -148,7 +148,7 @@ def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
 def _remarks(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> list[str]:
     compression = volumes.compression
     remarks = [
-        f"Of a task with fewer than {found.k} other clips, as many of the nearest are looked at.",
+        f"A task with fewer than {found.k} other clips is judged by as many nearest clips.",
         f"Rank-1 factors (q = {volumes.q}) of {len(volumes.iterations)} clips of these tasks:"
         f" {volumes.converged} converged, in {np.median(volumes.iterations):.0f} iterations"
         f" (median; {max(volumes.iterations)} at most).",
@@ -158,7 +158,7 @@ def _remarks(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> list[str]
     ]
     if found.alone:
         remarks.append(
-            f"{found.alone} clips are the only recording of their task: they asked nothing."
+            f"{found.alone} clips are the only recording of their task, so they were no queries."
         )
     if found.unlabeled:
         remarks.append(f"{found.unlabeled} clips carry no task and were left out.")

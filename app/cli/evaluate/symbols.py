@@ -44,6 +44,6 @@ def _print(found: SymbolFigures) -> None:
     print_text(
         f"{found.symbols} symbols. Distances to landmarks are off by "
         f"{found.placing_error:.1%} for symbols placed later, {found.fitting_error:.1%} among "
-        f"landmarks. The fast divergence ranks {found.pairs} pairs as Monte Carlo does: "
-        f"Spearman {found.agreement:.4f}."
+        f"landmarks. Rank correlation (Spearman) of the fast divergence with Monte Carlo, over "
+        f"{found.pairs} pairs: {found.agreement:.4f}."
     )

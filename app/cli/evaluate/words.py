@@ -36,7 +36,7 @@ Picture = Annotated[
     Path | None, typer.Option(help="Draw recall against precision: a .svg, .png or .pdf file.")
 ]
 MAX_SHOWN = 40
-"""Words in the printed table; --json has all."""
+"""Largest number of words in the printed table; --json has all."""
 
 
 def words(
@@ -120,7 +120,7 @@ def _print_words(by_word: Sequence[JudgedWord]) -> None:
         ],
     )
     if len(judged) > MAX_SHOWN:
-        typer.echo(f"... and {len(judged) - MAX_SHOWN} words more: --json tells all.")
+        typer.echo(f"... and {len(judged) - MAX_SHOWN} more words; --json lists all.")
     rare = [one.word for one in by_word if one.too_rare]
     if rare:
         more = "" if len(rare) <= MAX_SHOWN else f" and {len(rare) - MAX_SHOWN} more"

@@ -19,7 +19,7 @@ def fastest(wanted: FloatArray, take: FloatArray, take_shape: FloatArray) -> tup
     return float(steps[:2].max()), float(steps[2:].max())
 
 
-@pytest.mark.parametrize("learnt", ["of such takes", "of others"])
+@pytest.mark.parametrize("learned", ["of such takes", "of others"])
 def test_a_take_that_begins_in_a_t_pose_is_followed_without_it(learned: str) -> None:
     wave = waving(6.0)
     t_pose = np.array(wave[:1])
