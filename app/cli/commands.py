@@ -44,7 +44,7 @@ COMMANDS = {
     "synthesize": CommandPlace(
         "app.cli.synthesize",
         "synthesize",
-        "Make a motion that a person never recorded, as a BVH file, and tell what to expect.",
+        "Make a motion that a person never recorded, as a BVH file, and judge its quality.",
     ),
     "fit": CommandPlace(
         "app.cli.fit",

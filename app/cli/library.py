@@ -165,4 +165,4 @@ def _show_failures(lib: Library, job_id: str, absent: int) -> None:
 def _reason(problem: dict[str, Any]) -> str:
     places = [f"{place['location']}: {place['message']}" for place in problem["errors"]]
     # a reader's detail often repeats its only place
-    return " ".join([problem["detail"], *(told for told in places if told != problem["detail"])])
+    return " ".join([problem["detail"], *(place for place in places if place != problem["detail"])])

@@ -68,8 +68,8 @@ def _places(failure: KinedexError) -> list[str]:
     """The places of a failure that its detail does not contain."""
     if isinstance(failure, ClipNotFound):
         return []
-    told = [f"{place.location}: {place.message}" for place in failure.places]
-    return [line for line in told if line not in failure.detail]
+    lines = [f"{place.location}: {place.message}" for place in failure.places]
+    return [line for line in lines if line not in failure.detail]
 
 
 def _of_the_machine(failure: OSError) -> str:

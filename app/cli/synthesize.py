@@ -33,7 +33,7 @@ def synthesize(
     store: Annotated[bool, typer.Option("--store", help="Keep the motion as a clip.")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Make a motion that a person never recorded, as a BVH file, and tell what to expect."""
+    """Make a motion that a person never recorded, as a BVH file, and judge its quality."""
     from app.services.synthesis.synthesize import SynthesisQuery, synthesize
 
     if (person is None) == (not clip):
@@ -53,8 +53,8 @@ def synthesize(
     if as_json:
         from app.api.schemas.synthesis import Synthesis
 
-        told = Synthesis.of(made, with_bvh=False).model_dump(mode="json", exclude={"motion"})
-        print_json({"path": str(path), "bytes": len(made.bvh)} | told)
+        result = Synthesis.of(made, with_bvh=False).model_dump(mode="json", exclude={"motion"})
+        print_json({"path": str(path), "bytes": len(made.bvh)} | result)
         return
     _tell(made, path)
 

@@ -37,24 +37,26 @@ def _print_largest(classes: Sequence[str], shares: FloatArray) -> None:
     confused = shares * ~np.eye(len(classes), dtype=bool)
     order = np.argsort(-confused, axis=None, kind="stable")
     pairs = [divmod(int(place), len(classes)) for place in order]
-    told = [pair for pair in pairs if confused[pair] >= MIN_SHOWN]
-    shown = told[:MAX_PAIRS]
+    confusions = [pair for pair in pairs if confused[pair] >= MIN_SHOWN]
+    shown = confusions[:MAX_PAIRS]
     if shown:
         print_table(
             ["true", "taken for", "%", "right, %"], [_row(classes, shares, *p) for p in shown]
         )
         typer.echo("")
     typer.echo(
-        f"{len(classes)} classes, {_how_many(len(shown), len(told))};"
+        f"{len(classes)} classes, {_how_many(len(shown), len(confusions))};"
         " --json and --pictures have the whole matrix."
     )
 
 
-def _how_many(shown: int, told: int) -> str:
-    if not told:
+def _how_many(shown: int, confusions: int) -> str:
+    if not confusions:
         return "none of which is taken for another"
     return (
-        f"all {told} confusions" if shown == told else f"the {shown} largest of {told} confusions"
+        f"all {confusions} confusions"
+        if shown == confusions
+        else f"the {shown} largest of {confusions} confusions"
     )
 
 

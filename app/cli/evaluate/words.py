@@ -76,11 +76,11 @@ def _print(found: WordEvaluation, examples: Sequence[WordExample]) -> None:
     _print_figures(found.in_sample)
     typer.echo("\nPrecision of single words at a recall, held out (figure 7):\n")
     _print_curves(found.figures)
-    for method, told in found.reliability.items():
+    for method, one in found.reliability.items():
         print_text(
             f"\nScores of {method} as probabilities, held out: expected calibration error "
-            f"{told.word_error:.4f} and Brier score {told.word_brier:.4f} of single words (by "
-            f"frequency {told.prior_brier:.4f}); {told.set_error:.4f} and {told.set_brier:.4f} "
+            f"{one.word_error:.4f} and Brier score {one.word_brier:.4f} of single words (by "
+            f"frequency {one.prior_brier:.4f}); {one.set_error:.4f} and {one.set_brier:.4f} "
             "of whole label sets."
         )
     for kind, correlations in found.correlations.items():

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 class Cloud:
     """Points of one group: (n, 2) or (n, 3).
 
-    joined: a path from point to point instead of markers; labels: a text at each point.
-    Clouds of one `group` look alike and share a name.
+    joined: draw a path from point to point instead of markers; labels: a text at each point.
+    Clouds of one `group` have the same style and name.
     """
 
     points: FloatArray
@@ -35,7 +35,7 @@ def scatter_picture(
     axes: Sequence[str] = (),
     equal: bool = True,
 ) -> bytes:
-    """All clouds in one frame of two or three dimensions, as the points have.
+    """Draw all clouds in one frame with the two or three dimensions of the points.
 
     axes: names of the dimensions; equal: one unit is as long on every axis.
     Raises ValueError without a cloud, or when the dimensions are not two or three for all.
@@ -67,7 +67,7 @@ def scatter_picture(
 def _fill(figure: Figure, frame: Any, clouds: Sequence[Cloud]) -> None:
     groups = list(dict.fromkeys(cloud.group for cloud in clouds))
     handles: dict[str, Any] = {}
-    # by default points farther away fade, and with them what their color tells
+    # by default points farther away fade, and their colors become hard to distinguish
     flat = {"depthshade": False} if clouds[0].points.shape[1] == 3 else {}
     for cloud in clouds:
         number = groups.index(cloud.group)

@@ -65,9 +65,9 @@ def eigen_poses_figure(clips: Sequence[JudgedClip], basis: Basis, form: Format) 
     poses = np.concatenate([one.poses(basis) for one in clips])
     points = eigen_model(poses).coordinates(poses, SHOWN)
     found = best_clusters(points)
-    told = clips[0].clip.task if len(clips) > 1 else clips[0].clip.name
+    name = clips[0].clip.task if len(clips) > 1 else clips[0].clip.name
     kind = "keyposes" if basis is Basis.KEYPOSE else "uniform poses"
-    title = f"{len(poses)} {kind} of {shown(told or '')}"
+    title = f"{len(poses)} {kind} of {shown(name or '')}"
     if found is None:
         return scatter_picture([Cloud(points)], form, title=title, axes=AXES)
     clouds = [
@@ -111,8 +111,8 @@ def implausible_figure(worst: WorstPose) -> bytes:
         role_figure(_drawn(one, Basis.UNIFORM, moment), Basis.UNIFORM.value),
     ]
     fault = worst.fault
-    told = f"{one.clip.name} at {frame / one.track.rate:.2f} s: {worst.basis}, {fault.joint}"
-    return animated_svg(figures, one.track.rate, f"{told} {fault.fault}").encode()
+    title = f"{one.clip.name} at {frame / one.track.rate:.2f} s: {worst.basis}, {fault.joint}"
+    return animated_svg(figures, one.track.rate, f"{title} {fault.fault}").encode()
 
 
 def _drawn(one: JudgedClip, basis: Basis, track: BodyTrack) -> FloatArray:

@@ -126,8 +126,8 @@ def judge_retrieval(
     for q, eta in settings:
         volumes = Volumes.of(lib, labeled.clips, q=q, threshold=eta, step=step)
         for method in suns:
-            told = f"{method.value} q={q}" + (f" eta={eta:g}" if eta else "")
-            found[told] = list(judge(volumes.by(method)))
+            name = f"{method.value} q={q}" + (f" eta={eta:g}" if eta else "")
+            found[name] = list(judge(volumes.by(method)))
     return _evaluation(labeled, chosen, k, found)
 
 

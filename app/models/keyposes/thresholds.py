@@ -163,9 +163,9 @@ def _curve(
     within: float,
 ) -> ThresholdCurve:
     sums = np.sum([_counts(example, pairs, within) for example in examples], axis=0)
-    told = [Counts(*(int(count) for count in row)) for row in sums]
+    sums_by_value = [Counts(*(int(count) for count in row)) for row in sums]
     return ThresholdCurve(
         values=np.array(values),
-        precision=np.array([counts.precision for counts in told]),
-        recall=np.array([counts.recall for counts in told]),
+        precision=np.array([counts.precision for counts in sums_by_value]),
+        recall=np.array([counts.recall for counts in sums_by_value]),
     )

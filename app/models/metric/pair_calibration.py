@@ -54,8 +54,8 @@ def calibrate_pairs(distances: FloatArray, same: BoolArray) -> PairCalibration:
         level, slope = curve
         odds = level - slope * distances
         missed = 1.0 / (1.0 + np.exp(-odds)) - targets
-        told = float(np.mean(np.logaddexp(0.0, odds) - targets * odds))
-        return told, np.array([missed.mean(), -np.mean(missed * distances)])
+        mean_loss = float(np.mean(np.logaddexp(0.0, odds) - targets * odds))
+        return mean_loss, np.array([missed.mean(), -np.mean(missed * distances)])
 
     found = scipy.optimize.minimize(
         loss, START, jac=True, method="L-BFGS-B", bounds=(LEVELS, SLOPES)

@@ -163,10 +163,10 @@ def recognize_many(
     logs = Logs.under(sample.hypotheses, h, points, persons_by_both=record.persons_by_both)
     logs = logs.without_others(h.person, record.persons, known_person)
     logs = logs.without_others(h.task, record.tasks, known_task)
-    told = record.persons, record.person_calibration, known_person
-    who = _answers(logs.ranking, logs.new_person, h.person, *told)
-    told = record.tasks, record.task_calibration, known_task
-    what = _answers(logs.ranking, logs.new_task, h.task, *told)
+    of_factor = record.persons, record.person_calibration, known_person
+    who = _answers(logs.ranking, logs.new_person, h.person, *of_factor)
+    of_factor = record.tasks, record.task_calibration, known_task
+    what = _answers(logs.ranking, logs.new_task, h.task, *of_factor)
     return [Recognition(person, task) for person, task in zip(who, what, strict=True)]
 
 

@@ -148,10 +148,10 @@ def _of_animation(wanted: ExportFormat, animation: Animation, clip: ClipRecord) 
     )
 
 
-def _of_positions(wanted: ExportFormat, told: _Positions) -> Iterable[bytes]:
+def _of_positions(wanted: ExportFormat, tracks: _Positions) -> Iterable[bytes]:
     if wanted is ExportFormat.NPZ:
-        return [write_npz(told.names, told.parents, told.positions, told.frame_rate)]
-    return write_csv(told.names, told.positions, told.frame_rate)
+        return [write_npz(tracks.names, tracks.parents, tracks.positions, tracks.frame_rate)]
+    return write_csv(tracks.names, tracks.positions, tracks.frame_rate)
 
 
 def _safe_stem(clip: ClipRecord) -> str:

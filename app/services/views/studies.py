@@ -105,8 +105,8 @@ def draw_pair(
     keyposes = keyposes_of(lib, clip, model_clips)
     for basis in Basis:
         reduce(lib, clip, Reduction(dimensions, basis, keyposes=keyposes))
-    told = json.dumps([clip_id, dimensions, keyposes])
-    sequence = hashlib.sha256(told.encode()).hexdigest()
+    key = json.dumps([clip_id, dimensions, keyposes])
+    sequence = hashlib.sha256(key.encode()).hexdigest()
     left = secrets.choice(list(Basis))
     with lib.store.write() as tx:
         return stored.add_pair(tx, clip_id, dimensions, keyposes, sequence, left.value)
@@ -194,9 +194,9 @@ def tally(lib: Library, clip_id: str | None = None) -> StudyTally:
     ]
     sequences.sort(key=lambda one: (one.name, one.clip_id, one.dimensions))
     left = sum(count.votes for count in counts if count.choice is Choice.LEFT)
-    told = sum(count.votes for count in counts if count.choice is not Choice.SAME)
+    decided = sum(count.votes for count in counts if count.choice is not Choice.SAME)
     return StudyTally(
-        tuple(sequences[:MAX_SEQUENCES]), _tally(counts), left / told if told else None
+        tuple(sequences[:MAX_SEQUENCES]), _tally(counts), left / decided if decided else None
     )
 
 
@@ -204,14 +204,14 @@ def _tally(counts: Iterable[VoteCount]) -> Tally:
     votes = {Basis.KEYPOSE: 0, Basis.UNIFORM: 0, None: 0}
     for count in counts:
         votes[_chosen(count)] += count.votes
-    keypose, told = votes[Basis.KEYPOSE], votes[Basis.KEYPOSE] + votes[Basis.UNIFORM]
+    keypose, decided = votes[Basis.KEYPOSE], votes[Basis.KEYPOSE] + votes[Basis.UNIFORM]
     return Tally(
         keypose=keypose,
         uniform=votes[Basis.UNIFORM],
         same=votes[None],
-        share=keypose / told if told else None,
-        interval=wilson_interval(keypose, told),
-        chance=fair_coin_probability(keypose, told),
+        share=keypose / decided if decided else None,
+        interval=wilson_interval(keypose, decided),
+        chance=fair_coin_probability(keypose, decided),
     )
 
 
