@@ -71,7 +71,7 @@ EVALUATIONS = {
     "retrieval": CommandPlace(
         "app.cli.evaluate.retrieval",
         "retrieval",
-        "Each clip asks for the others; relevant is what carries the same task (Sun 2011).",
+        "Each clip is a query; clips with the same task are relevant (Sun 2011).",
     ),
     "keyposes": CommandPlace(
         "app.cli.evaluate.keyposes",
@@ -96,6 +96,6 @@ EVALUATIONS = {
     "words": CommandPlace(
         "app.cli.evaluate.words",
         "words",
-        "Words for clips and clips for words, held out and in-sample, beside their frequency.",
+        "Words for clips and clips for words, held out and in-sample, and by frequency.",
     ),
 }

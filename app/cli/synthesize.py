@@ -67,7 +67,7 @@ def _tell(made: Synthesized, path: Path) -> None:
         ("nearest real clip", quality.nearest.name if quality.nearest else "gone"),
         ("which is of", f"{quality.nearest_person}, {quality.nearest_task}"),
         ("expected hit", _expectation(made)),
-        ("feet slide", f"{quality.skate:.2f} m/s{_beside(quality.real_skate)}"),
+        ("feet slide", f"{quality.skate:.2f} m/s{_of_real_takes(quality.real_skate)}"),
     ]
     if made.clip is not None:
         rows.append(("stored as", made.clip.id))
@@ -101,7 +101,7 @@ def _real(share: float | None) -> str:
     return "" if share is None else f"; of real takes {share:.0%}"
 
 
-def _beside(real: float | None) -> str:
+def _of_real_takes(real: float | None) -> str:
     return "" if real is None else f", in real takes {real:.2f} m/s"
 
 

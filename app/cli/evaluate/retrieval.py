@@ -59,7 +59,7 @@ def retrieval(
     picture_format: PictureFormat = "svg",
     as_json: AsJson = False,
 ) -> None:
-    """Each clip asks for the others; relevant is what carries the same task (Sun 2011)."""
+    """Each clip is a query; clips with the same task are relevant (Sun 2011)."""
     filter = parsed_filter(filter_json)
     names = None if classes is None else [name.strip() for name in classes.split(",")]
     drawing = Drawing.prepared(picture, pictures_dir, picture_format)
@@ -122,7 +122,9 @@ def _document(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> dict[str
 
 def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
     queries = found.methods[0].figures.queries if found.methods else 0
-    typer.echo(f"{queries} clips ask for the others of their task, among {found.mixture}:\n")
+    typer.echo(
+        f"{queries} clips are queries for the others of their task, among {found.mixture}:\n"
+    )
     print_table(
         ["method", "1-NN", "P@4", "P@20", "MAP"],
         [list(asdict(judged.figures).values())[:5] for judged in found.methods],

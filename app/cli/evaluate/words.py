@@ -46,7 +46,7 @@ def words(
     picture: Picture = None,
     as_json: AsJson = False,
 ) -> None:
-    """Words for clips and clips for words, held out and in-sample, beside their frequency."""
+    """Words for clips and clips for words, held out and in-sample, and by frequency."""
     filter, drawing = parsed_filter(filter_json), Drawing.prepared(picture)
     with open_library(context) as lib:
         found = evaluate.judge_words(lib, filter)

@@ -160,7 +160,7 @@ def sigmoid(x: FloatArray) -> FloatArray:
 
 
 def _temperature(evidence: FloatArray, truth: IntArray) -> float:
-    """The temperature under which the true labels are likeliest; 1 without held-out clips."""
+    """The temperature with the largest likelihood of the true labels; 1 without held-out clips."""
     if not len(truth):
         return 1.0
     rows = np.arange(len(truth))

@@ -86,8 +86,8 @@ def predict(
 def _made_of_all(known: KnownTensor, wanted: Timed, own: Timed) -> tuple[FloatArray, FloatArray]:
     """A shape (1378,) and its timing (32,), both solved from the other tasks."""
     solution = solve(known.basis, wanted.shapes, own.shapes)
-    beside = solution.weights @ (own.timing - known.timing.mean(axis=0))
-    timing = wanted.timing.mean(axis=0) + solution.carried * beside
+    difference = solution.weights @ (own.timing - known.timing.mean(axis=0))
+    timing = wanted.timing.mean(axis=0) + solution.carried * difference
     return _as_one_does_it(solution.shape, wanted.shapes), timing
 
 

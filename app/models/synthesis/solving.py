@@ -61,7 +61,7 @@ def solve(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> Solution:
     asked = np.concatenate([own, mirrored(own)]) * scale  # (2T, d)
     target = wanted * scale
     prior = np.concatenate([np.full(tasks, 1 / tasks), np.zeros(tasks)])
-    beside = asked - both.mean(axis=0)
+    difference = asked - both.mean(axis=0)
     split = [(part, np.take(both, part, axis=2)) for part in parts()]
     normal = [_normal(basis, target[:, part]) for part, basis in split]
     gram, aim = (np.sum([pair[i] for pair in normal], axis=0) for i in range(2))
@@ -70,7 +70,7 @@ def solve(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> Solution:
     for (part, basis), (gram, aim) in zip(split, normal, strict=True):
         w = _ridge(gram, aim, shared, PART_RIDGE)
         made[:, part] = np.matmul(w, basis)
-        apart[part] = w @ beside[:, part]
+        apart[part] = w @ difference[:, part]
     held, of_each = _held(apart), shared[:tasks] + shared[tasks:]
     carried = min(_explained(made, target) / EXPLAINED, 1.0)
     shape = (target.mean(axis=0) + held + carried * (apart - held)) / scale

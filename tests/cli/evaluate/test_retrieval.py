@@ -15,7 +15,7 @@ def test_tables_for_people(kinedex: Kinedex) -> None:
     ended = kinedex(*QUICK, "--k", "3")
     assert ended.code == 0, ended.err
     lines = ended.out.splitlines()
-    assert lines[0] == "12 clips ask for the others of their task, among 12:"
+    assert lines[0] == "12 clips are queries for the others of their task, among 12:"
     assert lines[2].split() == ["method", "1-NN", "P@4", "P@20", "MAP"]
     assert [line.split()[0] for line in lines[3:6]] == ["vector", "msv-xcorr", "msv-xcorr"]
     assert ["method", "kick", "walk", "wave", "overall"] in [line.split() for line in lines]
