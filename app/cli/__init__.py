@@ -1,7 +1,7 @@
 """The command line: `kinedex`.
 
-Commands call the services directly on the library that the settings name; `--json` prints
-what the HTTP API would answer.
+Commands call the services directly on the library of the settings. `--json` prints the same JSON as
+the HTTP API.
 """
 
 from app.cli.main import main

@@ -1,4 +1,4 @@
-"""Copying the library while it is in use (DESIGN 12)."""
+"""The command that copies the library while it is in use."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from app.errors import BadField, Place
 
 def backup(
     context: typer.Context,
-    path: Annotated[Path, typer.Argument(help="A folder that is not there yet.")],
+    path: Annotated[Path, typer.Argument(help="A new folder; it must not exist yet.")],
     as_json: AsJson = False,
 ) -> None:
     """Copy the library as it is now, while it is in use, into a new folder.
@@ -44,7 +44,7 @@ def backup(
 
 @contextmanager
 def _ended_by_sigterm() -> Iterator[None]:
-    """Lets SIGTERM end the block as an exception does, so that half a copy is removed."""
+    """In this block, SIGTERM raises an exception, so that an incomplete copy is removed."""
     before = signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     try:
         yield
@@ -53,7 +53,7 @@ def _ended_by_sigterm() -> Iterator[None]:
 
 
 def _refuse_inside(data_dir: Path, path: Path) -> None:
-    """A copy there would be lost with the library, and be copied with it whenever it is."""
+    """Refuse a folder inside the library: it would be lost with it, and part of later copies."""
     if Path(os.path.realpath(data_dir)) in Path(os.path.realpath(path)).parents:
-        message = f"{path} lies in the library itself ({data_dir}): name a folder outside it"
+        message = f"{path} is inside the library ({data_dir}); choose a folder outside it"
         raise BadField(f"path: {message}", places=[Place("path", message)])

@@ -1,4 +1,4 @@
-"""The list of commands: the name, the place and one line of help of each.
+"""The list of commands: the name, the module and one line of help of each.
 
 The help is the first line of the command's docstring (a test compares them). It is written here
 too, so that `kinedex --help` does not import what the commands need.
@@ -44,7 +44,7 @@ COMMANDS = {
     "synthesize": CommandPlace(
         "app.cli.synthesize",
         "synthesize",
-        "Make a motion that a person never recorded, as a BVH file, and tell what to expect.",
+        "Make a motion that a person never recorded, as a BVH file, and judge its quality.",
     ),
     "fit": CommandPlace(
         "app.cli.fit",
@@ -71,7 +71,7 @@ EVALUATIONS = {
     "retrieval": CommandPlace(
         "app.cli.evaluate.retrieval",
         "retrieval",
-        "Each clip asks for the others; relevant is what carries the same task (Sun 2011).",
+        "Each clip is a query; clips with the same task are relevant (Sun 2011).",
     ),
     "keyposes": CommandPlace(
         "app.cli.evaluate.keyposes",
@@ -96,6 +96,6 @@ EVALUATIONS = {
     "words": CommandPlace(
         "app.cli.evaluate.words",
         "words",
-        "Words for clips and clips for words, held out and in-sample, beside their frequency.",
+        "Words for clips and clips for words, held out and in-sample, and by frequency.",
     ),
 }

@@ -1,4 +1,4 @@
-"""The database's schema."""
+"""The commands for the database."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ program = typer.Typer(help="The database.", no_args_is_help=True)
 
 @program.command("upgrade")
 def upgrade(context: typer.Context) -> None:
-    """Bring the database to this version's schema, making it where there is none."""
+    """Upgrade the database to the schema of this version, or create it."""
     from app.store import identity
     from app.store.database import schema
     from app.store.folders import make_private
@@ -25,7 +25,7 @@ def upgrade(context: typer.Context) -> None:
 
 @program.command("adopt-files")
 def adopt_files(context: typer.Context) -> None:
-    """Say that the folder of files belongs to the database, where Kinedex refuses to believe it.
+    """Confirm that the folder of files belongs to the database, if Kinedex refuses to start.
 
     Run it only when you are sure. Files that the database does not name are moved to the
     quarantine by the next worker, and are removed after the retention.
@@ -35,7 +35,7 @@ def adopt_files(context: typer.Context) -> None:
     settings = settings_of(context)
     found = identity.adopt(settings.database, settings.files_dir)
     typer.echo(
-        f"{settings.files_dir} belongs to this database now. Of the files that it names, "
+        f"{settings.files_dir} now belongs to this database. Of the files that it names, "
         f"{found.present} are there and {found.missing} are missing; {found.unknown} others go "
         "to the quarantine."
     )

@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 READY_POLL_S = 0.25
 QUIET = "WARNING"
-"""The demo talks to a person: below this, nothing is logged unless they ask for it."""
+"""The default log level of the demo, since its output is for a person."""
 
 
 def demo(context: typer.Context, host: Host = None, port: Port = None) -> None:
     """Make the demo library, ingest it, serve it, and print where.
 
-    Run again, it serves what is there: clips that are in the library are passed over.
+    A second run serves the existing library: clips that it has are skipped.
     """
     from app.services.exposure import refuse_exposure_without_keys, refuse_taken_address
     from app.worker.supervisor import supervise

@@ -1,4 +1,4 @@
-"""Writing a clip to a file for other programs."""
+"""The command that exports a clip as a file for other programs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,9 @@ def export(
     clip_id: Annotated[str, typer.Argument(help="The id of a stored clip.")],
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="File to write; default: by the clip's name, here."),
+        typer.Option(
+            "--output", "-o", help="File to write; default: the clip's name, in this folder."
+        ),
     ] = None,
     format: Annotated[
         ExportFormat | None, typer.Option(help="Default: by the ending of --output, else bvh.")
@@ -28,14 +30,14 @@ def export(
     fps: Annotated[
         float | None,
         typer.Option(
-            help="Resampled by time to 1 to 1000 frames a second; default: the clip's rate."
+            help="Frames per second, 1 to 1000 (resampled by time); default: the clip's rate."
         ),
     ] = None,
     skeleton: Annotated[
         ExportSkeleton, typer.Option(help="The clip's own joints, or one body for all clips.")
     ] = ExportSkeleton.OWN,
     dimensions: Annotated[
-        int | None, typer.Option(help="Drawn from so many dimensions of the clip's keyposes.")
+        int | None, typer.Option(help="Reduce the motion to this many dimensions of its keyposes.")
     ] = None,
     basis: Annotated[
         Basis, typer.Option(help="With --dimensions: keyposes, or as many poses at equal times.")
@@ -67,5 +69,5 @@ def _by_ending(output: Path | None) -> ExportFormat:
         return ExportFormat(output.suffix.lower().removeprefix("."))
     except ValueError:
         known = ", ".join(ExportFormat)
-        message = f"must end in one of {known}, or --format must be given"
+        message = f"must end with one of {known}, unless --format is given"
         raise BadField(f"output: {message}", places=[Place("output", message)]) from None

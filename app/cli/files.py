@@ -1,4 +1,4 @@
-"""Writing the files that commands make."""
+"""Writes the files of commands."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from app.errors import BadField, Place
 
 
 def write_whole(path: Path, blocks: Iterable[bytes]) -> int:
-    """Write beside the target, then rename: what was there stays until all is written.
+    """Write to a temporary file, then rename it; an older file stays until all is written.
 
-    Returns how many bytes; raises BadField.
+    Returns the number of bytes. Raises BadField if the path cannot be written.
     """
     part = path.with_name(f".{path.name}.part")
     try:

@@ -96,7 +96,7 @@ def recognize(
 ) -> None:
     """Say who it is, what they do, and in which words."""
     from app.api.schemas.recognition import Recognition
-    from app.services.recognition import recognise
+    from app.services.recognition import recognize
 
     with (
         open_library(context) as lib,
@@ -104,8 +104,8 @@ def recognize(
             query, skeleton=skeleton, frame_rate=frame_rate, unit=unit, stack=stack
         ) as source,
     ):
-        sent = recognise.RecogniseQuery(source, known_person, known_task, method)
-        found = recognise.recognise(lib, sent)
+        sent = recognize.RecognizeQuery(source, known_person, known_task, method)
+        found = recognize.recognize(lib, sent)
     answer = Recognition.of(found)
     if as_json:
         print_json(answer.model_dump(mode="json"))

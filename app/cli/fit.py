@@ -1,4 +1,4 @@
-"""Fit the models on the library as it is now."""
+"""The command that fits the models on the library."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from app.store.jobs.record import JobRecord
 
 COUNTED = "clips"
-"""The name of what is no share."""
+"""Names of numbers that are not shares."""
 
 
 def fit(context: typer.Context, as_json: AsJson = False) -> None:
@@ -51,7 +51,7 @@ def _tell_what_was_not_fitted(job: JobRecord) -> None:
 
 
 def _shares(figures: Any, within: str = "") -> list[tuple[str, float | None]]:
-    """The shares of nested figures, named by what they stand in; counts are left out."""
+    """The shares in nested figures, named by their path; counts are left out."""
     if isinstance(figures, list):
         return [share for one in figures for share in _shares(one, within)]
     if not isinstance(figures, dict):

@@ -1,4 +1,4 @@
-"""API keys: create, list, revoke (DESIGN 12)."""
+"""The commands for API keys: create, list, revoke."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ program = typer.Typer(help="API keys.", no_args_is_help=True)
 def create(
     context: typer.Context,
     role: Annotated[KeyRole, typer.Option(help="What the key allows.")] = KeyRole.READ,
-    name: Annotated[str, typer.Option(help="Whose or what the key is for.")] = "",
+    name: Annotated[str, typer.Option(help="Who or what the key is for.")] = "",
     as_json: AsJson = False,
 ) -> None:
-    """Make a key. It is shown once; only its hash is kept."""
+    """Create a key. It is shown once; only its hash is stored."""
     from app.store import keys
 
     with open_library(context) as lib, lib.store.write() as tx:
@@ -58,7 +58,7 @@ def list_keys(context: typer.Context, as_json: AsJson = False) -> None:
 
 @program.command("revoke")
 def revoke(context: typer.Context, key_id: str) -> None:
-    """Make a key worthless from now on."""
+    """Revoke a key: it is not accepted any more."""
     from app.store import keys
 
     with open_library(context) as lib, lib.store.write() as tx:

@@ -1,4 +1,4 @@
-"""Putting clips into the library, and the work that follows."""
+"""The command that imports clips, and the functions that do the queued work."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 POLL_S = 0.2
 PROGRESS_STEPS = 1000
-"""A job tells its progress as a part of one; the bar counts steps."""
+"""Steps of a progress bar; the progress of a job is a share of 1."""
 FAILURE = 1
 RECENT = 10
 
@@ -29,13 +29,13 @@ def import_clips(
     context: typer.Context,
     path: Annotated[Path, typer.Argument(help="A folder, a ZIP, or a motion file.")],
     wait: Annotated[
-        bool, typer.Option(help="Analyse now; --no-wait leaves that to the worker.")
+        bool, typer.Option(help="Analyze now; --no-wait leaves that to the worker.")
     ] = True,
     as_json: AsJson = False,
 ) -> None:
     """Import a folder (with or without manifest.csv), a ZIP or a file.
 
-    What is there already is passed over, so an import that was cut off can be run again.
+    Files that the library has are skipped, so an interrupted import can be run again.
     """
     from app.store.jobs.record import JobState
 
@@ -50,13 +50,13 @@ def import_clips(
         elif wait:
             show_import(lib, job)
         else:
-            typer.echo(f"{job.id}: registered; the worker analyses it.")
+            typer.echo(f"{job.id}: registered; the worker analyzes it.")
     if job.state in (JobState.FAILED, JobState.CANCELED):
         raise typer.Exit(FAILURE)
 
 
 def register(lib: Library, path: Path) -> JobRecord:
-    """Take in every file below `path`, with a progress bar."""
+    """Import all files below `path`, with a progress bar."""
     from app.services.imports import imports
 
     with progress_bar() as bar:
@@ -64,13 +64,13 @@ def register(lib: Library, path: Path) -> JobRecord:
         job = imports.import_path(
             lib, path, lambda done, total, _: bar.update(task, completed=done, total=total)
         )
-        bar.update(task, completed=1, total=1)  # files that a manifest misses are not told
+        bar.update(task, completed=1, total=1)  # progress does not count absent files of a manifest
         return job
 
 
 @contextmanager
 def working(lib: Library) -> Iterator[None]:
-    """A worker in this process; it shares the work with one that runs elsewhere."""
+    """A worker in this process; it shares the work with workers of other processes."""
     from app.worker.loop import run_worker
 
     stop = threading.Event()
@@ -98,7 +98,7 @@ def follow(lib: Library, job_id: str, doing: str) -> JobRecord:
 
 
 def fit_if_due(lib: Library) -> None:
-    """Have the models fitted where the library has changed enough, and wait for that."""
+    """Queue a fit if the library has changed enough, and wait for its end."""
     from app.services.training import models
 
     waiting = _open_fit(lib)
@@ -111,7 +111,7 @@ def fit_if_due(lib: Library) -> None:
 
 
 def _open_fit(lib: Library) -> JobRecord | None:
-    """A fit that is queued or being done, by this worker or another."""
+    """A fit that is queued or running, in any worker."""
     from app.services.clips import jobs
     from app.store.jobs.record import JobKind
 
@@ -120,7 +120,7 @@ def _open_fit(lib: Library) -> JobRecord | None:
 
 
 def _document(lib: Library, job: JobRecord) -> dict[str, Any]:
-    """The job as the API has it, its result with every file that is recorded."""
+    """The job as in the API, with all recorded files in its result."""
     from app.api.schemas.jobs import Job, JobFile
     from app.services.clips import jobs
 
@@ -136,7 +136,7 @@ def _document(lib: Library, job: JobRecord) -> dict[str, Any]:
 
 
 def show_import(lib: Library, job: JobRecord) -> None:
-    """How many files came to what, and every failure with its reason."""
+    """Print the numbers of files by result, and each failure with its reason."""
     result = job.result or {}
     if result:
         there = result["ready"] + result["exists"]
@@ -162,10 +162,10 @@ def _show_failures(lib: Library, job_id: str, absent: int) -> None:
     if failures:
         print_table(("failed", "why"), failures)
     if absent > MOST_ABSENT:
-        typer.echo(f"A manifest names {absent - MOST_ABSENT} more files that are not there.")
+        typer.echo(f"A manifest names {absent - MOST_ABSENT} more files that do not exist.")
 
 
 def _reason(problem: dict[str, Any]) -> str:
     places = [f"{place['location']}: {place['message']}" for place in problem["errors"]]
-    # Readers' details often are their only place's words already.
-    return " ".join([problem["detail"], *(told for told in places if told != problem["detail"])])
+    # a reader's detail often repeats its only place
+    return " ".join([problem["detail"], *(place for place in places if place != problem["detail"])])

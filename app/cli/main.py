@@ -1,4 +1,4 @@
-"""The program: its commands, and how a failure ends it."""
+"""The program: its commands, and its messages for failures."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ def settings(
         typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version."),
     ] = False,
 ) -> None:
-    """Flags that every command takes, before its name; all else comes from KINEDEX_*."""
+    """Flags of all commands, before the name of the command; other settings are KINEDEX_*."""
     remember(context, data_dir=data_dir, database_url=database_url)
 
 
 def main() -> None:
-    """Run the command line; a failure of ours is told in words and ends with status 1."""
+    """Run the command line; a known failure prints its message and ends with status 1."""
     try:
         program()
     except KinedexError as failure:
@@ -59,17 +59,17 @@ def main() -> None:
             typer.echo(f"  {line}", err=True)
         sys.exit(FAILURE)
     except OSError as failure:
-        # The machine's doing: a folder that may not be read, a disk that fails.
+        # a failure of the machine: a folder that may not be read, a disk that fails
         typer.echo(f"kinedex: {_of_the_machine(failure)}", err=True)
         sys.exit(FAILURE)
 
 
 def _places(failure: KinedexError) -> list[str]:
-    """What the detail does not tell already; an id that no clip has stands in it."""
+    """The places of a failure that its detail does not contain."""
     if isinstance(failure, ClipNotFound):
         return []
-    told = [f"{place.location}: {place.message}" for place in failure.places]
-    return [line for line in told if line not in failure.detail]
+    lines = [f"{place.location}: {place.message}" for place in failure.places]
+    return [line for line in lines if line not in failure.detail]
 
 
 def _of_the_machine(failure: OSError) -> str:

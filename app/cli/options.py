@@ -1,4 +1,4 @@
-"""Options that several commands take."""
+"""Options of several commands."""
 
 from __future__ import annotations
 
@@ -10,4 +10,6 @@ FilterJson = Annotated[
     str | None,
     typer.Option("--filter", help='JSON, as {"task": ["walk", "run"], "not_source": "my studio"}.'),
 ]
-PictureFormat = Annotated[str, typer.Option(help="Of the pictures in a folder: svg, png or pdf.")]
+PictureFormat = Annotated[
+    str, typer.Option(help="Format of the pictures in a folder: svg, png or pdf.")
+]

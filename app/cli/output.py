@@ -1,4 +1,4 @@
-"""What commands print: JSON for programs, tables for people."""
+"""The output of commands: JSON for programs, tables for people."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ from rich.text import Text
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 WIDEST = 100
-"""Columns of what is printed for people."""
+"""Largest width of the output for people, in characters."""
 
 console = Console()
 if not (console.is_terminal or "COLUMNS" in os.environ):
-    console.width = WIDEST  # of a file or a pipe; rich would cut names at 80
+    console.width = WIDEST  # for a file or a pipe, where rich would cut names at 80
 
 
 def print_json(value: Any) -> None:
-    """One JSON document on standard output."""
+    """Print one JSON document to standard output."""
     typer.echo(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False))
 
 
 def print_text(text: str) -> None:
-    """Running text, its lines broken where they would be wider than WIDEST."""
+    """Print text; lines are wrapped at WIDEST characters."""
     for line in _shown(text).split("\n"):
         typer.echo(textwrap.fill(line, WIDEST, break_long_words=False, break_on_hyphens=False))
 
 
 def print_table(columns: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
-    """A table; numbers stand at the right."""
+    """Print a table; numbers are right-aligned."""
     table = Table(box=None, header_style="bold", pad_edge=False)
     for index, name in enumerate(columns):
         numeric = bool(rows) and all(isinstance(row[index], int | float) for row in rows)
@@ -47,7 +47,7 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[object]]) -> Non
 
 
 def progress_bar() -> Progress:
-    """A bar on standard error, so that what is printed stays clean; silent without a terminal."""
+    """A progress bar on standard error, apart from the output; silent without a terminal."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -62,7 +62,7 @@ def _shown(cell: object) -> str:
         return "-"
     if isinstance(cell, float):
         return f"{cell:.3f}"
-    # Names and contents are others': no control character of theirs reaches the terminal.
+    # names come from other people: their control characters must not reach the terminal
     return "".join(
         c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in str(cell)
     )

@@ -1,4 +1,4 @@
-"""Analyzing stored clips again."""
+"""The command that analyzes stored clips again."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def reanalyze(
     ] = False,
     failed: Annotated[bool, typer.Option("--failed", help="Failed clips too.")] = False,
     wait: Annotated[
-        bool, typer.Option(help="Analyse now; --no-wait leaves that to the worker.")
+        bool, typer.Option(help="Analyze now; --no-wait leaves that to the worker.")
     ] = True,
     as_json: AsJson = False,
 ) -> None:
@@ -49,7 +49,7 @@ def reanalyze(
 
 
 def _follow(lib: Library) -> None:
-    """Show how many clips still wait until none does."""
+    """Show the number of waiting clips until there is none."""
     from app.cli.library import POLL_S
 
     with progress_bar() as bar:

@@ -1,4 +1,4 @@
-"""Run the service: API and worker."""
+"""The commands that run the service: API and worker."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def serve(
     host: Host = None,
     port: Port = None,
     with_worker: Annotated[
-        bool, typer.Option("--worker/--no-worker", help="Whether to run a worker beside the API.")
+        bool, typer.Option("--worker/--no-worker", help="Whether to run a worker too.")
     ] = True,
 ) -> None:
     """Serve the API and do the work, until stopped; each process is restarted if it dies."""

@@ -1,4 +1,4 @@
-"""The settings that a command runs with: its flags over the environment over the file."""
+"""The settings of a command: its flags, then the environment, then the settings file."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 def remember(context: typer.Context, **flags: Any) -> None:
-    """Keep the program's own flags for the command that follows."""
+    """Keep the flags of the program for the command."""
     context.obj = flags
 
 
 def settings_of(context: typer.Context, **flags: Any) -> Settings:
-    """The settings in force; a flag of None counts as not given. Raises ConfigurationError."""
+    """The active settings; a flag of None counts as not given. Raises ConfigurationError."""
     from app.config import load_settings
 
     return load_settings(**{**(context.obj or {}), **flags})
@@ -30,7 +30,7 @@ def settings_of(context: typer.Context, **flags: Any) -> Settings:
 
 @contextmanager
 def open_store(context: typer.Context) -> Iterator[Store]:
-    """The store of a library that is there already, closed at the end; nothing is made.
+    """The store of an existing library, closed at the end; nothing is created.
 
     Raises ConfigurationError, LibraryMismatch, DatabaseOutOfDate, StorageError.
     """

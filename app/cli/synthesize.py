@@ -1,4 +1,4 @@
-"""Making motions that nobody recorded."""
+"""The command that synthesizes motions that nobody recorded."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 
 if TYPE_CHECKING:
-    from app.services.synthesis.synthesise import Synthesised
+    from app.services.synthesis.synthesize import Synthesized
 
 
 def synthesize(
     context: typer.Context,
-    task: Annotated[str, typer.Argument(help="What they are to do.")],
+    task: Annotated[str, typer.Argument(help="The task of the motion.")],
     person: Annotated[str | None, typer.Option(help="A person of the library.")] = None,
     clip: Annotated[
         list[str] | None,
@@ -25,14 +25,16 @@ def synthesize(
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="BVH file to write; default: by its name, here."),
+        typer.Option(
+            "--output", "-o", help="BVH file to write; default: its name, in this folder."
+        ),
     ] = None,
-    seconds: Annotated[float | None, typer.Option(help="How long; default: as usual.")] = None,
+    seconds: Annotated[float | None, typer.Option(help="Duration; default: the usual one.")] = None,
     store: Annotated[bool, typer.Option("--store", help="Keep the motion as a clip.")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Make a motion that a person never recorded, as a BVH file, and tell what to expect."""
-    from app.services.synthesis.synthesise import SynthesisQuery, synthesise
+    """Make a motion that a person never recorded, as a BVH file, and judge its quality."""
+    from app.services.synthesis.synthesize import SynthesisQuery, synthesize
 
     if (person is None) == (not clip):
         raise typer.BadParameter("give either --person or --clip")
@@ -44,20 +46,20 @@ def synthesize(
         store=store,
     )
     with open_library(context) as lib:
-        made = synthesise(lib, query)
+        made = synthesize(lib, query)
     whose = made.person or "someone"
     path = output or Path(f"{_safe(f'{whose} {made.name}')}.bvh")
     write_whole(path, [made.bvh])
     if as_json:
         from app.api.schemas.synthesis import Synthesis
 
-        told = Synthesis.of(made, with_bvh=False).model_dump(mode="json", exclude={"motion"})
-        print_json({"path": str(path), "bytes": len(made.bvh)} | told)
+        result = Synthesis.of(made, with_bvh=False).model_dump(mode="json", exclude={"motion"})
+        print_json({"path": str(path), "bytes": len(made.bvh)} | result)
         return
     _tell(made, path)
 
 
-def _tell(made: Synthesised, path: Path) -> None:
+def _tell(made: Synthesized, path: Path) -> None:
     quality = made.quality
     rows: list[tuple[str, object]] = [
         ("file", f"{path}: {len(made.bvh)} bytes, {made.motion.duration:.2f} s"),
@@ -65,14 +67,14 @@ def _tell(made: Synthesised, path: Path) -> None:
         ("nearest real clip", quality.nearest.name if quality.nearest else "gone"),
         ("which is of", f"{quality.nearest_person}, {quality.nearest_task}"),
         ("expected hit", _expectation(made)),
-        ("feet slide", f"{quality.skate:.2f} m/s{_beside(quality.real_skate)}"),
+        ("feet slide", f"{quality.skate:.2f} m/s{_of_real_takes(quality.real_skate)}"),
     ]
     if made.clip is not None:
         rows.append(("stored as", made.clip.id))
     print_table(("", ""), rows)
 
 
-def _made_of(made: Synthesised) -> str:
+def _made_of(made: Synthesized) -> str:
     from app.services.synthesis.plan import SynthesisKind
 
     quality = made.quality
@@ -85,7 +87,7 @@ def _made_of(made: Synthesised) -> str:
     return f"{tasks} of their tasks, and {persons} other persons' takes of this one"
 
 
-def _expectation(made: Synthesised) -> str:
+def _expectation(made: Synthesized) -> str:
     quality = made.quality
     if quality.expected_hit is None:
         return "not measured"
@@ -99,7 +101,7 @@ def _real(share: float | None) -> str:
     return "" if share is None else f"; of real takes {share:.0%}"
 
 
-def _beside(real: float | None) -> str:
+def _of_real_takes(real: float | None) -> str:
     return "" if real is None else f", in real takes {real:.2f} m/s"
 
 

@@ -1,4 +1,4 @@
-"""Looking whether the library is whole."""
+"""The command that checks the library for damage."""
 
 from __future__ import annotations
 

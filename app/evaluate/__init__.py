@@ -1,7 +1,7 @@
-"""How good the methods are on a library's own labels: the figures of the papers.
+"""Judges the methods on a library's own labels with the figures of the papers.
 
-Retrieval goes through the very ranking that searches use. Words and recognition are held
-out: no clip is judged by a model that has seen it, or another file of its recording.
+Retrieval uses the same rankings as searches. Words and recognition are held out: no clip is judged
+by a model that has seen it, or another file of its recording.
 """
 
 from app.evaluate.keyposes.evaluation import (
@@ -14,12 +14,12 @@ from app.evaluate.keyposes.evaluation import (
 )
 from app.evaluate.low_dimensional.evaluation import LowDimensionalEvaluation, judge_low_dimensional
 from app.evaluate.recognition.evaluation import judge_recognition
-from app.evaluate.recognition.methods import METHODS as RECOGNISERS
+from app.evaluate.recognition.methods import METHODS as RECOGNIZERS
 from app.evaluate.recognition.results import RecognitionEvaluation
 from app.evaluate.retrieval.evaluation import (
     JUDGED,
-    MOST_QUERIES,
-    JudgedWay,
+    MAX_QUERIES,
+    JudgedMethod,
     K,
     RetrievalEvaluation,
     RetrievalFigures,
@@ -32,11 +32,11 @@ from app.evaluate.words.symbols import draw_symbols, judge_symbols
 __all__ = [
     "JUDGED",
     "JUDGED_KEYPOSES",
-    "MOST_QUERIES",
-    "RECOGNISERS",
+    "MAX_QUERIES",
+    "RECOGNIZERS",
     "JudgedClip",
     "JudgedKeyposes",
-    "JudgedWay",
+    "JudgedMethod",
     "K",
     "KeyposeEvaluation",
     "LowDimensionalEvaluation",

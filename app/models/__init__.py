@@ -1,1 +1,1 @@
-"""What is fitted on a library: frozen records of arrays, pure functions."""
+"""Models that are fitted on a library: frozen records of arrays, and pure functions."""

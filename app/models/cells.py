@@ -1,9 +1,9 @@
-"""Cells: the takes of one task by one person, and what can be said of missing ones.
+"""Cells: the takes of one task by one person, and the prediction of missing cells.
 
-A library seldom has every person do every task. The missing cells are predicted by person
-and task effects added up, fitted by ridge regression: deterministic, never wild where few
-cells overlap. Iterating a low-rank N-mode model from there (EM) predicted held-out real
-cells less well, so we do not.
+A library seldom has every person do every task. A missing cell is predicted by the sum of a
+person effect and a task effect, fitted by ridge regression. This is deterministic and stable
+even if few cells overlap. Iterating a low-rank N-mode model from there (EM) predicted held-out
+real cells less well.
 """
 
 from __future__ import annotations
@@ -16,16 +16,17 @@ import numpy as np
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 EFFECT_RIDGE = 0.5
-"""Pull of an effect towards none, in cells; settles effects that no data tell apart."""
+"""Ridge penalty of an effect, in cells. It also decides between effects that the data cannot
+separate."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cells:
-    """Which clip is in which cell.
+    """The cell of each clip.
 
     persons, tasks: sorted labels; member: (clips,) cell of each clip, -1 without any label;
-    person, task: (cells,) index of the label, -1 where not labelled; takes: (cells,).
-    A clip that lacks one of the labels is a cell of its own: its fellows may be anyone.
+    person, task: (cells,) index of the label, -1 where not labeled; takes: (cells,).
+    A clip that lacks one of the labels is a cell of its own.
     """
 
     persons: tuple[str, ...]
@@ -40,37 +41,39 @@ class Cells:
 
     @property
     def full(self) -> BoolArray:
-        """(cells,) whether both labels are there."""
+        """(cells,) whether the cell has both labels."""
         return (self.person >= 0) & (self.task >= 0)
 
 
 def find_cells(persons: Sequence[str | None], tasks: Sequence[str | None]) -> Cells:
-    """The cells of clips labelled `persons` and `tasks`, (clips,) each; None or "" is none."""
+    """The cells of clips with the labels `persons`, `tasks` (clips,); None or "" is no label."""
     person_names, person = _indexed(persons)
     task_names, task = _indexed(tasks)
     partial = (person < 0) | (task < 0)
     own = np.where(partial, np.arange(1, len(person) + 1), 0)
-    labelled = (person >= 0) | (task >= 0)
-    keys = np.stack([person, task, own], axis=1)[labelled]
+    labeled = (person >= 0) | (task >= 0)
+    keys = np.stack([person, task, own], axis=1)[labeled]
     unique, inverse = np.unique(keys, axis=0, return_inverse=True)
     member = np.full(len(person), -1)
-    member[labelled] = inverse.reshape(-1)
-    takes = np.bincount(member[labelled], minlength=len(unique))
+    member[labeled] = inverse.reshape(-1)
+    takes = np.bincount(member[labeled], minlength=len(unique))
     return Cells(person_names, task_names, member, unique[:, 0], unique[:, 1], takes)
 
 
 def cell_means(points: FloatArray, cells: Cells) -> FloatArray:
     """(cells, d) means of `points` (clips, d)."""
-    labelled = cells.member >= 0
+    labeled = cells.member >= 0
     means = np.zeros((len(cells), points.shape[1]))
-    np.add.at(means, cells.member[labelled], points[labelled])
+    np.add.at(means, cells.member[labeled], points[labeled])
     return np.asarray(means / np.maximum(cells.takes, 1)[:, None])
 
 
 @dataclass(frozen=True, slots=True)
 class Effects:
-    """mean (d,) + persons (P, d) + tasks (T, d); errors: (full cells, d), each cell against
-    its prediction from all the others."""
+    """A cell's prediction is mean (d,) + its row of persons (P, d) + its row of tasks (T, d).
+
+    errors: (full cells, d), each cell minus its prediction from all other cells.
+    """
 
     mean: FloatArray
     persons: FloatArray
@@ -78,7 +81,7 @@ class Effects:
     errors: FloatArray
 
     def predict(self, person: IntArray, task: IntArray) -> FloatArray:
-        """(n, d) for the combinations `person`, `task`, indices (n,) each."""
+        """(n, d) predictions for the pairs `person`, `task`, label indices (n,) each."""
         return np.asarray(self.mean + self.persons[person] + self.tasks[task])
 
 

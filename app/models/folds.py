@@ -1,7 +1,7 @@
-"""Folds for held-out figures: files of one recording never part.
+"""Folds for held-out figures. Files of one recording are always in the same fold.
 
-A recording may be in a library twice (as BVH and as AMC); the copy must not teach the
-answer to its twin.
+A recording may be in a library twice (as BVH and as AMC); a model must not learn from one copy
+and be judged on the other.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from app.numerics.arrays import IntArray
 
 
 def recording_of(filename: str) -> str:
-    """What files of one recording share: "cmu-bvh/02_01.bvh" and "02_01.amc" are "02_01"."""
+    """The name that files of one recording share: "cmu-bvh/02_01.bvh", "02_01.amc" -> "02_01"."""
     return PurePosixPath(filename.replace("\\", "/")).stem.casefold()
 
 

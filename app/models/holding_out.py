@@ -1,4 +1,4 @@
-"""What is held out in turn: clips (all of one recording together), whole tasks, whole persons."""
+"""Rounds that hold out clips (all of one recording together), whole tasks, or whole persons."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from app.models.folds import grouped_folds
 from app.numerics.arrays import IntArray
 
 FOLDS = 5
-"""Parts that clips, tasks and persons are each dealt into."""
+"""Number of parts into which clips, tasks and persons are each divided."""
 
-LEAST_LABELS = 3
-"""With fewer tasks (or persons) none is held out: what remains would be no choice."""
+MIN_LABELS = 3
+"""With fewer tasks (or persons) none is held out, since too few would remain to choose from."""
 
-MOST_PROBES = 400
-"""Clips probed in one round; more would cost time and tell nothing new."""
+MAX_PROBES = 400
+"""Largest number of clips probed in one round; more cost time and hardly change the figures."""
 
 
 class Held(StrEnum):
-    """What a round holds out."""
+    """The kind of thing that a round holds out."""
 
     CLIPS = "clips"
     TASKS = "tasks"
@@ -35,11 +35,11 @@ Round = tuple[Held, IntArray, IntArray]
 def rounds(
     persons: Sequence[str | None], tasks: Sequence[str | None], groups: Sequence[str]
 ) -> Iterator[Round]:
-    """Each round: clips held out in turn, then tasks, then persons."""
+    """The rounds: first those that hold out clips, then tasks, then persons."""
     yield from _splits(Held.CLIPS, grouped_folds(groups, FOLDS))
     for held, labels in ((Held.TASKS, tasks), (Held.PERSONS, persons)):
         names = sorted({label for label in labels if label})
-        if len(names) < LEAST_LABELS:
+        if len(names) < MIN_LABELS:
             continue
         deal = {name: i % min(FOLDS, len(names)) for i, name in enumerate(names)}
         yield from _splits(held, np.array([deal[label] if label else -1 for label in labels]))
@@ -49,5 +49,5 @@ def _splits(held: Held, fold: IntArray) -> Iterator[Round]:
     for each in range(int(fold.max(initial=-1)) + 1):
         train, probe = np.flatnonzero(fold != each), np.flatnonzero(fold == each)
         if len(train) >= 2 and len(probe):
-            chosen = np.linspace(0, len(probe) - 1, min(len(probe), MOST_PROBES))
+            chosen = np.linspace(0, len(probe) - 1, min(len(probe), MAX_PROBES))
             yield held, train, probe[chosen.astype(np.int64)]

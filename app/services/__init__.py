@@ -1,1 +1,1 @@
-"""Use cases: ingest, find, recognise, fit, evaluate, demo library."""
+"""Use cases: ingest, find, recognize, fit, evaluate, demo library."""

@@ -14,7 +14,7 @@ from typing import Any
 
 from app.errors import BadField, Place
 from app.formats.common.names import MAX_NAME_LENGTH
-from app.models.words.language.normalise import normalise_word, normalise_words
+from app.models.words.language.normalize import normalize_word, normalize_words
 from app.motion.canonical.units import METERS_PER_UNIT, SCALES
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.recording import FRAME_RATES
@@ -68,7 +68,7 @@ def words(value: str | Iterable[str] | None) -> tuple[str, ...] | None:
     if value is None:
         return None
     parts = value.split() if isinstance(value, str) else list(value)
-    tidy = normalise_words(filter(None, (text("words", part) for part in parts)))
+    tidy = normalize_words(filter(None, (text("words", part) for part in parts)))
     if len(tidy) > MAX_WORDS:
         raise bad_field("words", f"must not be more than {MAX_WORDS}")
     return tidy
@@ -77,7 +77,7 @@ def words(value: str | Iterable[str] | None) -> tuple[str, ...] | None:
 def queried_words(value: Iterable[str]) -> tuple[str, ...]:
     """The texts of a query by words, each a word, a phrase or a sentence; at least one."""
     texts = tuple(filter(None, (text("words", part) for part in value)))
-    if not any(map(normalise_word, texts)):
+    if not any(map(normalize_word, texts)):
         raise bad_field("words", "at least one word is needed")
     if sum(len(one.split()) for one in texts) > MAX_WORDS:
         raise bad_field("words", f"must not be more than {MAX_WORDS}")

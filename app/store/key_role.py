@@ -9,7 +9,7 @@ class KeyRole(StrEnum):
     """What a key allows; each role allows what those before it do."""
 
     READ = "read"
-    """Look, search, recognise."""
+    """Look, search, recognize."""
     WRITE = "write"
     """Also add, change and delete clips, fit models, cancel jobs."""
     ADMIN = "admin"

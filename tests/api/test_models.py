@@ -7,14 +7,14 @@ import httpx2
 
 def test_the_false_accept_rate_is_set_and_told(demo: httpx2.Client) -> None:
     of_kind = {model["kind"]: model for model in demo.get("/v1/models").json()["items"]}
-    recogniser = of_kind["recogniser"]
+    recognizer = of_kind["recogniser"]
     assert of_kind["words"]["errors_in_force"] is None
-    assert set(recogniser["errors_in_force"]) <= {"person", "task"}
-    assert recogniser["false_accept_rate"] is None
-    path = f"/v1/models/{recogniser['id']}"
+    assert set(recognizer["errors_in_force"]) <= {"person", "task"}
+    assert recognizer["false_accept_rate"] is None
+    path = f"/v1/models/{recognizer['id']}"
     strict = demo.patch(path, json={"false_accept_rate": 0.05}).json()
     assert strict["false_accept_rate"] == 0.05
-    assert strict["errors_in_force"].keys() == recogniser["errors_in_force"].keys()
+    assert strict["errors_in_force"].keys() == recognizer["errors_in_force"].keys()
     assert all(one["false_acceptance"] <= 0.05 for one in strict["errors_in_force"].values())
     listed = {model["kind"]: model for model in demo.get("/v1/models").json()["items"]}
     assert listed["recogniser"] == strict

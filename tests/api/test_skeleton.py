@@ -27,8 +27,8 @@ def test_a_pair_is_one_clip_and_one_query(demo_service: Live) -> None:
         assert client.post("/v1/clips", files=pair()).status_code == 200
         hits = client.post("/v1/search/motion", files=pair(), data={"limit": "1"}).json()
         assert hits["items"][0]["clip"]["id"] == clip["id"]
-        recognised = client.post("/v1/recognize", files=pair())
-        assert recognised.status_code == 200, recognised.text
+        recognized = client.post("/v1/recognize", files=pair())
+        assert recognized.status_code == 200, recognized.text
         assert client.delete(f"/v1/clips/{clip['id']}").status_code == 204
 
 

@@ -25,7 +25,7 @@ from app.analysis.rhythm.beats import Beats, find_beats, given_beats
 from app.demo.dances import dance
 from app.formats.read import read_recording
 from app.models.keyposes.matching import Counts, match, total
-from app.models.keyposes.thresholds import Example, Selectable, Thresholds, lesson
+from app.models.keyposes.thresholds import Example, Selectable, Thresholds, threshold_grid
 from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import BodyTrack, body_track
 from app.motion.motion import Motion
@@ -142,7 +142,7 @@ def test_thresholds_learned_on_other_dances() -> None:
             for noise in (5, 10)
             for example in examples(method, "given", dances, 1000, 9, noise)
         ]
-        pair = lesson(taught).learned()
+        pair = threshold_grid(taught).learned()
         rows[f"{method} ({pair.t1:g}, {pair.t2:g})"] = [
             judged(examples(method, "given", dances, 9000, 27, noise), pair) for noise in NOISES
         ]

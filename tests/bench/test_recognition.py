@@ -24,10 +24,10 @@ from app.models.held_out.danced_tasks import arrange
 from app.models.held_out.perera_experiment import perera_tables
 from app.models.held_out.recognition import held_out_recognition_figures, unknown_figures
 from app.models.recognition.answers import Answer, Recognition
-from app.models.recognition.flat_pca import fit_flat_pca, recognise_flat
-from app.models.recognition.multilinear import fit_multilinear, recognise_multilinear
-from app.models.recognition.perera import fit_tensor_recogniser, recognise_by_tensor
-from app.models.recognition.recogniser import fit_recogniser, recognise, recognise_many
+from app.models.recognition.flat_pca import fit_flat_pca, recognize_flat
+from app.models.recognition.multilinear import fit_multilinear, recognize_multilinear
+from app.models.recognition.perera import fit_tensor_recognizer, recognize_by_tensor
+from app.models.recognition.recognizer import fit_recognizer, recognize, recognize_many
 from app.models.recognition.task_model import Reading
 from app.models.recognition.views import full_samples
 from app.motion.canonical.canonical import canonicalize
@@ -102,21 +102,21 @@ def _arrays(path: str, fps: float) -> dict[str, np.ndarray]:
 METHODS = ("default", "multilinear", "signatures", "perera", "pca")
 
 
-def _recognise(
+def _recognize(
     library: Library, method: str, train: np.ndarray, probe: np.ndarray
 ) -> list[Recognition]:
     """What each clip of `probe` is by a model of `train`, nothing told."""
     learned = library.part(train, method)
     asked, _, _ = library.part(probe, method)
     if method == "default":
-        return recognise_many(fit_recogniser(*learned), asked)
+        return recognize_many(fit_recognizer(*learned), asked)
     if method == "perera":
-        return recognise_by_tensor(fit_tensor_recogniser(*learned), asked)
+        return recognize_by_tensor(fit_tensor_recognizer(*learned), asked)
     if method == "pca":
         flat = fit_flat_pca(*learned)
-        return [recognise_flat(flat, sample) for sample in asked]
+        return [recognize_flat(flat, sample) for sample in asked]
     model = fit_multilinear(*learned, moments=SAMPLES if method == "signatures" else None)
-    return [recognise_multilinear(model, sample) for sample in asked]
+    return [recognize_multilinear(model, sample) for sample in asked]
 
 
 def test_the_whole_library(library: Library) -> None:
@@ -124,7 +124,7 @@ def test_the_whole_library(library: Library) -> None:
         library.samples, library.persons, library.tasks, library.groups, wide=library.wide
     )
     _tell("all clips, 5 folds", figures)
-    record = fit_recogniser(library.full, library.persons, library.tasks, library.groups)
+    record = fit_recognizer(library.full, library.persons, library.tasks, library.groups)
     _tell("unknown, all clips (threshold chosen on these)", unknown_figures(record))
     assert figures["default"]["task"] > 0.85
     assert figures["default"]["person"] > 0.8
@@ -168,7 +168,7 @@ def _shares(
 ) -> tuple[float, float]:
     """Tasks and persons recognised."""
     asked = np.isin(library.takes, probe)
-    found = _recognise(library, method, np.isin(library.takes, train), asked)
+    found = _recognize(library, method, np.isin(library.takes, train), asked)
     _, who, what = library.part(asked)
     return _right([f.task for f in found], what), _right([f.person for f in found], who)
 
@@ -178,7 +178,7 @@ def test_the_other_factor_known(library: Library) -> None:
     hits = []
     for take in range(1, 6):
         train, probe = second & (library.takes != take), library.takes == take
-        default = fit_recogniser(*library.part(train))
+        default = fit_recognizer(*library.part(train))
         multilinear = fit_multilinear(*library.part(train, "multilinear"))
         plain = library.part(probe, "multilinear")[0]
         for full, sample, who, what in zip(
@@ -186,13 +186,13 @@ def test_the_other_factor_known(library: Library) -> None:
         ):
             hits.append(
                 [
-                    recognise(default, full, known_task=what).person.candidates[0].label == who,
-                    recognise(default, full, known_person=who).task.candidates[0].label == what,
-                    recognise_multilinear(multilinear, sample, known_task=what)
+                    recognize(default, full, known_task=what).person.candidates[0].label == who,
+                    recognize(default, full, known_person=who).task.candidates[0].label == what,
+                    recognize_multilinear(multilinear, sample, known_task=what)
                     .person.candidates[0]
                     .label
                     == who,
-                    recognise_multilinear(multilinear, sample, known_person=who)
+                    recognize_multilinear(multilinear, sample, known_person=who)
                     .task.candidates[0]
                     .label
                     == what,
@@ -221,12 +221,12 @@ def test_the_unknown(library: Library, factor: str, method: str, learned: int) -
     others: list[list[bool]] = []
     for name in np.unique(labels[library.takes > 0]):
         train = (library.takes > 0) & ~asked & (labels != name)
-        recognised = _recognise(library, method, train, asked)
-        found = [getattr(f, factor) for f in recognised]
+        recognized = _recognize(library, method, train, asked)
+        found = [getattr(f, factor) for f in recognized]
         strange = labels[asked] == name
         others += [
             [f.task.known, f.task.candidates[0].label == task]
-            for f, task, is_new in zip(recognised, library.part(asked)[2], strange, strict=True)
+            for f, task, is_new in zip(recognized, library.part(asked)[2], strange, strict=True)
             if is_new
         ]
         beyond = np.array([0.5 - sum(c.score for c in answer.candidates) for answer in found])
@@ -272,11 +272,11 @@ def test_perera_s_experiment(library: Library) -> None:
 
 def test_fitting_and_probing_are_quick(library: Library) -> None:
     start = time.process_time()
-    record = fit_recogniser(library.full, library.persons, library.tasks, library.groups)
+    record = fit_recognizer(library.full, library.persons, library.tasks, library.groups)
     fitted = time.process_time() - start
     start = time.process_time()
     for sample in library.full[:100]:
-        recognise(record, sample)
+        recognize(record, sample)
     probe = (time.process_time() - start) / 100
     _tell("CPU seconds", {"default": {"fit": fitted, "probe": probe}})
     assert fitted < 2.0

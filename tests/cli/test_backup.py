@@ -76,7 +76,7 @@ def test_a_library_is_not_copied_into_itself(
     ):
         refused = kinedex("backup", str(path))
         assert (refused.code, refused.out) == (1, "")
-        assert f"{path} lies in the library itself" in refused.err
+        assert f"{path} is inside the library" in refused.err
     assert "is there already" in kinedex("backup", str(data_dir)).err
     assert {path.name for path in data_dir.iterdir()} == before
 

@@ -13,7 +13,7 @@ from app.api.openapi import refusals
 from app.api.schemas.jobs import Job, JobStarted
 from app.api.schemas.models import Model, ModelList, ModelPatch, UnfittedModel
 from app.services.training import models
-from app.services.training.errors_in_force import errors_in_force
+from app.services.training.active_errors import active_errors
 
 router = APIRouter(prefix="/v1/models", tags=["models"])
 
@@ -22,7 +22,7 @@ router = APIRouter(prefix="/v1/models", tags=["models"])
 def list_models(lib: Lib) -> ModelList:
     """The current model of each kind, with the library's size at the fit and held-out figures."""
     return ModelList(
-        items=[Model.of(one, errors_in_force(lib, one)) for one in models.list_models(lib)],
+        items=[Model.of(one, active_errors(lib, one)) for one in models.list_models(lib)],
         unfitted=[UnfittedModel.model_validate(one) for one in models.list_unfitted(lib)],
     )
 
@@ -35,9 +35,9 @@ def list_models(lib: Lib) -> ModelList:
 def update_model(
     lib: Lib, model_id: Annotated[str, Path(max_length=64)], patch: ModelPatch
 ) -> Model:
-    """Set a recogniser's false-accept rate; it takes effect at once and outlives fits."""
+    """Set a recognizer's false-accept rate; it takes effect at once and outlives fits."""
     record = models.set_false_accept_rate(lib, model_id, patch.false_accept_rate)
-    return Model.of(record, errors_in_force(lib, record))
+    return Model.of(record, active_errors(lib, record))
 
 
 @router.post("/fit", status_code=202, dependencies=[writes, changes], responses=refusals(409))

@@ -12,8 +12,8 @@ from app.api.guard.admission import heavy
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, source_of
 from app.api.schemas.recognition import Recognition, Recognize, RecognizeForm
-from app.services.recognition import recognise
-from app.services.recognition.recognise import RecogniseQuery
+from app.services.recognition.recognize import RecognizeQuery
+from app.services.recognition.recognize import recognize as recognize_motion
 
 router = APIRouter(prefix="/v1/recognize", tags=["recognition"])
 
@@ -23,7 +23,7 @@ _EXAMPLES = {
 }
 
 
-async def _query(request: Request) -> RecogniseQuery:
+async def _query(request: Request) -> RecognizeQuery:
     if not is_multipart(request):
         sent = await read_json(request, Recognize)
         return sent.query(sent.source())
@@ -37,7 +37,7 @@ async def _query(request: Request) -> RecogniseQuery:
     responses=refusals(400, 404, 409, 413, 415, 503, 507),
     openapi_extra=body(model=Recognize, examples=_EXAMPLES, form=RecognizeForm, files=QUERY_FILES),
 )
-def recognize(lib: Lib, query: Annotated[RecogniseQuery, Depends(_query)]) -> Recognition:
+def recognize(lib: Lib, query: Annotated[RecognizeQuery, Depends(_query)]) -> Recognition:
     """Say who it is, what they do and in which words; `label` is null if it is unknown."""
-    found = recognise.recognise(lib, query)
+    found = recognize_motion(lib, query)
     return Recognition.of(found)

@@ -11,8 +11,8 @@ from app.api.openapi import refusals
 from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.schemas.synthesis import Synthesis, Synthesize
 from app.api.streams import as_octets, wants_octets
-from app.services.synthesis import synthesise
-from app.services.synthesis.synthesise import SynthesisQuery
+from app.services.synthesis.synthesize import SynthesisQuery
+from app.services.synthesis.synthesize import synthesize as synthesize_motion
 
 router = APIRouter(prefix="/v1/synthesize", tags=["recognition"])
 
@@ -45,7 +45,7 @@ def synthesize(
     lib: Lib, request: Request, response: Response, asked: Synthesize
 ) -> Response | Synthesis:
     """A motion that nobody recorded."""
-    made = synthesise.synthesise(
+    made = synthesize_motion(
         lib,
         SynthesisQuery(
             task=asked.task,

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 from app.motion.roles.joint_roles import JointRole
 from app.search.index.filters import MAX_LABEL_LENGTH, MAX_LABELS
 from app.services import fields
-from app.services.views.frame_rates import LEAST_FPS, MOST_FPS
+from app.services.views.frame_rates import MAX_FPS, MIN_FPS
 from app.store.database.cursor_codec import MAX_CURSOR_LENGTH
 
 Value = TypeVar("Value")
@@ -86,5 +86,5 @@ Roles = Annotated[
 """Joint names by joint role."""
 Seconds = Annotated[float, Field(ge=0, le=1e6)]
 
-Fps = Annotated[float, Field(ge=LEAST_FPS, le=MOST_FPS)]
+Fps = Annotated[float, Field(ge=MIN_FPS, le=MAX_FPS)]
 """Frames a second that a motion is resampled to."""

@@ -14,8 +14,8 @@ from app.errors import BadField, Place
 from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.motion.roles.joint_roles import JointRole
 from app.services.views.low_dimensional import (
-    MOST_MODEL_CLIPS,
-    MOST_POSES,
+    MAX_MODEL_CLIPS,
+    MAX_POSES,
     ModelPose,
     ReducedView,
     Reduction,
@@ -37,12 +37,12 @@ class ReductionFields(Incoming):
         None,
         max_length=5000,
         description="Ids of the clips whose poses make the model, separated by commas, at most "
-        f"{MOST_MODEL_CLIPS}; default: the clip itself.",
+        f"{MAX_MODEL_CLIPS}; default: the clip itself.",
     )
     poses: int | None = Field(
         None,
         ge=1,
-        le=MOST_POSES,
+        le=MAX_POSES,
         description="Of each clip, with `basis=uniform`; default: as many as it has keyposes.",
     )
 

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from app.api.schemas.base import Incoming, Outgoing
 from app.services.library.fitted_models import FALSE_ACCEPT_RATE
-from app.services.training.errors_in_force import Errors
+from app.services.training.active_errors import Errors
 from app.store.models import ModelRecord
 
 
@@ -25,7 +25,7 @@ class ErrorsInForce(Outgoing):
         ge=0,
         le=1,
         description="Of what is known, called new; where takes were hardly repeated, of further"
-        " takes as the recogniser imagines them.",
+        " takes as the recognizer imagines them.",
     )
 
 
@@ -38,14 +38,14 @@ class Model(Outgoing):
     library_version: int = Field(description="The library's version at the fit.")
     library_size: int = Field(description="Ready clips at the fit, without synthesized ones.")
     figures: dict[str, Any] = Field(
-        description="Held-out figures, by name; of a recogniser those of the usual threshold."
-        " Those of `multilinear` stand beside the recogniser's."
+        description="Held-out figures, by name; of a recognizer those of the usual threshold."
+        " Those of `multilinear` stand beside the recognizer's."
     )
     false_accept_rate: float | None = Field(
-        description="How often this recogniser may call something new known, if that was set."
+        description="How often this recognizer may call something new known, if that was set."
     )
     errors_in_force: dict[str, ErrorsInForce] | None = Field(
-        description="Of a recogniser that calls something unknown: its errors by `person` and"
+        description="Of a recognizer that calls something unknown: its errors by `person` and"
         " `task` at the threshold in force, which is that of `false_accept_rate` where it is set;"
         " a factor is missing where too few labels could be held out. null of other models."
     )
@@ -78,7 +78,7 @@ class ModelPatch(Incoming):
     false_accept_rate: float | None = Field(
         gt=0,
         lt=1,
-        description="Of the models recogniser and perera: how often they may call something new "
+        description="Of the models recognizer and perera: how often they may call something new "
         "known; see `curve` in their figures. null: where both errors weigh alike. What comes of "
         "it stands in `errors_in_force`; `figures` stay those of the usual threshold. With enough "
         "clips, a known task counts there only as done by a person who did it before (a "

@@ -11,7 +11,7 @@ from app.api.schemas.labels import WORD_SCORE
 from app.api.schemas.query_source import ClipId, QueryFields, QueryForm
 from app.models.recognition.answers import Answer as FoundAnswer
 from app.services.find.query_source import QuerySource
-from app.services.recognition.recognise import Recognised, RecogniseQuery
+from app.services.recognition.recognize import Recognized, RecognizeQuery
 
 _NEW = "If the library does not know it, it counts as new, and its label in the answer is null."
 
@@ -29,9 +29,9 @@ class _Known(QueryFields):
         None, description=f"Recognize the person given the task. {_NEW}"
     )
 
-    def query(self, source: QuerySource) -> RecogniseQuery:
+    def query(self, source: QuerySource) -> RecognizeQuery:
         """The recognition of a motion."""
-        return RecogniseQuery(
+        return RecognizeQuery(
             source=source,
             known_person=self.known_person,
             known_task=self.known_task,
@@ -94,7 +94,7 @@ class Recognition(Outgoing):
     words: list[WordScore]
 
     @classmethod
-    def of(cls, found: Recognised) -> Recognition:
+    def of(cls, found: Recognized) -> Recognition:
         """A recognition as the API shows it."""
         return cls(
             person=Answer.of(found.person),

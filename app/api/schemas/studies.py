@@ -9,8 +9,8 @@ from pydantic import ConfigDict, Field
 from app.analysis.low_dimensional.eigen_motion import SHOWN
 from app.api.schemas.base import Cursor, Fps, Id, Incoming, Limit, Outgoing
 from app.services.views import studies
-from app.services.views.low_dimensional import MOST_MODEL_CLIPS
-from app.services.views.studies import MOST_SEQUENCES, MOST_VOTER
+from app.services.views.low_dimensional import MAX_MODEL_CLIPS
+from app.services.views.studies import MAX_SEQUENCES, MAX_VOTER
 from app.store.studies import Choice, PairRecord
 
 PAIRS = "/v1/studies/low-dimensional/pairs"
@@ -25,7 +25,7 @@ class NewPair(Incoming):
     )
     model_clips: list[Id] = Field(
         default_factory=list,
-        max_length=MOST_MODEL_CLIPS,
+        max_length=MAX_MODEL_CLIPS,
         description="Clips whose poses make the models; default: the clip itself.",
     )
 
@@ -94,7 +94,7 @@ class NewVote(Incoming):
     voter: str | None = Field(
         None,
         min_length=1,
-        max_length=MOST_VOTER,
+        max_length=MAX_VOTER,
         description="Anything that identifies a voter, such as a random number that the page "
         "keeps; one vote each on a sequence. Kept as a hash only.",
     )
@@ -163,7 +163,7 @@ class StudyTally(Outgoing):
     """Table 2 of this library."""
 
     sequences: list[SequenceTally] = Field(
-        description=f"The first {MOST_SEQUENCES} by name; ask by `clip_id` for others. The other"
+        description=f"The first {MAX_SEQUENCES} by name; ask by `clip_id` for others. The other"
         " figures are of all."
     )
     total: Tally

@@ -13,7 +13,7 @@ from app.api.schemas.query_source import ClipId
 from app.api.schemas.views import Motion, plain
 from app.services.library.synthesized import SYNTHESIZED
 from app.services.synthesis.plan import SynthesisKind
-from app.services.synthesis.synthesise import MOST_CLIPS, SECONDS, Synthesised
+from app.services.synthesis.synthesize import MAX_CLIPS, SECONDS, Synthesized
 
 
 class Synthesize(Incoming):
@@ -21,7 +21,7 @@ class Synthesize(Incoming):
 
     task: Annotated[Label, Field(min_length=1, description="What they are to do.")]
     person: Label | None = Field(None, description="A person of the library.")
-    clip_ids: Annotated[list[ClipId], Field(min_length=1, max_length=MOST_CLIPS)] | None = Field(
+    clip_ids: Annotated[list[ClipId], Field(min_length=1, max_length=MAX_CLIPS)] | None = Field(
         None,
         description="Clips of one person, known or not, labelled with what is done in them; the"
         " motion is made as though the library held no others of that person.",
@@ -135,7 +135,7 @@ class Synthesis(Outgoing):
     bvh: str | None = Field(description="The BVH file where it was asked for: centimetres, Y up.")
 
     @classmethod
-    def of(cls, made: Synthesised, *, with_bvh: bool) -> Synthesis:
+    def of(cls, made: Synthesized, *, with_bvh: bool) -> Synthesis:
         """The synthesis as the API shows it."""
         view = made.view
         return cls(
@@ -153,7 +153,7 @@ class Synthesis(Outgoing):
         )
 
 
-def _draft(made: Synthesised) -> SynthesizedClip:
+def _draft(made: Synthesized) -> SynthesizedClip:
     motion = made.motion
     return SynthesizedClip(
         id=None,

@@ -11,15 +11,15 @@ from app.cli.output import WIDEST, print_table
 from app.evaluate import charts as pictures
 from app.numerics.arrays import FloatArray
 
-MOST_PAIRS = 25
-LEAST_SHOWN = 0.005
-"""Share that rounds to one per cent."""
+MAX_PAIRS = 25
+MIN_SHOWN = 0.005
+"""Smallest share that rounds to one percent."""
 
 
 def print_confusion(classes: Sequence[str], shares: FloatArray) -> None:
-    """`shares` (C, C), 0..1, as per cent; a row is a true class, columns are their numbers.
+    """Print `shares` (C, C), 0..1, in percent; a row is a true class, columns have its number.
 
-    Where that would be wider than WIDEST, the classes that are taken for others most often.
+    If the table would be wider than WIDEST, print the most frequent confusions instead.
     """
     names = [f"{number:>2} {pictures.shown(name)}" for number, name in enumerate(classes, 1)]
     width = max(map(len, names), default=0)
@@ -28,33 +28,35 @@ def print_confusion(classes: Sequence[str], shares: FloatArray) -> None:
         return
     typer.echo(" " * width + "".join(f"{number:>4}" for number in range(1, len(names) + 1)))
     for name, row in zip(names, shares, strict=True):
-        cells = [f"{100 * share:>4.0f}" if share >= LEAST_SHOWN else "   ." for share in row]
+        cells = [f"{100 * share:>4.0f}" if share >= MIN_SHOWN else "   ." for share in row]
         typer.echo(f"{name:<{width}}" + "".join(cells))
 
 
 def _print_largest(classes: Sequence[str], shares: FloatArray) -> None:
-    """The pairs of classes that are confused, the most often first."""
+    """The pairs of confused classes, the most frequent first."""
     confused = shares * ~np.eye(len(classes), dtype=bool)
     order = np.argsort(-confused, axis=None, kind="stable")
     pairs = [divmod(int(place), len(classes)) for place in order]
-    told = [pair for pair in pairs if confused[pair] >= LEAST_SHOWN]
-    shown = told[:MOST_PAIRS]
+    confusions = [pair for pair in pairs if confused[pair] >= MIN_SHOWN]
+    shown = confusions[:MAX_PAIRS]
     if shown:
         print_table(
             ["true", "taken for", "%", "right, %"], [_row(classes, shares, *p) for p in shown]
         )
         typer.echo("")
     typer.echo(
-        f"{len(classes)} classes, {_how_many(len(shown), len(told))};"
+        f"{len(classes)} classes, {_how_many(len(shown), len(confusions))};"
         " --json and --pictures have the whole matrix."
     )
 
 
-def _how_many(shown: int, told: int) -> str:
-    if not told:
+def _how_many(shown: int, confusions: int) -> str:
+    if not confusions:
         return "none of which is taken for another"
     return (
-        f"all {told} confusions" if shown == told else f"the {shown} largest of {told} confusions"
+        f"all {confusions} confusions"
+        if shown == confusions
+        else f"the {shown} largest of {confusions} confusions"
     )
 
 

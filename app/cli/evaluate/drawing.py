@@ -1,4 +1,5 @@
-"""Where an evaluation's pictures go: looked at before the work, which may take minutes."""
+"""The picture files of an evaluation. Their paths are checked before the work, which may take
+minutes."""
 
 from __future__ import annotations
 
@@ -17,8 +18,8 @@ from app.services import fields
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """file: of one picture, whose ending tells its format; folder: of several, in
-    `folder_format`. None where none is wanted."""
+    """file: path of one picture, with its format as ending; folder: path for several pictures in
+    `folder_format`. None: no such pictures."""
 
     file: Path | None
     folder: Path | None
@@ -28,8 +29,11 @@ class Drawing:
     def prepared(
         cls, file: Path | None = None, folder: Path | None = None, picture_format: str = "svg"
     ) -> Drawing:
-        """Where the options say. Raises BadField for a format that is none and for a place that
-        cannot be written to, ExtraNeeded without matplotlib; leaves nothing behind."""
+        """Check the paths of the options. Leaves no files behind.
+
+        Raises BadField for an unknown format or an unwritable path, and ExtraNeeded without
+        matplotlib.
+        """
         folder_format = pictures.format_of(Path(f"picture.{picture_format}"))
         if file is not None:
             pictures.format_of(file)
@@ -41,13 +45,13 @@ class Drawing:
         return cls(file, folder, folder_format)
 
     def draw_one(self, draw: Callable[[Format], bytes]) -> None:
-        """Draw into the file, where one is wanted."""
+        """Draw the picture into the file, if there is one."""
         if self.file is not None:
             self.file.parent.mkdir(parents=True, exist_ok=True)
             write_whole(self.file, [draw(pictures.format_of(self.file))])
 
     def draw_all(self, draw: Callable[[Format], Iterable[tuple[str, bytes]]]) -> None:
-        """Draw into the folder, by the names of files, where one is wanted."""
+        """Draw pictures, by file name, into the folder, if there is one."""
         if self.folder is not None:
             self.folder.mkdir(parents=True, exist_ok=True)
             for name, content in draw(self.folder_format):
@@ -65,8 +69,10 @@ def _check_file(file: Path) -> None:
 
 
 def _check_folder(option: str, folder: Path) -> None:
-    """Whether files can be put there; only trying tells, of folders that the system makes up
-    and of those who may write anywhere."""
+    """Check that files can be created in the folder.
+
+    This needs a trial: permissions do not decide for virtual folders or for privileged users.
+    """
     try:
         made = [place for place in (folder, *folder.parents) if not place.exists()]
     except OSError as problem:

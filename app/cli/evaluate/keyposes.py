@@ -11,7 +11,7 @@ import typer
 
 from app import evaluate
 from app.cli.evaluate.drawing import Drawing
-from app.cli.evaluate.running import wanted_of
+from app.cli.evaluate.running import parsed_filter
 from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json, print_table, progress_bar
 from app.cli.settings import open_library
@@ -21,11 +21,11 @@ from app.evaluate.keyposes import pictures as keypose_pictures
 from app.models.keyposes.matching import TOLERANCE
 from app.models.keyposes.thresholds import USUAL, ThresholdCurve
 from app.services.library.library import Library
-from app.services.training.keypose_learning import told
+from app.services.training.keypose_learning import counts_document
 from app.store.clips.record import ClipRecord
 
 Tolerance = Annotated[
-    float, typer.Option(help="Seconds by which a keypose may be missed and is still the same.")
+    float, typer.Option(help="Largest distance of a found keypose from the true one, in seconds.")
 ]
 Picture = Annotated[
     Path | None,
@@ -39,7 +39,7 @@ Pictures = Annotated[
     ),
 ]
 TOLD_EVERY = 2
-"""Of the values of a curve every second one is printed: that many fit a line."""
+"""Every second value of a curve is printed, so that a line has room for all."""
 
 
 def keyposes(
@@ -52,16 +52,16 @@ def keyposes(
     as_json: AsJson = False,
 ) -> None:
     """Keyposes found against those that people named (Perera 2009, table 1, figs 3 to 6)."""
-    wanted = wanted_of(filter_json)
+    filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(picture, pictures_dir, picture_format)
     with open_library(context) as lib:
         if pictures_dir is not None:
-            clips = keypose_pictures.clips_to_draw(lib, wanted)
+            clips = keypose_pictures.clips_to_draw(lib, filter)
             drawing.draw_all(lambda form: _clip_figures(lib, clips, form))
             typer.echo(f"{len(clips)} pictures are in {pictures_dir}.\n", err=as_json)
-            if not evaluate.is_any_annotated(lib, wanted):
-                return  # the pictures were all that could be had
-        found = evaluate.judge_keyposes(lib, wanted, tolerance)
+            if not evaluate.is_any_annotated(lib, filter):
+                return  # only the pictures were possible
+        found = evaluate.judge_keyposes(lib, filter, tolerance)
     if as_json:
         print_json(_document(found))
     else:
@@ -72,7 +72,7 @@ def keyposes(
 def _clip_figures(
     lib: Library, clips: Sequence[ClipRecord], form: pictures.Format
 ) -> Iterator[tuple[str, bytes]]:
-    """A picture of each clip, by its id: names are others', and not fit for files."""
+    """A picture of each clip, named by its id, since clip names may not be valid file names."""
     with progress_bar() as bar:
         for clip in bar.track(clips, description="drawing"):
             yield f"{clip.id}.{form}", keypose_pictures.clip_figure(lib, clip, form)
@@ -97,8 +97,8 @@ def _document(found: KeyposeEvaluation) -> dict[str, Any]:
         ],
         "methods": {
             judged.method: {
-                "held_out": told(judged.counts),
-                "usual_thresholds": told(judged.usual),
+                "held_out": counts_document(judged.counts),
+                "usual_thresholds": counts_document(judged.usual),
                 "learned": asdict(judged.learned),
                 "over_t1": _curve(judged.t1),
                 "over_t2": _curve(judged.t2),
@@ -119,7 +119,7 @@ def _curve(curve: ThresholdCurve) -> dict[str, list[float]]:
 def _print(found: KeyposeEvaluation) -> None:
     methods = [judged.method for judged in found.methods]
     typer.echo(
-        f"Keyposes of {len(found.clips)} clips, right within {found.tolerance:g} s (table 1):\n"
+        f"Keyposes of {len(found.clips)} clips, correct within {found.tolerance:g} s (table 1):\n"
     )
     print_table(
         ["clip", "true", *(f"{what} {m[0]}" for m in methods for what in ("found", "right"))],
@@ -134,7 +134,7 @@ def _print(found: KeyposeEvaluation) -> None:
         ["method", "thresholds", "T1", "T2", "found", "right", "precision", "recall", "F"],
         [row for judged in found.methods for row in _rows(judged, found.recordings)],
     )
-    typer.echo("\nlearned: what all clips teach; each is judged by what other recordings teach.\n")
+    typer.echo("\nlearned: from all clips; each clip is judged with those of other recordings.\n")
     for judged in found.methods:
         for name, curve, held in (
             ("T1", judged.t1, f"T2 = {judged.learned.t2:g}"),
@@ -155,7 +155,7 @@ def _rows(judged: evaluate.JudgedKeyposes, recordings: int) -> list[list[object]
 
 
 def _print_curve(title: str, name: str, curve: ThresholdCurve) -> None:
-    """Precision and recall in lines of per cent, so that eleven values fit 80 columns."""
+    """Precision and recall in percent, so that eleven values fit into 80 columns."""
     typer.echo(title)
     for label, values, form in (
         (name, curve.values, "{:5.2g}"),

@@ -10,7 +10,7 @@ import typer
 from app import evaluate
 from app.analysis.low_dimensional.eigen_motion import Basis
 from app.cli.evaluate.drawing import Drawing
-from app.cli.evaluate.running import judging, wanted_of
+from app.cli.evaluate.running import judging, parsed_filter
 from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json, print_table
 from app.evaluate import LowDimensionalEvaluation
@@ -29,10 +29,10 @@ def low_dimensional(
     as_json: AsJson = False,
 ) -> None:
     """Motions drawn from few dimensions of keyposes, and of uniform poses (Perera 2009)."""
-    wanted = wanted_of(filter_json)
+    filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
     with judging(context, "drawing") as (lib, progress):
-        found = evaluate.judge_low_dimensional(lib, wanted, progress)
+        found = evaluate.judge_low_dimensional(lib, filter, progress)
     if as_json:
         print_json(_document(found))
     else:
@@ -81,10 +81,10 @@ def _document(found: LowDimensionalEvaluation) -> dict[str, Any]:
 
 
 def _print(found: LowDimensionalEvaluation) -> None:
-    """Columns are told by k for keyposes and u for uniform poses: 80 characters must do."""
+    """Column names end with k for keyposes and u for uniform poses, to fit 80 characters."""
     key, uniform = (basis.value for basis in Basis)
     typer.echo(
-        f"{found.clips} clips, each drawn from its own keyposes (k) or as many uniform poses (u);"
+        f"{found.clips} clips, each reduced by its own keyposes (k), or as many uniform poses (u);"
         f"\n{found.left_out} others have too few keyposes.\n"
     )
     print_table(
@@ -97,7 +97,7 @@ def _print(found: LowDimensionalEvaluation) -> None:
     )  # fmt: skip
     typer.echo(
         "\nkept: variance of the model's own poses (eq. 9, fig. 11); mm: error of the whole "
-        "motion,\nat least that of the axes of all frames; k better: share of clips.\n"
+        "motion;\nleast: by the axes of all frames; k better: share of clips.\n"
     )
     faults = list(found.poses[0].faults)
     print_table(
@@ -109,7 +109,7 @@ def _print(found: LowDimensionalEvaluation) -> None:
         ],
     )  # fmt: skip
     typer.echo(
-        "\nAt 3 dimensions; faulty: frames with a pose that no body takes (figs 13, 14);\n"
+        "\nAt 3 dimensions; faulty: frames with an impossible pose (figs 13, 14);\n"
         "clusters: silhouette of the model's poses (figs 7, 8). Keyposes cluster better in "
         f"{found.more_clustered:.0%} of the clips.\n"
     )
@@ -128,4 +128,4 @@ def _print_groups(found: LowDimensionalEvaluation) -> None:
             for row in found.groups
         ],
     )  # fmt: skip
-    typer.echo("\ngap: by how much the silhouette exceeds that of poses without clusters.")
+    typer.echo("\ngap: the silhouette minus that of poses without clusters.")

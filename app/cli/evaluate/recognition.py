@@ -11,7 +11,7 @@ from app import evaluate
 from app.cli.evaluate.drawing import Drawing
 from app.cli.evaluate.recognition_document import document
 from app.cli.evaluate.recognition_tables import print_tables
-from app.cli.evaluate.running import judging, wanted_of
+from app.cli.evaluate.running import judging, parsed_filter
 from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json
 from app.evaluate.recognition import pictures as recognition_pictures
@@ -20,14 +20,14 @@ Methods = Annotated[
     list[str] | None,
     typer.Option(
         "--method",
-        help=f"Judge this one; may be repeated. One of {', '.join(evaluate.RECOGNISERS)}.",
+        help=f"Judge this method; may be repeated. One of {', '.join(evaluate.RECOGNIZERS)}.",
     ),
 ]
 Rate = Annotated[
     float | None,
     typer.Option(
         "--false-accept-rate",
-        help="Of default and perera, 0..1: how often something new may be called known.",
+        help="For default and perera, 0..1: how often something new may be called known.",
     ),
 ]
 Pictures = Annotated[
@@ -46,13 +46,13 @@ def recognition(
     as_json: AsJson = False,
 ) -> None:
     """Person and task, held out by take, person, task and source (Vasilescu; Perera, 5)."""
-    wanted = wanted_of(filter_json)
+    filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
     with judging(context, "asking") as (lib, progress):
         found = evaluate.judge_recognition(
             lib,
-            wanted,
-            tuple(method or evaluate.RECOGNISERS),
+            filter,
+            tuple(method or evaluate.RECOGNIZERS),
             false_accept_rate=false_accept_rate,
             progress=progress,
         )

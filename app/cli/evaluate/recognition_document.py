@@ -9,15 +9,15 @@ from app.evaluate import RecognitionEvaluation
 from app.evaluate.recognition.clips import names_of
 from app.evaluate.recognition.perera import PereraEvaluation
 from app.evaluate.recognition.results import HeldOut
-from app.evaluate.recognition.shares import Category, Recognised, Share, Unknown
+from app.evaluate.recognition.shares import Category, Recognized, Share, Unknown
 
 
 def document(found: RecognitionEvaluation) -> dict[str, Any]:
-    """Everything that was found, with how many clips each share is of."""
+    """All results, with the number of clips of each share."""
     return {
         "clips": {
             "judged": len(found.clips),
-            "unlabelled": found.clips.unlabelled,
+            "unlabelled": found.clips.unlabeled,
             "persons": names_of(found.clips.persons),
             "tasks": names_of(found.clips.tasks),
             "sources": names_of(found.clips.sources),
@@ -26,11 +26,11 @@ def document(found: RecognitionEvaluation) -> dict[str, Any]:
         "takes_a_cell": {str(takes): _held_out(held) for takes, held in found.takes.items()},
         "told": {
             one.method: {
-                "neither": _recognised(one.neither),
-                "person_where_task_is_told": _share(one.told.person),
-                "task_where_person_is_told": _share(one.told.task),
+                "neither": _recognized(one.neither),
+                "person_where_task_is_told": _share(one.given.person),
+                "task_where_person_is_told": _share(one.given.task),
             }
-            for one in found.told
+            for one in found.label_given
         },
         "perera": _perera(found.perera),
         "made": found.made,
@@ -45,9 +45,9 @@ def _held_out(held: HeldOut) -> dict[str, Any]:
         "chance": dict(zip(("person", "task", "both"), held.chance, strict=True)),
         "methods": {
             judged.method: {
-                "recognised": _recognised(judged.recognised),
-                "of_what_is_new": _recognised(judged.of_new),
-                "by_name": {name: _recognised(one) for name, one in judged.by_name.items() if name},
+                "recognised": _recognized(judged.recognized),
+                "of_what_is_new": _recognized(judged.of_new),
+                "by_name": {name: _recognized(one) for name, one in judged.by_name.items() if name},
                 "unknown": {factor: _unknown(one) for factor, one in judged.unknown.items()},
                 "confusion": {
                     factor: {"labels": list(names), "shares": shares.tolist()}
@@ -59,7 +59,7 @@ def _held_out(held: HeldOut) -> dict[str, Any]:
     }
 
 
-def _recognised(found: Recognised) -> dict[str, Any]:
+def _recognized(found: Recognized) -> dict[str, Any]:
     return {name: _share(getattr(found, name)) for name in ("person", "task", "both")}
 
 

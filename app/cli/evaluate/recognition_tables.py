@@ -12,23 +12,23 @@ from app.cli.output import print_table, print_text
 from app.evaluate import RecognitionEvaluation
 from app.evaluate.recognition.clips import names_of
 from app.evaluate.recognition.perera import PereraEvaluation
-from app.evaluate.recognition.results import HeldOut, Judged, WhenTold
+from app.evaluate.recognition.results import HeldOut, Judged, LabelGiven
 from app.evaluate.recognition.rounds import DRAWS, LeftOut
-from app.evaluate.recognition.shares import Recognised, Share, Unknown
+from app.evaluate.recognition.shares import Recognized, Share, Unknown
 
 _WAYS = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
-MOST_SHOWN = 40
-"""Labels in a printed table; --json has all."""
+MAX_SHOWN = 40
+"""Largest number of labels in a printed table; --json has all."""
 
 
 def print_tables(found: RecognitionEvaluation) -> None:
-    """The tables, the confusions of the first method, and what could not be judged."""
+    """Print the tables, the confusions of the first method, and what could not be judged."""
     clips = found.clips
     kinds = {"person": clips.persons, "task": clips.tasks, "source": clips.sources}
-    told = ", ".join(_counted(len(names_of(labels)), kind) for kind, labels in kinds.items())
-    typer.echo(f"{len(clips)} clips: {told}. No method has seen what it is asked about.")
-    _print_recognised(found)
-    _print_told(found.told)
+    counted = ", ".join(_counted(len(names_of(labels)), kind) for kind, labels in kinds.items())
+    typer.echo(f"{len(clips)} clips: {counted}. No method has seen the clips that it is judged on.")
+    _print_recognized(found)
+    _print_label_given(found.label_given)
     for way, factor in _WAYS.items():
         if way in found.held_out:
             _print_new(found.held_out[way], factor)
@@ -42,7 +42,7 @@ def print_tables(found: RecognitionEvaluation) -> None:
     print_text("\n" + "\n".join(_remarks(found)))
 
 
-def _print_recognised(found: RecognitionEvaluation) -> None:
+def _print_recognized(found: RecognitionEvaluation) -> None:
     if LeftOut.TAKE in found.held_out:
         _print_shares("A fifth of the takes left out in turn", found.held_out[LeftOut.TAKE])
     for takes, held in found.takes.items():
@@ -54,40 +54,41 @@ def _counted(number: int, noun: str) -> str:
 
 
 def _print_shares(title: str, held: HeldOut) -> None:
-    typer.echo(f"\n{title}; neither person nor task told, the best candidate counts:\n")
+    typer.echo(f"\n{title}; no label is given, the best candidate counts:\n")
     rows: list[list[object]] = [
-        [one.method, *_values(one.recognised), one.recognised.both.of] for one in held.methods
+        [one.method, *_values(one.recognized), one.recognized.both.of] for one in held.methods
     ]
     person, task, both = held.chance
-    rows.append(["chance", task, person, both, held.methods[0].recognised.both.of])
+    rows.append(["chance", task, person, both, held.methods[0].recognized.both.of])
     print_table(["method", "task", "person", "both", "clips"], rows)
 
 
-def _values(found: Recognised) -> list[object]:
+def _values(found: Recognized) -> list[object]:
     return [found.task.value, found.person.value, found.both.value]
 
 
-def _print_told(told: Sequence[WhenTold]) -> None:
-    if not told:
+def _print_label_given(judged: Sequence[LabelGiven]) -> None:
+    if not judged:
         return
-    typer.echo("\nEach recording left out, the other label told or not (Vasilescu, 5):\n")
+    typer.echo("\nEach recording left out; the other label is given or not (Vasilescu, 5):\n")
     print_table(
         ["method", "task", "person told", "person", "task told"],
         [
             [
                 one.method,
                 one.neither.task.value,
-                one.told.task.value,
+                one.given.task.value,
                 one.neither.person.value,
-                one.told.person.value,
+                one.given.person.value,
             ]
-            for one in told
+            for one in judged
         ],
     )
 
 
 def _print_new(held: HeldOut, factor: str) -> None:
-    """Of persons (tasks) left out: their tasks (persons), and whether they are called new."""
+    """Print, for left-out persons (tasks), their tasks (persons), and whether they are called
+    new."""
     other = "task" if factor == "person" else "person"
     typer.echo(
         f"\nA {factor} left out, {held.rounds} in turn: which {other} it is, whether the {factor} "
@@ -122,24 +123,22 @@ def _new_row(judged: Judged, factor: str, other: str) -> list[object]:
 
 
 def _print_categories(method: str, found: Unknown, factor: str) -> None:
-    """One by one, the worst first."""
+    """Print the labels one by one, the worst first."""
     ordered = sorted(found.categories, key=lambda one: (one.balanced_accuracy or 0.0, one.label))
     typer.echo(f"\nOne by one, by {method}, the worst first:\n")
     print_table(
         [f"{factor} left out", "clips", "called new", "balanced", "else taken for"],
         [
             [one.label, one.refused.of, one.refused.value, one.balanced_accuracy, one.taken_for]
-            for one in ordered[:MOST_SHOWN]
+            for one in ordered[:MAX_SHOWN]
         ],
     )
-    if len(ordered) > MOST_SHOWN:
-        typer.echo(f"... and {len(ordered) - MOST_SHOWN} more: --json tells all.")
+    if len(ordered) > MAX_SHOWN:
+        typer.echo(f"... and {len(ordered) - MAX_SHOWN} more; --json lists all.")
 
 
 def _print_sources(held: HeldOut) -> None:
-    typer.echo(
-        "\nA source left out: its clips of tasks that others have too, by what they teach:\n"
-    )
+    typer.echo("\nA source left out: its clips of tasks that other sources have too:\n")
     names = list(held.methods[0].by_name)
     print_table(
         ["method", *(f"source {number}" for number in range(1, len(names) + 1)), "all"],
@@ -147,7 +146,7 @@ def _print_sources(held: HeldOut) -> None:
             [
                 one.method,
                 *(one.by_name[name].task.value for name in names),
-                one.recognised.task.value,
+                one.recognized.task.value,
             ]
             for one in held.methods
         ],
@@ -190,11 +189,12 @@ def _print_perera(found: PereraEvaluation) -> None:
 
 
 def _print_made(kind: str, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Whose, and of what, the real clip is that is nearest to a made one, by how many given."""
+    """Print the shares of synthesized motions whose nearest real clip has the right labels."""
     given = {"new_task": "other persons", "new_person": "other tasks"}[kind]
     typer.echo(
-        f"\nMotions made for cells left out, a {kind.replace('_', ' ')}: the labels of the nearest "
-        "real clip\nare right (Vasilescu, 7); at the right both, by baselines and of real takes:\n"
+        f"\nMotions made for left-out cells, a {kind.replace('_', ' ')}: share with right labels "
+        "of the nearest\nreal clip (Vasilescu, 7); at the right: both, by baselines and of real "
+        "takes:\n"
     )
     names = ("given", "trials", "person", "task", "hit", "effects", "task_mean", "real")
     columns = [given, "trials", "person", "task", "both", "effects", "mean motion", "real"]
@@ -218,6 +218,6 @@ def _remarks(found: RecognitionEvaluation) -> list[str]:
         "after its features (medians)."
         for method, seconds in found.seconds.items()
     ]
-    if found.clips.unlabelled:
-        remarks.append(f"{found.clips.unlabelled} clips carry neither label and were left out.")
+    if found.clips.unlabeled:
+        remarks.append(f"{found.clips.unlabeled} clips carry neither label and were left out.")
     return remarks + [f"Not judged, {name}: {why}" for name, why in found.not_judged.items()]

@@ -12,7 +12,7 @@ import typer
 from app import evaluate
 from app.cli.evaluate.confusion_table import print_confusion
 from app.cli.evaluate.drawing import Drawing
-from app.cli.evaluate.running import judging, wanted_of
+from app.cli.evaluate.running import judging, parsed_filter
 from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json, print_table, print_text
 from app.evaluate import RetrievalEvaluation, VolumeEvaluation
@@ -25,9 +25,9 @@ Classes = Annotated[
     typer.Option(help="Tasks of table 1, as walk,run,jump,kick; default: the four largest."),
 ]
 Methods = Annotated[
-    list[Method] | None, typer.Option("--method", help="Judge this one; may be repeated.")
+    list[Method] | None, typer.Option("--method", help="Judge this method; may be repeated.")
 ]
-K = Annotated[int, typer.Option("--k", min=1, help="Look at so many of the nearest.")]
+K = Annotated[int, typer.Option("--k", min=1, help="Number of nearest clips to judge.")]
 Eta = Annotated[
     float,
     typer.Option(
@@ -35,7 +35,7 @@ Eta = Annotated[
     ),
 ]
 Queries = Annotated[
-    int, typer.Option(min=1, help="At most so many clips ask, drawn evenly from the tasks.")
+    int, typer.Option(min=1, help="Largest number of query clips, evenly from the tasks.")
 ]
 Picture = Annotated[
     Path | None, typer.Option(help="Draw the confusion matrices: a .svg, .png or .pdf file.")
@@ -52,21 +52,21 @@ def retrieval(
     method: Methods = None,
     k: K = evaluate.K,
     eta: Eta = 0.0,
-    queries: Queries = evaluate.MOST_QUERIES,
+    queries: Queries = evaluate.MAX_QUERIES,
     filter_json: FilterJson = None,
     picture: Picture = None,
     pictures_dir: Pictures = None,
     picture_format: PictureFormat = "svg",
     as_json: AsJson = False,
 ) -> None:
-    """Each clip asks for the others; relevant is what carries the same task (Sun 2011)."""
-    wanted = wanted_of(filter_json)
+    """Each clip is a query; clips with the same task are relevant (Sun 2011)."""
+    filter = parsed_filter(filter_json)
     names = None if classes is None else [name.strip() for name in classes.split(",")]
     drawing = Drawing.prepared(picture, pictures_dir, picture_format)
     with judging(context, "asking") as (lib, progress):
         found = evaluate.judge_retrieval(
             lib,
-            wanted,
+            filter,
             method or evaluate.JUDGED,
             classes=names,
             k=k,
@@ -74,7 +74,7 @@ def retrieval(
             most_queries=queries,
             progress=progress,
         )
-        volumes = evaluate.judge_volumes(lib, wanted, classes=names, threshold=eta)
+        volumes = evaluate.judge_volumes(lib, filter, classes=names, threshold=eta)
     if as_json:
         print_json(_document(found, volumes))
     else:
@@ -84,30 +84,30 @@ def retrieval(
 
 
 def _confusions(found: RetrievalEvaluation, form: pictures.Format) -> bytes:
-    return retrieval_pictures.confusion_figure(found, retrieval_pictures.shown_ways(found), form)
+    return retrieval_pictures.confusion_figure(found, retrieval_pictures.shown_methods(found), form)
 
 
 def _document(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> dict[str, Any]:
     return {
-        "figures": [asdict(way.figures) for way in found.ways],
+        "figures": [asdict(judged.figures) for judged in found.methods],
         "true_positive_rates": {
             "classes": found.chosen,
             "k": found.k,
             "mixture": found.mixture,
             "methods": {
-                way.figures.method: {
-                    **dict(zip(found.chosen, way.rates.tolist(), strict=True)),
-                    "overall": way.overall,
+                judged.figures.method: {
+                    **dict(zip(found.chosen, judged.rates.tolist(), strict=True)),
+                    "overall": judged.overall,
                 }
-                for way in found.ways
+                for judged in found.methods
             },
         },
         "confusion": {
             "classes": found.classes,
             "k": found.k,
-            "methods": {way.figures.method: way.confusion.tolist() for way in found.ways},
+            "methods": {one.figures.method: one.confusion.tolist() for one in found.methods},
         },
-        "left_out": {"unlabelled": found.unlabelled, "alone": found.alone},
+        "left_out": {"unlabelled": found.unlabeled, "alone": found.alone},
         "volumes": {
             "q": volumes.q,
             "eta": volumes.threshold,
@@ -121,28 +121,36 @@ def _document(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> dict[str
 
 
 def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
-    queries = found.ways[0].figures.queries if found.ways else 0
-    typer.echo(f"{queries} clips ask for the others of their task, among {found.mixture}:\n")
+    queries = found.methods[0].figures.queries if found.methods else 0
+    typer.echo(
+        f"{queries} clips are queries for the others of their task, among {found.mixture}:\n"
+    )
     print_table(
         ["method", "1-NN", "P@4", "P@20", "MAP"],
-        [list(asdict(way.figures).values())[:5] for way in found.ways],
+        [list(asdict(judged.figures).values())[:5] for judged in found.methods],
     )
-    typer.echo(f"\nTrue-positive rates: of the {found.k} nearest in the mixture (table 1):\n")
+    typer.echo(f"\nTrue-positive rates among the {found.k} nearest in the mixture (table 1):\n")
     print_table(
         ["method", *found.chosen, "overall"],
-        [[way.figures.method, *way.rates.tolist(), way.overall] for way in found.ways],
+        [
+            [judged.figures.method, *judged.rates.tolist(), judged.overall]
+            for judged in found.methods
+        ],
     )
-    for way in found.ways:
-        if way.figures.method in retrieval_pictures.shown_ways(found):
-            typer.echo(f"\nWhat the {found.k} nearest are by {way.figures.method}, % (figure 8):\n")
-            print_confusion(found.classes, way.confusion)
+    for judged in found.methods:
+        if judged.figures.method in retrieval_pictures.shown_methods(found):
+            typer.echo(
+                f"\nTrue classes, and classes of the {found.k} nearest clips by"
+                f" {judged.figures.method}, % (figure 8):\n"
+            )
+            print_confusion(found.classes, judged.confusion)
     print_text("\n" + "\n".join(_remarks(found, volumes)))
 
 
 def _remarks(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> list[str]:
     compression = volumes.compression
     remarks = [
-        f"Of a task with fewer than {found.k} other clips, as many of the nearest are looked at.",
+        f"A task with fewer than {found.k} other clips is judged by as many nearest clips.",
         f"Rank-1 factors (q = {volumes.q}) of {len(volumes.iterations)} clips of these tasks:"
         f" {volumes.converged} converged, in {np.median(volumes.iterations):.0f} iterations"
         f" (median; {max(volumes.iterations)} at most).",
@@ -152,8 +160,8 @@ def _remarks(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> list[str]
     ]
     if found.alone:
         remarks.append(
-            f"{found.alone} clips are the only recording of their task: they asked nothing."
+            f"{found.alone} clips are the only recording of their task, so they were no queries."
         )
-    if found.unlabelled:
-        remarks.append(f"{found.unlabelled} clips carry no task and were left out.")
+    if found.unlabeled:
+        remarks.append(f"{found.unlabeled} clips carry no task and were left out.")
     return remarks

@@ -1,4 +1,4 @@
-"""How every evaluation begins: which clips are meant, and the library with a progress bar."""
+"""The common start of evaluations: the filter, and the library with a progress bar."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
 
 Progress = Callable[[int, int], None]
-"""Is told how many steps are done, of how many."""
+"""Called with the number of steps done and the total."""
 
 
-def wanted_of(filter_json: str | None) -> ClipFilter:
-    """The clips that `--filter` means, all without it. Raises BadField."""
+def parsed_filter(filter_json: str | None) -> ClipFilter:
+    """The filter of `--filter`; without it, all clips pass. Raises BadField."""
     return parse_filter(filter_of(filter_json))
 
 
 @contextmanager
 def judging(context: typer.Context, doing: str) -> Iterator[tuple[Library, Progress]]:
-    """The library of the settings, and what moves a bar that says what is being done."""
+    """The library of the settings, and a function that moves a progress bar."""
     with open_library(context) as lib, progress_bar() as bar:
         task = bar.add_task(doing, total=None)
         yield lib, lambda done, total: bar.update(task, completed=done, total=total)

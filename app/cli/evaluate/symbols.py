@@ -10,7 +10,7 @@ import typer
 
 from app import evaluate
 from app.cli.evaluate.drawing import Drawing
-from app.cli.evaluate.running import wanted_of
+from app.cli.evaluate.running import parsed_filter
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table, print_text
 from app.cli.settings import open_library
@@ -28,9 +28,9 @@ def symbols(
     as_json: AsJson = False,
 ) -> None:
     """How many dimensions motion symbols need, and how well new ones are placed (Takano)."""
-    wanted, drawing = wanted_of(filter_json), Drawing.prepared(picture)
+    filter, drawing = parsed_filter(filter_json), Drawing.prepared(picture)
     with open_library(context) as lib:
-        found = evaluate.judge_symbols(lib, wanted)
+        found = evaluate.judge_symbols(lib, filter)
     if as_json:
         print_json(asdict(found))
     else:
@@ -44,6 +44,6 @@ def _print(found: SymbolFigures) -> None:
     print_text(
         f"{found.symbols} symbols. Distances to landmarks are off by "
         f"{found.placing_error:.1%} for symbols placed later, {found.fitting_error:.1%} among "
-        f"landmarks. The fast divergence ranks {found.pairs} pairs as Monte Carlo does: "
-        f"Spearman {found.agreement:.4f}."
+        f"landmarks. Rank correlation (Spearman) of the fast divergence with Monte Carlo, over "
+        f"{found.pairs} pairs: {found.agreement:.4f}."
     )

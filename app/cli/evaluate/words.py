@@ -11,13 +11,13 @@ import typer
 
 from app import evaluate
 from app.cli.evaluate.drawing import Drawing
-from app.cli.evaluate.running import wanted_of
+from app.cli.evaluate.running import parsed_filter
 from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, print_table, print_text
 from app.cli.settings import open_library
 from app.evaluate import WordExample
 from app.models.held_out.words import (
-    LEAST_RECORDINGS,
+    MIN_RECORDINGS,
     RECALLS,
     JudgedWord,
     WordEvaluation,
@@ -35,8 +35,8 @@ Queries = Annotated[
 Picture = Annotated[
     Path | None, typer.Option(help="Draw recall against precision: a .svg, .png or .pdf file.")
 ]
-MOST_SHOWN = 40
-"""Words in the printed table; --json has all."""
+MAX_SHOWN = 40
+"""Largest number of words in the printed table; --json has all."""
 
 
 def words(
@@ -46,11 +46,11 @@ def words(
     picture: Picture = None,
     as_json: AsJson = False,
 ) -> None:
-    """Words for clips and clips for words, held out and in-sample, beside their frequency."""
-    wanted, drawing = wanted_of(filter_json), Drawing.prepared(picture)
+    """Words for clips and clips for words, held out and in-sample, and by frequency."""
+    filter, drawing = parsed_filter(filter_json), Drawing.prepared(picture)
     with open_library(context) as lib:
-        found = evaluate.judge_words(lib, wanted)
-        examples = evaluate.word_examples(lib, query, wanted)
+        found = evaluate.judge_words(lib, filter)
+        examples = evaluate.word_examples(lib, query, filter)
     if as_json:
         print_json(_document(found, examples))
     else:
@@ -62,7 +62,7 @@ def _document(found: WordEvaluation, examples: Sequence[WordExample]) -> dict[st
     document = asdict(found)
     return document | {
         "recalls": RECALLS.tolist(),
-        "least_recordings": LEAST_RECORDINGS,
+        "least_recordings": MIN_RECORDINGS,
         "examples": [asdict(example) for example in examples],
     }
 
@@ -76,11 +76,11 @@ def _print(found: WordEvaluation, examples: Sequence[WordExample]) -> None:
     _print_figures(found.in_sample)
     typer.echo("\nPrecision of single words at a recall, held out (figure 7):\n")
     _print_curves(found.figures)
-    for method, told in found.reliability.items():
+    for method, one in found.reliability.items():
         print_text(
             f"\nScores of {method} as probabilities, held out: expected calibration error "
-            f"{told.word_error:.4f} and Brier score {told.word_brier:.4f} of single words (by "
-            f"frequency {told.prior_brier:.4f}); {told.set_error:.4f} and {told.set_brier:.4f} "
+            f"{one.word_error:.4f} and Brier score {one.word_brier:.4f} of single words (by "
+            f"frequency {one.prior_brier:.4f}); {one.set_error:.4f} and {one.set_brier:.4f} "
             "of whole label sets."
         )
     for kind, correlations in found.correlations.items():
@@ -116,17 +116,17 @@ def _print_words(by_word: Sequence[JudgedWord]) -> None:
         ["word", "clips", "recordings", "AP", "F", "AUC"],
         [
             [o.word, o.clips, o.recordings, o.average_precision, o.f, o.area_under_curve]
-            for o in judged[:MOST_SHOWN]
+            for o in judged[:MAX_SHOWN]
         ],
     )
-    if len(judged) > MOST_SHOWN:
-        typer.echo(f"... and {len(judged) - MOST_SHOWN} words more: --json tells all.")
+    if len(judged) > MAX_SHOWN:
+        typer.echo(f"... and {len(judged) - MAX_SHOWN} more words; --json lists all.")
     rare = [one.word for one in by_word if one.too_rare]
     if rare:
-        more = "" if len(rare) <= MOST_SHOWN else f" and {len(rare) - MOST_SHOWN} more"
+        more = "" if len(rare) <= MAX_SHOWN else f" and {len(rare) - MAX_SHOWN} more"
         print_text(
-            f"Too rare to judge one by one, in fewer than {LEAST_RECORDINGS} recordings: "
-            f"{', '.join(rare[:MOST_SHOWN])}{more}."
+            f"Too rare to judge one by one, in fewer than {MIN_RECORDINGS} recordings: "
+            f"{', '.join(rare[:MAX_SHOWN])}{more}."
         )
 
 

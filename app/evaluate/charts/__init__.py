@@ -1,6 +1,6 @@
-"""Pictures of figures and curves, as SVG, PNG or PDF: the same input gives the same bytes.
+"""Draws figures and curves as SVG, PNG or PDF. The same input gives the same bytes.
 
-They need matplotlib, the extra `plots`; nothing else in Kinedex does.
+Pictures need matplotlib, the extra `plots`; no other part of Kinedex needs it.
 """
 
 from app.evaluate.charts.confusion import confusion_picture, confusions_picture

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.evaluate.charts.drawing import MOST_INCHES, Format, drawn, shown
+from app.evaluate.charts.drawing import MAX_INCHES, Format, drawn, shown
 from app.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 CELL = 0.42
-"""Inches; cells shrink when there are more than MOST_LARGE classes."""
-MOST_LARGE = 30
-MOST_WITH_NUMBERS = 60
+"""Inches; cells shrink when there are more than MAX_FULL_SIZE classes."""
+MAX_FULL_SIZE = 30
+MAX_NUMBERED = 60
 USUAL_LETTERS = 9.0
-"""Points; names are smaller where that is more than a cell is high."""
+"""Font size of names in points; it is smaller if a cell is not high enough."""
 LETTERS_A_CELL = 0.75 * 72
-"""Points of an inch of cell: lines of names stand apart."""
+"""Font size in points per inch of a cell, so that lines of names have space between them."""
 DARK = 0.55
-"""Cells of a larger share carry white numbers."""
+"""Cells with a larger share have white numbers."""
 
 
 def confusion_picture(
@@ -36,9 +36,9 @@ def confusion_picture(
     rows: str = "true class",
     columns: str = "taken for",
 ) -> bytes:
-    """`shares` (classes, classes), 0..1, one row a true class; numbers are per cent.
+    """Draw `shares` (classes, classes), 0..1, a row for each true class; numbers are percent.
 
-    Raises ValueError when the shapes do not fit.
+    Raises ValueError if the shapes do not match.
     """
     return confusions_picture({title: shares}, classes, form, rows=rows, columns=columns)
 
@@ -51,13 +51,13 @@ def confusions_picture(
     rows: str = "true class",
     columns: str = "taken for",
 ) -> bytes:
-    """Matrices of the same classes beside one another, as in figure 8; else as for one."""
+    """Draw matrices of the same classes side by side, as in figure 8."""
     count = len(classes)
     if not count or not by_title or {m.shape for m in by_title.values()} != {(count, count)}:
-        raise ValueError("a confusion matrix has one row and one column a class")
-    side = CELL * max(min(count, MOST_LARGE), 4) + 0.2 * max(count - MOST_LARGE, 0)
+        raise ValueError("a confusion matrix has one row and one column for each class")
+    side = CELL * max(min(count, MAX_FULL_SIZE), 4) + 0.2 * max(count - MAX_FULL_SIZE, 0)
     width, height = (side + 0.3) * len(by_title) + 2.6, side + 1.6
-    fitting = min(1.0, MOST_INCHES / width, MOST_INCHES / height)
+    fitting = min(1.0, MAX_INCHES / width, MAX_INCHES / height)
     letters = min(USUAL_LETTERS, LETTERS_A_CELL * fitting * side / count)
 
     def draw(figure: Figure) -> None:
@@ -76,7 +76,7 @@ def _fill(
 ) -> QuadMesh:
     count = len(classes)
     names = [shown(name) for name in classes]
-    # squares of their own stay sharp in an SVG, and white edges part them
+    # separate squares stay sharp in an SVG, with white edges between them
     mesh = axes.pcolormesh(
         shares, cmap="Blues", vmin=0.0, vmax=1.0, edgecolors="white", linewidth=1.0
     )
@@ -88,13 +88,13 @@ def _fill(
     axes.grid(visible=False)
     axes.tick_params(length=0, labelsize=letters)
     axes.spines[:].set_visible(False)
-    if count <= MOST_WITH_NUMBERS:
-        _number(axes, shares, size=min(letters, 8.0 if count <= MOST_LARGE else 5.0))
+    if count <= MAX_NUMBERED:
+        _number(axes, shares, size=min(letters, 8.0 if count <= MAX_FULL_SIZE else 5.0))
     return mesh
 
 
 def _number(axes: Axes, shares: FloatArray, size: float) -> None:
-    """Per cent in every cell that rounds to one at least."""
+    """Write the percentage into each cell where it rounds to at least one."""
     for (row, column), share in np.ndenumerate(shares):
         if share >= 0.005:
             ink = "white" if share > DARK else "#222222"

@@ -1,4 +1,4 @@
-"""Curves as a picture: one panel or several side by side, groups told by colour and dashes."""
+"""Curves as a picture with one or more panels; colors and dashes distinguish groups."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.evaluate.charts.drawing import Format, add_legend, colour, dashes, drawn, shown
+from app.evaluate.charts.drawing import Format, add_legend, color, dashes, drawn, shown
 from app.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 PANEL = (4.6, 3.4)
 """Inches of a panel: width, height."""
 MANY = 8
-"""Curves beyond so many in a group are drawn thin and see-through."""
+"""If a group has more curves, they are thin and transparent."""
 
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """One line: `x` (n,) and `y` (n,); curves of one `group` look alike and share a name."""
+    """One line: `x` (n,) and `y` (n,); curves of one `group` have the same style and name."""
 
     x: FloatArray
     y: FloatArray
@@ -34,7 +34,7 @@ class Panel:
     """Axes with curves.
 
     ticks: names for x = 0, 1, 2...; log_y: a logarithmic y axis; y_range: its limits;
-    marked: x where a dashed line stands.
+    marked: x positions of dashed lines.
     """
 
     curves: Sequence[Curve]
@@ -50,7 +50,7 @@ class Panel:
 def curves_picture(
     panels: Sequence[Panel], form: Format, *, title: str = "", columns: int = 2
 ) -> bytes:
-    """Panels row by row, `columns` in a row; a group looks the same in all of them.
+    """Draw panels row by row, `columns` in a row; a group has the same style in all panels.
 
     Raises ValueError without a panel.
     """
@@ -72,7 +72,7 @@ def curves_picture(
 
 
 def _draw(axes: Axes, panel: Panel, groups: Sequence[str]) -> dict[str, Line2D]:
-    """Fill one panel; a line of each of its groups, for the legend."""
+    """Fill one panel; returns a line of each of its groups, for the legend."""
     axes.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
     if panel.log_y:
         axes.set_yscale("log")
@@ -92,7 +92,7 @@ def _draw(axes: Axes, panel: Panel, groups: Sequence[str]) -> dict[str, Line2D]:
         (line,) = axes.plot(
             curve.x,
             curve.y,
-            color=colour(number),
+            color=color(number),
             linestyle=dashes(number),
             linewidth=0.7 if crowded else 1.4,
             alpha=0.55 if crowded else 1.0,

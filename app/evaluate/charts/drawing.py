@@ -1,7 +1,7 @@
-"""What all pictures share: matplotlib without its global state, colours, names, bytes.
+"""Common parts of all pictures: matplotlib without its global state, colors, names, bytes.
 
-Colours are those of Okabe and Ito, told apart by people of every colour vision; beyond
-seven groups, and for print without colour, markers and dashes differ too.
+The colors are those of Okabe and Ito, which people with any color vision can distinguish. Markers
+and dashes differ too, for more than seven groups and for print without color.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 Format = Literal["svg", "png", "pdf"]
 
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#4D4D4D")
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#4D4D4D")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", "*", ">")
 DASHES: tuple[str | tuple[int, tuple[int, ...]], ...] = (
     "-",
@@ -27,13 +27,13 @@ DASHES: tuple[str | tuple[int, tuple[int, ...]], ...] = (
     (0, (2, 1)),
     (0, (6, 2, 1, 2)),
 )
-LONGEST_NAME = 24
-"""Characters of a name in a picture; a longer one loses its middle."""
+MAX_NAME_LENGTH = 24
+"""Largest number of characters of a name in a picture; a longer name loses its middle."""
 LEGEND_ROW = 0.19
-"""Inches that a row of a legend takes."""
+"""Height of a row of a legend in inches."""
 PNG_DOTS_PER_INCH = 150
-MOST_INCHES = 40.0
-"""Of a side: 6,000 dots."""
+MAX_INCHES = 40.0
+"""Largest length of a side: 6,000 dots."""
 
 _STYLE: Any = {
     "axes.axisbelow": True,
@@ -42,14 +42,14 @@ _STYLE: Any = {
     "axes.spines.top": False,
     "axes.titlesize": 10,
     "figure.titlesize": 11,
-    "font.family": "DejaVu Sans",  # comes with matplotlib: the same letters everywhere
+    "font.family": "DejaVu Sans",  # part of matplotlib, so letters are the same everywhere
     "font.size": 9,
     "grid.color": "#E3E3E3",
     "legend.fontsize": 8,
     "legend.frameon": False,
     "lines.linewidth": 1.3,
     "svg.hashsalt": "kinedex",
-    "text.parse_math": False,  # names are others', and may hold dollar signs
+    "text.parse_math": False,  # names come from other people and may have dollar signs
 }
 _NO_DATES: dict[str, dict[str, Any]] = {
     "svg": {"Date": None},
@@ -59,7 +59,7 @@ _NO_DATES: dict[str, dict[str, Any]] = {
 
 
 def format_of(path: Path) -> Format:
-    """The format that the suffix of `path` names. Raises BadField for another suffix."""
+    """The format by the suffix of `path`. Raises BadField for an unknown suffix."""
     formats: tuple[Format, ...] = get_args(Format)
     for known in formats:
         if path.suffix.lower() == f".{known}":
@@ -70,7 +70,7 @@ def format_of(path: Path) -> Format:
 
 
 def need_plots() -> None:
-    """Raises ExtraNeeded without matplotlib: to be asked before long work, not after it."""
+    """Raise ExtraNeeded without matplotlib. Call this before long work."""
     try:
         import matplotlib.figure  # noqa: F401 - takes half a second; few need it
     except ImportError as missing:
@@ -85,9 +85,9 @@ def drawn(draw: Callable[[Figure], None], inches: tuple[float, float], form: For
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    width, height = (min(side, MOST_INCHES) for side in inches)
+    width, height = (min(side, MAX_INCHES) for side in inches)
     with mpl.rc_context(_STYLE), warnings.catch_warnings():
-        # A letter that the font lacks is drawn as a box; that is no reason to fail.
+        # a letter that the font lacks becomes a box; this must not raise an error
         warnings.filterwarnings("ignore", message="Glyph .* missing", category=UserWarning)
         figure = Figure(figsize=(width, height), layout="constrained")
         draw(figure)
@@ -102,28 +102,28 @@ def drawn(draw: Callable[[Figure], None], inches: tuple[float, float], form: For
     return content.getvalue()
 
 
-def colour(group: int) -> str:
-    """The colour of the group with this number."""
-    return COLOURS[group % len(COLOURS)]
+def color(group: int) -> str:
+    """The color of the group with this number."""
+    return COLORS[group % len(COLORS)]
 
 
 def marker(group: int) -> str:
-    """The marker of the group with this number; with the colour unlike any of 69 others."""
+    """The marker of the group with this number; with the color unlike any of 69 others."""
     return MARKERS[group % len(MARKERS)]
 
 
 def dashes(group: int) -> Any:
-    """The line style of the group with this number; with the colour unlike any of 27 others."""
+    """The line style of the group with this number; with the color unlike any of 27 others."""
     return DASHES[group % len(DASHES)]
 
 
 def shown(name: str) -> str:
-    """`name` fit for a picture: on one line, printable, its middle left out when it is long."""
+    """`name` for a picture: one line, printable; a long name loses its middle."""
     clean = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name)
-    if len(clean) <= LONGEST_NAME:
+    if len(clean) <= MAX_NAME_LENGTH:
         return clean
-    head = LONGEST_NAME * 2 // 3
-    return f"{clean[:head]}…{clean[head + 1 - LONGEST_NAME :]}"
+    head = MAX_NAME_LENGTH * 2 // 3
+    return f"{clean[:head]}…{clean[head + 1 - MAX_NAME_LENGTH :]}"
 
 
 def add_legend(figure: Figure, handles: Sequence[Any], names: Sequence[str]) -> None:
@@ -134,5 +134,5 @@ def add_legend(figure: Figure, handles: Sequence[Any], names: Sequence[str]) -> 
         legend = figure.legend(
             handles, [shown(n) for n in names], loc="outside right upper", ncols=columns
         )
-        for line in legend.get_lines():  # thin and pale where a panel is crowded
+        for line in legend.get_lines():  # they are thin and pale if a panel has many curves
             line.set(alpha=1.0, linewidth=1.6)

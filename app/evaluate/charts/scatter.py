@@ -1,4 +1,4 @@
-"""Points and paths in two or three dimensions as a picture, groups by colour and marker."""
+"""Points and paths in two or three dimensions as a picture, groups by color and marker."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from app.evaluate.charts.drawing import Format, add_legend, colour, dashes, drawn, marker, shown
+from app.evaluate.charts.drawing import Format, add_legend, color, dashes, drawn, marker, shown
 from app.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 class Cloud:
     """Points of one group: (n, 2) or (n, 3).
 
-    joined: a path from point to point instead of markers; labels: a text at each point.
-    Clouds of one `group` look alike and share a name.
+    joined: draw a path from point to point instead of markers; labels: a text at each point.
+    Clouds of one `group` have the same style and name.
     """
 
     points: FloatArray
@@ -35,7 +35,7 @@ def scatter_picture(
     axes: Sequence[str] = (),
     equal: bool = True,
 ) -> bytes:
-    """All clouds in one frame of two or three dimensions, as the points have.
+    """Draw all clouds in one frame with the two or three dimensions of the points.
 
     axes: names of the dimensions; equal: one unit is as long on every axis.
     Raises ValueError without a cloud, or when the dimensions are not two or three for all.
@@ -67,20 +67,20 @@ def scatter_picture(
 def _fill(figure: Figure, frame: Any, clouds: Sequence[Cloud]) -> None:
     groups = list(dict.fromkeys(cloud.group for cloud in clouds))
     handles: dict[str, Any] = {}
-    # by default points farther away fade, and with them what their colour tells
+    # by default points farther away fade, and their colors become hard to distinguish
     flat = {"depthshade": False} if clouds[0].points.shape[1] == 3 else {}
     for cloud in clouds:
         number = groups.index(cloud.group)
         columns = cloud.points.T
         if cloud.joined:
             (handle,) = frame.plot(
-                *columns, color=colour(number), linestyle=dashes(number), linewidth=1.2
+                *columns, color=color(number), linestyle=dashes(number), linewidth=1.2
             )
         else:
             handle = frame.scatter(
                 *columns,
                 **flat,
-                color=colour(number),
+                color=color(number),
                 marker=marker(number),
                 s=26,
                 alpha=0.85,

@@ -1,8 +1,7 @@
-"""Keyposes against those that people named: Table 1 and figures 4 and 5 of Perera 2009.
+"""Compares found keyposes with annotated ones: Table 1 and figures 4 and 5 of Perera 2009.
 
-Thresholds are those that the other recordings teach, so that no clip is judged by what it
-taught; the usual ones stand beside them, and beside the energies the method by hands and
-feet that Perera compares with.
+The thresholds for a clip are learned from the other recordings. There are also figures with the
+usual thresholds, and of the method by hands and feet with which Perera compares the energies.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from app.models.keyposes.thresholds import (
     Thresholds,
     curve_of_t1,
     curve_of_t2,
-    lesson,
+    threshold_grid,
 )
 from app.services import fields
 from app.services.library.library import Library
@@ -31,7 +30,7 @@ from app.store.clips.filter import ClipFilter
 
 END_EFFECTORS = "end-effectors"
 JUDGED_KEYPOSES = (*(method.value for method in EnergyMethod), END_EFFECTORS)
-"""The energies, and what Perera compares with."""
+"""The energy methods, and the method with which Perera compares them."""
 
 HOW = (
     f"{NOBODY} Name some with PUT /v1/clips/{{id}}/keyposes, or in the column `keyposes` of a "
@@ -41,7 +40,7 @@ HOW = (
 
 @dataclass(frozen=True, slots=True)
 class JudgedClip:
-    """A line of Table 1: how many keyposes a clip has, and of each method what it found."""
+    """A row of Table 1: the number of a clip's keyposes, and the results of each method."""
 
     clip_id: str
     name: str
@@ -52,11 +51,11 @@ class JudgedClip:
 
 @dataclass(frozen=True, slots=True)
 class JudgedKeyposes:
-    """One method over all clips.
+    """The results of one method over all clips.
 
-    counts: with thresholds that the other recordings taught; usual: with the usual ones;
-    learned: what all clips together teach; t1, t2: the curves of figs 4 and 5, the other
-    threshold held at what was learned.
+    counts: with thresholds learned from the other recordings; usual: with the usual ones;
+    learned: the thresholds from all clips; t1, t2: the curves of figs 4 and 5, with the other
+    threshold fixed at the learned value.
     """
 
     method: str
@@ -69,7 +68,7 @@ class JudgedKeyposes:
 
 @dataclass(frozen=True, slots=True)
 class KeyposeEvaluation:
-    """tolerance: seconds by which a keypose may be missed; recordings: how many taught."""
+    """tolerance: largest distance in seconds of a match; recordings: number of recordings."""
 
     tolerance: float
     recordings: int
@@ -77,23 +76,23 @@ class KeyposeEvaluation:
     methods: tuple[JudgedKeyposes, ...]
 
 
-def is_any_annotated(lib: Library, wanted: ClipFilter | None = None) -> bool:
-    """Whether there is anything to judge."""
-    return bool(annotated_ids(lib.store, wanted))
+def is_any_annotated(lib: Library, filter: ClipFilter | None = None) -> bool:
+    """Whether the library has an annotated clip that passes the filter."""
+    return bool(annotated_ids(lib.store, filter))
 
 
 def judge_keyposes(
-    lib: Library, wanted: ClipFilter | None = None, tolerance: float = TOLERANCE
+    lib: Library, filter: ClipFilter | None = None, tolerance: float = TOLERANCE
 ) -> KeyposeEvaluation:
-    """Every annotated clip that passes the filter. Raises BadField, NotEnoughLabels."""
+    """Judge all annotated clips that pass the filter. Raises BadField, NotEnoughLabels."""
     if not 0 < tolerance <= 1:
         raise fields.bad_field("tolerance", "must be above 0 and at most 1 s")
-    annotated = read_annotated(lib.store, wanted)
+    annotated = read_annotated(lib.store, filter)
     if not annotated:
         raise NotEnoughLabels(HOW)
     groups = [clip.group for clip in annotated]
     examples = {method: _examples(annotated, method) for method in JUDGED_KEYPOSES}
-    lessons = {method: lesson(some, tolerance) for method, some in examples.items()}
+    lessons = {method: threshold_grid(some, tolerance) for method, some in examples.items()}
     counts = {
         method: [found for _, found in taught.held_out(groups)]
         for method, taught in lessons.items()

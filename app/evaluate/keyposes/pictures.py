@@ -27,17 +27,17 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-COLOURS = {Scope.GLOBAL: "#D55E00", Scope.LOCAL: "#009E73"}
+COLORS = {Scope.GLOBAL: "#D55E00", Scope.LOCAL: "#009E73"}
 NAMED = "#0072B2"
 BEAT = "#888888"
 INCHES_PER_SECOND = 0.9
 WIDTH = (7.0, 36.0)
-"""Inches: at least, at most."""
+"""Smallest and largest width in inches."""
 FIGURES_PER_INCH = 1.4
 ASIDE = 0.6
-"""Radians by which figures are turned from the front, so that arms before the body show."""
+"""Radians by which figures are rotated from the front, so that arms before the body are visible."""
 STEP = 1.3
-"""Metres from one stick figure to the next."""
+"""Distance between two stick figures in meters."""
 
 _LIMBS = [
     (SUN_ROLES.index(role), SUN_ROLES.index(role.towards_trunk()))
@@ -47,7 +47,7 @@ _LIMBS = [
 
 
 def threshold_figure(evaluation: KeyposeEvaluation, form: Format) -> bytes:
-    """Precision and recall over T1 and over T2, a row a method."""
+    """Precision and recall over T1 and over T2, with a row for each method."""
     panels = [
         Panel(
             [Curve(curve.values, curve.precision, "precision"),
@@ -67,10 +67,10 @@ def threshold_figure(evaluation: KeyposeEvaluation, form: Format) -> bytes:
     return curves_picture(panels, form, title=title)
 
 
-def clips_to_draw(lib: Library, wanted: ClipFilter | None) -> tuple[ClipRecord, ...]:
-    """The ready clips that pass a filter, annotated or not."""
+def clips_to_draw(lib: Library, filter: ClipFilter | None) -> tuple[ClipRecord, ...]:
+    """The ready clips that pass the filter, with or without annotation."""
     with lib.store.read() as tx:
-        ids = sorted(clip_listing.list_ids(tx, ready_only(wanted)))
+        ids = sorted(clip_listing.list_ids(tx, ready_only(filter)))
         return tuple(clips.get_many(tx, ids).values())
 
 
@@ -80,7 +80,7 @@ def clip_figure(lib: Library, clip: ClipRecord, form: Format) -> bytes:
 
 
 def keypose_figure(seen: KeyposesView, name: str, form: Format) -> bytes:
-    """A clip: both energies over time with its beats and keyposes, and the poses below."""
+    """A clip's energies over time with its beats and keyposes, and the poses below."""
     found = seen.found
     seconds = len(found.global_energy) / seen.frame_rate
     across = float(np.clip(INCHES_PER_SECOND * seconds, *WIDTH))
@@ -109,8 +109,8 @@ def _legend(seen: KeyposesView) -> dict[str, Line2D]:
     from matplotlib.lines import Line2D
 
     lines = {
-        f"keypose by {scope.value} energy": Line2D([], [], color=colour, linewidth=1.8)
-        for scope, colour in COLOURS.items()
+        f"keypose by {scope.value} energy": Line2D([], [], color=color, linewidth=1.8)
+        for scope, color in COLORS.items()
     }
     if seen.named is not None:
         lines["named keypose"] = Line2D([], [], color=NAMED, linestyle=(0, (6, 2)))
@@ -121,20 +121,20 @@ def _legend(seen: KeyposesView) -> dict[str, Line2D]:
 
 def _draw_energy(axes: Axes, seen: KeyposesView, values: FloatArray, scope: Scope) -> None:
     times = np.arange(len(values)) / seen.frame_rate
-    # A jump into a first frame that is not part of the motion must not flatten the rest.
+    # a jump after a first frame that does not belong to the motion must not set the scale
     high = float(np.quantile(values, 0.995)) * 1.15 or 1.0
     axes.plot(times, values, color="#222222", linewidth=1.1)
     axes.set(xlim=(0.0, times[-1]), ylim=(0.0, high), ylabel=f"{scope.value} energy")
     for beat in seen.found.beats.times:
         axes.axvline(beat, color=BEAT, linestyle=":", linewidth=0.8)
     for time, by in zip(seen.found.times, seen.found.chosen_by, strict=True):
-        axes.axvline(time, color=COLOURS[by], linewidth=1.8 if by is scope else 0.8)
+        axes.axvline(time, color=COLORS[by], linewidth=1.8 if by is scope else 0.8)
     for time in seen.named or ():
         axes.axvline(time, color=NAMED, linestyle=(0, (6, 2)), linewidth=1.2)
 
 
 def _draw_poses(axes: Axes, seen: KeyposesView, most: int) -> None:
-    """Stick figures of the keyposes, of `most` evenly chosen ones where there are more."""
+    """Stick figures of the keyposes; at most `most`, evenly chosen."""
     axes.set_axis_off()
     axes.set_aspect("equal")
     count = len(seen.found.frames)
@@ -151,7 +151,7 @@ def _draw_poses(axes: Axes, seen: KeyposesView, most: int) -> None:
 
 
 def _heading(pose: FloatArray) -> float:
-    """Radians about Y from Z to where the shoulders face."""
+    """Radians about Y from Z to the direction that the shoulders face."""
     names = [role.value for role in SUN_ROLES]
     left = pose[names.index("left_shoulder")] - pose[names.index("right_shoulder")]
     return float(np.arctan2(-left[2], left[0]))

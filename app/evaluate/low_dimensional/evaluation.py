@@ -1,8 +1,8 @@
-"""Keyposes against uniform poses as what low-dimensional motion is drawn from (Perera 2009,
-section 4): what each keeps, what it costs, how its poses cluster, what no body does.
+"""Compares keyposes with uniform poses as basis of low-dimensional motion (Perera 2009, section 4).
 
-Each clip with enough keyposes is drawn from its own poses; and clips of several persons doing
-one task, one clip each, from the poses of all (section 4.2).
+The figures are the variance kept, the error, the clustering of the poses, and implausible poses.
+Each clip with enough keyposes is reduced with its own poses. Clips of several persons at one task,
+one for each person, are also reduced with the poses of all of them (section 4.2).
 """
 
 from __future__ import annotations
@@ -36,23 +36,23 @@ from app.store.clips import repository as stored
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
 
-MOST_DIMENSIONS = 10
-"""Rows of the table."""
-FEWEST_KEYPOSES = SHOWN + 1
-"""Of a clip that is judged: fewer span less than the three dimensions of the paper."""
+MAX_DIMENSIONS = 10
+"""Number of rows of the table."""
+MIN_KEYPOSES = SHOWN + 1
+"""Keyposes that a judged clip needs: fewer span less than the three dimensions of the paper."""
 ORIGINAL = "original"
 
 Progress = Callable[[int, int], None]
-"""Told after each clip: done, in all."""
+"""Called after each clip with the number of clips done and the total."""
 
 
 @dataclass(frozen=True, slots=True)
 class DimensionRow:
-    """Means over the clips whose models have so many poses.
+    """Means for one number of dimensions, over the clips whose models have enough poses.
 
-    variance: share that each basis keeps of its own poses (eq. 9); error: mm, of the whole
-    motion, by basis; best: mm, by as many axes of all frames, the least that there can be;
-    keypose_better: share of the clips that keyposes draw better.
+    variance: share that each basis keeps of its own poses (eq. 9); error: of the whole motion in
+    mm, by basis; best: the smallest possible error in mm, by the axes of all frames;
+    keypose_better: share of the clips with a smaller error by keyposes.
     """
 
     dimensions: int
@@ -65,10 +65,11 @@ class DimensionRow:
 
 @dataclass(frozen=True, slots=True)
 class PoseRow:
-    """What is drawn from three dimensions: a basis, or the original.
+    """Figures of a basis at three dimensions, or of the original motion.
 
-    frames: how many, implausible: how many of them no body takes, and by fault; silhouette:
-    mean over the clips of how well the model's poses cluster, None for the original.
+    frames: their number; implausible: the number of frames with an impossible pose, in total and
+    by fault; silhouette: mean over the clips of the silhouette of the model's poses, None for
+    the original.
     """
 
     name: str
@@ -80,10 +81,10 @@ class PoseRow:
 
 @dataclass(frozen=True, slots=True)
 class GroupRow:
-    """Several persons doing one task, their poses in one model, three dimensions.
+    """Several persons at one task with a common model, at three dimensions.
 
-    poses: K; by basis: variance kept, error (mm) over all their clips, silhouette of the poses
-    and how much it exceeds that of poses without clusters (None where they do not differ).
+    poses: K; by basis: variance kept, error (mm) over all their clips, silhouette of the poses,
+    and its excess over that of poses without clusters (None if the poses do not differ).
     """
 
     task: str
@@ -105,7 +106,7 @@ class JudgedClip:
     models: Mapping[Basis, EigenModel]
 
     def poses(self, basis: Basis) -> FloatArray:
-        """(K, 13, 3) of its model, body lengths."""
+        """(K, 13, 3) the poses of a basis, in body lengths."""
         frames = self.keyposes
         if basis is Basis.UNIFORM:
             frames = uniform_frames(self.track.frames, len(frames))
@@ -114,8 +115,8 @@ class JudgedClip:
 
 @dataclass(frozen=True, slots=True)
 class WorstPose:
-    """The longest fault of a motion drawn by one basis where the original has none: when it is
-    worst, in frames of the clip's track (figs 13, 14)."""
+    """The longest fault of a reduced motion at a time without a fault in the original (figs 13,
+    14), with its worst moment, in frames of the clip's track."""
 
     judged: JudgedClip
     basis: Basis
@@ -124,12 +125,12 @@ class WorstPose:
 
 @dataclass(frozen=True, slots=True)
 class LowDimensionalEvaluation:
-    """What `kinedex evaluate low-dimensional` tells.
+    """The results of `kinedex evaluate low-dimensional`.
 
-    clips: judged; left_out: ready clips with fewer than FEWEST_KEYPOSES keyposes;
-    more_clustered: share of clips whose keyposes cluster better than their uniform poses;
-    shown: the clip with most keyposes, for the pictures; shown_group: the clips of the largest
-    group; worst: an implausible pose, None where none is drawn.
+    clips: number of judged clips; left_out: number of ready clips with fewer than MIN_KEYPOSES
+    keyposes; more_clustered: share of clips whose keyposes cluster better than their uniform
+    poses; shown: the clip with most keyposes, for the pictures; shown_group: the clips of the
+    largest group; worst: an implausible pose, None if there is none.
     """
 
     clips: int
@@ -144,19 +145,19 @@ class LowDimensionalEvaluation:
 
 
 def judge_low_dimensional(
-    lib: Library, wanted: ClipFilter | None = None, progress: Progress | None = None
+    lib: Library, filter: ClipFilter | None = None, progress: Progress | None = None
 ) -> LowDimensionalEvaluation:
-    """Both bases on the clips that pass the filter.
+    """Judge both bases on the clips that pass the filter.
 
-    Raises NotEnoughKeyposes where no clip has enough.
+    Raises NotEnoughKeyposes if no clip has enough keyposes.
     """
     with lib.store.read() as tx:
-        ids = sorted(clip_listing.list_ids(tx, ready_only(wanted)))
+        ids = sorted(clip_listing.list_ids(tx, ready_only(filter)))
         ready = list(stored.get_many(tx, ids).values())
     judged = list(_judged(lib, ready, progress))
     if not judged:
         raise NotEnoughKeyposes(
-            f"No ready clip has {FEWEST_KEYPOSES} keyposes; {len(ready)} were looked at."
+            f"No ready clip has {MIN_KEYPOSES} keyposes; {len(ready)} were looked at."
         )
     groups = _groups(judged)
     silhouettes = {basis: [_silhouette(one, basis) for one in judged] for basis in Basis}
@@ -186,7 +187,7 @@ def _judged(
     for done, clip in enumerate(ready, 1):
         track = body_track(load_motion(lib, clip))
         frames = keypose_frames(lib, clip.id, track)
-        if len(frames) >= FEWEST_KEYPOSES:
+        if len(frames) >= MIN_KEYPOSES:
             uniform = uniform_frames(track.frames, len(frames))
             models = {
                 Basis.KEYPOSE: eigen_model(track.local[frames]),
@@ -198,13 +199,13 @@ def _judged(
 
 
 def _dimension_rows(judged: Sequence[JudgedClip]) -> Iterator[DimensionRow]:
-    """Clips leave the table where their models have no more poses."""
+    """The rows of the table. A clip counts only in rows up to its number of poses."""
     variances = {b: [one.models[b].variance_kept() for one in judged] for b in Basis}
     errors = {
         b: [1000 * reconstruction_errors(one.models[b], one.track) for one in judged] for b in Basis
     }
     best = [1000 * reconstruction_errors(eigen_model(o.track.local), o.track) for o in judged]
-    for row in range(MOST_DIMENSIONS):
+    for row in range(MAX_DIMENSIONS):
         there = [i for i, one in enumerate(judged) if len(one.keyposes) > row]
         if not there:
             return
@@ -258,13 +259,13 @@ def _worst(
 
 
 def _silhouette(one: JudgedClip, basis: Basis) -> float:
-    """0 where the poses do not differ."""
+    """The silhouette of the poses; 0 if they do not differ."""
     found = best_clusters(one.models[basis].coordinates(one.poses(basis), SHOWN))
     return 0.0 if found is None else found.silhouette
 
 
 def _groups(judged: Sequence[JudgedClip]) -> dict[str, tuple[JudgedClip, ...]]:
-    """By task that several persons do, one clip of each: that with most keyposes."""
+    """For each task of several persons, one clip of each: the one with most keyposes."""
     by_task: dict[str, dict[str, JudgedClip]] = {}
     for one in sorted(judged, key=lambda one: (-len(one.keyposes), one.clip.id)):
         if one.clip.task and one.clip.person:
@@ -290,7 +291,7 @@ def _group_row(task: str, clips: Sequence[JudgedClip]) -> GroupRow:
 
 
 def _joint_error(model: EigenModel, clips: Sequence[JudgedClip]) -> float:
-    """Metres, over all frames of all clips."""
+    """The error in meters over all frames of all clips."""
     squares = [
         one.track.frames * reconstruction_errors(model, one.track)[SHOWN - 1] ** 2 for one in clips
     ]

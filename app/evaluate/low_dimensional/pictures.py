@@ -19,12 +19,12 @@ from app.services.views.animations import role_figure
 AXES = ("first axis", "second axis", "third axis")
 PLAYED = (1, 2, 3, 4)
 """Dimensions of the motions in figure 10."""
-MOST_PLAYED = 40 * 30
-"""Frames of a motion that is played: 40 s."""
+MAX_PLAYED_FRAMES = 40 * 30
+"""Largest number of frames of an animated motion: 40 s."""
 
 
 def all_figures(found: LowDimensionalEvaluation, form: Format) -> dict[str, bytes]:
-    """Pictures by file name. Those that move, and those of bodies, are SVG whatever `form` is."""
+    """Pictures by file name. Animations, and pictures of bodies, are always SVG."""
     clips = found.shown_group or (found.shown,)
     pictures = {f"variance-and-error.{form}": variance_figure(found, form)}
     for basis in Basis:
@@ -38,7 +38,7 @@ def all_figures(found: LowDimensionalEvaluation, form: Format) -> dict[str, byte
 
 
 def variance_figure(found: LowDimensionalEvaluation, form: Format) -> bytes:
-    """Figure 11, and beside it what it does not tell: how far off the motions are."""
+    """Figure 11, and beside it the errors of the motions, which the paper does not show."""
     rows = found.dimensions
     at = np.array([row.dimensions for row in rows])
     kept = [
@@ -61,13 +61,13 @@ def variance_figure(found: LowDimensionalEvaluation, form: Format) -> bytes:
 
 
 def eigen_poses_figure(clips: Sequence[JudgedClip], basis: Basis, form: Format) -> bytes:
-    """Figure 7 or 8: the poses of all clips along the first axes; colours tell clusters."""
+    """Figure 7 or 8: the poses of all clips along the first axes; colors show clusters."""
     poses = np.concatenate([one.poses(basis) for one in clips])
     points = eigen_model(poses).coordinates(poses, SHOWN)
     found = best_clusters(points)
-    told = clips[0].clip.task if len(clips) > 1 else clips[0].clip.name
+    name = clips[0].clip.task if len(clips) > 1 else clips[0].clip.name
     kind = "keyposes" if basis is Basis.KEYPOSE else "uniform poses"
-    title = f"{len(poses)} {kind} of {shown(told or '')}"
+    title = f"{len(poses)} {kind} of {shown(name or '')}"
     if found is None:
         return scatter_picture([Cloud(points)], form, title=title, axes=AXES)
     clouds = [
@@ -89,8 +89,8 @@ def eigen_motion_figure(one: JudgedClip, form: Format) -> bytes:
 
 
 def dimensions_figure(one: JudgedClip) -> bytes:
-    """Figure 10, moving: from one dimension to four, and the original."""
-    track = one.track.part(0, MOST_PLAYED)
+    """Figure 10 as an animation: from one dimension to four, and the original."""
+    track = one.track.part(0, MAX_PLAYED_FRAMES)
     model = one.models[Basis.KEYPOSE]
     figures = [
         role_figure(low_dimensional(model, track, count).positions, _counted(count))
@@ -102,7 +102,7 @@ def dimensions_figure(one: JudgedClip) -> bytes:
 
 
 def implausible_figure(worst: WorstPose) -> bytes:
-    """Figures 13 and 14: one moment of both versions, the original between them."""
+    """Figures 13 and 14: one moment of both reductions, with the original between them."""
     one, frame = worst.judged, worst.fault.worst
     moment = one.track.part(frame, frame + 1)
     figures = [
@@ -111,8 +111,8 @@ def implausible_figure(worst: WorstPose) -> bytes:
         role_figure(_drawn(one, Basis.UNIFORM, moment), Basis.UNIFORM.value),
     ]
     fault = worst.fault
-    told = f"{one.clip.name} at {frame / one.track.rate:.2f} s: {worst.basis}, {fault.joint}"
-    return animated_svg(figures, one.track.rate, f"{told} {fault.fault}").encode()
+    title = f"{one.clip.name} at {frame / one.track.rate:.2f} s: {worst.basis}, {fault.joint}"
+    return animated_svg(figures, one.track.rate, f"{title} {fault.fault}").encode()
 
 
 def _drawn(one: JudgedClip, basis: Basis, track: BodyTrack) -> FloatArray:

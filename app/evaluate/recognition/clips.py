@@ -23,8 +23,9 @@ class JudgedClips:
     """N clips that carry a person or a task.
 
     samples: (N, 1250) motion samples; persons, tasks: (N,) labels, None where there is none;
-    groups: (N,) clips of one recording share a value, and are never on both sides; sources:
-    (N,) where they come from, None where nobody knows; unlabelled: clips that were left out;
+    groups: (N,) clips of one recording share a value and are never split between training and
+    probes; sources: (N,) where they come from, None if unknown; unlabeled: the number of clips
+    that carry neither label;
     angles: (N, 642) angle samples, None where a clip has none; wide: (N, 512) wide motion vectors.
     """
 
@@ -33,7 +34,7 @@ class JudgedClips:
     tasks: Labels
     groups: Sequence[str]
     sources: Labels
-    unlabelled: int = 0
+    unlabeled: int = 0
     angles: FloatArray | None = None
     wide: FloatArray | None = None
 
@@ -41,7 +42,7 @@ class JudgedClips:
         return len(self.groups)
 
     def part(self, index: IntArray) -> Clips:
-        """What a model learns from, of the clips at these indices."""
+        """The training data of the clips at these indices (n,)."""
         chosen = index.tolist()
         persons, tasks, groups = (
             [labels[i] for i in chosen] for labels in (self.persons, self.tasks, self.groups)
@@ -49,16 +50,16 @@ class JudgedClips:
         return Clips(self.samples[index], persons, tasks, groups)
 
     def in_full(self) -> JudgedClips:
-        """The same by their full samples (N, 1762), if they have wide motion vectors."""
+        """The same clips with full samples (N, 1762), if they have wide motion vectors."""
         if self.wide is None:
             return self
         return replace(self, samples=full_samples(self.samples, self.wide))
 
     def in_angles(self) -> JudgedClips:
-        """The same by their angle samples. Raises NotEnoughLabels where a clip has none."""
+        """The same clips with angle samples. Raises NotEnoughLabels if a clip has none."""
         if self.angles is None:
             raise NotEnoughLabels(
-                "Some clips have no joint angles: they were analysed by an earlier version."
+                "Some clips have no joint angles: they were analyzed by an earlier version."
             )
         return replace(self, samples=self.angles)
 
@@ -68,38 +69,38 @@ class JudgedClips:
 
 
 def names_of(labels: Labels) -> list[str]:
-    """The labels that are there, each once, sorted."""
+    """The distinct labels, sorted."""
     return sorted({label for label in labels if label})
 
 
-def read_judged_clips(lib: Library, wanted: ClipFilter | None) -> JudgedClips:
+def read_judged_clips(lib: Library, filter: ClipFilter | None) -> JudgedClips:
     """The ready clips that pass the filter and carry a label."""
-    return judged_clips(read_training(lib, wanted))
+    return judged_clips(read_training(lib, filter))
 
 
-def read_training(lib: Library, wanted: ClipFilter | None) -> TrainingSet:
+def read_training(lib: Library, filter: ClipFilter | None) -> TrainingSet:
     """The ready clips that pass the filter.
 
-    Where persons are not to be recognised (setting `recognize_persons`) they are not told.
+    It holds no persons where the setting `recognize_persons` is off.
     """
-    training = read_training_set(lib.store, ready_only(wanted))
+    training = read_training_set(lib.store, ready_only(filter))
     return replace(training, is_anonymous=not lib.settings.recognize_persons)
 
 
 def judged_clips(training: TrainingSet) -> JudgedClips:
-    """Of a training set, what can be judged."""
+    """The clips of a training set that carry a person or a task."""
     pairs = zip(training.persons, training.tasks, strict=True)
     use = [i for i, labels in enumerate(pairs) if any(labels)]
     persons, tasks = training.persons, training.tasks
     angles = [training.angles.get(training.clips[i].id) for i in use]
-    told = [one for one in angles if one is not None]
+    present = [one for one in angles if one is not None]
     return JudgedClips(
         samples=training.samples[use] if use else np.zeros((0, 0)),
         persons=[persons[i] for i in use],
         tasks=[tasks[i] for i in use],
         groups=[training.groups[i] for i in use],
         sources=[training.clips[i].source for i in use],
-        unlabelled=len(training) - len(use),
-        angles=np.stack(told) if told and len(told) == len(use) else None,
+        unlabeled=len(training) - len(use),
+        angles=np.stack(present) if present and len(present) == len(use) else None,
         wide=training.wide[use] if use else None,
     )

@@ -1,6 +1,6 @@
-"""Who does what (Vasilescu, Perera 5) on one's own library, by models that have not seen it.
+"""Held-out figures of recognition on a library (Vasilescu 2002; Perera 2009, section 5).
 
-What cannot be judged on a library is told with the reason, never guessed.
+If a part cannot be judged on the library, the result states the reason.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from app.evaluate.recognition.perera import judge_perera
 from app.evaluate.recognition.results import (
     HeldOut,
     Judged,
+    LabelGiven,
     Made,
     RecognitionEvaluation,
     Seconds,
-    WhenTold,
 )
 from app.evaluate.recognition.rounds import (
     LeftOut,
@@ -38,14 +38,14 @@ from app.evaluate.recognition.rounds import (
     rounds_by_takes,
 )
 from app.evaluate.recognition.shares import (
-    Recognised,
+    Recognized,
     Unknown,
     chance,
     confusion,
-    recognised,
+    recognized,
     unknown,
 )
-from app.evaluate.recognition.trials import Stopwatch, Trial, run, run_told
+from app.evaluate.recognition.trials import Stopwatch, Trial, run, run_with_label
 from app.services import fields
 from app.services.library.library import Library
 from app.services.training.synthesis_fit import fit_on
@@ -53,49 +53,49 @@ from app.store.clips.filter import ClipFilter
 
 FACTORS = ("person", "task")
 TAKES = (3, 1)
-"""Takes a cell that are learned from."""
-TOLD, MADE, PERERA = "told", "made", "perera"
-"""Vasilescu's and Perera's experiments, among what could not be judged."""
+"""Numbers of takes of each cell that the methods learn from."""
+LABEL_GIVEN, MADE, PERERA = "told", "made", "perera"
+"""Names of Vasilescu's and Perera's experiments in `not_judged`."""
 
 Key = TypeVar("Key")
 Found = TypeVar("Found")
 Progress = Callable[[int, int], None]
-"""Told after each step: done, in all."""
+"""Called after each step with the number of steps done and the total."""
 
 
 def judge_recognition(
     lib: Library,
-    wanted: ClipFilter | None = None,
+    filter: ClipFilter | None = None,
     methods: Sequence[str] = tuple(METHODS),
     *,
     false_accept_rate: float | None = None,
     progress: Progress | None = None,
 ) -> RecognitionEvaluation:
-    """Of the ready clips that pass the filter, by each method.
+    """Judge each method on the ready clips that pass the filter.
 
-    false_accept_rate: above 0, below 1, of default and perera; where None its own threshold.
-    Raises BadField for an unknown method or a wrong rate, NotEnoughLabels below two labelled
-    clips.
+    false_accept_rate: above 0 and below 1, for the methods default and perera; None: each uses
+    its fitted threshold. Raises BadField for an unknown method or a wrong rate, and
+    NotEnoughLabels if fewer than two clips have a label.
     """
     _check(methods, false_accept_rate)
-    clips = read_judged_clips(lib, wanted)
+    clips = read_judged_clips(lib, filter)
     if len(clips) < 2:
         raise NotEnoughLabels("Two ready clips with a person or a task are needed to judge.")
     known = methods_at(false_accept_rate)
     found = judge_clips(clips, {name: known[name] for name in methods}, progress)
     reasons = dict(found.not_judged)
-    perera = _or_reason(PERERA, reasons, lambda: judge_perera(lib, wanted))
-    made = _or_reason(MADE, reasons, lambda: _judge_made(lib, wanted))
+    perera = _or_reason(PERERA, reasons, lambda: judge_perera(lib, filter))
+    made = _or_reason(MADE, reasons, lambda: _judge_made(lib, filter))
     return replace(found, perera=perera, made=made, not_judged=reasons)
 
 
-def _judge_made(lib: Library, wanted: ClipFilter | None) -> Made:
-    figures: Made = fit_on(lib.store, read_training(lib, wanted))[1]["held_out"]
+def _judge_made(lib: Library, filter: ClipFilter | None) -> Made:
+    figures: Made = fit_on(lib.store, read_training(lib, filter))[1]["held_out"]
     return figures
 
 
 def _or_reason(name: str, reasons: dict[str, str], judge: Callable[[], Found]) -> Found | None:
-    """What is found, or None and among the reasons why not."""
+    """The result of `judge`; if it raises NotEnoughLabels, None, and the reason in `reasons`."""
     try:
         return judge()
     except NotEnoughLabels as reason:
@@ -106,7 +106,7 @@ def _or_reason(name: str, reasons: dict[str, str], judge: Callable[[], Found]) -
 def judge_clips(
     clips: JudgedClips, methods: Mapping[str, Method], progress: Progress | None = None
 ) -> RecognitionEvaluation:
-    """The same of clips that were read. What cannot be judged is in `not_judged`."""
+    """As `judge_recognition`, for clips in memory. `not_judged` lists what cannot be judged."""
     reasons: dict[str, str] = {}
 
     def plan(name: str, found: Callable[[], list[Round]]) -> list[Round]:
@@ -114,14 +114,14 @@ def judge_clips(
 
     held = {way: plan(way.value, partial(rounds, clips, way)) for way in LeftOut}
     takes = {n: plan(takes_key(n), partial(rounds_by_takes, clips, n)) for n in TAKES}
-    told = plan(TOLD, partial(rounds_by_recording, clips))
-    counted = (*held.values(), *takes.values(), told)
+    by_recording = plan(LABEL_GIVEN, partial(rounds_by_recording, clips))
+    counted = (*held.values(), *takes.values(), by_recording)
     asking = _Asking(clips, methods, sum(map(len, counted)) * len(methods), progress, reasons)
     return RecognitionEvaluation(
         clips=clips,
         held_out=_judged_ones({w: asking.held_out(w.value, found) for w, found in held.items()}),
         takes=_judged_ones({n: asking.held_out(takes_key(n), found) for n, found in takes.items()}),
-        told=asking.told(told),
+        label_given=asking.label_given(by_recording),
         seconds=asking.seconds(),
         not_judged=asking.reasons,
     )
@@ -132,7 +132,7 @@ def _judged_ones(found: Mapping[Key, HeldOut]) -> dict[Key, HeldOut]:
 
 
 def takes_key(takes: int) -> str:
-    """What `takes` takes a cell are called among what could not be judged."""
+    """The name in `not_judged` of the experiment with `takes` takes of each cell."""
     return f"{takes}-takes"
 
 
@@ -145,7 +145,7 @@ def _check(methods: Sequence[str], false_accept_rate: float | None) -> None:
 
 
 class _Asking:
-    """Asks all methods, and counts the steps."""
+    """Runs all methods and counts the steps."""
 
     def __init__(
         self,
@@ -172,16 +172,16 @@ class _Asking:
         judged = tuple(_judged(method, some, name) for method, some in trials.items())
         return HeldOut(len(found), judged, chance(every))
 
-    def told(self, found: Sequence[Round]) -> tuple[WhenTold, ...]:
+    def label_given(self, found: Sequence[Round]) -> tuple[LabelGiven, ...]:
         judged = []
         for method, learn, watch in self._learners(quickly=True) if found else ():
             try:
                 clips = self._seen_by(method)
-                neither, told = run_told(learn, clips, found, watch, self._step)
+                neither, given = run_with_label(learn, clips, found, watch, self._step)
             except NotEnoughLabels as reason:
-                self.reasons[f"{TOLD}, {method}"] = reason.detail
+                self.reasons[f"{LABEL_GIVEN}, {method}"] = reason.detail
             else:
-                judged.append(WhenTold(method, recognised(neither), recognised(told)))
+                judged.append(LabelGiven(method, recognized(neither), recognized(given)))
         return tuple(judged)
 
     def _seen_by(self, method: str) -> JudgedClips:
@@ -190,7 +190,7 @@ class _Asking:
         return self._clips.in_angles() if method == SIGNATURES else self._clips
 
     def _learners(self, *, quickly: bool) -> Iterator[tuple[str, Method, Stopwatch]]:
-        """The methods; quickly: only best candidates are wanted. Such fits are not timed."""
+        """The methods; quickly: only the best candidates are needed. Such fits are not timed."""
         for name, method in self._methods.items():
             if quickly and name in RANKING:
                 yield name, RANKING[name], Stopwatch()
@@ -211,20 +211,20 @@ class _Asking:
 
 
 _NEW: dict[str, str] = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
-"""Of which factor whole labels are left out."""
+"""The factor whose labels are left out as a whole."""
 
 
 def _judged(method: str, trials: Sequence[Trial], way: str) -> Judged:
     factor = _NEW.get(way)
     of_new: list[Trial] = []
     if factor is not None:
-        # a label that the held-out takes alone carried is new too, but was not left out
+        # a label that only the held-out takes carry is new too, but it was not left out
         trials = [t for t in trials if not t.of(factor).new or t.of(factor).truth in t.left_out]
         of_new = [t for t in trials if t.of(factor).new]
     return Judged(
         method=method,
-        recognised=recognised(trials),
-        of_new=recognised(of_new),
+        recognized=recognized(trials),
+        of_new=recognized(of_new),
         unknown=_unknown(trials, way),
         confusion={name: confusion(trials, name) for name in FACTORS},
         by_name=_by_left_out(trials),
@@ -232,16 +232,16 @@ def _judged(method: str, trials: Sequence[Trial], way: str) -> Judged:
 
 
 def _unknown(trials: Sequence[Trial], way: str) -> dict[str, Unknown]:
-    """By factor, where whole labels of it were left out, or whole sources."""
+    """The figures by factor, if whole labels of it, or whole sources, were left out."""
     factors = FACTORS if way == LeftOut.SOURCE else [_NEW[way]] if way in _NEW else []
     found = {name: unknown(trials, name) for name in factors}
     return {name: one for name, one in found.items() if one is not None}
 
 
-def _by_left_out(trials: Sequence[Trial]) -> dict[str, Recognised]:
+def _by_left_out(trials: Sequence[Trial]) -> dict[str, Recognized]:
     """Shares by the labels that were left out, joined by commas."""
     parties = sorted({trial.left_out for trial in trials if trial.left_out})
     return {
-        ", ".join(party): recognised([t for t in trials if t.left_out == party])
+        ", ".join(party): recognized([t for t in trials if t.left_out == party])
         for party in parties
     }

@@ -1,8 +1,8 @@
-"""The ways of telling who does what that are judged side by side.
+"""The recognition methods that an evaluation compares.
 
-A method learns from clips and makes a judge, which tells of a probe the best label of each
-factor, whether it calls it known, and how new it looks. Novelty is 0 at the threshold of
-each fit, below where it is called known, so that different fits can be put on one curve.
+A method learns from clips and returns a judge. For each probe and factor (person, task), the judge
+gives the best label, whether it is called known, and a novelty. The novelty is 0 at the threshold
+of each fit and negative for known labels, so that the results of different fits fit on one curve.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ import numpy as np
 from app.analysis.descriptors.motion_sample import SAMPLES
 from app.models.held_out.recognition import Clips
 from app.models.recognition.answers import Answer, Recognition
-from app.models.recognition.flat_pca import fit_flat_pca, recognise_flat
-from app.models.recognition.multilinear import fit_multilinear, recognise_multilinear
+from app.models.recognition.flat_pca import fit_flat_pca, recognize_flat
+from app.models.recognition.multilinear import fit_multilinear, recognize_multilinear
 from app.models.recognition.perera import (
-    TensorRecogniser,
-    fit_tensor_recogniser,
-    recognise_by_tensor,
+    TensorRecognizer,
+    fit_tensor_recognizer,
+    recognize_by_tensor,
     uncalibrated,
 )
-from app.models.recognition.recogniser import fit_recogniser, recognise_many
+from app.models.recognition.recognizer import fit_recognizer, recognize_many
 from app.numerics.arrays import FloatArray
 
 Labels = Sequence[str | None]
@@ -34,8 +34,8 @@ Labels = Sequence[str | None]
 
 @dataclass(frozen=True, slots=True)
 class Guess:
-    """label: the best candidate, None without any; known: whether it is called so; novelty:
-    the higher, the newer it looks."""
+    """label: the best candidate, None if there is none; known: whether the method calls the
+    label known; novelty: a larger value means that the motion looks newer."""
 
     label: str | None
     known: bool
@@ -43,75 +43,79 @@ class Guess:
 
 
 NO_GUESS = Guess(None, False, 0.0)
-"""Of a factor that the clips learned from have no labels of."""
+"""The guess for a factor of which the training clips have no labels."""
 
 
 class Judge(Protocol):
-    """What a method has learned."""
+    """A fitted method."""
 
     def __call__(
         self, samples: FloatArray, person: str | None = None, task: str | None = None
     ) -> list[tuple[Guess, Guess]]:
-        """Person and task of each of `samples` (n, width of what was learned from), which share
-        what is told of them."""
+        """Guesses of person and task for each of `samples` (n, w), w as in the training.
+
+        person, task: the label that is given for all of them, if any.
+        """
 
 
 Method = Callable[[Clips], Judge]
-"""Raises NotEnoughLabels where the clips are too few for it."""
+"""Fits a judge on clips. Raises NotEnoughLabels if the clips are too few."""
 
 
 def default(clips: Clips, false_accept_rate: float | None = None) -> Judge:
-    """The recogniser that `POST /v1/recognize` asks, at this rate where one is given."""
-    record = fit_recogniser(*clips)
+    """The recognizer behind `POST /v1/recognize`, at this false-accept rate if one is given."""
+    record = fit_recognizer(*clips)
     if false_accept_rate is not None:
         record = record.accepting(false_accept_rate)
 
     def judge(
         samples: FloatArray, person: str | None = None, task: str | None = None
     ) -> list[tuple[Guess, Guess]]:
-        return [_guesses(found) for found in recognise_many(record, samples, person, task)]
+        return [_guesses(found) for found in recognize_many(record, samples, person, task)]
 
     return judge
 
 
 def pca(clips: Clips) -> Judge:
-    """Flat PCA, Vasilescu's baseline (section 5): nearest coefficients. All is known to it."""
+    """Flat PCA, Vasilescu's baseline (section 5): nearest coefficients. It calls nothing new."""
     record = fit_flat_pca(clips.samples, clips.persons, clips.tasks)
 
     def judge(
         samples: FloatArray, person: str | None = None, task: str | None = None
     ) -> list[tuple[Guess, Guess]]:
-        return [_guesses(recognise_flat(record, one, person, task)) for one in samples]
+        return [_guesses(recognize_flat(record, one, person, task)) for one in samples]
 
     return judge
 
 
 def perera(clips: Clips, false_accept_rate: float | None = None) -> Judge:
-    """Perera's objective (eqs 13-14), and what is new by eqs 15-16 with learned thresholds."""
-    record = fit_tensor_recogniser(*clips)
+    """Perera's objective (eqs 13-14); eqs 15-16 with learned thresholds decide what is new."""
+    record = fit_tensor_recognizer(*clips)
     if false_accept_rate is not None:
         record = record.accepting(false_accept_rate)
     return _by_tensor(record)
 
 
 def perera_ranking(clips: Clips) -> Judge:
-    """The same best candidates, without what is new, in a tenth of the time."""
+    """The same best candidates as `perera` in a tenth of the time; it does not decide what is
+    new."""
     return _by_tensor(uncalibrated(clips.samples, clips.persons, clips.tasks))
 
 
-def _by_tensor(record: TensorRecogniser) -> Judge:
+def _by_tensor(record: TensorRecognizer) -> Judge:
     def judge(
         samples: FloatArray, person: str | None = None, task: str | None = None
     ) -> list[tuple[Guess, Guess]]:
-        return [_guesses(found) for found in recognise_by_tensor(record, samples, person, task)]
+        return [_guesses(found) for found in recognize_by_tensor(record, samples, person, task)]
 
     return judge
 
 
 def multilinear(clips: Clips, moments: int | None = None) -> Judge:
-    """Vasilescu's: signatures where the other factor is told, else the nearest cell.
+    """Vasilescu's model: signatures if the other factor is given, else the nearest cell.
 
-    moments: poses with which a sample begins, where they are to be warped onto their task's.
+    moments: number of poses at the start of each sample that are warped onto the mean of their
+    task; None: no warping.
     """
     record = fit_multilinear(clips.samples, clips.persons, clips.tasks, moments=moments)
     cells = record.svd.reconstruct().reshape(-1, record.svd.factors[2].shape[0])
@@ -119,26 +123,27 @@ def multilinear(clips: Clips, moments: int | None = None) -> Judge:
     def judge(
         samples: FloatArray, person: str | None = None, task: str | None = None
     ) -> list[tuple[Guess, Guess]]:
-        told = []
+        guessed = []
         for sample in samples:
-            found = recognise_multilinear(record, sample, person, task)
+            found = recognize_multilinear(record, sample, person, task)
             nearest = np.linalg.norm(cells - record.axes.project(sample), axis=1).min()
             beyond = float(nearest / max(record.radius, 1e-12)) - 1.0
-            told.append((_guess(found.person, beyond), _guess(found.task, beyond)))
-        return told
+            guessed.append((_guess(found.person, beyond), _guess(found.task, beyond)))
+        return guessed
 
     return judge
 
 
 RADIUS_SHARE = 95.0
-"""Percentile of the distances of clips to the means of their fellows that counts as near."""
+"""Percentile of the distances of clips from the means of the other clips with their label; a
+clip within that distance is near."""
 
 
 def mean_motion(clips: Clips) -> Judge:
     """The baseline: a label is the mean of its motion samples, and the nearest mean wins.
 
-    Where the other factor is told, only clips with that are averaged, if there are some. New
-    is what lies further from every mean than all but 5 % of the clips from their fellows'.
+    If the other factor is given, only clips with that label are averaged, if there are any. A
+    clip is new if it lies beyond the radius (see RADIUS_SHARE) of every mean.
     """
     people, tasks = (_Means.of(clips.samples, labels) for labels in (clips.persons, clips.tasks))
 
@@ -154,7 +159,7 @@ def mean_motion(clips: Clips) -> Judge:
 
 @dataclass(frozen=True, slots=True)
 class _Means:
-    """names: L labels; means: (L, d); radius: distance from the nearest beyond which is new."""
+    """names: L labels; means: (L, d); radius: a clip farther from the nearest mean is new."""
 
     names: tuple[str, ...]
     means: FloatArray
@@ -166,7 +171,7 @@ class _Means:
         members = [np.array([label == name for label in labels]) for name in names]
         means = np.array([samples[own].mean(axis=0) for own in members])
         apart = [
-            # a clip's own share is taken out of the mean that it is held against
+            # the mean that a clip is compared with must not contain the clip
             np.linalg.norm(samples[own] - mean, axis=1) * own.sum() / (own.sum() - 1)
             for own, mean in zip(members, means, strict=True)
             if own.sum() > 1
@@ -175,7 +180,7 @@ class _Means:
         return cls(names, means, radius)
 
     def among(self, samples: FloatArray, labels: Labels) -> _Means:
-        """The means of these clips alone, as near as before; all where none has a label."""
+        """The means of the clips with `labels`, with the same radius; self if none has one."""
         found = _Means.of(samples, labels)
         return replace(found, radius=self.radius) if found.names else self
 
@@ -191,7 +196,7 @@ class _Means:
 
 
 def prior(clips: Clips) -> Judge:
-    """The most frequent label, of the clips with the told one where there are some."""
+    """The most frequent label, among the clips with the given label if there are any."""
 
     def judge(
         samples: FloatArray, person: str | None = None, task: str | None = None
@@ -205,7 +210,7 @@ def prior(clips: Clips) -> Judge:
 
 DEFAULT = "default"
 SIGNATURES = "signatures"
-"""The multilinear model on joint angles: it is given angle samples instead of motion samples."""
+"""The multilinear model on joint angles: its samples are angle samples."""
 
 METHODS: Mapping[str, Method] = {
     DEFAULT: default,
@@ -216,14 +221,14 @@ METHODS: Mapping[str, Method] = {
     "mean-motion": mean_motion,
     "prior": prior,
 }
-"""By the name that they are asked for and shown by."""
+"""All methods by their public names."""
 
 RANKING: Mapping[str, Method] = {"perera": perera_ranking}
-"""Of those that are much quicker where nobody asks what is new."""
+"""Faster versions of some methods, for figures that need only the best candidates."""
 
 
 def methods_at(false_accept_rate: float | None) -> dict[str, Method]:
-    """All methods; the calibrated ones call new things known at this rate at most, if given."""
+    """All methods; the calibrated ones use this false-accept rate (0..1), if one is given."""
     at_rate = {
         DEFAULT: partial(default, false_accept_rate=false_accept_rate),
         "perera": partial(perera, false_accept_rate=false_accept_rate),
@@ -241,16 +246,16 @@ def _guess(answer: Answer, novelty: float) -> Guess:
     return Guess(answer.candidates[0].label, answer.known, novelty)
 
 
-def _only(labels: Labels, others: Labels, told: str | None) -> Labels:
-    """The labels of clips whose other label is the told one; of the rest none."""
-    if told is None:
+def _only(labels: Labels, others: Labels, given: str | None) -> Labels:
+    """The labels of the clips whose other label is the given one, None for the other clips."""
+    if given is None:
         return [None] * len(labels)
-    return [a if b == told else None for a, b in zip(labels, others, strict=True)]
+    return [a if b == given else None for a, b in zip(labels, others, strict=True)]
 
 
-def _most_frequent(labels: Labels, others: Labels, told: str | None) -> Guess:
-    """Called known whatever it is: a prior has no idea of what is new."""
-    for among in (_only(labels, others, told), labels):
+def _most_frequent(labels: Labels, others: Labels, given: str | None) -> Guess:
+    """The most frequent label. It is always called known, since a prior cannot see novelty."""
+    for among in (_only(labels, others, given), labels):
         names = Counter(sorted(label for label in among if label))
         if names:
             return Guess(names.most_common(1)[0][0], True, -1.0)

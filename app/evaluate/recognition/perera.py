@@ -27,8 +27,11 @@ _NAMES = (FEATURES, SEGMENT_SPANS, SEGMENT_CYCLES)
 
 @dataclass(frozen=True, slots=True)
 class PereraEvaluation:
-    """segments: between keyposes, of `clips` clips by `persons` persons, `tasks` tasks, each
-    segment of a repeated sequence one; tables: rows by how eq. 14 is read."""
+    """Figures of Perera's experiments.
+
+    segments: motions from keypose to keypose (each segment of a repeated sequence counts), of
+    `clips` clips, `persons` persons and `tasks` tasks; tables: rows for each reading of eq. 14.
+    """
 
     segments: int
     clips: int
@@ -37,15 +40,15 @@ class PereraEvaluation:
     tables: Mapping[Reading, tuple[Row, ...]]
 
 
-def judge_perera(lib: Library, wanted: ClipFilter | None = None) -> PereraEvaluation:
-    """The experiments on the ready clips that pass the filter and carry both labels.
+def judge_perera(lib: Library, filter: ClipFilter | None = None) -> PereraEvaluation:
+    """Run the experiments on the ready clips that pass the filter and carry both labels.
 
-    Raises NotEnoughLabels where too few persons do the same tasks twice, or where persons are
-    not to be recognised.
+    Raises NotEnoughLabels if too few persons do the same tasks twice, or if the setting
+    `recognize_persons` is off.
     """
     if not lib.settings.recognize_persons:
-        raise NotEnoughLabels("Persons are not to be recognised here (recognize_persons).")
-    danced, used = _read(lib, wanted)
+        raise NotEnoughLabels("Persons are not to be recognized here (recognize_persons).")
+    danced, used = _read(lib, filter)
     return PereraEvaluation(
         segments=len(danced),
         clips=used,
@@ -55,10 +58,10 @@ def judge_perera(lib: Library, wanted: ClipFilter | None = None) -> PereraEvalua
     )
 
 
-def _read(lib: Library, wanted: ClipFilter | None) -> tuple[DancedTasks, int]:
-    """The segments, and of how many clips they are."""
+def _read(lib: Library, filter: ClipFilter | None) -> tuple[DancedTasks, int]:
+    """The segments, and the number of clips that they come from."""
     with lib.store.read() as tx:
-        ids = sorted(clip_listing.list_ids(tx, ready_only(wanted)))
+        ids = sorted(clip_listing.list_ids(tx, ready_only(filter)))
         records = {
             id_: clip for id_, clip in clips.get_many(tx, ids).items() if clip.person and clip.task
         }
@@ -73,6 +76,6 @@ def _read(lib: Library, wanted: ClipFilter | None) -> tuple[DancedTasks, int]:
 
 
 def _of_clip(found: Mapping[str, Mapping[str, Any]], clip_id: str) -> dict[str, Any]:
-    """A clip that was analysed before segments were stored counts as one that repeats nothing."""
+    """The arrays of one clip; without stored segments it counts as one that repeats nothing."""
     none = {SEGMENT_SPANS: np.zeros((0, 2)), SEGMENT_CYCLES: np.zeros((0, 3))}
     return {name: found[name].get(clip_id, none.get(name)) for name in _NAMES}

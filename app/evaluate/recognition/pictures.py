@@ -1,5 +1,5 @@
-"""Pictures of an evaluation of recognition: who and what is taken for whom, and how errors on
-the unknown trade against each other."""
+"""Pictures of an evaluation of recognition: confusion matrices, and curves of false rejection
+against false acceptance of unknown labels."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from app.evaluate.recognition.results import HeldOut, Judged, RecognitionEvaluat
 from app.evaluate.recognition.rounds import LeftOut
 
 GUESSED = ("prior",)
-"""Methods that look at nothing, and are not drawn."""
+"""Methods that do not look at the motion. They are not drawn."""
 
 
 def all_figures(found: RecognitionEvaluation, form: Format) -> dict[str, bytes]:
@@ -26,19 +26,19 @@ def all_figures(found: RecognitionEvaluation, form: Format) -> dict[str, bytes]:
 
 
 def confusion_figure(judged: Judged, factor: str, form: Format) -> bytes | None:
-    """One factor's confusions by one method; None where none of its labels was judged."""
+    """The confusion matrix of one factor by one method; None if none of its labels was judged."""
     names, shares = judged.confusion[factor]
     if not names:
         return None
-    share = judged.recognised.person if factor == "person" else judged.recognised.task
+    share = judged.recognized.person if factor == "person" else judged.recognized.task
     title = f"{factor}s by {judged.method}, takes left out: {share.right} of {share.of} right"
     return confusion_picture(shares, names, form, title=title, rows=f"true {factor}")
 
 
 def unknown_figure(found: RecognitionEvaluation, form: Format) -> bytes | None:
-    """False rejection against false acceptance of strangers and of new tasks, all methods.
+    """False rejection against false acceptance of new persons and of new tasks, all methods.
 
-    None where neither could be judged.
+    None if neither could be judged.
     """
     panels = []
     for way, factor in ((LeftOut.PERSON, "person"), (LeftOut.TASK, "task")):

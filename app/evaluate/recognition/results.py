@@ -1,4 +1,4 @@
-"""What an evaluation of recognition found."""
+"""Value types with the results of an evaluation of recognition."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 from app.evaluate.recognition.clips import JudgedClips
 from app.evaluate.recognition.perera import PereraEvaluation
 from app.evaluate.recognition.rounds import LeftOut
-from app.evaluate.recognition.shares import Recognised, Unknown
+from app.evaluate.recognition.shares import Recognized, Unknown
 from app.numerics.arrays import FloatArray
 
 Made = Mapping[str, Sequence[Mapping[str, Any]]]
@@ -18,29 +18,29 @@ Made = Mapping[str, Sequence[Mapping[str, Any]]]
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """One method where something is held out in one way.
+    """The figures of one method under one way of holding out.
 
-    recognised: of clips whose label had been seen, the best candidate counts, be it called
-    known or not; of_new: the same of those clips alone whose label was left out (of the
-    other factor, then); unknown: by factor, where new and known clips were asked about;
-    confusion: by factor, C labels and (C, C) shares; by_name: `recognised` by what was left
-    out.
+    recognized: shares of clips with labels that the method has seen; the best candidate counts,
+    even if the method calls it new; of_new: the same for the clips alone whose label was left
+    out (these shares are of the other factor); unknown: by factor, if both new and known clips
+    were probed; confusion: by factor, C labels and (C, C) shares; by_name: `recognized` by what
+    was left out.
     """
 
     method: str
-    recognised: Recognised
-    of_new: Recognised
+    recognized: Recognized
+    of_new: Recognized
     unknown: Mapping[str, Unknown]
     confusion: Mapping[str, tuple[tuple[str, ...], FloatArray]]
-    by_name: Mapping[str, Recognised]
+    by_name: Mapping[str, Recognized]
 
 
 @dataclass(frozen=True, slots=True)
 class HeldOut:
-    """All methods where something is held out in one way.
+    """The figures of all methods under one way of holding out.
 
-    rounds: how many models each method was fitted for; chance: of person, task and both, what
-    guessing comes to.
+    rounds: the number of models that each method fitted; chance: the shares of person, task and
+    both that guessing reaches.
     """
 
     rounds: int
@@ -49,17 +49,20 @@ class HeldOut:
 
 
 @dataclass(frozen=True, slots=True)
-class WhenTold:
-    """A method with each recording left out (Vasilescu): neither label told, or the other."""
+class LabelGiven:
+    """One method with each recording left out in turn (Vasilescu 2002, section 7).
+
+    neither: shares when no label is given; given: shares when the other label is given.
+    """
 
     method: str
-    neither: Recognised
-    told: Recognised
+    neither: Recognized
+    given: Recognized
 
 
 @dataclass(frozen=True, slots=True)
 class Seconds:
-    """Medians over rounds: of a fit, and of a probe after its features."""
+    """Medians over rounds: of a fit, and of a probe (without the computation of its features)."""
 
     fit: float
     probe: float
@@ -67,18 +70,18 @@ class Seconds:
 
 @dataclass(frozen=True, slots=True)
 class RecognitionEvaluation:
-    """What `kinedex evaluate recognition` tells.
+    """The results of `kinedex evaluate recognition`.
 
-    clips: what is judged; held_out: by what was left out; takes: by takes a cell; told:
-    Vasilescu's; seconds: by method; perera: his tables; made: Vasilescu's check of what is
-    synthesised (section 7), see `held_out_synthesis`; not_judged: why what is missing is
-    missing, by its name.
+    clips: the judged clips; held_out: by what was left out; takes: by the number of takes of
+    each cell in training; label_given: Vasilescu's experiment; seconds: by method; perera:
+    Perera's tables; made: Vasilescu's check of synthesized motions (section 7), see
+    `held_out_synthesis`; not_judged: for each missing part, the reason.
     """
 
     clips: JudgedClips
     held_out: Mapping[LeftOut, HeldOut]
     takes: Mapping[int, HeldOut]
-    told: tuple[WhenTold, ...]
+    label_given: tuple[LabelGiven, ...]
     seconds: Mapping[str, Seconds]
     not_judged: dict[str, str]
     perera: PereraEvaluation | None = None

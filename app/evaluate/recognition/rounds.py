@@ -1,4 +1,5 @@
-"""What is held out in turn: takes, a person, a task, a source, all but so many takes a cell."""
+"""Rounds of training and probing. Each holds out takes, a person, a task or a source, or trains
+on a fixed number of takes of each cell (a cell is one person at one task)."""
 
 from __future__ import annotations
 
@@ -11,34 +12,34 @@ import numpy as np
 
 from app.errors import NotEnoughLabels
 from app.evaluate.recognition.clips import JudgedClips, Labels, names_of
-from app.models.holding_out import FOLDS, LEAST_LABELS
+from app.models.holding_out import FOLDS, MIN_LABELS
 from app.numerics.arrays import IntArray
 
-MOST_ROUNDS = 40
-"""Labels (or recordings) beyond so many leave in parties, dealt evenly."""
+MAX_ROUNDS = 40
+"""If there are more labels (or recordings), they are left out in groups of even size."""
 
 DRAWS = 5
-"""Times that takes are drawn from the cells."""
+"""How often takes are drawn from the cells."""
 
 
 class LeftOut(StrEnum):
-    """What a model has not seen of the clips that it is asked about."""
+    """What is left out of the training."""
 
     TAKE = "take"
-    """A fifth of the recordings; persons and tasks are mostly known from others."""
+    """A fifth of the recordings; other recordings mostly have the same persons and tasks."""
     PERSON = "person"
-    """All clips of a person; known persons are asked about too."""
+    """All clips of a person; clips of known persons are probed too."""
     TASK = "task"
-    """All clips of a task; known tasks are asked about too."""
+    """All clips of a task; clips of known tasks are probed too."""
     SOURCE = "source"
     """All clips of a source."""
 
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """Learn from the clips at `train` and ask about those at `probe`, (n,) indices each.
+    """train, probe: (n,) indices of the clips to learn from and of the clips to recognize.
 
-    left_out: the labels or sources that were left out whole; none where it is takes.
+    left_out: the labels or sources that were left out as a whole; empty if takes were left out.
     """
 
     left_out: tuple[str, ...]
@@ -47,7 +48,10 @@ class Round:
 
 
 def rounds(clips: JudgedClips, left_out: LeftOut) -> list[Round]:
-    """In the order of the names. Raises NotEnoughLabels where nothing can be held out."""
+    """The rounds, sorted by the name of what is left out.
+
+    Raises NotEnoughLabels if nothing can be held out.
+    """
     found = {
         LeftOut.TAKE: lambda: _by_fold(clips, FOLDS),
         LeftOut.PERSON: lambda: _by_label(clips, "person"),
@@ -58,12 +62,12 @@ def rounds(clips: JudgedClips, left_out: LeftOut) -> list[Round]:
 
 
 def rounds_by_recording(clips: JudgedClips) -> list[Round]:
-    """Each recording with both labels left out in turn (Vasilescu, section 7).
+    """Leave out each recording that has both labels in turn (Vasilescu 2002, section 7).
 
-    Raises NotEnoughLabels where no cell has a second take.
+    Raises NotEnoughLabels if no cell has a second take.
     """
     both = _both(clips)
-    folds = min(MOST_ROUNDS, len({clips.groups[i] for i in both}))
+    folds = min(MAX_ROUNDS, len({clips.groups[i] for i in both}))
     found = [
         Round((), np.intersect1d(one.train, both), np.intersect1d(one.probe, both))
         for one in _by_fold(clips, max(folds, 1))
@@ -72,10 +76,10 @@ def rounds_by_recording(clips: JudgedClips) -> list[Round]:
 
 
 def rounds_by_takes(clips: JudgedClips, takes: int) -> list[Round]:
-    """`takes` takes of each cell to learn from, drawn anew DRAWS times, the others to ask about.
+    """Learn from `takes` random takes of each cell, and probe the others; DRAWS rounds.
 
-    A take is a recording. Only cells with more than `takes` are there, so that each can be
-    asked about. Raises NotEnoughLabels unless those are of two persons and two tasks.
+    A take is a recording. Only cells with more than `takes` takes are used, so that each cell
+    has a probe. Raises NotEnoughLabels unless they cover two persons and two tasks.
     """
     cells = {cell: some for cell, some in _takes(clips).items() if len(some) > takes}
     persons, tasks = (len({cell[factor] for cell in cells}) for factor in (0, 1))
@@ -93,7 +97,7 @@ def _both(clips: JudgedClips) -> IntArray:
 
 
 def _takes(clips: JudgedClips) -> dict[tuple[str, str], list[list[int]]]:
-    """By person and task the takes, each the indices of its clips; in order of their names."""
+    """The takes by person and task, sorted by name; a take is a list of clip indices."""
     cells: dict[tuple[str, str], dict[str, list[int]]] = defaultdict(lambda: defaultdict(list))
     for i in _both(clips).tolist():
         cell = clips.persons[i] or "", clips.tasks[i] or ""
@@ -118,24 +122,26 @@ def _by_fold(clips: JudgedClips, folds: int) -> Iterator[Round]:
 
 
 def _folds(clips: JudgedClips, folds: int) -> IntArray:
-    """(N,) fold of each clip: the recordings of a task, and of a cell, are dealt out in turn, so
-    that what was recorded twice is never wholly in one fold."""
-    keys = sorted(set(zip(_told(clips.tasks), _told(clips.persons), clips.groups, strict=True)))
+    """(N,) fold of each clip. The recordings of a task, and of a cell, are dealt out in turn, so
+    that no fold has all recordings of a cell with several."""
+    keys = sorted(
+        set(zip(_or_empty(clips.tasks), _or_empty(clips.persons), clips.groups, strict=True))
+    )
     place = {group: number % folds for number, (_, _, group) in enumerate(keys)}
     return np.array([place[group] for group in clips.groups], dtype=np.int64)
 
 
-def _told(labels: Labels) -> list[str]:
+def _or_empty(labels: Labels) -> list[str]:
     return [label or "" for label in labels]
 
 
 def _by_label(clips: JudgedClips, factor: str) -> Iterator[Round]:
-    """All clips of a label are new; a fold of the others is held out as known ones."""
+    """Leave out all clips of a label as new ones, and a fold of the other clips as known ones."""
     labels = clips.labels(factor)
     names = names_of(labels)
-    if len(names) < LEAST_LABELS:
+    if len(names) < MIN_LABELS:
         raise NotEnoughLabels(
-            f"{LEAST_LABELS} {factor}s are needed to leave one out; there are {len(names)}."
+            f"{MIN_LABELS} {factor}s are needed to leave one out; there are {len(names)}."
         )
     fold = _folds(clips, FOLDS)
     for number, party in enumerate(_parties(names)):
@@ -156,8 +162,8 @@ def _by_source(clips: JudgedClips) -> Iterator[Round]:
 
 
 def _parties(names: Sequence[str]) -> list[list[str]]:
-    """Each name alone, or with others where they are more than MOST_ROUNDS."""
-    count = min(len(names), MOST_ROUNDS)
+    """Groups of names: each name alone, or several together if there are over MAX_ROUNDS."""
+    count = min(len(names), MAX_ROUNDS)
     return [list(names[place::count]) for place in range(count)]
 
 

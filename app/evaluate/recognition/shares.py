@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.evaluate.recognition.trials import Told, Trial
+from app.evaluate.recognition.trials import FactorResult, Trial
 from app.numerics.area_under_curve import area_under_curve
 from app.numerics.arrays import FloatArray
 from app.numerics.binomial import wilson_interval
@@ -42,7 +42,7 @@ class Share:
 
 
 @dataclass(frozen=True, slots=True)
-class Recognised:
+class Recognized:
     """Shares of clips whose best candidate is right.
 
     person, task: of the clips whose label the method has seen; both: of the clips whose person
@@ -120,11 +120,11 @@ class Unknown:
         return min(judged, key=lambda one: one.balanced_accuracy or 0.0, default=None)
 
 
-def recognised(trials: Iterable[Trial]) -> Recognised:
+def recognized(trials: Iterable[Trial]) -> Recognized:
     """Closed-set shares of trials."""
     judged = list(trials)
     both = [t for t in judged if _is_judged(t.person) and _is_judged(t.task)]
-    return Recognised(
+    return Recognized(
         person=Share.that(t.person.right for t in judged if _is_judged(t.person)),
         task=Share.that(t.task.right for t in judged if _is_judged(t.task)),
         both=Share.that(t.person.right and t.task.right for t in both),
@@ -147,11 +147,11 @@ def chance(trials: Iterable[Trial]) -> tuple[float | None, float | None, float |
 def unknown(trials: Sequence[Trial], factor: str) -> Unknown | None:
     """None unless there are new ones and known ones of the factor "person" or "task"."""
     pairs = [(trial, trial.of(factor)) for trial in trials if trial.of(factor).truth]
-    new = [told for _, told in pairs if told.new]
-    known = [told for _, told in pairs if not told.new]
+    new = [result for _, result in pairs if result.new]
+    known = [result for _, result in pairs if not result.new]
     if not new or not known:
         return None
-    together = [told for trial, told in pairs if not told.new and trial.together]
+    together = [result for trial, result in pairs if not result.new and trial.together]
     known_novelty, new_novelty = _novelty(known), _novelty(new)
     return Unknown(
         refused=_refused(new),
@@ -170,8 +170,10 @@ def confusion(trials: Iterable[Trial], factor: str) -> tuple[tuple[str, ...], Fl
     that was answered. Only clips whose label had been seen count. The row of a label that was
     answered but never true is 0.
     """
-    judged = [told for told in (trial.of(factor) for trial in trials) if _is_judged(told)]
-    pairs = [(told.truth or "", told.guess.label or "") for told in judged if told.guess.label]
+    judged = [result for result in (trial.of(factor) for trial in trials) if _is_judged(result)]
+    pairs = [
+        (result.truth or "", result.guess.label or "") for result in judged if result.guess.label
+    ]
     names = tuple(sorted({name for pair in pairs for name in pair}))
     counts = np.zeros((len(names), len(names)))
     for truth, guess in pairs:
@@ -183,41 +185,41 @@ def _mean(values: Sequence[float]) -> float | None:
     return float(np.mean(values)) if values else None
 
 
-def _is_judged(told: Told) -> bool:
-    return told.truth is not None and not told.new
+def _is_judged(result: FactorResult) -> bool:
+    return result.truth is not None and not result.new
 
 
-def _refused(new: Iterable[Told]) -> Share:
-    return Share.that(not told.guess.known for told in new)
+def _refused(new: Iterable[FactorResult]) -> Share:
+    return Share.that(not result.guess.known for result in new)
 
 
-def _accepted(known: Iterable[Told]) -> Share:
-    return Share.that(told.guess.known for told in known)
+def _accepted(known: Iterable[FactorResult]) -> Share:
+    return Share.that(result.guess.known for result in known)
 
 
-def _categories(pairs: Sequence[tuple[Trial, Told]]) -> tuple[Category, ...]:
+def _categories(pairs: Sequence[tuple[Trial, FactorResult]]) -> tuple[Category, ...]:
     """A category for each label that was left out, by name; pairs: trials and their answers."""
-    names = sorted({told.truth or "" for _, told in pairs if told.new})
+    names = sorted({result.truth or "" for _, result in pairs if result.new})
     return tuple(_category(name, pairs) for name in names)
 
 
-def _category(name: str, pairs: Sequence[tuple[Trial, Told]]) -> Category:
-    own = [(trial, told) for trial, told in pairs if told.new and told.truth == name]
+def _category(name: str, pairs: Sequence[tuple[Trial, FactorResult]]) -> Category:
+    own = [(trial, result) for trial, result in pairs if result.new and result.truth == name]
     rounds = {trial.left_out for trial, _ in own}
-    known = [told for trial, told in pairs if not told.new and trial.left_out in rounds]
-    answers = [told for _, told in own]
+    known = [result for trial, result in pairs if not result.new and trial.left_out in rounds]
+    answers = [result for _, result in own]
     return Category(name, _refused(answers), _accepted(known), _mostly_taken_for(answers))
 
 
-def _mostly_taken_for(new: Iterable[Told]) -> str | None:
+def _mostly_taken_for(new: Iterable[FactorResult]) -> str | None:
     """The label that most of the new ones got that were called known; the first of several."""
-    labels = sorted(told.guess.label or "" for told in new if told.guess.known)
+    labels = sorted(result.guess.label or "" for result in new if result.guess.known)
     return Counter(labels).most_common(1)[0][0] if labels else None
 
 
-def _novelty(some: Iterable[Told]) -> FloatArray:
+def _novelty(some: Iterable[FactorResult]) -> FloatArray:
     """(n,) how new the method took each to be."""
-    return np.array([told.guess.novelty for told in some])
+    return np.array([result.guess.novelty for result in some])
 
 
 def _curve(known: FloatArray, new: FloatArray) -> FloatArray:

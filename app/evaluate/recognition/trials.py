@@ -1,4 +1,4 @@
-"""What methods say of clips that they have not seen, beside what is true."""
+"""Trials: each pairs the answer of a method on an unseen clip with the true labels."""
 
 from __future__ import annotations
 
@@ -17,9 +17,12 @@ from app.numerics.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """One factor of a probe: the truth, None where nobody knows; whether the method had not
-    seen that label; what it guessed; of how many labels."""
+class FactorResult:
+    """The answer of a method on one factor (person or task) of a probe.
+
+    truth: the true label, None if unknown; new: whether the method has not seen that label;
+    guess: its answer; labels: the number of labels that it knows.
+    """
 
     truth: str | None
     new: bool
@@ -28,31 +31,32 @@ class Told:
 
     @property
     def right(self) -> bool:
-        """Whether the best candidate is the true label, be it called known or not."""
+        """Whether the best candidate is the true label. Calling it new makes no difference."""
         return self.guess.label == self.truth
 
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """A clip (its index) that was asked about while these labels, or sources, were left out.
+    """One probe: the index of a clip, and the labels or sources that were left out.
 
-    together: whether the same person at the same task had been seen, not only each elsewhere.
+    together: whether the training clips have the same person at the same task, and not only
+    each of the two elsewhere.
     """
 
     clip: int
     left_out: tuple[str, ...]
-    person: Told
-    task: Told
+    person: FactorResult
+    task: FactorResult
     together: bool
 
-    def of(self, factor: str) -> Told:
-        """What was told of the factor "person" or "task"."""
+    def of(self, factor: str) -> FactorResult:
+        """The result for the factor "person" or "task"."""
         return self.person if factor == "person" else self.task
 
 
 @dataclass(slots=True)
 class Stopwatch:
-    """Seconds that each fit, and each probe, took."""
+    """Seconds of each fit, and of each probe."""
 
     fits: list[float] = field(default_factory=list)
     probes: list[float] = field(default_factory=list)
@@ -65,9 +69,9 @@ def run(
     watch: Stopwatch,
     step: Callable[[], None] = lambda: None,
 ) -> tuple[Trial, ...]:
-    """Ask about each round's probes; rounds that teach too little for the method are left out.
+    """Fit and probe in each round; rounds with too few labels for the method are left out.
 
-    `step` is called after each round. Raises NotEnoughLabels where no round is left.
+    `step` is called after each round. Raises NotEnoughLabels if no round is left.
     """
     trials: list[Trial] = []
     reason = None
@@ -90,18 +94,18 @@ def run(
     return tuple(trials)
 
 
-def run_told(
+def run_with_label(
     method: Method,
     clips: JudgedClips,
     rounds: Iterable[Round],
     watch: Stopwatch,
     step: Callable[[], None] = lambda: None,
 ) -> tuple[tuple[Trial, ...], tuple[Trial, ...]]:
-    """As `run`, and the same where the person is asked with the task told, and the task with
-    the person (Vasilescu, section 5).
+    """Trials without any label given, and trials where the other label is given.
 
-    All probes have both labels; those with a label that is new to the method are left out.
-    Raises NotEnoughLabels where no probe is left.
+    In the second, the method recognizes the person knowing the task, and the task knowing the
+    person (Vasilescu 2002, section 5). All probes have both labels; probes with a label that
+    the method has not seen are left out. Raises NotEnoughLabels if no probe is left.
     """
     neither: list[Trial] = []
     either: list[Trial] = []
@@ -112,8 +116,8 @@ def run_told(
         if judge is not None:
             guesses = judge(clips.samples[known])
             neither += _trials(clips, one, train, known, guesses)
-            who = _with_told(judge, clips, known, "task")
-            what = _with_told(judge, clips, known, "person")
+            who = _judge_with_label(judge, clips, known, "task")
+            what = _judge_with_label(judge, clips, known, "person")
             guesses = [(who[i][0], what[i][1]) for i in known]
             either += _trials(clips, one, train, known, guesses)
         step()
@@ -123,7 +127,7 @@ def run_told(
 
 
 def _learned(method: Method, train: Clips, watch: Stopwatch) -> Judge | None:
-    """What the method makes of these clips, None where they are too few for it."""
+    """The fitted method, None if these clips are too few for it."""
     start = time.perf_counter()
     try:
         judge = method(train)
@@ -137,16 +141,16 @@ def _is_known(clips: JudgedClips, i: int, train: Clips) -> bool:
     return clips.persons[i] in train.persons and clips.tasks[i] in train.tasks
 
 
-def _with_told(
-    judge: Judge, clips: JudgedClips, probes: Sequence[int], told: str
+def _judge_with_label(
+    judge: Judge, clips: JudgedClips, probes: Sequence[int], given: str
 ) -> dict[int, tuple[Guess, Guess]]:
-    """By clip, what is said when its label of the factor `told` is known."""
-    labels = clips.labels(told)
+    """The answers by clip when its label of the factor `given` is known."""
+    labels = clips.labels(given)
     found: dict[int, tuple[Guess, Guess]] = {}
     for name in sorted({labels[i] or "" for i in probes}):
         some = [i for i in probes if labels[i] == name]
         samples: FloatArray = clips.samples[some]
-        guesses = judge(samples, task=name) if told == "task" else judge(samples, person=name)
+        guesses = judge(samples, task=name) if given == "task" else judge(samples, person=name)
         found |= dict(zip(some, guesses, strict=True))
     return found
 
@@ -164,13 +168,13 @@ def _trials(
         Trial(
             clip=i,
             left_out=one.left_out,
-            person=_told(clips.persons[i], persons, who),
-            task=_told(clips.tasks[i], tasks, what),
+            person=_result(clips.persons[i], persons, who),
+            task=_result(clips.tasks[i], tasks, what),
             together=(clips.persons[i], clips.tasks[i]) in cells,
         )
         for i, (who, what) in zip(np.asarray(probes).tolist(), guesses, strict=True)
     ]
 
 
-def _told(truth: str | None, seen: set[str], guess: Guess) -> Told:
-    return Told(truth or None, truth not in seen, guess, len(seen))
+def _result(truth: str | None, seen: set[str], guess: Guess) -> FactorResult:
+    return FactorResult(truth or None, truth not in seen, guess, len(seen))

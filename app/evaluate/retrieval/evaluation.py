@@ -1,4 +1,4 @@
-"""Query by example: each labelled clip asks for the others of its task (Sun 2011, section 5)."""
+"""Query by example: each labeled clip asks for the others of its task (Sun 2011, section 5)."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.evaluate.retrieval.labelled import LabelledClips, read_labelled
-from app.evaluate.retrieval.rankings import Volumes, Way, by_method
+from app.evaluate.retrieval.labelled import LabeledClips, read_labeled
+from app.evaluate.retrieval.rankings import Ranker, Volumes, by_method
 from app.models.held_out.class_rankings import JudgedRanking, confusion_matrix, true_positive_rates
 from app.numerics.arrays import FloatArray
 from app.search.example.methods import Method
@@ -19,25 +19,26 @@ from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
 
 K = 20
-"""Of the paper: so many of the nearest are looked at."""
+"""Number of nearest clips in the paper's figures."""
 HIDDEN_CLASSES = 4
-"""Of the paper's experiment 1: walk, run, jump, kick."""
+"""Number of classes in the paper's experiment 1: walk, run, jump, kick."""
 SUNS = (Method.MSV_DTW, Method.MSV_XCORR)
 JUDGED = tuple(method for method in Method if not method.value.startswith("metric-"))
-"""A metric that was learned from the very labels would be judged by what it was told."""
-MOST_QUERIES = 1000
-"""Each asks the whole library by every method; more take hours and change no figure."""
+"""All methods except the metrics, which are learned from the same labels."""
+MAX_QUERIES = 1000
+"""Largest number of queries. Each ranks the whole library by each method; more take hours and do
+not change the figures."""
 
 Progress = Callable[[int, int], None]
-"""Told after each step: done, in all."""
+"""Called after each step with the number of steps done and the total."""
 
 
 @dataclass(frozen=True, slots=True)
 class RetrievalFigures:
-    """Query by example with one method; relevant is what carries the query's task.
+    """Figures of query by example with one method; clips with the query's task are relevant.
 
     nearest: share of queries whose nearest clip is relevant; precision_at_4, precision_at_20
-    and mean_average_precision: means over the queries; queries: how many asked.
+    and mean_average_precision: means over the queries; queries: their number.
     """
 
     method: str
@@ -49,7 +50,7 @@ class RetrievalFigures:
 
 
 @dataclass(frozen=True, slots=True)
-class JudgedWay:
+class JudgedMethod:
     """One method's part of the tables.
 
     rates: (chosen,) true-positive rates of experiment 1; confusion: (C, C) of experiment 2,
@@ -68,66 +69,66 @@ class JudgedWay:
 
 @dataclass(frozen=True, slots=True)
 class RetrievalEvaluation:
-    """What `kinedex evaluate retrieval` tells.
+    """The results of `kinedex evaluate retrieval`.
 
-    ways: by method; chosen: the classes hidden in the mixture of all `mixture` labelled
-    clips; classes: (C,) of the confusion; k: how many of the nearest both look at;
-    unlabelled, alone: clips without a task, and those whose task no other recording carries
-    (they ask nothing, but stand in the mixture).
+    methods: results by method; chosen: the classes hidden in the mixture of all `mixture`
+    labeled clips; classes: (C,) of the confusion matrix; k: number of nearest clips in both
+    experiments; unlabeled: number of clips without a task; alone: number of clips whose task is
+    in no other recording (they are in the mixture, but are not queries).
     """
 
-    ways: tuple[JudgedWay, ...]
+    methods: tuple[JudgedMethod, ...]
     chosen: tuple[str, ...]
     classes: tuple[str, ...]
     k: int
     mixture: int
-    unlabelled: int
+    unlabeled: int
     alone: int
 
 
 def judge_retrieval(
     lib: Library,
-    wanted: ClipFilter | None = None,
+    filter: ClipFilter | None = None,
     methods: Sequence[Method] = JUDGED,
     *,
     classes: Sequence[str] | None = None,
     k: int = K,
     threshold: float = 0.0,
-    most_queries: int = MOST_QUERIES,
+    most_queries: int = MAX_QUERIES,
     progress: Progress | None = None,
 ) -> RetrievalEvaluation:
-    """Clips that pass the filter ask for the others, by each method.
+    """Judge each method with the clips that pass the filter as queries for each other.
 
-    Sun's two are judged with q = 1 too, and with a threshold eta > 0 (body lengths) with
-    both q again. classes: those of table 1, the largest four where None. Another file of the
-    query's own recording is neither right nor wrong, nor is a clip without a task.
-    Raises NotEnoughLabels, BadField for a class that cannot be judged or a wrong number.
+    Sun's two methods are also judged with q = 1, and with a threshold eta > 0 (body lengths) with
+    both q again. classes: those of table 1, None for the largest four. Other files of the query's
+    recording, and clips without a task, are ignored. Raises NotEnoughLabels, and BadField for a
+    class that cannot be judged or a wrong number.
     """
     _check(k, threshold, most_queries)
     lib.index.catch_up(lib.store)
-    labelled = read_labelled(lib, wanted)
-    chosen = labelled.chosen(classes, HIDDEN_CLASSES)
-    queries = labelled.queries(most_queries)
+    labeled = read_labeled(lib, filter)
+    chosen = labeled.chosen(classes, HIDDEN_CLASSES)
+    queries = labeled.queries(most_queries)
     suns = [method for method in methods if method in SUNS]
     settings = _settings(threshold) if suns else []
     step = _stepper(
         len(queries) * (len(methods) + len(suns) * len(settings))
-        + len(labelled.clips) * len(settings),
+        + len(labeled.clips) * len(settings),
         progress,
     )
 
-    def judge(way: Way) -> Iterator[JudgedRanking]:
+    def judge(ranker: Ranker) -> Iterator[JudgedRanking]:
         for clip in queries:
-            yield labelled.judge(clip, way(clip), k)
+            yield labeled.judge(clip, ranker(clip), k)
             step()
 
-    found = {method.value: list(judge(by_method(lib, method, wanted))) for method in methods}
+    found = {method.value: list(judge(by_method(lib, method, filter))) for method in methods}
     for q, eta in settings:
-        volumes = Volumes.of(lib, labelled.clips, q=q, threshold=eta, step=step)
+        volumes = Volumes.of(lib, labeled.clips, q=q, threshold=eta, step=step)
         for method in suns:
-            told = f"{method.value} q={q}" + (f" eta={eta:g}" if eta else "")
-            found[told] = list(judge(volumes.by(method)))
-    return _evaluation(labelled, chosen, k, found)
+            name = f"{method.value} q={q}" + (f" eta={eta:g}" if eta else "")
+            found[name] = list(judge(volumes.by(method)))
+    return _evaluation(labeled, chosen, k, found)
 
 
 def _check(k: int, threshold: float, most_queries: int) -> None:
@@ -140,12 +141,12 @@ def _check(k: int, threshold: float, most_queries: int) -> None:
 
 
 def _settings(threshold: float) -> list[tuple[int, float]]:
-    """(q, eta) to judge besides q = 2 without a threshold, which searches use."""
+    """Pairs (q, eta) to judge in addition to (2, 0), which searches use."""
     return [(1, 0.0)] + ([(1, threshold), (2, threshold)] if threshold else [])
 
 
 def _stepper(total: int, progress: Progress | None) -> Callable[[], None]:
-    """To be called after each of `total` steps."""
+    """A function to call after each of `total` steps; it reports the progress."""
     done = itertools.count(1)
 
     def step() -> None:
@@ -156,16 +157,16 @@ def _stepper(total: int, progress: Progress | None) -> Callable[[], None]:
 
 
 def _evaluation(
-    labelled: LabelledClips,
+    labeled: LabeledClips,
     chosen: Sequence[str],
     k: int,
     found: Mapping[str, Sequence[JudgedRanking]],
 ) -> RetrievalEvaluation:
-    of_class = [labelled.classes.index(name) for name in chosen]
-    count = len(labelled.classes)
+    of_class = [labeled.classes.index(name) for name in chosen]
+    count = len(labeled.classes)
     return RetrievalEvaluation(
-        ways=tuple(
-            JudgedWay(
+        methods=tuple(
+            JudgedMethod(
                 figures=_figures(name, judged),
                 rates=true_positive_rates(judged, count)[of_class],
                 confusion=confusion_matrix(judged, count),
@@ -173,11 +174,11 @@ def _evaluation(
             for name, judged in found.items()
         ),
         chosen=tuple(chosen),
-        classes=labelled.classes,
+        classes=labeled.classes,
         k=k,
-        mixture=len(labelled.clips),
-        unlabelled=labelled.unlabelled,
-        alone=len(labelled.clips) - len(labelled.in_a_class),
+        mixture=len(labeled.clips),
+        unlabeled=labeled.unlabeled,
+        alone=len(labeled.clips) - len(labeled.in_a_class),
     )
 
 

@@ -1,4 +1,4 @@
-"""The clips that an evaluation of retrieval asks, and what counts as their like."""
+"""The query clips of an evaluation of retrieval, and the clips that are relevant to them."""
 
 from __future__ import annotations
 
@@ -19,34 +19,34 @@ from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
 
 SHOWN_TASKS = 30
-"""Tasks named in a message."""
+"""Largest number of tasks in a message."""
 
 
 @dataclass(frozen=True, slots=True)
-class LabelledClips:
+class LabeledClips:
     """The ready clips that carry a task.
 
-    clips: (N,) by id; classes: (C,) tasks of which two recordings are there, so that one can
-    ask for another, the largest first; code: by clip id, the number of its class, C where it
-    is of none; recording: by clip id, what files of one recording share; unlabelled: clips
-    without a task, of which nobody knows whether they would be right answers.
+    clips: (N,) sorted by id; classes: (C,) tasks with at least two recordings, the largest first;
+    code: by clip id, the index of its class, C for no class; recording: by clip id, equal for
+    files of one recording; unlabeled: number of clips without a task, which are left out since
+    they may be right or wrong answers.
     """
 
     clips: tuple[ClipRecord, ...]
     classes: tuple[str, ...]
     code: dict[str, int]
     recording: dict[str, str]
-    unlabelled: int
+    unlabeled: int
 
     @property
     def in_a_class(self) -> tuple[ClipRecord, ...]:
-        """The clips that can ask."""
+        """The clips that can be queries."""
         return tuple(clip for clip in self.clips if self.code[clip.id] < len(self.classes))
 
     def queries(self, most: int) -> tuple[ClipRecord, ...]:
-        """The clips that ask: at most so many, drawn evenly from the classes, one of each at least.
+        """The query clips: at most `most`, evenly from the classes, at least one of each class.
 
-        Every clip of a class has something to find: another recording of its task.
+        For each query there is another recording of its task.
         """
         able = self.in_a_class
         taken: Counter[int] = Counter()
@@ -59,7 +59,7 @@ class LabelledClips:
         return tuple(able[place] for place in sorted(place for _, place in drawn))
 
     def judge(self, query: ClipRecord, found: Sequence[str], k: int) -> JudgedRanking:
-        """A ranking, without what has no task and the other files of the query's recording."""
+        """Judge a ranking; clips without a task and files of the query's recording are ignored."""
         own = self.recording[query.id]
         codes = [self.code[i] for i in found if i in self.code and self.recording[i] != own]
         return judge_ranking(np.array(codes), self.code[query.id], len(self.classes), k)
@@ -76,32 +76,32 @@ class LabelledClips:
         return tuple(dict.fromkeys(names))
 
 
-def read_labelled(lib: Library, wanted: ClipFilter | None) -> LabelledClips:
-    """What there is to judge. Raises NotEnoughLabels unless two classes can be told apart."""
+def read_labeled(lib: Library, filter: ClipFilter | None) -> LabeledClips:
+    """Read the labeled clips. Raises NotEnoughLabels unless there are two classes to separate."""
     with lib.store.read() as tx:
-        ids = sorted(clip_listing.list_ids(tx, ready_only(wanted)))
-        return labelled_among(tuple(clips.get_many(tx, ids).values()))
+        ids = sorted(clip_listing.list_ids(tx, ready_only(filter)))
+        return labeled_among(tuple(clips.get_many(tx, ids).values()))
 
 
-def labelled_among(ready: Sequence[ClipRecord]) -> LabelledClips:
-    """Of these clips, those to judge. Raises NotEnoughLabels as above."""
-    labelled = tuple(clip for clip in ready if clip.task)
-    recording = {clip.id: recording_of_clip(clip) for clip in labelled}
-    takes = Counter(task for task, _ in {(clip.task, recording[clip.id]) for clip in labelled})
-    sizes = Counter(clip.task for clip in labelled if takes[clip.task] > 1)
+def labeled_among(ready: Sequence[ClipRecord]) -> LabeledClips:
+    """The labeled ones of these clips. Raises NotEnoughLabels as `read_labeled`."""
+    labeled = tuple(clip for clip in ready if clip.task)
+    recording = {clip.id: recording_of_clip(clip) for clip in labeled}
+    takes = Counter(task for task, _ in {(clip.task, recording[clip.id]) for clip in labeled})
+    sizes = Counter(clip.task for clip in labeled if takes[clip.task] > 1)
     classes = tuple(sorted(filter(None, sizes), key=lambda task: (-sizes[task], task)))
     if not classes:
         raise NotEnoughLabels("No two ready clips carry the same task, so nothing can be judged.")
     if len(classes) == len(takes) == 1:
         raise NotEnoughLabels(
-            f"All labelled clips carry the task {classes[0]!r}: whatever is found is right. "
+            f"All labeled clips carry the task {classes[0]!r}, so every answer would be right. "
             "Clips of a second task are needed."
         )
     codes = {task: number for number, task in enumerate(classes)}
-    return LabelledClips(
-        clips=labelled,
+    return LabeledClips(
+        clips=labeled,
         classes=classes,
-        code={clip.id: codes.get(clip.task or "", len(classes)) for clip in labelled},
+        code={clip.id: codes.get(clip.task or "", len(classes)) for clip in labeled},
         recording=recording,
-        unlabelled=len(ready) - len(labelled),
+        unlabeled=len(ready) - len(labeled),
     )

@@ -17,31 +17,32 @@ from app.numerics.tensors.rank1 import Rank1
 from app.search.example.methods import Method
 
 SIDE_BY_SIDE = (Method.MSV_XCORR, Method.MSV_DTW, Method.FUSED)
-"""Figure 8's two, and the default of searches."""
+"""The two methods of figure 8, and the default method of searches."""
 ENOUGH_ITERATIONS = 5
-"""So many suffice, says the paper."""
-SMALLEST_DRAWN = 1e-16
-"""Changes of lambda below are rounding."""
+"""Sufficient number of iterations according to the paper."""
+MIN_DRAWN = 1e-16
+"""Smaller changes of lambda are rounding errors."""
 
 
-def shown_ways(evaluation: RetrievalEvaluation) -> tuple[str, ...]:
-    """Of which methods the confusion is shown where nothing else is wanted: all when few."""
-    there = tuple(way.figures.method for way in evaluation.ways)
+def shown_methods(evaluation: RetrievalEvaluation) -> tuple[str, ...]:
+    """The methods whose confusion matrix is shown by default: all if there are few."""
+    there = tuple(judged.figures.method for judged in evaluation.methods)
     return tuple(name for name in SIDE_BY_SIDE if name in there) or there[: len(SIDE_BY_SIDE)]
 
 
 def confusion_figure(evaluation: RetrievalEvaluation, names: Sequence[str], form: Format) -> bytes:
-    """The confusion matrices of these methods beside one another."""
+    """The confusion matrices of these methods side by side."""
     matrices = {
-        f"{way.figures.method}, {evaluation.k} nearest": way.confusion
-        for way in evaluation.ways
-        if way.figures.method in names
+        f"{judged.figures.method}, {evaluation.k} nearest": judged.confusion
+        for judged in evaluation.methods
+        if judged.figures.method in names
     }
     return confusions_picture(matrices, evaluation.classes, form, columns="retrieved")
 
 
 def vectors_figure(volumes: VolumeEvaluation, form: Format) -> bytes:
-    """Above the primary, below the secondary vectors; one column a class, one curve a clip."""
+    """Primary vectors above, secondary vectors below; a column for each class, a curve for each
+    clip."""
     joints = [role.value.replace("_", " ") for role in SUN_ROLES]
     places = np.arange(float(len(joints)))
     everything = [one for some in volumes.factors.values() for one in some]
@@ -71,7 +72,7 @@ def vectors_figure(volumes: VolumeEvaluation, form: Format) -> bytes:
 
 
 def convergence_figure(volumes: VolumeEvaluation, form: Format) -> bytes:
-    """What the factors leave unexplained, and the change of lambda, after each iteration."""
+    """The error of the factors and the change of lambda after each iteration."""
     errors = Panel(
         _by_iteration(volumes, lambda one: one.errors),
         title="|A - λ ρ∘ρ∘ε| / |A|",
@@ -79,7 +80,7 @@ def convergence_figure(volumes: VolumeEvaluation, form: Format) -> bytes:
         marked=[ENOUGH_ITERATIONS],
     )
     changes = Panel(
-        _by_iteration(volumes, lambda one: np.maximum(one.changes, SMALLEST_DRAWN)),
+        _by_iteration(volumes, lambda one: np.maximum(one.changes, MIN_DRAWN)),
         title="change of λ / λ",
         x_label="iteration",
         marked=[ENOUGH_ITERATIONS],
@@ -102,12 +103,12 @@ def _by_iteration(
 def all_figures(
     evaluation: RetrievalEvaluation, volumes: VolumeEvaluation, form: Format
 ) -> dict[str, bytes]:
-    """Every picture by file name; one confusion matrix a method."""
+    """All pictures by file name, with a confusion matrix for each method."""
     figures = {
-        f"confusion-{_file_name(way.figures.method)}.{form}": confusion_figure(
-            evaluation, [way.figures.method], form
+        f"confusion-{_file_name(judged.figures.method)}.{form}": confusion_figure(
+            evaluation, [judged.figures.method], form
         )
-        for way in evaluation.ways
+        for judged in evaluation.methods
     }
     figures[f"vectors.{form}"] = vectors_figure(volumes, form)
     figures[f"convergence.{form}"] = convergence_figure(volumes, form)
@@ -119,7 +120,7 @@ def _told(volumes: VolumeEvaluation) -> list[tuple[bool, tuple[str, tuple[Rank1,
 
 
 def _range(vectors: Sequence[FloatArray]) -> tuple[float, float]:
-    """Limits that all columns of a row share, so that they can be compared by eye."""
+    """Common limits of all columns of a row, so that the columns can be compared."""
     low, high = (float(pick([pick(v) for v in vectors])) for pick in (np.min, np.max))
     margin = 0.05 * (high - low) or 0.05
     return low - margin, high + margin

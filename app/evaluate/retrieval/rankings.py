@@ -1,4 +1,4 @@
-"""Ways to rank the library for a clip: the methods of searches, and Sun's with other settings."""
+"""Functions that rank the library for a clip: the search methods, and Sun's with other settings."""
 
 from __future__ import annotations
 
@@ -21,17 +21,18 @@ from app.store.clips import arrays
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
 
-Way = Callable[[ClipRecord], Sequence[str]]
-"""Ids of all clips that pass the filter, the nearest first; the clip itself may be there."""
+Ranker = Callable[[ClipRecord], Sequence[str]]
+"""Returns the ids of all clips that pass the filter for a query clip, the nearest first. The query
+itself may be among them."""
 
 
-def by_method(lib: Library, method: Method, wanted: ClipFilter | None) -> Way:
-    """The very ranking that searches use."""
+def by_method(lib: Library, method: Method, filter: ClipFilter | None) -> Ranker:
+    """The same ranking as in searches."""
     load = partial(lib.arrays.get_many, lib.store)
 
     def rank(clip: ClipRecord) -> Sequence[str]:
         query, itself = _query(lib, clip), frozenset({clip.id})
-        found = rank_by_example(lib.index, query, method, wanted or ClipFilter(), itself, load)
+        found = rank_by_example(lib.index, query, method, filter or ClipFilter(), itself, load)
         return list(found.ids)
 
     return rank
@@ -58,7 +59,7 @@ class Volumes:
         threshold: float,
         step: Callable[[], None] = lambda: None,
     ) -> Volumes:
-        """Computed anew from the stored motions; `step` is called after each."""
+        """Compute the factors from the stored motions; `step` is called after each clip."""
         factors = {}
         for clip in chosen:
             track = body_track(load_motion(lib, clip))
@@ -66,8 +67,8 @@ class Volumes:
             step()
         return cls(factors)
 
-    def by(self, method: Method) -> Way:
-        """By D_dtw (eq. 7, smallest first) or by D_xcorr (eq. 6, largest first)."""
+    def by(self, method: Method) -> Ranker:
+        """A ranker by D_dtw (eq. 7, smallest first) or by D_xcorr (eq. 6, largest first)."""
         compare = {
             Method.MSV_DTW: warping_distances,
             Method.MSV_XCORR: lambda *volumes: -cross_correlations(*volumes),

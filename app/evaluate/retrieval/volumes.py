@@ -1,4 +1,4 @@
-"""What becomes of a library's motions as volumes: figures 6 and 7 and section 5.3 of Sun 2011."""
+"""Motion volumes of a library's clips: figures 6 and 7 and section 5.3 of Sun 2011."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from app.analysis.descriptors.motion_volume import compression_ratio
 from app.evaluate.retrieval.evaluation import HIDDEN_CLASSES
-from app.evaluate.retrieval.labelled import LabelledClips, read_labelled
+from app.evaluate.retrieval.labelled import LabeledClips, read_labeled
 from app.evaluate.retrieval.rankings import Volumes
 from app.numerics.tensors.rank1 import Rank1
 from app.search.example.distances import EPSILON, RHO
@@ -18,18 +18,18 @@ from app.store.clips import arrays
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
 
-MOST_OF_A_CLASS = 40
-"""Clips of a class whose vectors are told and drawn; more would only cover one another."""
+MAX_PER_CLASS = 40
+"""Largest number of clips of a class whose vectors are drawn; more would hide each other."""
 AT_ONCE = 256
-"""Clips whose arrays are measured at a time."""
+"""Number of clips whose arrays are loaded at a time."""
 
 
 @dataclass(frozen=True, slots=True)
 class Compression:
-    """What the factors of `clips` clips of `frames` frames in all take, of their 13 joints.
+    """Compression ratio of the factors of `clips` clips with `frames` frames in total, 13 joints.
 
-    formula: section 5.3; measured: bytes of rho and epsilon by bytes of the joints'
-    positions, as the store holds them.
+    formula: by section 5.3; measured: bytes of rho and epsilon divided by bytes of the joint
+    positions in the store.
     """
 
     clips: int
@@ -40,9 +40,10 @@ class Compression:
 
 @dataclass(frozen=True, slots=True)
 class VolumeEvaluation:
-    """Rank-1 factors of clips of some classes, by class, and what is saved by them.
+    """Rank-1 factors of clips by class, and their compression ratio.
 
-    q, threshold: of the self-similarity matrices; factors: at most MOST_OF_A_CLASS a class.
+    q, threshold: of the self-similarity matrices; factors: of at most MAX_PER_CLASS clips of
+    each class.
     """
 
     q: int
@@ -52,29 +53,29 @@ class VolumeEvaluation:
 
     @property
     def iterations(self) -> tuple[int, ...]:
-        """Of each clip, how many iterations were made."""
+        """The number of iterations of each clip."""
         return tuple(one.iterations for some in self.factors.values() for one in some)
 
     @property
     def converged(self) -> int:
-        """How many of the clips came to rest."""
+        """The number of clips whose iteration converged."""
         return sum(one.converged for some in self.factors.values() for one in some)
 
 
 def judge_volumes(
     lib: Library,
-    wanted: ClipFilter | None = None,
+    filter: ClipFilter | None = None,
     *,
     classes: Sequence[str] | None = None,
     q: int = 2,
     threshold: float = 0.0,
     step: Callable[[], None] = lambda: None,
 ) -> VolumeEvaluation:
-    """Of the classes told, or of the largest four. Raises NotEnoughLabels, BadField."""
-    labelled = read_labelled(lib, wanted)
+    """Judge the given classes, or the largest four. Raises NotEnoughLabels, BadField."""
+    labeled = read_labeled(lib, filter)
     some = {
-        name: _some(labelled, name, MOST_OF_A_CLASS)
-        for name in labelled.chosen(classes, HIDDEN_CLASSES)
+        name: _some(labeled, name, MAX_PER_CLASS)
+        for name in labeled.chosen(classes, HIDDEN_CLASSES)
     }
     return VolumeEvaluation(
         q=q,
@@ -85,13 +86,13 @@ def judge_volumes(
             )
             for name, members in some.items()
         },
-        compression=_compression(lib, labelled.clips),
+        compression=_compression(lib, labeled.clips),
     )
 
 
-def _some(labelled: LabelledClips, name: str, most: int) -> list[ClipRecord]:
-    """Clips of a class, evenly spread over its clips by id where there are too many."""
-    members = [clip for clip in labelled.clips if clip.task == name]
+def _some(labeled: LabeledClips, name: str, most: int) -> list[ClipRecord]:
+    """Clips of a class; if there are too many, an even selection by id."""
+    members = [clip for clip in labeled.clips if clip.task == name]
     places = np.unique(np.linspace(0, len(members) - 1, min(most, len(members))).round())
     return [members[int(place)] for place in places]
 

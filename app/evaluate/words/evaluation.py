@@ -24,16 +24,16 @@ from app.store.clips.filter import ClipFilter
 
 EXAMPLES = 4
 NEAREST = 10
-"""Rows of table 2."""
+"""Number of rows of table 2."""
 SHOWN_WORDS = 30
-"""Words named in a message."""
+"""Largest number of words in a message."""
 DIAGONAL = "recall = precision"
 
 
 @dataclass(frozen=True, slots=True)
 class NearClip:
-    """ratio: its distance to the query over that of the nearest (table 2); carries: whether it
-    carries all words of the query."""
+    """A clip near a query. ratio: its distance divided by that of the nearest clip (table 2);
+    carries: whether the clip carries all words of the query."""
 
     id: str
     name: str
@@ -50,9 +50,9 @@ class WordExample:
     nearest: tuple[NearClip, ...]
 
 
-def judge_words(lib: Library, wanted: ClipFilter | None = None) -> WordEvaluation:
-    """Figures of the word models beside the prior. Raises NotEnoughLabels."""
-    training = read_training_set(lib.store, ready_only(wanted))
+def judge_words(lib: Library, filter: ClipFilter | None = None) -> WordEvaluation:
+    """Figures of the word models and of the prior. Raises NotEnoughLabels."""
+    training = read_training_set(lib.store, ready_only(filter))
 
     def channels(row: int) -> FloatArray:
         return symbol_features(body_track(load_motion(lib, training.clips[row])))
@@ -67,14 +67,14 @@ def judge_words(lib: Library, wanted: ClipFilter | None = None) -> WordEvaluatio
 
 
 def word_examples(
-    lib: Library, queries: Sequence[str] | None = None, wanted: ClipFilter | None = None
+    lib: Library, queries: Sequence[str] | None = None, filter: ClipFilter | None = None
 ) -> tuple[WordExample, ...]:
-    """Table 2: distance ratios in the canonical space of motions, fitted on all labelled clips.
+    """Table 2: distance ratios in the canonical space of motions, fitted on all labeled clips.
 
     queries: each of one or several words; by default the most frequent words.
-    Raises BadField where no word of a query is carried, NotEnoughLabels.
+    Raises BadField if no clip carries a word of a query, and NotEnoughLabels.
     """
-    training = read_training_set(lib.store, ready_only(wanted))
+    training = read_training_set(lib.store, ready_only(filter))
     rows = [row for row, words in enumerate(training.label_sets) if words]
     label_sets = [training.label_sets[row] for row in rows]
     vocabulary = WordVocabulary.of(label_sets)
@@ -102,7 +102,7 @@ def word_examples(
 
 
 def draw_words(evaluation: WordEvaluation, form: Format) -> bytes:
-    """Figure 7: precision over recall of single words, held out and in-sample."""
+    """Figure 7: precision by recall of single words, held out and in-sample."""
     return curves_picture(
         [
             _panel(evaluation.figures, f"held out, {evaluation.folds} folds"),
@@ -128,7 +128,9 @@ def _asked(query: str, vocabulary: WordVocabulary) -> tuple[str, ...]:
     asked = tuple(understand(query.split(), vocabulary, {}).weights)
     if not asked:
         known = ", ".join(vocabulary.words[:SHOWN_WORDS])
-        raise fields.bad_field("query", f"no clip carries a word of {query!r}; they do {known}")
+        raise fields.bad_field(
+            "query", f"no clip carries a word of {query!r}; known words: {known}"
+        )
     return asked
 
 

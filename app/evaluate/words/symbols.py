@@ -1,4 +1,4 @@
-"""Motion symbols of a library: how well the space keeps their divergences (Takano, fig. 3)."""
+"""How well the symbol space of a library preserves the divergences (Takano, fig. 3)."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from app.services.training.training_set import read_training_set, ready_only
 from app.store.clips.filter import ClipFilter
 
 
-def judge_symbols(lib: Library, wanted: ClipFilter | None = None) -> SymbolFigures:
+def judge_symbols(lib: Library, filter: ClipFilter | None = None) -> SymbolFigures:
     """The figures of the ready clips' symbols. Raises NotEnoughLabels."""
-    return symbol_figures(read_training_set(lib.store, ready_only(wanted)).symbols)
+    return symbol_figures(read_training_set(lib.store, ready_only(filter)).symbols)
 
 
 def draw_symbols(found: SymbolFigures, form: Format) -> bytes:
-    """Error against dimensions (fig. 3), by how the points were found."""
+    """The error by the number of dimensions (fig. 3), for each scaling method."""
     dimensions = np.array([errors.dimensions for errors in found.errors], dtype=float)
     curves = [
         Curve(dimensions, np.array([getattr(errors, way) for errors in found.errors]), name)
         for way, name in (
             ("classical", "classical scaling"),
             ("smacof", "SMACOF"),
-            ("s_stress", "error of eq. 3 minimised"),
+            ("s_stress", "error of eq. 3 minimized"),
         )
     ]
     panel = Panel(

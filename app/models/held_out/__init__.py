@@ -1,1 +1,1 @@
-"""Held-out figures of every model; fits and evaluations use them."""
+"""Held-out figures of all models, for fits and evaluations."""

@@ -1,9 +1,8 @@
-"""How well rankings keep classes together (Sun 2011, section 5).
+"""Figures of rankings by class (Sun 2011, section 5).
 
-Each query of a class ranks other items. Told are the usual figures of query by example, the
-true-positive rate of table 1 and the confusion of figure 8. The last two look at the k
-nearest; a class of fewer items cannot fill them, however good the ranking, so that as many
-are looked at as there are relevant ones, and k at most.
+Each query of a class ranks the other items. The figures are the usual ones of query by example, the
+true-positive rate of table 1 and the confusion matrix of figure 8. The last two use the k nearest
+items. If a class has fewer relevant items than k, they use as many as there are relevant items.
 """
 
 from __future__ import annotations
@@ -17,16 +16,16 @@ from app.models.held_out.ranking import average_precision
 from app.numerics.arrays import FloatArray, IntArray
 
 DEPTHS = (1, 4, 20)
-"""Precision is told among so many of the nearest."""
+"""Numbers of nearest items for which the precision is computed."""
 
 
 @dataclass(frozen=True, slots=True)
 class JudgedRanking:
-    """What one query found, of C classes.
+    """The figures of one query, with C classes.
 
-    own: class of the query; precision: (3,) among the DEPTHS nearest; average_precision:
-    Takano's eq. 20; true_positives: share of the query's class among the k nearest of
-    everything; retrieved: (C,) share of each class among the k nearest of the C classes.
+    own: class of the query; precision: (3,) among the DEPTHS nearest items; average_precision:
+    Takano's eq. 20; true_positives: share of the query's class among the k nearest of all
+    items; retrieved: (C,) share of each class among the k nearest items of the C classes.
     """
 
     own: int
@@ -37,9 +36,10 @@ class JudgedRanking:
 
 
 def judge_ranking(found: IntArray, own: int, classes: int, k: int) -> JudgedRanking:
-    """`found` (n,): the classes in the order found, `classes` for one that is none of the C.
+    """Judge the ranking of one query.
 
-    The query itself is not in it. Raises ValueError where nothing of class `own` is.
+    found: (n,) the class index of each ranked item, `classes` for an item of none of the C
+    classes; the query itself is not in it. Raises ValueError if no item has the class `own`.
     """
     is_relevant = found == own
     relevant = int(is_relevant.sum())
@@ -57,12 +57,15 @@ def judge_ranking(found: IntArray, own: int, classes: int, k: int) -> JudgedRank
 
 
 def true_positive_rates(judged: Sequence[JudgedRanking], classes: int) -> FloatArray:
-    """(C,) mean over the queries of each class; 0 for a class that has none."""
+    """(C,) mean true-positive rate over the queries of each class; 0 for a class without."""
     return _mean_by_class(judged, np.array([[one.true_positives] for one in judged]), classes)[:, 0]
 
 
 def confusion_matrix(judged: Sequence[JudgedRanking], classes: int) -> FloatArray:
-    """(C, C): row by row, what the queries of a class retrieved; rows sum to 1, or 0 without."""
+    """(C, C): each row is the mean `retrieved` of the queries of a class.
+
+    Rows sum to 1; the row of a class without queries is 0.
+    """
     return _mean_by_class(judged, np.stack([one.retrieved for one in judged]), classes)
 
 

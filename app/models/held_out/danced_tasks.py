@@ -22,7 +22,7 @@ class DancedTasks:
     """n segments of dances.
 
     poses: (n, POSES, 13, 3) in the body frame, in body lengths; persons, tasks: (n,) labels;
-    cycle: (n,) how often the same person did the same task before, from 0.
+    cycle: (n,) how often the person did the task before this segment, from 0.
     """
 
     poses: FloatArray
@@ -45,8 +45,8 @@ def arrange(
 ) -> DancedTasks:
     """Arrange the segments of all clips that have both labels.
 
-    clips, persons, tasks: (clips,) each. A clip is left out where its cycles have another number
-    of segments than those of most clips of its task.
+    clips, persons, tasks: (clips,) each. A clip is left out if its number of segments in a cycle
+    differs from that of most clips of its task.
     """
     poses: list[FloatArray] = []
     labels: list[tuple[str, str, int]] = []

@@ -1,10 +1,10 @@
-"""How good a learned metric is on clips, tasks and persons that it has not seen.
+"""Held-out figures of a learned metric on clips, tasks and persons that it has not seen.
 
-In turn clips (all files of a recording together), whole tasks and whole persons are held out
-(app.models.holding_out). Each held-out clip with a label asks for the clips that carry the same
-one, among all that have a label, those that were learned from too: this is what a new clip
-finds. Other files of its own recording are neither right nor wrong. The motion vector is asked
-the same, so that one sees what the labels are worth.
+Rounds hold out clips (all files of a recording together), whole tasks and whole persons
+(app.models.holding_out). Each held-out clip with a label ranks all other clips that have a label,
+including the training clips, as a query with a new clip does; clips with the same label are
+relevant. Other files of its own recording are ignored. The motion vector is judged in the same way
+for comparison.
 """
 
 from __future__ import annotations
@@ -23,27 +23,27 @@ from app.models.metric.learned_metric import Described, Factor, check_labels, fi
 from app.models.metric.pair_calibration import PairCalibration, calibrate_pairs
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
-MOST_CLIPS = 2000
-"""Larger libraries are judged on a random part of so many labelled clips."""
+MAX_CLIPS = 2000
+"""Larger libraries are judged on a random subset of this many labeled clips."""
 
 NEAREST = 20
-"""Precision is told among so many of the nearest, fewer where fewer are relevant."""
+"""Precision is computed among this many nearest clips, or fewer if fewer are relevant."""
 
-MOST_PAIRS = 200_000
-"""Pairs that a calibration sees."""
+MAX_PAIRS = 200_000
+"""Largest number of pairs of clips for the calibration."""
 
 TOLD_LABELS = 200
-"""Labels whose clips are counted one by one, those with the fewest first."""
+"""Largest number of labels whose clip counts are listed; those with the fewest clips first."""
 
 BINS = 10
-"""Of the calibration error."""
+"""Number of bins of the calibration error."""
 
 Labels = Sequence[str | None]
 
 
 @dataclass(frozen=True, slots=True)
 class MetricEvaluation:
-    """figures: JSON-able, by what was held out; calibration: from the clips held out."""
+    """figures: JSON-able, by what was held out; calibration: fitted on the held-out clips."""
 
     figures: dict[str, Any]
     calibration: PairCalibration
@@ -51,7 +51,7 @@ class MetricEvaluation:
 
 @dataclass(frozen=True, slots=True)
 class _Judged:
-    """What the queries of some rounds found; relevance rows, and pairs, one array a query."""
+    """The results of the queries of some rounds: relevance rows and pairs, an array per query."""
 
     learned: list[BoolArray] = field(default_factory=list)
     plain: list[BoolArray] = field(default_factory=list)
@@ -62,9 +62,9 @@ class _Judged:
 def held_out_metric(
     described: Described, persons: Labels, tasks: Labels, groups: Sequence[str], factor: Factor
 ) -> MetricEvaluation:
-    """Judge a metric of `factor` on n clips; groups: (n,) the same for files of a recording.
+    """Judge a metric of `factor` on n clips; groups: (n,) equal for files of one recording.
 
-    Raises NotEnoughLabels where none can be learned.
+    Raises NotEnoughLabels if the labels are too few to learn a metric.
     """
     labels = tasks if factor is Factor.TASK else persons
     check_labels(labels, factor)
@@ -81,18 +81,18 @@ def held_out_metric(
     distances, same = _pairs(clips)
     calibration = calibrate_pairs(distances, same)
     figures = {f"{held}_held_out": _figures(judged) for held, judged in found.items()}
-    told = {name: shares for name, shares in figures.items() if shares}
+    document = {name: shares for name, shares in figures.items() if shares}
     error = {"calibration_error": calibration_error(calibration, distances, same)}
     counted = {"labels": _label_counts(counts, by_name=factor is Factor.TASK)}
-    return MetricEvaluation(told | error | counted, calibration)
+    return MetricEvaluation(document | error | counted, calibration)
 
 
 def calibration_error(
     calibration: PairCalibration, distances: FloatArray, same: BoolArray
 ) -> float:
-    """Mean difference, over pairs (n,), between the score told and the share that is the same.
+    """Mean difference, over pairs (n,), between the score and the share with the same label.
 
-    Pairs are put in BINS by their score.
+    The pairs are grouped into BINS bins by their score.
     """
     if not len(distances):
         return 0.0
@@ -105,7 +105,7 @@ def calibration_error(
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """The labelled clips that are judged."""
+    """The labeled clips that are judged."""
 
     described: Described
     persons: list[str | None]
@@ -116,13 +116,13 @@ class _Part:
 
 def _judged_clips(labels: Labels) -> IntArray:
     known = np.array([i for i, label in enumerate(labels) if label])
-    return np.sort(np.random.RandomState(0).permutation(known)[:MOST_CLIPS])
+    return np.sort(np.random.RandomState(0).permutation(known)[:MAX_CLIPS])
 
 
 def _judge_round(
     part: _Part, factor: Factor, training: IntArray, probes: IntArray, judged: _Judged
 ) -> None:
-    """Fit without the probes, let each of them ask, and add what they found to `judged`."""
+    """Fit without the probes, rank by each probe, and add the results to `judged`."""
     try:
         known = [part.labels[i] for i in training]
         axes = fit_axes(part.described.part(training), known, factor)
@@ -145,15 +145,16 @@ def _judge_round(
 
 
 def _pairs(judged: _Judged) -> tuple[FloatArray, BoolArray]:
-    """Distances (m,) and whether the labels are the same (m,), at most MOST_PAIRS, spread."""
+    """Distances (m,) and whether the labels are equal (m,), of at most MAX_PAIRS pairs, taken at
+    regular intervals."""
     distances = np.concatenate([np.zeros(0), *judged.distances])
     same = np.concatenate([np.zeros(0, dtype=bool), *judged.same])
-    step = max(1, -(-len(distances) // MOST_PAIRS))
+    step = max(1, -(-len(distances) // MAX_PAIRS))
     return distances[::step], same[::step]
 
 
 def _figures(judged: _Judged) -> dict[str, float | int]:
-    """Means over the queries; empty where there was none."""
+    """Means over the queries; empty without queries."""
     if not judged.learned:
         return {}
     nearest, precision, average = _means(judged.learned)
@@ -179,12 +180,13 @@ def _means(rankings: list[BoolArray]) -> list[float]:
 
 
 def _label_counts(counts: Counter[str], *, by_name: bool) -> dict[str, Any]:
-    """How many clips carry a label; persons are not named: figures outlive who is forgotten."""
+    """Counts of clips by label. Persons are not named, since figures stay stored after a person
+    is forgotten."""
     fewest = sorted(counts.items(), key=lambda item: (item[1], item[0]))
-    told = {
+    document = {
         "count": len(counts),
         "clips": counts.total(),
         "fewest_clips": fewest[0][1],
         "most_clips": fewest[-1][1],
     }
-    return told | ({"clips_of": dict(fewest[:TOLD_LABELS])} if by_name else {})
+    return document | ({"clips_of": dict(fewest[:TOLD_LABELS])} if by_name else {})

@@ -1,12 +1,12 @@
-"""Perera's experiments (2009, section 5.4) on any dances: who and what, known and alien.
+"""Perera's experiments (2009, section 5.4) on any dances: known and alien persons and tasks.
 
-Training is one cycle, probing another (Table 3). With persons or tasks that the tensor lacks
-(Tables 4 and 5) a second cycle of what was trained says how far off the same is in another
-cycle: F*_k (eq. 15) of each category k. A probe's F*_Pr (eq. 16) has to come within thresholds
-of it, or it is new.
+The model is trained on one cycle and probed with another (Table 3). With persons or tasks that the
+tensor does not have (Tables 4 and 5), a second cycle of the training segments gives the usual
+objective in another cycle: F*_k (eq. 15) of each category k. A probe is new if its F*_Pr (eq. 16)
+is not within thresholds of F*_k.
 
-Reading.PRINTED: eq. 14 maximised, and a category holds what lies within the range of its F*_k,
-which makes new what is nearer than the trained cycle ever was. Reading.LEAST minimises
+Reading.PRINTED: eq. 14 maximized, and a category holds what lies within the range of its F*_k,
+which makes new what is nearer than the trained cycle ever was. Reading.LEAST minimizes
 (see app.models.recognition.task_model), has no lower side, and takes for F*_k the mean over the
 category's segments; in Table 5 the largest of a task's segments from those of its other dancers.
 """
@@ -24,27 +24,27 @@ from app.models.recognition.task_model import Reading, TaskModel, fit_task_model
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 NEW_THRESHOLD = 0.05
-"""Of F*_k and of F*_Pr, where it is asked whether something is new (Table 4)."""
+"""Relative threshold of F*_k and F*_Pr for deciding whether a probe is new (Table 4)."""
 
 NAMED_THRESHOLD = 0.12
-"""Of both, where something known is also to be named (Table 5)."""
+"""Relative threshold of both for naming the label of a probe (Table 5)."""
 
-MOST_ROUNDS = 3
-"""Choices of the cycles; each is trained on once."""
+MAX_ROUNDS = 3
+"""Number of choices of the training cycle."""
 
-MOST_LEFT_OUT = 12
-"""Persons, or tasks, left out in turn in one round."""
+MAX_LEFT_OUT = 12
+"""Largest number of persons, or tasks, that are left out in turn in one round."""
 
-LEAST_LABELS = 2
-"""Persons and tasks that must be there, and that must remain where some are left out."""
+MIN_LABELS = 2
+"""Persons and tasks that are needed, also after some are left out."""
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A line of the paper's Tables 3-5: segments probed and recognised, over all rounds.
+    """A line of the paper's Tables 3-5: segments probed and recognized, over all rounds.
 
-    paper: the accuracy printed there; known_probed, known_accepted: in Table 4 besides, how
-    many segments of known persons (tasks) were probed, and found to be known.
+    paper: the accuracy printed in the paper; known_probed, known_accepted: only in Table 4, the
+    numbers of segments of known persons (tasks) that were probed, and that were called known.
     """
 
     table: int
@@ -58,20 +58,20 @@ class Row:
 
     @property
     def accuracy(self) -> float:
-        """Share recognised, 0..1."""
+        """Share recognized, 0..1."""
         return self.correct / max(self.probed, 1)
 
     @property
     def balanced_accuracy(self) -> float:
-        """The mean of `accuracy` and of the known ones' that were accepted (Table 4)."""
+        """The mean of `accuracy` and the share of known segments that were accepted (Table 4)."""
         return 0.5 * (self.accuracy + self.known_accepted / max(self.known_probed, 1))
 
 
 def perera_tables(danced: DancedTasks, reading: Reading = Reading.LEAST) -> tuple[Row, ...]:
-    """Tables 3, 4 and 5 of the paper in its order, as far as cycles allow.
+    """Tables 3, 4 and 5 of the paper, in its order.
 
-    Table 3 takes segments of which there are two cycles, Tables 4 and 5 those with three, and
-    they leave out each person and each task in turn (MOST_LEFT_OUT at most).
+    Table 3 needs segments with two cycles, Tables 4 and 5 segments with three. Tables 4 and 5
+    leave out each person and each task in turn (at most MAX_LEFT_OUT).
     Raises NotEnoughLabels without two persons and two tasks with two cycles each.
     """
     tables: dict[str, Row] = {}
@@ -98,10 +98,10 @@ def _sum(one: Row | None, other: Row) -> Row:
 def _known(danced: DancedTasks, reading: Reading) -> Iterator[Row]:
     """Table 3, a round for each choice of the training cycle."""
     use = _with_cycles(danced, 2)
-    if min(len(set(use.persons)), len(set(use.tasks))) < LEAST_LABELS:
+    if min(len(set(use.persons)), len(set(use.tasks))) < MIN_LABELS:
         raise NotEnoughLabels(
-            "Perera's experiment needs two persons who do the same two tasks twice each: "
-            "twice in one clip, or in two clips."
+            "Perera's experiment needs two persons who do the same two tasks twice each, "
+            "in one clip or in two clips."
         )
     for train, probe in ((0, 1), (1, 0)):
         model = _fit(use.part(use.cycle == train))
@@ -117,7 +117,7 @@ def _known(danced: DancedTasks, reading: Reading) -> Iterator[Row]:
 def _alien(danced: DancedTasks, reading: Reading) -> Iterator[Row]:
     """Tables 4 and 5, a round for each choice of the three cycles."""
     use = _with_cycles(danced, 3)
-    for first in range(MOST_ROUNDS):
+    for first in range(MAX_ROUNDS):
         train, again, probe = ((use.cycle == (first + k) % 3) for k in range(3))
         for person in _left_out(use.persons):
             stays = np.array([name != person for name in use.persons])
@@ -135,18 +135,18 @@ def _alien(danced: DancedTasks, reading: Reading) -> Iterator[Row]:
 
 
 def _with_cycles(danced: DancedTasks, least: int) -> DancedTasks:
-    """The segments of those persons and tasks together of which there are so many cycles."""
+    """The segments of each person and task that have at least `least` cycles."""
     pairs = list(zip(danced.persons, danced.tasks, strict=True))
     last = {pair for pair, cycle in zip(pairs, danced.cycle, strict=True) if cycle == least - 1}
     return danced.part(np.array([pair in last for pair in pairs], dtype=bool))
 
 
 def _left_out(labels: Sequence[str]) -> list[str]:
-    """The labels left out in turn, spread over all; none where too few would remain."""
+    """The labels to leave out in turn, evenly chosen; none if too few would remain."""
     names = sorted(set(labels))
-    if len(names) <= LEAST_LABELS:
+    if len(names) <= MIN_LABELS:
         return []
-    chosen = np.linspace(0, len(names) - 1, min(len(names), MOST_LEFT_OUT)).round()
+    chosen = np.linspace(0, len(names) - 1, min(len(names), MAX_LEFT_OUT)).round()
     return [names[int(i)] for i in np.unique(chosen)]
 
 
@@ -164,15 +164,15 @@ class _View:
     weights: FloatArray
 
     def objective(self, distances: FloatArray, reading: Reading) -> FloatArray:
-        """(n, names) of joint distances (n, c, 13), the least is the best."""
+        """(n, names) objectives of joint distances (n, c, 13); the smallest is the best."""
         return objective(distances, self.label, len(self.names), self.weights, reading)
 
     def labels_of(self, danced: DancedTasks) -> tuple[str, ...]:
-        """(n,) what is true of each segment."""
+        """(n,) the true label of each segment."""
         return danced.tasks if self.what == "task" else danced.persons
 
     def index(self, danced: DancedTasks) -> IntArray:
-        """(n,) the same as places in `names`, all of which are there."""
+        """(n,) the true labels as indices into `names`, which has them all."""
         return np.array([self.names.index(name) for name in self.labels_of(danced)], np.int64)
 
 
@@ -186,7 +186,7 @@ def _persons(model: TaskModel) -> _View:
 
 @dataclass(frozen=True, slots=True)
 class _Trained:
-    """A model and the distances (n, c, 13) of what was danced again, `again` (n,)."""
+    """A model, and the distances (n, c, 13) of the repeated segments `again` (n,)."""
 
     model: TaskModel
     again: DancedTasks
@@ -198,7 +198,7 @@ class _Trained:
         return cls(model, again, model.joint_distances(again.poses))
 
     def new_ones(self, what: str, new: DancedTasks, known: DancedTasks, reading: Reading) -> Row:
-        """A row of Table 4: those who are new, beside those who are known."""
+        """A row of Table 4: segments of new labels, and segments of known labels."""
         view, paper = (
             (_tasks(self.model), 0.9166) if what == "task" else (_persons(self.model), 0.8333)
         )
@@ -217,7 +217,7 @@ class _Trained:
         )
 
     def named(self, category: str, probes: DancedTasks, reading: Reading) -> Row:
-        """A row of Table 5: of the tasks in whose range a segment lies the nearest is right."""
+        """A row of Table 5: a segment counts if the nearest task within thresholds is right."""
         view = _tasks(self.model)
         within, far = self._within(view, probes, NAMED_THRESHOLD, reading)
         best = np.where(within, far, np.inf).argmin(axis=1)
@@ -231,8 +231,8 @@ class _Trained:
     def _within(
         self, view: _View, probes: DancedTasks, threshold: float, reading: Reading
     ) -> tuple[BoolArray, FloatArray]:
-        """(n, names) whether F*_Pr is within thresholds of F*_k, and eq. 16 itself as
-        `objective` has it, the least the best."""
+        """(n, names) whether F*_Pr is within thresholds of F*_k, and (n, names) the objectives
+        of eq. 16; the smallest is the best."""
         low, high = self._trained(view, reading, of_others=threshold == NAMED_THRESHOLD)
         signed = view.objective(self.model.joint_distances(probes.poses), reading)
         value = np.abs(signed)
@@ -244,10 +244,10 @@ class _Trained:
     def _trained(
         self, view: _View, reading: Reading, *, of_others: bool
     ) -> tuple[FloatArray, FloatArray]:
-        """F*_k (eq. 15), the least and the largest that is in order for each of `names`.
+        """The smallest and the largest accepted F*_k (eq. 15) for each of `names`.
 
-        of_others: as the others who did the same task vary, not as each does from cycle to
-        cycle: an alien's task cannot be expected to lie nearer.
+        of_others: F*_k is computed between different persons who did the same task, not between
+        cycles of one person, since the task of an alien person cannot be nearer.
         """
         distances, own = self.distances, view.index(self.again)
         if of_others and reading is Reading.LEAST:

@@ -1,8 +1,8 @@
 """Figures of merit for ranked answers, shared by all evaluations.
 
-Takano (section 3: precision, recall, F where they are equal, eq. 20, top-3 words) and the
-usual ones of query by example. A ranking is given by scores, higher is closer; equal
-scores keep the order of the candidates. Shapes: queries Q, candidates N, words V.
+They are those of Takano (section 3: precision, recall, F where both are equal, eq. 20, top-3
+words) and the usual ones of query by example. A ranking is given by scores; a higher score is
+closer, and equal scores keep the order of the candidates. Shapes: queries Q, candidates N, words V.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from app.numerics.arrays import BoolArray, FloatArray
 def average_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
     """Eq. 20: mean of the precision at each relevant candidate; scores, is_relevant: (N,).
 
-    0.0 where nothing is relevant.
+    0.0 if nothing is relevant.
     """
     hits = is_relevant[_best_first(scores)]
     places = np.flatnonzero(hits) + 1
@@ -25,16 +25,17 @@ def average_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
 
 
 def mean_average_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
-    """Mean of eq. 20 over the rows of (Q, N) that have something relevant; else 0.0."""
+    """Mean of eq. 20 over the rows of (Q, N) with a relevant candidate; 0.0 without any."""
     rows = np.flatnonzero(is_relevant.any(axis=1))
     found = [average_precision(scores[row], is_relevant[row]) for row in rows]
     return float(np.mean(found)) if found else 0.0
 
 
 def f_where_recall_is_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
-    """F at R = P over all pairs at once (micro), any equal shapes; 0.0 where none is relevant.
+    """F at recall = precision over all pairs at once (micro average); 0.0 if none is relevant.
 
-    With as many retrieved as there are relevant, R = P = F.
+    scores, is_relevant: any equal shapes. If the number of retrieved pairs equals that of
+    relevant pairs, recall = precision = F.
     """
     relevant = int(is_relevant.sum())
     if relevant == 0:
@@ -43,7 +44,7 @@ def f_where_recall_is_precision(scores: FloatArray, is_relevant: BoolArray) -> f
 
 
 def top_k_rate(scores: FloatArray, labels: BoolArray, k: int) -> float:
-    """Share of the labelled rows of (N, V) of which a true label is among the k best."""
+    """Share of the rows of (N, V) with labels that have a true label among the k best."""
     rows = np.flatnonzero(labels.any(axis=1))
     found = [labels[row, _best_first(scores[row])[:k]].any() for row in rows]
     return float(np.mean(found)) if found else 0.0
@@ -52,9 +53,10 @@ def top_k_rate(scores: FloatArray, labels: BoolArray, k: int) -> float:
 def precision_at_recalls(
     scores: FloatArray, is_relevant: BoolArray, recalls: FloatArray
 ) -> FloatArray:
-    """(r,) precision where so much is recalled, over all pairs at once (micro), any equal shapes.
+    """(r,) precision at the given recalls, over all pairs at once (micro average).
 
-    recalls: (r,) in 0..1, at least one pair is retrieved; 0.0 where none is relevant.
+    scores, is_relevant: any equal shapes; recalls: (r,) in 0..1. At least one pair is
+    retrieved; 0.0 if none is relevant.
     """
     hits = is_relevant.ravel()[_best_first(scores.ravel())]
     places = np.flatnonzero(hits) + 1
@@ -65,9 +67,9 @@ def precision_at_recalls(
 
 
 def calibration_error(probabilities: FloatArray, is_so: BoolArray, bins: int = 10) -> float:
-    """Expected calibration error: how far shares lie from probabilities, by equal bins.
+    """Expected calibration error: mean difference of probability and true share in equal bins.
 
-    Any equal shapes; each bin counts as much as it holds.
+    probabilities, is_so: any equal shapes; each bin has the weight of its members.
     """
     chances, truth = probabilities.ravel(), is_so.ravel().astype(np.float64)
     place = np.clip((chances * bins).astype(np.int64), 0, bins - 1)
@@ -76,7 +78,7 @@ def calibration_error(probabilities: FloatArray, is_so: BoolArray, bins: int = 1
 
 
 def brier_score(probabilities: FloatArray, is_so: BoolArray) -> float:
-    """Mean squared difference of probabilities and what is so; any equal shapes."""
+    """Mean squared difference of `probabilities` and the truth `is_so`; any equal shapes."""
     return float(np.square(probabilities - is_so).mean()) if probabilities.size else 0.0
 
 

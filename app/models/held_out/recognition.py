@@ -1,4 +1,4 @@
-"""How well persons and tasks are recognised on clips that the models have not seen."""
+"""Held-out figures of recognition: persons and tasks on clips that the models have not seen."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from app.errors import NotEnoughLabels
 from app.models.folds import grouped_folds
 from app.models.holding_out import FOLDS
 from app.models.recognition.answers import NO_ANSWER, Answer, Recognition, given
-from app.models.recognition.flat_pca import fit_flat_pca, recognise_flat
-from app.models.recognition.multilinear import fit_multilinear, recognise_multilinear
-from app.models.recognition.perera import TensorRecogniser, recognise_by_tensor, uncalibrated
-from app.models.recognition.recogniser import Recogniser, fit_recogniser, recognise_many
+from app.models.recognition.flat_pca import fit_flat_pca, recognize_flat
+from app.models.recognition.multilinear import fit_multilinear, recognize_multilinear
+from app.models.recognition.perera import TensorRecognizer, recognize_by_tensor, uncalibrated
+from app.models.recognition.recognizer import Recognizer, fit_recognizer, recognize_many
 from app.models.recognition.views import full_samples
 from app.numerics.arrays import FloatArray, IntArray
 
@@ -27,8 +27,8 @@ _CURVE = ("threshold", "false_acceptance", "false_rejection")
 
 
 class Clips(NamedTuple):
-    """Training clips: samples (clips, 1250), or what else the method looks at; labels and groups
-    (clips,) each."""
+    """Training clips: samples (clips, 1250), or of another width if the method needs it; labels
+    and groups (clips,) each."""
 
     samples: FloatArray
     persons: Labels
@@ -36,7 +36,7 @@ class Clips(NamedTuple):
     groups: Sequence[str]
 
 
-_Recognise = Callable[[Clips, FloatArray], list[Recognition]]
+_Recognize = Callable[[Clips, FloatArray], list[Recognition]]
 
 
 def held_out_recognition_figures(
@@ -49,14 +49,14 @@ def held_out_recognition_figures(
     *,
     wide: FloatArray | None = None,
 ) -> dict[str, dict[str, float]]:
-    """Shares recognised, each clip by a model of the other folds; known factors not told.
+    """Shares of recognized clips; each clip is judged by a model of the other folds.
 
-    samples: (clips, 1250); wide: (clips, 512) wide motion vectors, at which the default looks
-    too; groups: (clips,) clips of one recording share a value, and a fold.
+    samples: (clips, 1250); wide: (clips, 512) wide motion vectors, for the default method;
+    groups: (clips,) clips of one recording share a value and a fold. No label is given.
     Returns for "default", "multilinear", "perera", "pca" (flat PCA) and "prior" (the most frequent
     label of the training folds) the shares "person", "task" and "both" over the clips that have
-    the label: the best candidate counts, whether called known or not; and "clips", how many have
-    both labels. A method that cannot be fitted is left out.
+    the label, and "clips", the number with both labels. The best candidate counts, even if the
+    method calls it new. A method that cannot be fitted is left out.
     """
     seen = samples if wide is None else full_samples(samples, wide)
     default = _figures({"default": _default}, seen, persons, tasks, groups, folds, seed)
@@ -77,13 +77,13 @@ def signature_figures(
     folds: int = FOLDS,
     seed: int = 0,
 ) -> dict[str, dict[str, float]]:
-    """The same of "signatures" and "pca" on angle samples (clips, 642), beside "prior"."""
+    """The same figures of "signatures", "pca" and "prior" on angle samples (clips, 642)."""
     methods = {"signatures": _signatures, "pca": _flat_pca, "prior": _prior}
     return _figures(methods, angles, persons, tasks, groups, folds, seed)
 
 
 def _figures(
-    methods: Mapping[str, _Recognise],
+    methods: Mapping[str, _Recognize],
     samples: FloatArray,
     persons: Labels,
     tasks: Labels,
@@ -102,13 +102,13 @@ def _figures(
     return figures
 
 
-def unknown_figures(record: Recogniser | TensorRecogniser) -> dict[str, dict[str, Any]]:
+def unknown_figures(record: Recognizer | TensorRecognizer) -> dict[str, dict[str, Any]]:
     """False acceptance, false rejection, balanced accuracy and area under the curve for "person"
     and "task", and "curve", from which a false-accept rate can be chosen.
 
-    From the clips, persons and tasks that were held out when `record` was fitted; the
-    threshold was chosen on them, so these are a little too good. Where takes were hardly
-    repeated, what is known are further takes as the recogniser imagines them.
+    They come from the clips, persons and tasks that were held out when `record` was fitted. The
+    threshold was chosen on them too, so the figures are slightly too good. If takes were hardly
+    repeated, the known clips are simulated takes.
     """
     figures: dict[str, dict[str, Any]] = {}
     for name in ("person", "task"):
@@ -126,7 +126,7 @@ def unknown_figures(record: Recogniser | TensorRecogniser) -> dict[str, dict[str
 
 
 def _guesses(
-    method: _Recognise,
+    method: _Recognize,
     samples: FloatArray,
     persons: Labels,
     tasks: Labels,
@@ -162,27 +162,27 @@ def _shares(
 
 
 def _default(clips: Clips, probes: FloatArray) -> list[Recognition]:
-    return recognise_many(fit_recogniser(*clips), probes)
+    return recognize_many(fit_recognizer(*clips), probes)
 
 
 def _multilinear(clips: Clips, probes: FloatArray) -> list[Recognition]:
     record = fit_multilinear(clips.samples, clips.persons, clips.tasks)
-    return [recognise_multilinear(record, probe) for probe in probes]
+    return [recognize_multilinear(record, probe) for probe in probes]
 
 
 def _signatures(clips: Clips, probes: FloatArray) -> list[Recognition]:
     record = fit_multilinear(clips.samples, clips.persons, clips.tasks, moments=SAMPLES)
-    return [recognise_multilinear(record, probe) for probe in probes]
+    return [recognize_multilinear(record, probe) for probe in probes]
 
 
 def _perera(clips: Clips, probes: FloatArray) -> list[Recognition]:
-    # what it calls unknown is not asked here: what that takes is left out
-    return recognise_by_tensor(uncalibrated(clips.samples, clips.persons, clips.tasks), probes)
+    # the decision on unknown labels is not needed here, so its costly calibration is left out
+    return recognize_by_tensor(uncalibrated(clips.samples, clips.persons, clips.tasks), probes)
 
 
 def _flat_pca(clips: Clips, probes: FloatArray) -> list[Recognition]:
     record = fit_flat_pca(clips.samples, clips.persons, clips.tasks)
-    return [recognise_flat(record, probe) for probe in probes]
+    return [recognize_flat(record, probe) for probe in probes]
 
 
 def _prior(clips: Clips, probes: FloatArray) -> list[Recognition]:

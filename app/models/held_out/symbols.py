@@ -1,8 +1,8 @@
-"""How well the motion symbol space keeps the divergences of symbols (Takano, section 3, fig. 3).
+"""How well the motion symbol space preserves the divergences (Takano, section 3, fig. 3).
 
-The error T of eq. 3 against the number of dimensions, for classical scaling, for SMACOF and
-for the paper's own error minimised (s-stress); what is lost where a symbol is placed against
-landmarks only; and how the fast divergence ranks pairs beside the Monte Carlo one of eqs 1-2.
+The figures are the error T of eq. 3 by the number of dimensions, for classical scaling, SMACOF and
+the minimum of the paper's own error (s-stress); the error of placing a symbol by landmarks only;
+and the rank correlation of the fast divergence with the Monte Carlo divergence of eqs 1-2.
 Symbols N, dimensions d.
 """
 
@@ -22,18 +22,20 @@ from app.numerics.hmm.model import GaussianHMM
 from app.numerics.mds import classical_mds, metric_mds, place, stress
 from app.numerics.smacof import smacof
 
-MOST_SYMBOLS = 200
-"""Scaled at once; of more, randomly picked ones."""
-MOST_DIMENSIONS = 15
+MAX_SYMBOLS = 200
+"""Largest number of symbols that are scaled at once; of more, a random subset."""
+MAX_DIMENSIONS = 15
 COMPARED = 12
 DRAWS = 10
-LEAST_SYMBOLS = 5
+MIN_SYMBOLS = 5
 
 
 @dataclass(frozen=True, slots=True)
 class SpaceErrors:
-    """T of eq. 3 in so many dimensions, per pair, by how the points were found; gamma: the
-    share by which one more dimension lowers that of s_stress, nan at the last."""
+    """The error T of eq. 3 per pair, for one number of dimensions, by scaling method.
+
+    gamma: the share by which one more dimension lowers the error of s_stress, nan at the last.
+    """
 
     dimensions: int
     classical: float
@@ -44,10 +46,13 @@ class SpaceErrors:
 
 @dataclass(frozen=True, slots=True)
 class SymbolFigures:
-    """symbols: how many were scaled; errors: by dimensions; placing_error: mean absolute
-    difference of distance and wanted distance of symbols placed against landmarks, over the
-    mean distance, and the same of the landmarks themselves; agreement: Spearman's rank
-    correlation of the fast divergences with the Monte Carlo ones, over `pairs`."""
+    """Figures of a symbol space.
+
+    symbols: number of scaled symbols; errors: by number of dimensions; placing_error: mean
+    absolute difference of the distance and its target for symbols placed by landmarks, divided
+    by the mean distance; there is the same figure for the landmarks themselves; agreement:
+    Spearman's rank correlation of the fast and the Monte Carlo divergences, over `pairs` pairs.
+    """
 
     symbols: int
     errors: tuple[SpaceErrors, ...]
@@ -62,16 +67,15 @@ def symbol_figures(
 ) -> SymbolFigures:
     """The figures of a library's symbols; deterministic for a seed.
 
-    compared: symbols of which every pair is drawn by Monte Carlo, which is slow.
-
-    Raises NotEnoughLabels below LEAST_SYMBOLS symbols.
+    compared: number of symbols whose pairs are estimated by Monte Carlo, which is slow.
+    Raises NotEnoughLabels with fewer than MIN_SYMBOLS symbols.
     """
-    if len(symbols) < LEAST_SYMBOLS:
+    if len(symbols) < MIN_SYMBOLS:
         raise NotEnoughLabels(
-            f"A symbol space needs {LEAST_SYMBOLS} clips, there are {len(symbols)}."
+            f"A symbol space needs {MIN_SYMBOLS} clips, there are {len(symbols)}."
         )
     rng = np.random.RandomState(seed)
-    rows = np.sort(rng.permutation(len(symbols))[:MOST_SYMBOLS])
+    rows = np.sort(rng.permutation(len(symbols))[:MAX_SYMBOLS])
     chosen = [symbols[int(row)] for row in rows]
     distances = symbol_distances(chosen, chosen)
     fitting, placing = _placing_errors(distances, rng)
@@ -90,7 +94,7 @@ _Scaling = Callable[[FloatArray, int], FloatArray]
 
 
 def _errors(distances: FloatArray) -> tuple[SpaceErrors, ...]:
-    most = min(MOST_DIMENSIONS, len(distances) - 1)
+    most = min(MAX_DIMENSIONS, len(distances) - 1)
     pairs = len(distances) * (len(distances) - 1) / 2
     ways: tuple[_Scaling, ...] = (classical_mds, smacof, metric_mds)
     found = [
@@ -108,9 +112,9 @@ def _gamma(error: float, following: list[list[float]]) -> float | None:
 
 
 def _placing_errors(distances: FloatArray, rng: np.random.RandomState) -> tuple[float, float]:
-    """Relative errors of distances among landmarks, and from other symbols to landmarks."""
+    """Relative errors of the distances between landmarks, and from other symbols to landmarks."""
     order = rng.permutation(len(distances))
-    landmarks = order[: max(len(landmark_rows(len(order))) // 2, LEAST_SYMBOLS - 1)]
+    landmarks = order[: max(len(landmark_rows(len(order))) // 2, MIN_SYMBOLS - 1)]
     others = np.setdiff1d(order, landmarks)
     among, across = distances[np.ix_(landmarks, landmarks)], distances[np.ix_(others, landmarks)]
     points = metric_mds(among, min(DIMENSIONS, len(landmarks) - 1))

@@ -1,7 +1,7 @@
-"""How often a motion that was made is taken for the person's own, on cells left out.
+"""Held-out figures of synthesis: how often a synthesized motion is recognized as intended.
 
-Vasilescu's check (section 7): among all real clips, is the one nearest to the made motion by
-that person, and of that task? The made one has seen none of that cell.
+Vasilescu's check (section 7): a cell is left out and synthesized. Is the real clip that is nearest
+to the synthesized motion by the same person, and of the same task?
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from app.models.synthesis.solving import effects_only
 from app.numerics.arrays import FloatArray
 
 GIVEN = (1, 2, 3, 5, 8)
-"""Other persons (tasks) of which takes are given."""
+"""Numbers of other persons (or tasks) of which takes are given."""
 
 TRIALS = 32
-"""Cells left out for each row, drawn at random where there are more."""
+"""Cells left out for each row; a random subset if there are more."""
 
 NEW_TASK, NEW_PERSON = "new_task", "new_person"
 
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """A cell left out: person and task; given: the other persons, or the other tasks."""
+    """A left-out cell: person and task; given: the other persons, or the other tasks, to use."""
 
     person: str
     task: str
@@ -36,16 +36,17 @@ class Trial:
 
 
 def held_out_synthesis(record: Synthesis, trials: int = TRIALS) -> dict[str, list[dict[str, Any]]]:
-    """Rows by number given, for "new_task" (a known person's, from so many others' takes) and
-    "new_person" (from takes of so many of their tasks, all others known).
+    """Rows for "new_task" and "new_person", one for each number of GIVEN.
 
-    Each row: given, trials, and shares of
-    trials whose nearest real clip is right in person, in task and in both ("hit"); and the hit
-    of the baselines "effects" (person and task effects added) and "task_mean". "followed",
-    "averaged": trials and hit of those in which one person's take was followed, and of the
-    others; hit is None of none. "real": the
-    same share of the cells' real takes, each among all other real clips, None where no cell
-    has two: no made motion can be expected to do better.
+    "new_task": a task of a known person, from takes by `given` other persons. "new_person": a
+    task of a new person, from takes of `given` of their tasks; all other persons are known.
+
+    Each row has "given", "trials", and the shares of trials whose nearest real clip has the
+    right "person", the right "task", and both ("hit"); the hits of the baselines "effects" (sum
+    of person and task effects) and "task_mean"; "followed" and "averaged": trials and hit of
+    those that follow one person's take, and of the others (hit is None without trials); "real":
+    the hit of the cells' real takes among all other real clips, None if no cell has two takes.
+    "real" is an upper limit of what synthesis can reach.
     """
     return {
         kind: [row for given in GIVEN if (row := _row(record, kind, given, trials))]
@@ -59,7 +60,7 @@ def nearest_labels(record: Synthesis, shape: FloatArray) -> tuple[str, str]:
 
 
 def made(record: Synthesis, kind: str, trial: Trial) -> Predicted:
-    """The cell of a trial, made of what it gives."""
+    """The synthesized cell of a trial."""
     own = record.tasks_of(trial.person)
     if kind == NEW_PERSON:
         own = {task: own[task] for task in trial.given}
@@ -69,7 +70,7 @@ def made(record: Synthesis, kind: str, trial: Trial) -> Predicted:
 
 
 def draw_trials(record: Synthesis, kind: str, given: int, trials: int) -> list[Trial]:
-    """At most `trials` cells with `given` others to make them of; the same each time."""
+    """At most `trials` cells that have `given` others to use; deterministic."""
     rng = np.random.default_rng(given)
     found = []
     for person, task in zip(record.person, record.task, strict=True):
@@ -114,7 +115,7 @@ def _hit(hits: FloatArray) -> dict[str, Any]:
 
 
 def real_hit(record: Synthesis, drawn: list[Trial]) -> float | None:
-    """Share of the real takes of the trials' cells whose nearest other clip is of their cell."""
+    """Share of the real takes of the trials' cells whose nearest other clip is of the same cell."""
     hits = []
     for trial in drawn:
         takes = record.clips_of(trial.person, trial.task)
@@ -128,7 +129,7 @@ def real_hit(record: Synthesis, drawn: list[Trial]) -> float | None:
 def _judged(
     record: Synthesis, kind: str, drawn: list[Trial]
 ) -> Iterator[tuple[tuple[bool, ...], bool]]:
-    """What is right of each, and whether it followed one take."""
+    """For each trial, what is right, and whether it follows one person."""
     for trial in drawn:
         label = (trial.person, trial.task)
         predicted = made(record, kind, trial)
@@ -141,11 +142,11 @@ def _judged(
         yield marks, predicted.follows is not None
 
 
-Way = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+Baseline = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
 
 
-def baseline(record: Synthesis, kind: str, trial: Trial, by: Way) -> FloatArray:
-    """(1378,) the cell of a trial made in another way; only cells that are there are used."""
+def baseline(record: Synthesis, kind: str, trial: Trial, by: Baseline) -> FloatArray:
+    """(1378,) the cell of a trial by the baseline `by`, which uses only recorded cells."""
     own = record.tasks_of(trial.person)
     own.pop(trial.task)
     if kind == NEW_PERSON:
@@ -161,5 +162,5 @@ def baseline(record: Synthesis, kind: str, trial: Trial, by: Way) -> FloatArray:
 
 
 def task_mean(_: FloatArray, wanted: FloatArray, __: FloatArray) -> FloatArray:
-    """The mean of what the others did (K, 1378), whoever is asked for: a baseline."""
+    """(1378,) the mean of the wanted task by others (K, 1378): a baseline."""
     return np.asarray(wanted.mean(axis=0))

@@ -1,4 +1,4 @@
-"""The methods that words are judged by, each fitted on some labelled clips, scoring others."""
+"""The word methods that are compared. Each is fitted on some labeled clips and scores others."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ PRIOR, DEFAULT, CCA_SCORE = "prior", "default", "cca-score"
 
 
 @dataclass(frozen=True, slots=True)
-class LabelledClips:
-    """Labelled clips: distances (N, N) of their symbols, statistics (N, p), labels (N, V),
+class LabeledClips:
+    """Labeled clips: distances (N, N) of their symbols, statistics (N, p), labels (N, V),
     groups (N), fold (N,); likelihoods (N, N) of each motion under each symbol, where known.
     """
 
@@ -34,21 +34,22 @@ class LabelledClips:
 
 @dataclass(frozen=True, slots=True)
 class Scores:
-    """words: (n, V) of each held-out clip; clips: label vectors (queries, V) -> (queries, n)."""
+    """words: (n, V) scores of the words of each held-out clip; clips: a function from label
+    vectors (queries, V) to scores of the clips (queries, n)."""
 
     words: FloatArray
     clips: Callable[[FloatArray], FloatArray]
 
 
-def score(clips: LabelledClips, training: IntArray, held: IntArray) -> dict[str, Scores]:
+def score(clips: LabeledClips, training: IntArray, held: IntArray) -> dict[str, Scores]:
     """Scores of the held-out rows by each method, fitted on the training rows.
 
-    "cca" is the mode as it ranks, by angle, "cca-score" by the probabilities that it tells
-    (which puts clips of one fold behind those of another where fewer of its training clips
-    carry the word). "cca-distance" is Takano's retrieval as printed: nearest by Euclidean
-    distance; "cca-pinv" has the pseudo-inverse for the ridge besides. "cca-symbol" is his
-    recognition: an observed motion counts as the training symbol that it is likeliest of; the
-    others place its own symbol directly. It needs likelihoods.
+    "cca" ranks by angle, as the search mode does. "cca-score" ranks by the probabilities that
+    the mode reports (a fold with fewer training clips of a word then ranks behind others).
+    "cca-distance" is Takano's retrieval as printed, by Euclidean distance; "cca-pinv" also uses
+    the pseudo-inverse instead of the ridge. "cca-symbol" is his recognition: a motion is
+    replaced by its most likely training symbol, which needs likelihoods; the others place its
+    own symbol.
     """
     labels = clips.labels[training]
     own_groups = [clips.groups[row] for row in training]
@@ -76,10 +77,10 @@ def score(clips: LabelledClips, training: IntArray, held: IntArray) -> dict[str,
     return found
 
 
-def symbol_points(clips: LabelledClips, training: IntArray) -> FloatArray:
-    """(N, d) where all clips lie in the symbol space of the training rows.
+def symbol_points(clips: LabeledClips, training: IntArray) -> FloatArray:
+    """(N, d) coordinates of all clips in the symbol space of the training rows.
 
-    As fit_symbol_space does, but from distances that are computed once for all folds.
+    As fit_symbol_space, but from distances that are computed once for all folds.
     """
     rows = training[landmark_rows(len(training))]
     landmarks = metric_mds(clips.distances[np.ix_(rows, rows)], DIMENSIONS)
@@ -97,8 +98,10 @@ def _by_chance(
     calibrations: tuple[CosineCalibration, ...],
     curve: WordCalibration,
 ) -> Scores:
-    """As mode "cca" scores; of clips the logarithm, as of the default. calibrations: of clips
-    for words, and of words for clips."""
+    """The scores of the mode "cca"; clips by the logarithm, as in the default method.
+
+    calibrations: of words to clips, and of clips to words.
+    """
     cosines, back = calibrations
 
     def for_query(query: FloatArray) -> FloatArray:
@@ -125,5 +128,5 @@ def _by_cosine(words: FloatArray) -> Scores:
 
 
 def _each(score_one: Callable[[FloatArray], FloatArray]) -> Callable[[FloatArray], FloatArray]:
-    """(queries, V) -> (queries, n) by a score for one query."""
+    """A function (queries, V) -> (queries, n) from a function for one query."""
     return lambda queries: np.array([score_one(query) for query in queries])

@@ -1,9 +1,9 @@
-"""How well words are predicted (Takano, section 3), held out and in-sample.
+"""Figures of word prediction (Takano, section 3), held out and in-sample.
 
-Held out, every method is fitted on all folds but one and scored on that one; in-sample, as
-the paper did for retrieval, it is scored on the very clips that it was fitted on. Judged are
-the words of a clip (top-3 recognition), clips for a single word (F where recall = precision
-over all words at once, fig. 7) and clips for the label set of each clip (MAP, eq. 20).
+Held out, a method is fitted on all folds but one and scored on that one. In-sample, as in the paper
+for retrieval, it is scored on the clips of its fit. The figures are of the words of a clip (top-3
+recognition), of clips for a single word (F at recall = precision over all words, fig. 7), and of
+clips for the label set of each clip (MAP, eq. 20).
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from app.models.held_out.word_methods import (
     CCA_SCORE,
     DEFAULT,
     PRIOR,
-    LabelledClips,
+    LabeledClips,
     score,
     symbol_points,
 )
-from app.models.words.correlated_space import LEAST_CLIPS, RIDGE, fit_correlated_space
+from app.models.words.correlated_space import MIN_CLIPS, RIDGE, fit_correlated_space
 from app.models.words.likeliest_symbols import likelihoods_of_symbols
 from app.models.words.symbol_space import symbol_distances
 from app.models.words.vocabulary import WordVocabulary
@@ -41,21 +41,21 @@ from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.hmm.model import GaussianHMM
 
 FOLDS = 5
-MOST_CLIPS = 1000
-"""Larger libraries are judged on a random part of so many clips."""
+MAX_CLIPS = 1000
+"""Larger libraries are judged on a random subset of this many clips."""
 
 RECALLS = np.linspace(0.0, 1.0, 21)
 
-LEAST_RECORDINGS = 5
-"""That carry a word, for it to be judged by itself: about one a fold."""
+MIN_RECORDINGS = 5
+"""Recordings with a word that are needed to judge the word by itself: about one in each fold."""
 
 TOP_WORDS = 3
-"""Takano counts a clip as recognised when one of its words is among so many."""
+"""Takano counts a clip as recognized if one of its words is among this many best words."""
 
 
 @dataclass(frozen=True, slots=True)
 class WordFigures:
-    """Figures of one method, each 0..1; precision: of single words at the recalls RECALLS."""
+    """Figures of one method, each 0..1; precision: for single words, at the recalls RECALLS."""
 
     method: str
     top_3_recognition: float
@@ -69,7 +69,7 @@ class WordFigures:
 @dataclass(frozen=True, slots=True)
 class Reliability:
     """Expected calibration error and Brier score of scores for single words, and for whole
-    label sets; 0 is perfect. prior_brier: of the words' frequency.
+    label sets; 0 is perfect. prior_brier: the Brier score of the words' frequencies.
     """
 
     word_error: float
@@ -81,10 +81,10 @@ class Reliability:
 
 @dataclass(frozen=True, slots=True)
 class JudgedWord:
-    """Held-out figures of clips for one word; clips, recordings: that carry it.
+    """Held-out figures of one word; clips, recordings: the numbers that carry it.
 
-    too_rare: fewer recordings than LEAST_RECORDINGS, so that its figures are mostly chance;
-    they count in the figures over all words.
+    too_rare: it is in fewer than MIN_RECORDINGS recordings, so its own figures are mostly
+    chance. The figures over all words include it.
     """
 
     word: str
@@ -98,10 +98,12 @@ class JudgedWord:
 
 @dataclass(frozen=True, slots=True)
 class WordEvaluation:
-    """figures: held out, one a method; on so many clips, words and folds; in_sample: as the
-    paper's; reliability: of the held-out scores of DEFAULT and CCA_SCORE as probabilities;
-    correlations: canonical ones of all clips by kind of inverse, falling; by_word: the default,
-    held out.
+    """Figures of word prediction.
+
+    figures: held out, one for each method; clips, words, folds: their numbers; in_sample: as in
+    the paper; reliability: of the held-out scores of DEFAULT and CCA_SCORE as probabilities;
+    correlations: canonical correlations of all clips by kind of inverse, falling; by_word: of
+    the default method, held out.
     """
 
     figures: tuple[WordFigures, ...]
@@ -132,14 +134,15 @@ def held_out_word_figures(
     sequence: Callable[[int], FloatArray] | None = None,
     seed: int = 0,
 ) -> WordEvaluation:
-    """Figures of the prior (word frequency), the default word model and the cca mode, which
-    stands in several forms (see word_methods).
+    """Figures of the prior (word frequency), the default word model, and the variants of the cca
+    mode (see word_methods).
 
-    symbols: N; statistics: (N, p); label_sets: N; groups: N, equal for files of one
-    recording (see folds.recording_of); sequence: the channels (T, D) of the motion at a row, of
-    which its symbol was made; without it, recognition through the most likely symbol is left
-    out. Clips without words are left out.
-    Raises NotEnoughLabels where there are too few clips to hold some out.
+    symbols: N; statistics: (N, p); label_sets: N; groups: N, equal for files of one recording
+    (see folds.recording_of); sequence: a function from a row to the channels (T, D) of its
+    motion. Without it, recognition through the most likely symbol is left out. Clips without
+    words are left out.
+
+    Raises NotEnoughLabels if there are too few clips to hold some out.
     """
     chosen = _chosen(label_sets, seed)
     labels = [label_sets[row] for row in chosen]
@@ -150,11 +153,11 @@ def held_out_word_figures(
     distances = symbol_distances(own_symbols, own_symbols)
     likelihoods = None
     if sequence is not None:
-        channels = sequence  # of the rows that were chosen
+        channels = sequence  # the function for the chosen rows
         likelihoods = likelihoods_of_symbols(
             own_symbols, distances, lambda row: channels(int(chosen[row]))
         )
-    clips = LabelledClips(
+    clips = LabeledClips(
         distances,
         np.asarray(statistics)[chosen],
         vocabulary.label_matrix(labels),
@@ -184,19 +187,22 @@ def held_out_word_figures(
 
 
 def _chosen(label_sets: Sequence[Sequence[str]], seed: int) -> IntArray:
-    """Rows of labelled clips, sorted; at most MOST_CLIPS."""
-    labelled = np.array([row for row, labels in enumerate(label_sets) if labels], dtype=np.int64)
-    return np.sort(np.random.RandomState(seed).permutation(labelled)[:MOST_CLIPS])
+    """Sorted rows of at most MAX_CLIPS labeled clips."""
+    labeled = np.array([row for row, labels in enumerate(label_sets) if labels], dtype=np.int64)
+    return np.sort(np.random.RandomState(seed).permutation(labeled)[:MAX_CLIPS])
 
 
-def _check_size(clips: LabelledClips, folds: int) -> None:
+def _check_size(clips: LabeledClips, folds: int) -> None:
     training = len(clips.fold) - int(np.bincount(clips.fold, minlength=1).max(initial=0))
-    if folds < 2 or training < LEAST_CLIPS:
-        raise NotEnoughLabels(f"{len(clips.fold)} labelled clips are too few to hold some out.")
+    if folds < 2 or training < MIN_CLIPS:
+        raise NotEnoughLabels(f"{len(clips.fold)} labeled clips are too few to hold some out.")
 
 
-def _tables(clips: LabelledClips, parts: Sequence[tuple[IntArray, IntArray]]) -> dict[str, _Tables]:
-    """By method; parts: rows to fit on and rows to score, which together are all."""
+def _tables(clips: LabeledClips, parts: Sequence[tuple[IntArray, IntArray]]) -> dict[str, _Tables]:
+    """Score tables by method; parts: pairs of rows to fit on and rows to score.
+
+    The rows to score of all parts together are all rows.
+    """
     count, vocabulary = clips.labels.shape
     tables: dict[str, _Tables] = {}
     for training, held in parts:
@@ -247,9 +253,9 @@ def _reliability(tables: dict[str, _Tables], method: str, labels: FloatArray) ->
 
 
 def _by_word(
-    singles: FloatArray, clips: LabelledClips, words: Sequence[str]
+    singles: FloatArray, clips: LabeledClips, words: Sequence[str]
 ) -> tuple[JudgedWord, ...]:
-    """The most carried first; singles: (V, N)."""
+    """The figures of each word, the most frequent first; singles: (V, N)."""
     found = []
     for word, scores, carries in zip(words, singles, clips.labels.T > 0.0, strict=True):
         recordings = len({clips.groups[row] for row in np.flatnonzero(carries)})
@@ -260,13 +266,13 @@ def _by_word(
             average_precision=average_precision(scores, carries),
             f=f_where_recall_is_precision(scores, carries),
             area_under_curve=area_under_curve(scores[carries], scores[~carries]),
-            too_rare=recordings < LEAST_RECORDINGS,
+            too_rare=recordings < MIN_RECORDINGS,
         )
         found.append(judged)
     return tuple(sorted(found, key=lambda one: (-one.clips, one.word)))
 
 
-def _correlations(clips: LabelledClips) -> dict[str, tuple[float, ...]]:
+def _correlations(clips: LabeledClips) -> dict[str, tuple[float, ...]]:
     points = symbol_points(clips, np.arange(len(clips.labels)))
     return {
         name: tuple(

@@ -1,4 +1,4 @@
-"""Keyposes found against keyposes meant: Table 1 of Perera 2009, and what follows from it."""
+"""Matches found keyposes with true ones (Perera 2009, Table 1), for precision and recall."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from app.numerics.arrays import FloatArray
 
 TOLERANCE = 0.1
-"""Seconds by which a keypose may be missed and is still the same."""
+"""Largest distance in seconds of a found keypose from the true one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """How many keyposes there are, were found, and were found where there are any."""
+    """Numbers of keyposes: true ones, found ones, and found ones that match a true one."""
 
     true: int
     found: int
@@ -21,23 +21,23 @@ class Counts:
 
     @property
     def precision(self) -> float:
-        """Share of what was found that is right (section 3.3); 0 where nothing was found."""
+        """Share of the found keyposes that are correct (section 3.3); 0 if none was found."""
         return self.correct / self.found if self.found else 0.0
 
     @property
     def recall(self) -> float:
-        """Share of the true ones that was found (section 3.3); 0 where there are none."""
+        """Share of the true keyposes that were found (section 3.3); 0 if there are none."""
         return self.correct / self.true if self.true else 0.0
 
     @property
     def f(self) -> float:
-        """Harmonic mean of precision and recall; 1 where none are true and none were found."""
+        """Harmonic mean of precision and recall; 1 if there are no true and no found ones."""
         both = self.found + self.true
         return 2 * self.correct / both if both else 1.0
 
 
 def total(counts: Iterable[Counts]) -> Counts:
-    """Of several clips together."""
+    """The sums of the counts of several clips."""
     listed = tuple(counts)
     return Counts(
         true=sum(each.true for each in listed),
@@ -47,11 +47,14 @@ def total(counts: Iterable[Counts]) -> Counts:
 
 
 def match(found: FloatArray, true: FloatArray, within: float = TOLERANCE) -> Counts:
-    """Pair times (seconds) one to one, as many as can be, none further apart than `within`."""
+    """Pair the times (seconds) one to one; pairs are at most `within` seconds apart.
+
+    The number of pairs is the largest possible. found: (n,), true: (m,).
+    """
     times, meant = sorted(found.tolist()), sorted(true.tolist())
     at = correct = 0
     for time in times:
-        # The earliest that is left will do: whoever comes later has the later ones.
+        # the earliest free time is the best choice, since later ones stay free for later times
         while at < len(meant) and meant[at] < time - within:
             at += 1
         if at < len(meant) and meant[at] <= time + within:

@@ -1,8 +1,8 @@
-"""T1 and T2 from examples (Perera 2009, sections 3.1 and 3.3): annotated clips in, values out.
+"""Learns the thresholds T1 and T2 from annotated clips (Perera 2009, sections 3.1 and 3.3).
 
-All pairs on a grid are tried. Keyposes are hardly sensitive to them (figs 4 and 5), so of
-those pairs that do about as well the one nearest to the usual thresholds is taken: a few
-annotated clips must not pull them to an extreme.
+All pairs of thresholds on a grid are tried. The keyposes hardly depend on them (figs 4 and 5). So,
+of the pairs that are about as good as the best, the one nearest to the usual thresholds is taken: a
+few annotated clips must not move the thresholds to an extreme.
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ TRIED_T2 = (0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0, 1.25, 1.5, 2.0)
 """In units of the median local maximum of an energy."""
 
 ABOUT_AS_WELL = 0.005
-"""Of F."""
+"""Pairs whose F is at most this much below the best count as equally good."""
 
 CURVE_T1 = tuple(np.round(np.arange(0.0, 2.01, 0.1), 2).tolist())
 CURVE_T2 = tuple(np.round(np.arange(0.0, 3.01, 0.15), 2).tolist())
-"""Where precision and recall are told (figs 4 and 5)."""
+"""Thresholds at which precision and recall are computed (figs 4 and 5)."""
 
 
 class Selectable(Protocol):
-    """A motion whose keyposes depend on thresholds, as `keyposes.Candidates`."""
+    """A motion whose keyposes depend on thresholds, such as `keyposes.Candidates`."""
 
     def times(self, t1: float, t2: float) -> FloatArray:
-        """(k,) seconds."""
+        """(k,) times of the keyposes in seconds."""
 
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """An annotated motion; true: (k,) seconds."""
+    """An annotated motion; true: (k,) times of its keyposes in seconds."""
 
     candidates: Selectable
     true: FloatArray
@@ -47,7 +47,7 @@ class Example:
 
 @dataclass(frozen=True, slots=True)
 class Thresholds:
-    """Below t1 a minimum is small, beyond t2 a drop is deep."""
+    """A minimum below t1 is small; a drop of more than t2 is deep."""
 
     t1: float
     t2: float
@@ -58,7 +58,7 @@ USUAL = Thresholds(T1, T2)
 
 @dataclass(frozen=True, slots=True)
 class ThresholdCurve:
-    """Precision and recall over one threshold, (v,) each, the other one held."""
+    """Precision and recall (v,) by the values (v,) of one threshold; the other one is fixed."""
 
     values: FloatArray
     precision: FloatArray
@@ -67,7 +67,7 @@ class ThresholdCurve:
 
 @dataclass(frozen=True, slots=True)
 class KeyposeThresholds:
-    """The model that is kept: thresholds by method of the energy ("rms", "printed")."""
+    """The stored model: thresholds by energy method ("rms", "printed")."""
 
     by_method: dict[str, Thresholds]
 
@@ -81,30 +81,31 @@ class KeyposeThresholds:
         arrays: Mapping[str, FloatArray],  # noqa: ARG003 - as all models are built
         meta: Mapping[str, Any],
     ) -> KeyposeThresholds:
-        """The model that `to_arrays` told. Raises KeyError, ValueError."""
+        """The model from the result of `to_arrays`. Raises KeyError, ValueError."""
         return cls(
             {name: Thresholds(float(pair["t1"]), float(pair["t2"])) for name, pair in meta.items()}
         )
 
 
 @dataclass(frozen=True, slots=True)
-class Lesson:
-    """What every pair of thresholds makes of each example.
+class ThresholdGrid:
+    """The results of all pairs of thresholds on the grid for each example.
 
-    counts: (examples, T1, T2, 3) true, found and correct.
+    counts: (examples, T1, T2, 3) numbers of true, found and correct keyposes.
     """
 
     counts: IntArray
 
     def learned(self) -> Thresholds:
-        """The thresholds under which the most is right, all keyposes counting alike.
+        """The thresholds with the best F over the keyposes of all examples.
 
-        The usual ones without an example.
+        Without examples, the usual thresholds.
         """
         return _best(self.counts.sum(axis=0))
 
     def held_out(self, groups: Sequence[str]) -> tuple[tuple[Thresholds, Counts], ...]:
-        """For each example what the other groups teach, and how it fares with that."""
+        """For each example, the thresholds learned from the other groups and its counts with
+        them; groups: (examples,) equal for examples that are held out together."""
         names = np.array(groups)
         found = []
         for name, own in zip(groups, self.counts, strict=True):
@@ -114,24 +115,27 @@ class Lesson:
         return tuple(found)
 
 
-def lesson(examples: Sequence[Example], within: float = TOLERANCE) -> Lesson:
-    """Try every pair on the grid; some 50 ms for half a minute of dance."""
+def threshold_grid(examples: Sequence[Example], within: float = TOLERANCE) -> ThresholdGrid:
+    """Try all pairs of thresholds; about 50 ms for half a minute of dance.
+
+    within: the largest distance in seconds of a match.
+    """
     pairs = list(product(TRIED_T1, TRIED_T2))
     counts = np.array([_counts(example, pairs, within) for example in examples], dtype=np.int64)
-    return Lesson(counts.reshape(len(examples), len(TRIED_T1), len(TRIED_T2), 3))
+    return ThresholdGrid(counts.reshape(len(examples), len(TRIED_T1), len(TRIED_T2), 3))
 
 
 def curve_of_t1(
     examples: Sequence[Example], t2: float, within: float = TOLERANCE
 ) -> ThresholdCurve:
-    """Fig. 4: T1 varies, T2 is held."""
+    """Fig. 4: T1 varies, T2 is fixed."""
     return _curve([(t1, t2) for t1 in CURVE_T1], CURVE_T1, examples, within)
 
 
 def curve_of_t2(
     examples: Sequence[Example], t1: float, within: float = TOLERANCE
 ) -> ThresholdCurve:
-    """Fig. 5: T2 varies, T1 is held."""
+    """Fig. 5: T2 varies, T1 is fixed."""
     return _curve([(t1, t2) for t2 in CURVE_T2], CURVE_T2, examples, within)
 
 
@@ -143,7 +147,7 @@ def _counts(
 
 
 def _best(counts: IntArray) -> Thresholds:
-    """Of counts (T1, T2, 3) over the grid."""
+    """The best thresholds by counts (T1, T2, 3) on the grid."""
     true, found, correct = np.moveaxis(counts, -1, 0)
     f = 2 * correct / np.maximum(true + found, 1)
     t1, t2 = np.meshgrid(TRIED_T1, TRIED_T2, indexing="ij")
@@ -159,9 +163,9 @@ def _curve(
     within: float,
 ) -> ThresholdCurve:
     sums = np.sum([_counts(example, pairs, within) for example in examples], axis=0)
-    told = [Counts(*(int(count) for count in row)) for row in sums]
+    sums_by_value = [Counts(*(int(count) for count in row)) for row in sums]
     return ThresholdCurve(
         values=np.array(values),
-        precision=np.array([counts.precision for counts in told]),
-        recall=np.array([counts.recall for counts in told]),
+        precision=np.array([counts.precision for counts in sums_by_value]),
+        recall=np.array([counts.recall for counts in sums_by_value]),
     )

@@ -1,10 +1,10 @@
-"""Learned metrics: how near two clips are in task, or in person, by the library's own labels.
+"""Learned metrics: the similarity of two clips in task, or in person, from the library's labels.
 
 Linear discriminants (app.numerics.discriminant) of three descriptors of a clip: its motion
 vector, its motion sample (one gait cycle, or the whole) and its symbol statistics. Coordinates
-are brought to unit length, so that their Euclidean distance, 0 to 2, ranks as their cosine does.
-Directions that part none of the known labels keep a small weight: tasks that nobody has
-labelled yet must not fall together.
+are normalized to unit length, so that their Euclidean distance, 0 to 2, ranks like their cosine.
+Directions that do not separate the known labels keep a small weight, so that tasks without a label
+do not collapse into one point.
 """
 
 from __future__ import annotations
@@ -29,19 +29,19 @@ INPUTS = ("motion_vector", "motion_sample", "symbol_statistics")
 """Names of the descriptors, in the order in which `Described` has them."""
 
 DIMENSIONS = 160
-"""Principal axes of the descriptors, in which labels are parted; 100 to 250 do alike."""
+"""Number of principal axes of the descriptors, before the discriminant; 100 to 250 are as good."""
 
 COORDINATES = 64
-"""Kept of a clip."""
+"""Number of coordinates of a clip."""
 
 UNPARTED = 0.05
-"""Weight of a direction that parts no labels, as a variance beside that within a label."""
+"""Weight of a direction that separates no labels: a variance relative to that within a label."""
 
-LEAST_LABELS = 2
-"""Labels with at least two clips each that a metric needs."""
+MIN_LABELS = 2
+"""Number of labels with at least two clips each that a metric needs."""
 
-MOST_CLIPS = 20_000
-"""Labelled clips that are fitted on, drawn by a fixed seed; more would hardly move it."""
+MAX_CLIPS = 20_000
+"""Largest number of labeled clips in a fit, drawn with a fixed seed; more hardly change it."""
 
 _SMALLEST = 1e-9
 
@@ -54,12 +54,13 @@ class Factor(StrEnum):
 
 
 WEIGHTS = {Factor.TASK: (1.0, 1.0, 0.5), Factor.PERSON: (1.0, 0.5, 1.0)}
-"""Of motion vector, motion sample and symbol statistics, each brought to one total variance.
+"""Weights of motion vector, motion sample and symbol statistics, after scaling each to the same
+total variance.
 
-Poses through a cycle tell tasks, also of a person never seen; statistics of angles, heights
-and speeds tell persons, also in a task never seen. Chosen, like the numbers above, on dataset
-1, CMU's clips and two takes of dataset 2; `tests/bench/test_learned_metrics.py` measures on
-the other three.
+The poses of a cycle identify tasks, also of unseen persons; statistics of angles, heights and
+speeds identify persons, also in unseen tasks. The weights and the numbers above were chosen on
+dataset 1, CMU's clips and two takes of dataset 2; `tests/bench/test_learned_metrics.py` measures
+on the other three takes.
 """
 
 
@@ -68,7 +69,7 @@ class Described:
     """The descriptors of n clips that metrics look at.
 
     vectors: (n, 128) motion vectors; samples: (n, 1250) motion samples; statistics: (n, 131)
-    symbol statistics. Other widths are taken too.
+    symbol statistics. Other widths are possible.
     """
 
     vectors: FloatArray
@@ -79,17 +80,17 @@ class Described:
         return len(self.vectors)
 
     def part(self, index: IntArray) -> Described:
-        """The clips of these numbers."""
+        """The descriptors of the clips at these indices."""
         return Described(self.vectors[index], self.samples[index], self.statistics[index])
 
     def widths(self) -> tuple[int, ...]:
-        """Numbers of each descriptor."""
+        """The width of each descriptor."""
         return tuple(getattr(self, f.name).shape[1] for f in fields(self))
 
-    def beside(self) -> FloatArray:
-        """(n, d) float64: all descriptors beside each other.
+    def concatenated(self) -> FloatArray:
+        """(n, d) float64: all descriptors in one row for each clip.
 
-        Statistics come as their asinh: some have heavy tails, as speeds have.
+        Statistics are transformed by asinh, since some (such as speeds) have heavy tails.
         """
         tamed = np.arcsinh(np.asarray(self.statistics, dtype=np.float64))
         return np.hstack([self.vectors, self.samples, tamed]).astype(np.float64)
@@ -97,34 +98,37 @@ class Described:
 
 @dataclass(frozen=True, slots=True)
 class MetricAxes:
-    """From descriptors to coordinates. centre: (d,) of `Described.beside`; axes: (d, k)."""
+    """The map from descriptors to coordinates.
 
-    centre: FloatArray
+    center: (d,) mean of `Described.concatenated`; axes: (d, k).
+    """
+
+    center: FloatArray
     axes: FloatArray
 
     def project(self, described: Described) -> FloatArray:
-        """(n, k) coordinates, of unit length (0 where a clip is the very centre)."""
-        points = (described.beside() - self.centre) @ self.axes
+        """(n, k) coordinates of unit length (0 for a clip at the center)."""
+        points = (described.concatenated() - self.center) @ self.axes
         lengths = np.linalg.norm(points, axis=1, keepdims=True)
         return np.asarray(points / np.maximum(lengths, _SMALLEST))
 
 
 @dataclass(frozen=True, slots=True)
 class LearnedMetric:
-    """A metric with what its distances mean."""
+    """A metric, and the calibration of its distances."""
 
     axes: MetricAxes
     calibration: PairCalibration
 
     def to_arrays(self) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        """Arrays and JSON-able metadata for `from_arrays`."""
         meta = {"level": self.calibration.level, "slope": self.calibration.slope}
-        arrays = {"centre": self.axes.centre, "axes": self.axes.axes.astype(np.float32)}
+        arrays = {"centre": self.axes.center, "axes": self.axes.axes.astype(np.float32)}
         return arrays, {"version": METRIC_VERSION, **meta}
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> LearnedMetric:
-        """The record that to_arrays took apart. Raises ValueError on another version."""
+        """The metric from the result of `to_arrays`. Raises ValueError on another version."""
         if meta["version"] != METRIC_VERSION:
             raise ValueError(f"learned metric of version {meta['version']}")
         calibration = PairCalibration(float(meta["level"]), float(meta["slope"]))
@@ -132,47 +136,47 @@ class LearnedMetric:
 
 
 def fit_axes(described: Described, labels: Sequence[str | None], factor: Factor) -> MetricAxes:
-    """Learn from n clips with their labels (n,), None where there is none.
+    """Learn from n clips with their labels (n,), None for no label.
 
-    Raises NotEnoughLabels.
+    Raises NotEnoughLabels if `check_labels` does.
     """
     check_labels(labels, factor)
     known = _drawn([i for i, label in enumerate(labels) if label])
     part = described.part(known)
-    rows = part.beside()
-    centre = rows.mean(axis=0)
-    rows -= centre
+    rows = part.concatenated()
+    center = rows.mean(axis=0)
+    rows -= center
     scales = _scales(rows, part.widths(), factor)
     found = principal_axes(rows * scales, DIMENSIONS, centered=False)
     _, classes = np.unique([str(labels[i]) for i in known], return_inverse=True)
     parted = discriminants(found.project(rows * scales), classes, COORDINATES)
     strength = parted.between + UNPARTED
     weights = np.sqrt(strength / (1.0 + strength))
-    return MetricAxes(centre, scales[:, None] * (found.axes @ (parted.axes * weights)))
+    return MetricAxes(center, scales[:, None] * (found.axes @ (parted.axes * weights)))
 
 
 def check_labels(labels: Sequence[str | None], factor: Factor) -> None:
-    """Raise NotEnoughLabels where no metric can be learned from `labels`."""
+    """Raise NotEnoughLabels if fewer than MIN_LABELS labels have two clips."""
     counts = Counter(label for label in labels if label)
     several = sum(count > 1 for count in counts.values())
-    if several < LEAST_LABELS:
+    if several < MIN_LABELS:
         raise NotEnoughLabels(
-            f"It takes {LEAST_LABELS} {factor}s with two clips each to learn what tells "
-            f"{factor}s apart; {several} of {len(counts)} {factor}s have two."
+            f"A metric needs {MIN_LABELS} {factor}s with two clips each to learn how {factor}s "
+            f"differ; {several} of {len(counts)} {factor}s have two."
         )
 
 
 def _drawn(known: list[int]) -> IntArray:
-    if len(known) <= MOST_CLIPS:
+    if len(known) <= MAX_CLIPS:
         return np.array(known)
-    return np.sort(np.random.RandomState(0).permutation(known)[:MOST_CLIPS])
+    return np.sort(np.random.RandomState(0).permutation(known)[:MAX_CLIPS])
 
 
 def _scales(centred: FloatArray, widths: tuple[int, ...], factor: Factor) -> FloatArray:
-    """(d,) factors that bring the descriptors in `centred` (n, d) to their weights.
+    """(d,) factors that give the descriptors in `centred` (n, d) their weights.
 
-    The last one's columns are of many units: they are brought to about one deviation first,
-    those that hardly vary to less, since they hold mostly noise.
+    The columns of the statistics have different units, so each is first divided by its standard
+    deviation. Columns that hardly vary get less, since they are mostly noise.
     """
     deviation = np.sqrt((centred**2).mean(axis=0))
     ends = np.cumsum((0, *widths))

@@ -1,9 +1,8 @@
 """From the distance of two clips to the probability that they carry the same label.
 
-A logistic curve over held-out pairs with the regularised targets of Platt ("Probabilistic
-outputs for support vector machines", 1999), so that a few pairs that part cleanly do not make
-it a step. Pairs come as often as they do in the library, so that the probability is that of a
-pair drawn from it.
+A logistic curve is fitted to held-out pairs with the regularized targets of Platt ("Probabilistic
+outputs for support vector machines", 1999), so that a few cleanly separated pairs do not make it a
+step. The pairs are as frequent as in the library, so the probability is that of a random pair.
 """
 
 from __future__ import annotations
@@ -17,11 +16,11 @@ from app.numerics.arrays import BoolArray, FloatArray
 
 LEVELS = (-12.0, 12.0)
 SLOPES = (0.5, 200.0)
-"""Bounds. A score must fall with distance, also where the pairs tell nothing, and no distance
-that is told may round to the same score as the next."""
+"""Bounds of the slope. The score must fall with the distance even if the pairs carry no
+information, and different printed distances must not round to the same score."""
 
 START = (3.0, 6.0)
-"""Level and slope without pairs of both kinds: one half at a distance of one half."""
+"""Level and slope without pairs of both kinds: probability one half at distance one half."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +40,10 @@ class PairCalibration:
 
 
 def calibrate_pairs(distances: FloatArray, same: BoolArray) -> PairCalibration:
-    """The curve under which what `same` (n,) says of pairs at `distances` (n,) is likeliest."""
+    """Fit the curve with maximum likelihood.
+
+    distances: (n,) of the pairs; same: (n,) whether the two clips carry the same label.
+    """
     positive = int(np.count_nonzero(same))
     if not 0 < positive < len(same):
         return PairCalibration(*START)
@@ -52,8 +54,8 @@ def calibrate_pairs(distances: FloatArray, same: BoolArray) -> PairCalibration:
         level, slope = curve
         odds = level - slope * distances
         missed = 1.0 / (1.0 + np.exp(-odds)) - targets
-        told = float(np.mean(np.logaddexp(0.0, odds) - targets * odds))
-        return told, np.array([missed.mean(), -np.mean(missed * distances)])
+        mean_loss = float(np.mean(np.logaddexp(0.0, odds) - targets * odds))
+        return mean_loss, np.array([missed.mean(), -np.mean(missed * distances)])
 
     found = scipy.optimize.minimize(
         loss, START, jac=True, method="L-BFGS-B", bounds=(LEVELS, SLOPES)

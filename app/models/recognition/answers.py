@@ -1,4 +1,4 @@
-"""Answers to who does what: value types shared by every recogniser."""
+"""Value types of recognition (who does what), shared by all recognizers."""
 
 from __future__ import annotations
 
@@ -23,10 +23,12 @@ class Candidate:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """Who, or what: label is None when unknown; candidates by falling score, sum at most 1.
+    """The person or the task of a clip; label is None if unknown. candidates: by falling score;
+    the scores sum to at most 1.
 
     score: belief in `label`, or, when unknown, in the best candidate (0 without any); novelty:
-    how far beyond the threshold of the unknown, at most 0 where known, 0 where nothing tells.
+    how far the clip lies beyond the threshold of the unknown; 0 or less if known, and 0 if the
+    recognizer does not compute it.
     """
 
     label: str | None
@@ -49,7 +51,7 @@ NO_ANSWER = Answer(label=None, known=False, score=0.0)
 
 
 def answer(labels: Sequence[str], scores: FloatArray, known: bool, novelty: float = 0.0) -> Answer:
-    """The answer from one score a label, (labels,), each 0..1 and together at most 1."""
+    """The answer from `scores` (labels,), one for each label, 0..1, with a sum of at most 1."""
     if not labels:
         return NO_ANSWER
     order = np.argsort(-scores, kind="stable")[:MAX_CANDIDATES]
@@ -58,7 +60,7 @@ def answer(labels: Sequence[str], scores: FloatArray, known: bool, novelty: floa
 
 
 def given(label: str, labels: Sequence[str]) -> Answer:
-    """The answer where the asker said it: known if the library has that label."""
+    """The answer for a label that the caller gave: known if the library has that label."""
     if label not in labels:
         return NO_ANSWER
     return Answer(label, True, 1.0, (Candidate(label, 1.0),))

@@ -22,22 +22,23 @@ TEMPERATURES = np.geomspace(1.0, 100.0, 25)
 SCALES = np.geomspace(0.5, 100.0, 25)
 
 USUAL_FALSE_REJECTION = 0.02
-"""Known clips refused where the library is too small to hold anything out as unknown."""
+"""Share of known clips refused if the library is too small to hold anything out as unknown."""
 
-LEAST_USUAL = 20
-"""Clips of both kinds that tell their median and spread."""
+MIN_USUAL = 20
+"""Clips of each kind that are needed to estimate its median and spread."""
 
-LEAST_BELIEF = 1e-9
-"""Of being known: of what is surely new the labels still keep their order as candidates."""
+MIN_BELIEF = 1e-9
+"""Floor of the belief in being known, so that the labels of a surely new clip keep their order
+as candidates."""
 
 TAIL = 0.02
-"""Clips of both kinds that are left out of account where the gap between them is sought."""
+"""Share of the clips of each kind that is ignored when the gap between them is looked for."""
 
 WIDE_GAP = 6.0
-"""Interquartile ranges of the known, from which on a gap decides alone."""
+"""A gap of at least this width, in interquartile ranges of the known, alone sets the threshold."""
 
 CURVE_POINTS = 50
-"""Of the curve of false acceptance against false rejection."""
+"""Points of the curve of false acceptance against false rejection."""
 
 _FAR = 1e30
 
@@ -70,14 +71,14 @@ class Calibration:
     def from_arrays(
         cls, name: str, arrays: Mapping[str, Any], numbers: Sequence[float]
     ) -> Calibration:
-        """What to_arrays took apart."""
+        """The calibration from the result of `to_arrays`."""
         temperature, threshold, scale = numbers
         known, new = arrays[f"{name}_known_novelty"], arrays[f"{name}_new_novelty"]
         return cls(temperature, threshold, scale, known, new)
 
     def beliefs(self, evidence: FloatArray, novelty: FloatArray) -> FloatArray:
         """(n, labels) belief in each label, 0..1, each row's sum = belief in being known."""
-        known = np.maximum(sigmoid((self.threshold - novelty) / self.scale), LEAST_BELIEF)
+        known = np.maximum(sigmoid((self.threshold - novelty) / self.scale), MIN_BELIEF)
         return np.asarray(softmax(evidence / self.temperature) * known[:, None])
 
     def at_false_acceptance(self, rate: float) -> Calibration:
@@ -123,15 +124,15 @@ def fit_calibration(
     seen: (n,) whether the same person at the same task was among the training clips; if not
     given, none was. A known clip that was not seen looks newer than the clips that will be asked
     about. So the threshold and the error rates come from the clips that were seen, where there
-    are LEAST_USUAL of them; else from `imagined`: (m,) novelties that further takes of the
+    are MIN_USUAL of them; else from `imagined`: (m,) novelties that further takes of the
     recorded cells would have.
     """
     known = truth != NEW
     new, around = novelty[~known], novelty[known]
     judged = novelty[known & seen] if seen is not None else novelty[:0]
-    if len(judged) < LEAST_USUAL and imagined is not None:
+    if len(judged) < MIN_USUAL and imagined is not None:
         judged = around = imagined
-    if min(len(judged), len(new)) >= LEAST_USUAL:
+    if min(len(judged), len(new)) >= MIN_USUAL:
         threshold = _alike(judged, new)
         if judged is not imagined:
             threshold = _in_the_gap(threshold, judged, new)
@@ -159,7 +160,7 @@ def sigmoid(x: FloatArray) -> FloatArray:
 
 
 def _temperature(evidence: FloatArray, truth: IntArray) -> float:
-    """The temperature under which the true labels are likeliest; 1 without held-out clips."""
+    """The temperature with the largest likelihood of the true labels; 1 without held-out clips."""
     if not len(truth):
         return 1.0
     rows = np.arange(len(truth))
@@ -170,7 +171,7 @@ def _temperature(evidence: FloatArray, truth: IntArray) -> float:
 
 
 def _threshold(known: FloatArray, new: FloatArray) -> float:
-    """The novelty that best parts known from new, both weighing the same."""
+    """The novelty that best separates known from new clips; both kinds have the same weight."""
     if not len(known):
         return 0.0
     if not len(new):
@@ -180,21 +181,27 @@ def _threshold(known: FloatArray, new: FloatArray) -> float:
     accepted = np.searchsorted(np.sort(new), cuts, side="right") / len(new)
     rejected = 1 - np.searchsorted(np.sort(known), cuts, side="right") / len(known)
     best = np.flatnonzero(accepted + rejected <= (accepted + rejected).min() + 1e-12)
-    return float(np.median(cuts[best]))  # the middle of the gap where they part cleanly
+    return float(np.median(cuts[best]))  # if they separate cleanly, the middle of the gap
 
 
 def _alike(known: FloatArray, new: FloatArray) -> float:
-    """The novelty that is as many interquartile ranges above the median of the known as below
-    that of the new: unlike the least sum of errors it does not hang on a few clips at the
-    border, and unlike means not on one task that is far from all others."""
+    """The novelty that is equally far from the medians of the known and of the new clips, each
+    distance in interquartile ranges of its kind.
+
+    Unlike the threshold with the least errors, it does not depend on a few clips at the border.
+    Unlike a midpoint of means, it does not depend on one task that is far from all others.
+    """
     medians = np.array([float(np.median(part)) for part in (known, new)])
     ranges = np.array([_range(part) for part in (known, new)])
     return float((medians * ranges[::-1]).sum() / ranges.sum())
 
 
 def _in_the_gap(threshold: float, known: FloatArray, new: FloatArray) -> float:
-    """`threshold` moved to the middle of the gap between known and new, the more the wider that
-    is: what lies in it, as a known task that a stranger does, is rather known."""
+    """`threshold` moved toward the middle of the gap between known and new clips.
+
+    A wider gap moves it more: a clip in the gap, such as a known task by a new person, is more
+    likely to be known.
+    """
     highest, lowest = float(np.quantile(known, 1 - TAIL)), float(np.quantile(new, TAIL))
     share = (lowest - highest) / (WIDE_GAP * _range(known))
     return threshold + min(max(share, 0.0), 1.0) * max((lowest + highest) / 2 - threshold, 0.0)
@@ -205,8 +212,10 @@ def _range(part: FloatArray) -> float:
 
 
 def _scale(known: FloatArray, new: FloatArray) -> float:
-    """The fall-off under which what held-out clips turned out to be is likeliest, from their
-    novelties beyond the threshold; both weigh the same."""
+    """The scale of the logistic fall-off with the largest likelihood of the held-out clips.
+
+    known, new: their novelties beyond the threshold; both kinds have the same weight.
+    """
     if not len(known) or not len(new):
         return 1.0
     loss = [np.logaddexp(0, known / s).mean() + np.logaddexp(0, -new / s).mean() for s in SCALES]

@@ -45,7 +45,7 @@ def fit_flat_pca(
     return FlatPCA(cells, axes, cell_means(axes.project(np.asarray(samples)[use]), cells))
 
 
-def recognise_flat(
+def recognize_flat(
     record: FlatPCA,
     sample: FloatArray,
     known_person: str | None = None,
@@ -79,7 +79,7 @@ def _among(
 
 
 def _nearest(far: FloatArray, label: IntArray) -> FloatArray:
-    """(labels,) the least of distances (cells,) of each label."""
+    """(labels,) the smallest of the distances `far` (cells,) of each label's cells."""
     least = np.full(int(label.max()) + 1, np.inf)
     np.minimum.at(least, label, far)
     return least

@@ -1,16 +1,18 @@
-"""Hypotheses on a clip: this person doing this task, or something new, each a distribution.
+"""Hypotheses about a clip: a known person does a known task, or something is new.
 
-Shapes: points (n, d), coordinates of clips; hypotheses (h,).
-Five kinds, each with a covariance estimated from how far real cells lie from what would have
-been predicted without them:
-- SEEN: a cell of the library; covariance within cells, of each task its own
-  (app.models.recognition.within_cells; nearest cell mean where each has one take);
-- UNSEEN: a known person at a known task, never recorded together, predicted by effects;
-- NEW_PERSON: someone who does a known task as one of its persons does, give or take what two
-  persons differ in (the mean of all persons is nobody's motion: strangers' tasks were found
-  less often, above all those of other sources: on 501 clips .61 -> .94 of 31 from CMU, .83 ->
-  .87 of 471 with each person left out, the figures by which it was chosen); NEW_TASK: a known
-  person at anything;
+Each hypothesis is a normal distribution. Shapes: points (n, d) are coordinates of clips;
+hypotheses (h,).
+
+There are five kinds. The covariance of each kind is estimated from the errors of predicting real
+cells without using them:
+- SEEN: a cell of the library. Each task has its own covariance within cells
+  (app.models.recognition.within_cells); if each cell has one take, it is the nearest cell mean.
+- UNSEEN: a known person at a known task, never recorded together. The mean is the sum of effects.
+- NEW_PERSON: a new person who does a known task like one of its persons, with the differences
+  between two persons as covariance. A single hypothesis at the mean of all persons recognized
+  fewer tasks of new persons: .61 instead of .94 of 31 clips from CMU, and .83 instead of .87 of
+  471 clips with each person left out (the figures by which this was chosen).
+- NEW_TASK: a known person does any other task.
 - NEW_BOTH: any human motion.
 """
 
@@ -29,28 +31,29 @@ from app.numerics.euclidean import squared_distances
 from app.numerics.shrinkage import oracle_share
 
 SHRINKAGE = 0.1
-"""Share of each covariance that is replaced by a sphere of the same volume of variance; within
-cells more where repeated takes are too few to tell its shape."""
+"""Share of each covariance that is replaced by a sphere of the same mean variance. Within cells
+the share is larger if there are too few repeated takes to estimate the shape."""
 
-SMALLEST_VARIANCE = 1e-6
-"""Floor of a mean variance, body lengths squared: identical takes must not divide by 0."""
+MIN_VARIANCE = 1e-6
+"""Floor of a mean variance, in squared body lengths. It prevents a division by 0 for identical
+takes."""
 
-LEAST_FREEDOM = 5
-"""Repeated takes below which the covariance within cells is taken from elsewhere."""
+MIN_FREEDOM = 5
+"""With fewer repeated takes, the covariance within cells is a share of that between cells."""
 
 WITHIN_SHARE = 0.2
-"""Variance of takes of one cell as a share of what predictions of whole cells err by, where takes
-are not repeated: .18 in dataset 2, .19 in the demo, .24 in dataset 1."""
+"""If takes are not repeated: the variance within a cell as a share of the squared errors of
+predicted cells. Measured: .18 in dataset 2, .19 in the demo, .24 in dataset 1."""
 
 SEED = 2009
-"""Of imagined takes."""
+"""Random seed of the simulated takes."""
 
-MOST_UNSEEN = 20_000
-"""Combinations never recorded; in a library with more they are left out."""
+MAX_UNSEEN = 20_000
+"""Largest number of UNSEEN hypotheses. A library with more such combinations gets none."""
 
 
 class Kind(IntEnum):
-    """What a hypothesis says is new."""
+    """Which part of a clip is new according to a hypothesis."""
 
     SEEN = 0
     UNSEEN = 1
@@ -61,10 +64,13 @@ class Kind(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Hypotheses:
-    """person, task: (h,) label indices, -1 for new; kind: (h,); form: (h,) which covariance,
-    never falling; means: (h, d), whitened by their form; spread: (h,) factor on the covariance;
-    whiteners: (forms, d, d), a point is whitened by `point @ whiteners[form]`; log_scale:
-    (forms,) half the log determinants."""
+    """h hypotheses.
+
+    person, task: (h,) label indices, -1 for new; kind: (h,) the `Kind`; form: (h,) index of the
+    covariance, in ascending order; means: (h, d), whitened; spread: (h,) factor on the
+    covariance; whiteners: (forms, d, d), `point @ whiteners[form]` is the whitened point;
+    log_scale: (forms,) half the log determinants.
+    """
 
     means: FloatArray
     person: IntArray
@@ -76,9 +82,9 @@ class Hypotheses:
     log_scale: FloatArray
 
     def further_takes(self, count: int, most_cells: int) -> FloatArray:
-        """(n, d) `count` takes of each cell as SEEN expects them, of `most_cells` at most.
+        """(n, d) random takes of cells from the SEEN distributions.
 
-        Drawn by the same seed each time.
+        `count` takes of each of at most `most_cells` cells; the seed is fixed.
         """
         seen = np.flatnonzero(self.kind == Kind.SEEN)
         seen = seen[np.linspace(0, len(seen) - 1, min(len(seen), most_cells)).astype(np.int64)]
@@ -93,12 +99,14 @@ class Hypotheses:
         return out
 
     def log_likelihoods(self, points: FloatArray, freedom: float | None = None) -> FloatArray:
-        """(n, h) log densities of `points` (n, d), up to a constant: Gaussian, or Student's
-        with so many degrees of `freedom`, to which what is far off is less of a surprise."""
+        """(n, h) log densities of `points` (n, d), up to a constant.
+
+        They are Gaussian, or, with degrees of `freedom`, Student's t, which has heavier tails.
+        """
         return self.log_densities(self.squares(points), freedom)
 
     def log_densities(self, squares: FloatArray, freedom: float | None = None) -> FloatArray:
-        """`log_likelihoods` of what lies at these `squares` (n, h)."""
+        """As `log_likelihoods`, from the result of `squares` (n, h)."""
         dimensions = self.means.shape[1]
         volume = self.log_scale[self.form] + 0.5 * dimensions * np.log(self.spread)
         if freedom is None:
@@ -106,9 +114,9 @@ class Hypotheses:
         return np.asarray(-0.5 * (freedom + dimensions) * np.log1p(squares / freedom) - volume)
 
     def squares(self, points: FloatArray) -> FloatArray:
-        """(n, h) squared distances of `points` (n, d) in standard deviations."""
+        """(n, h) squared Mahalanobis distances of `points` (n, d) from the means."""
         out = np.empty((len(points), len(self.form)))
-        # hypotheses of one form stand together
+        # the hypotheses of one form are neighbors in the order
         starts = np.searchsorted(self.form, np.arange(len(self.whiteners) + 1))
         for form, (start, end) in enumerate(pairwise(starts)):
             white = points @ self.whiteners[form]
@@ -118,7 +126,7 @@ class Hypotheses:
 
 @dataclass(frozen=True, slots=True)
 class _Group:
-    """Hypotheses of one covariance before whitening; fields as in Hypotheses."""
+    """Hypotheses that share a covariance, before whitening; fields as in Hypotheses."""
 
     kind: Kind
     means: FloatArray
@@ -129,7 +137,7 @@ class _Group:
 
 
 def fit_hypotheses(points: FloatArray, cells: Cells) -> Hypotheses:
-    """All hypotheses that the labelled `points` (clips, d) in `cells` allow."""
+    """The hypotheses for a library with the labeled `points` (clips, d) in `cells`."""
     means = cell_means(points, cells)
     total = shrunk(np.cov(means.T, bias=True).reshape(2 * [points.shape[1]]))
     unseen = _unseen(means, cells, total)
@@ -137,30 +145,30 @@ def fit_hypotheses(points: FloatArray, cells: Cells) -> Hypotheses:
     strangers = _like_others(means, cells, total)
     persons = _new_task(means, cells, total)
     nobody = np.array([-1])
-    centre = means.mean(axis=0, keepdims=True)
-    new = _Group(Kind.NEW_BOTH, centre, nobody, nobody, total, np.ones(1))
+    center = means.mean(axis=0, keepdims=True)
+    new = _Group(Kind.NEW_BOTH, center, nobody, nobody, total, np.ones(1))
     return _whitened([*seen, unseen, strangers, persons, new])
 
 
 def shrunk(covariance: FloatArray, share: float = SHRINKAGE) -> FloatArray:
-    """(d, d) pulled towards the sphere of its mean variance, so that it can be inverted."""
+    """(d, d) `covariance` mixed with a sphere of its mean variance, so that it is invertible."""
     size = max(len(covariance), 1)
-    mean = max(float(np.trace(covariance)) / size, SMALLEST_VARIANCE)
+    mean = max(float(np.trace(covariance)) / size, MIN_VARIANCE)
     return (1 - share) * covariance + share * mean * np.eye(len(covariance))
 
 
 def _seen(
     points: FloatArray, means: FloatArray, cells: Cells, stand_in: FloatArray
 ) -> list[_Group]:
-    """A group for each task that has repeated takes, and one of all other cells.
+    """A group for each task with repeated takes, and one group for all other cells.
 
-    `stand_in` (d, d) is the covariance where there are hardly any repeated takes at all.
+    stand_in: (d, d) the covariance if the library has fewer than MIN_FREEDOM repeated takes.
     """
     full = np.flatnonzero(cells.full)
     inside = np.flatnonzero(np.isin(cells.member, full))
     deviations = points[inside] - means[cells.member[inside]]
     freedom = len(deviations) - len(full)
-    if freedom < LEAST_FREEDOM:
+    if freedom < MIN_FREEDOM:
         scatter = Scatter.same(stand_in, cells)
     else:
         within = deviations.T @ deviations / freedom
@@ -177,56 +185,62 @@ def _seen(
 def _unseen(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
     effects = fit_effects(means, cells)
     person, task = np.nonzero(_missing(cells))
-    enough = len(effects.errors) >= LEAST_FREEDOM
+    enough = len(effects.errors) >= MIN_FREEDOM
     spread = _second_moment(effects.errors) if enough else stand_in
     predicted = effects.predict(person, task)
     return _Group(Kind.UNSEEN, predicted, person, task, spread, np.ones(len(person)))
 
 
 def _missing(cells: Cells) -> BoolArray:
-    """(persons, tasks) whether the two were never recorded together; none if too many."""
+    """(persons, tasks) whether the two were never recorded together.
+
+    All False if there are more than MAX_UNSEEN such pairs.
+    """
     missing = np.ones((len(cells.persons), len(cells.tasks)), dtype=bool)
     full = cells.full
     missing[cells.person[full], cells.task[full]] = False
-    return np.asarray(missing & (missing.sum() <= MOST_UNSEEN))
+    return np.asarray(missing & (missing.sum() <= MAX_UNSEEN))
 
 
 def _like_others(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
-    """One hypothesis a cell whose task is known, with the covariance of the differences
-    between the cells of two persons at one task, over all such pairs."""
+    """NEW_PERSON: one hypothesis for each cell with a task label.
+
+    The covariance is that of the differences between the cells of two persons at one task,
+    over all such pairs.
+    """
     has = np.flatnonzero(cells.task >= 0)
     task = cells.task[has]
     counts = np.bincount(task, minlength=len(cells.tasks))
     pairs = int((counts * (counts - 1)).sum())
-    deviations = means[has] - _centres(means, cells.task, len(cells.tasks))[task]
-    # of n points, all n (n - 1) differences: their sum of squares is 2 n that about the mean
+    deviations = means[has] - _centers(means, cells.task, len(cells.tasks))[task]
+    # the sum of squares of all n (n - 1) differences is 2 n times that about the mean
     errors = deviations * np.sqrt(2 * counts[task] / max(pairs, 1))[:, None]
-    enough = (counts[task] > 1).sum() >= LEAST_FREEDOM
+    enough = (counts[task] > 1).sum() >= MIN_FREEDOM
     covariance = shrunk(errors.T @ errors) if enough else stand_in
     nobody = np.full(len(has), -1)
     return _Group(Kind.NEW_PERSON, means[has], nobody, task, covariance, np.ones(len(has)))
 
 
 def _new_task(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
-    """One hypothesis a person: the mean of their cells, each cell weighing the same."""
+    """NEW_TASK: one hypothesis for each person, at the mean of their cells (equal weights)."""
     label, labels = cells.person, len(cells.persons)
     has = np.flatnonzero(label >= 0)
     counts = np.bincount(label[has], minlength=labels)
-    centres = _centres(means, label, labels)
+    centers = _centers(means, label, labels)
     several = has[counts[label[has]] > 1]
     others = counts[label[several]] - 1
-    errors = (means[several] - centres[label[several]]) * (1 + 1 / others)[:, None]
-    covariance = _second_moment(errors) if len(errors) >= LEAST_FREEDOM else stand_in
+    errors = (means[several] - centers[label[several]]) * (1 + 1 / others)[:, None]
+    covariance = _second_moment(errors) if len(errors) >= MIN_FREEDOM else stand_in
     index, nothing = np.arange(labels), np.full(labels, -1)
-    return _Group(Kind.NEW_TASK, centres, index, nothing, covariance, np.ones(labels))
+    return _Group(Kind.NEW_TASK, centers, index, nothing, covariance, np.ones(labels))
 
 
-def _centres(means: FloatArray, label: IntArray, labels: int) -> FloatArray:
+def _centers(means: FloatArray, label: IntArray, labels: int) -> FloatArray:
     """(labels, d) the mean of each label's cells."""
     has = np.flatnonzero(label >= 0)
-    centres = np.zeros((labels, means.shape[1]))
-    np.add.at(centres, label[has], means[has])
-    return np.asarray(centres / np.maximum(np.bincount(label[has], minlength=labels), 1)[:, None])
+    centers = np.zeros((labels, means.shape[1]))
+    np.add.at(centers, label[has], means[has])
+    return np.asarray(centers / np.maximum(np.bincount(label[has], minlength=labels), 1)[:, None])
 
 
 def _second_moment(errors: FloatArray) -> FloatArray:

@@ -30,18 +30,18 @@ MULTILINEAR_VERSION = 2
 DIMENSIONS = 100
 """Coordinates of the sample mode."""
 
-SMALLEST_SINGULAR = 0.005
-"""Relative cut-off of the pseudo-inverses of B_a and C_p: slices filled by completion are
-nearly of low rank, and inverting what is left would magnify noise."""
+MIN_SINGULAR = 0.005
+"""Relative cut-off of the pseudo-inverses of B_a and C_p. Slices filled by completion have nearly
+low rank; without a cut-off the inverse would amplify noise."""
 
-MOST_CELLS = 20_000
+MAX_CELLS = 20_000
 """Persons x tasks; the tensor of a larger library would not fit a small machine."""
 
 RADIUS_SHARE = 95.0
 """Percentile of the training clips' distances that counts as near."""
 
 RADIUS_SLACK = 1.5
-"""Held-out takes lie further out than those of the fit."""
+"""Factor on the radius: held-out takes lie farther out than the takes of the fit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ class Multilinear:
         return _coordinates(basis, self.axes.project(sample))
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
-        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        """Arrays and JSON-able metadata for `from_arrays`."""
         people, actions, motions = self.svd.factors
         arrays = {
             "centre": self.axes.center,
@@ -108,7 +108,7 @@ class Multilinear:
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> Multilinear:
-        """The record that to_arrays took apart. Raises ValueError on another version."""
+        """The model from the result of `to_arrays`. Raises ValueError on another version."""
         if meta["version"] != MULTILINEAR_VERSION:
             raise ValueError(f"multilinear model of version {meta['version']}")
         factors = (arrays["people"], arrays["actions"], arrays["motions"])
@@ -135,14 +135,14 @@ def fit_multilinear(
     out. ranks: the numbers of columns to keep of the person and the action matrices; None keeps
     all. moments: the number of poses at the start of each sample, which are warped onto the mean
     of the clip's task; None leaves them as they are.
-    Raises NotEnoughLabels without two persons or two tasks, or with more than MOST_CELLS cells.
+    Raises NotEnoughLabels without two persons or two tasks, or with more than MAX_CELLS cells.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
     cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
     if min(len(cells.persons), len(cells.tasks)) < 2:
         raise NotEnoughLabels("The multilinear model needs two persons and two tasks.")
-    if len(cells.persons) * len(cells.tasks) > MOST_CELLS:
-        raise NotEnoughLabels(f"The multilinear model holds {MOST_CELLS} persons x tasks.")
+    if len(cells.persons) * len(cells.tasks) > MAX_CELLS:
+        raise NotEnoughLabels(f"The multilinear model holds {MAX_CELLS} persons x tasks.")
     chosen, task_means = np.asarray(samples)[use], None
     if moments is not None:
         chosen, task_means = _aligned(chosen, [tasks[i] for i in use], moments)
@@ -177,7 +177,7 @@ def complete_tensor(means: FloatArray, cells: Cells) -> FloatArray:
     return tensor
 
 
-def recognise_multilinear(
+def recognize_multilinear(
     record: Multilinear,
     sample: FloatArray,
     known_person: str | None = None,
@@ -198,7 +198,7 @@ def recognise_multilinear(
         own = record.signature(record.aligned(sample, known_task), known_task)
         to_persons = np.linalg.norm(own - people, axis=1)
     elif record.task_means is not None:
-        # who does it is recognised without the timing, what is done with it
+        # the person is recognized without the timing, the task with it
         likely = int(to_tasks.argmin())
         point = record.axes.project(record.aligned(sample, record.tasks[likely]))
         to_persons = np.linalg.norm(record.svd.reconstruct()[:, likely] - point, axis=1)
@@ -214,7 +214,7 @@ def recognise_multilinear(
 
 def _coordinates(basis: FloatArray, point: FloatArray) -> FloatArray:
     """The row c with c @ basis nearest to `point`: (R, d) and (d,) -> (R,)."""
-    return np.asarray(point @ np.linalg.pinv(basis, rcond=SMALLEST_SINGULAR))
+    return np.asarray(point @ np.linalg.pinv(basis, rcond=MIN_SINGULAR))
 
 
 def shares(distances: FloatArray) -> FloatArray:

@@ -1,10 +1,10 @@
 """Perera's recognition on a library (2009, section 5.3): method "perera".
 
-A clip's motion sample is probed against the task model of all labelled clips; the category with
-the least objective (eq. 14) is the best. Whether a category holds it is told by eqs 15-16: its
-objective beside F*_k, what clips of that category from another recording have. Where the paper
-sets thresholds by hand, the largest ratio that passes is chosen on clips, tasks and persons that
-are held out, and can be set by a rate of false acceptance.
+The motion sample of a clip is compared with the task model of all labeled clips. The best category
+has the smallest objective (eq. 14). Eqs 15-16 decide whether the clip belongs to it: they compare
+the objective with F*_k, the objective of clips of that category from other recordings. The paper
+sets the thresholds by hand; here they are fitted on held-out clips, tasks and persons, or follow
+from a false-accept rate.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ from app.models.recognition.calibration import NEW, Calibration, fit_calibration
 from app.models.recognition.task_model import JOINTS, Reading, TaskModel, fit_task_model, objective
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
-TENSOR_RECOGNISER_VERSION = 1
+TENSOR_RECOGNIZER_VERSION = 1
 
 SHARPNESS = 20.0
-"""Of evidence and novelty, in logarithms of the objective: of what calibration divides."""
+"""Factor from logarithms of the objective to evidence and novelty; calibration rescales both."""
 
 _SMALLEST = 1e-12
-"""Square body lengths; what is in the library itself is at no distance."""
+"""Floor of an objective, squared body lengths: a clip of the library itself has distance 0."""
 
 Labels = Sequence[str | None]
 
 
 @dataclass(frozen=True, slots=True)
-class TensorRecogniser:
-    """reach_of_persons (P,), reach_of_tasks (T,): F*_k of the model's categories."""
+class TensorRecognizer:
+    """A fitted recognizer. reach_of_persons (P,), reach_of_tasks (T,): F*_k of its categories."""
 
     model: TaskModel
     reach_of_persons: FloatArray
@@ -42,8 +42,9 @@ class TensorRecogniser:
     person_calibration: Calibration
     task_calibration: Calibration
 
-    def accepting(self, false_accept_rate: float) -> TensorRecogniser:
-        """The same, calling something new known at this rate at most (of held-out clips)."""
+    def accepting(self, false_accept_rate: float) -> TensorRecognizer:
+        """The same recognizer with the threshold at which at most this share (0..1) of new
+        held-out clips is called known."""
         return replace(
             self,
             person_calibration=self.person_calibration.at_false_acceptance(false_accept_rate),
@@ -51,18 +52,18 @@ class TensorRecogniser:
         )
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
-        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        """Arrays and JSON-able metadata for `from_arrays`."""
         arrays, meta = self.model.to_arrays()
         person, meta["person_calibration"] = self.person_calibration.to_arrays("person")
         task, meta["task_calibration"] = self.task_calibration.to_arrays("task")
         reach = {"persons_reach": self.reach_of_persons, "tasks_reach": self.reach_of_tasks}
-        return arrays | person | task | reach, meta | {"version": TENSOR_RECOGNISER_VERSION}
+        return arrays | person | task | reach, meta | {"version": TENSOR_RECOGNIZER_VERSION}
 
     @classmethod
-    def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> TensorRecogniser:
-        """The record that to_arrays took apart. Raises ValueError on another version."""
-        if meta["version"] != TENSOR_RECOGNISER_VERSION:
-            raise ValueError(f"tensor recogniser of version {meta['version']}")
+    def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> TensorRecognizer:
+        """The recognizer from the result of `to_arrays`. Raises ValueError on another version."""
+        if meta["version"] != TENSOR_RECOGNIZER_VERSION:
+            raise ValueError(f"tensor recognizer of version {meta['version']}")
         return cls(
             TaskModel.from_arrays(arrays, meta),
             arrays["persons_reach"],
@@ -72,13 +73,13 @@ class TensorRecogniser:
         )
 
 
-def fit_tensor_recogniser(
+def fit_tensor_recognizer(
     samples: FloatArray, persons: Labels, tasks: Labels, groups: Sequence[str] | None = None
-) -> TensorRecogniser:
-    """Fit on motion samples (clips, 1250); those without both labels are left out.
+) -> TensorRecognizer:
+    """Fit on motion samples (clips, 1250); clips without both labels are left out.
 
     groups: (clips,) clips of one recording share a value and are held out together.
-    Raises NotEnoughLabels without a cell, or with too many.
+    Raises NotEnoughLabels without a cell, or with more than MAX_CELLS cells.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
     poses = poses_of(np.asarray(samples)[use])
@@ -95,27 +96,30 @@ def fit_tensor_recogniser(
     calibrations = [
         _calibrated(each, reach) for each, reach in zip((people, doings), reaches, strict=True)
     ]
-    return TensorRecogniser(model, *reaches, *calibrations)
+    return TensorRecognizer(model, *reaches, *calibrations)
 
 
-def uncalibrated(samples: FloatArray, persons: Labels, tasks: Labels) -> TensorRecogniser:
-    """The same without holding anything out: its candidates are in the right order, what it calls
-    unknown and its scores tell nothing. Raises NotEnoughLabels."""
+def uncalibrated(samples: FloatArray, persons: Labels, tasks: Labels) -> TensorRecognizer:
+    """As `fit_tensor_recognizer`, but without calibration on held-out clips.
+
+    Its candidates are in the right order; its scores and its decision on what is unknown have no
+    meaning. Raises NotEnoughLabels.
+    """
     model = fit_task_model(poses_of(samples), persons, tasks)
     people, doings = np.ones(len(model.persons)), np.ones(len(model.tasks))
-    return TensorRecogniser(model, people, doings, _calibrated([], people), _calibrated([], doings))
+    return TensorRecognizer(model, people, doings, _calibrated([], people), _calibrated([], doings))
 
 
-def recognise_by_tensor(
-    record: TensorRecogniser,
+def recognize_by_tensor(
+    record: TensorRecognizer,
     samples: FloatArray,
     known_person: str | None = None,
     known_task: str | None = None,
 ) -> list[Recognition]:
-    """Who does what in motion samples (n, 1250), given what the asker knows.
+    """Recognize who does what in motion samples (n, 1250).
 
-    Where the other factor is known, only its cells are held against a probe; a label that the
-    library lacks tells nothing.
+    If the other factor is known, a probe is compared only with the cells of that label; a known
+    label that the library does not have is ignored.
     """
     model = record.model
     distances = model.joint_distances(poses_of(samples))
@@ -131,7 +135,7 @@ def recognise_by_tensor(
 
 
 def poses_of(samples: FloatArray) -> FloatArray:
-    """(n, 32, 13, 3) of motion samples (n, 1250): without turn and speed, which are no joint's."""
+    """(n, 32, 13, 3) the poses of motion samples (n, 1250), without their turn and speed."""
     places = np.asarray(samples, dtype=np.float64)[:, :-2]
     moments = places.shape[1] // (3 * JOINTS)
     return places.reshape(len(places), moments, JOINTS, 3)
@@ -139,9 +143,12 @@ def poses_of(samples: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class _Round:
-    """What a model of the training clips says of n probes. of_persons (n, P), of_tasks (n, T):
-    objectives, inf of labels not trained on; person, task: (n,) the truth, NEW where it was not
-    trained on; seen: (n,) whether both together were."""
+    """The results of a model of the training clips on n probes.
+
+    of_persons (n, P), of_tasks (n, T): objectives, inf for labels without training clips;
+    person, task: (n,) the true label index, NEW without training clips; seen: (n,) whether the
+    training clips have both labels together.
+    """
 
     kind: Held
     of_persons: FloatArray
@@ -177,7 +184,7 @@ class _Round:
 def _objectives(
     model: TaskModel, distances: FloatArray, factor: str, cells: BoolArray | None
 ) -> FloatArray:
-    """(n, labels) eq. 14, minimised, over the chosen cells (c,); inf for labels without one."""
+    """(n, labels) the minimized eq. 14 over the chosen cells (c,); inf for labels without one."""
     label, names = (
         (model.person, model.persons) if factor == "person" else (model.task, model.tasks)
     )
@@ -212,8 +219,11 @@ def _together(held: list[_HeldOut], labels: int) -> _HeldOut:
 
 
 def _reach(held: list[_HeldOut], labels: int) -> FloatArray:
-    """(labels,) F*_k: the mean objective of each label's held-out clips of which there was the
-    like in training, of others those of all held out; for labels without any the mean of all."""
+    """(labels,) F*_k: the mean objective of the held-out clips of each label.
+
+    Clips whose cell was in the training are used if a label has any, else all its held-out
+    clips. A label without held-out clips gets the mean of all.
+    """
     objectives, truth, seen = _together(held, labels)
     usual = (truth != NEW) & seen
     chosen = usual if usual.any() else truth != NEW
@@ -235,7 +245,7 @@ def _evidence(objectives: FloatArray) -> FloatArray:
 
 
 def _novelty(objectives: FloatArray, reach: FloatArray) -> FloatArray:
-    """(n,) logarithm of the least share of F*_k (eqs 15-16)."""
+    """(n,) logarithm of the smallest ratio of an objective to its F*_k (eqs 15-16)."""
     shares = np.maximum(objectives / reach, _SMALLEST)
     return np.asarray(SHARPNESS * np.log(shares.min(axis=1, initial=np.inf)))
 

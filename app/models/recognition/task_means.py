@@ -47,7 +47,7 @@ def fit_task_means(motions: FloatArray, tasks: Sequence[str | None]) -> TaskMean
 
 
 def _groups(tasks: Sequence[str | None], names: Sequence[str]) -> tuple[IntArray, IntArray]:
-    """(k,) which of `tasks` (n,) are among `names`, and (k,) the number of each one's name."""
+    """(k,) indices of the `tasks` (n,) that are among `names`, and (k,) their index in `names`."""
     known = [row for row, task in enumerate(tasks) if task in names]
     return np.array(known, dtype=np.int64), np.array(
         [names.index(str(tasks[row])) for row in known], dtype=np.int64

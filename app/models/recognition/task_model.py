@@ -21,7 +21,7 @@ import numpy as np
 
 from app.errors import NotEnoughLabels
 from app.models.cells import cell_means, find_cells
-from app.models.recognition.multilinear import MOST_CELLS, complete_tensor
+from app.models.recognition.multilinear import MAX_CELLS, complete_tensor
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.euclidean import squared_distances
@@ -40,9 +40,9 @@ LINKS: dict[JointRole, int] = {
     **dict.fromkeys((JointRole.LEFT_KNEE, JointRole.RIGHT_KNEE), 2),
     **dict.fromkeys((JointRole.LEFT_FOOT, JointRole.RIGHT_FOOT), 3),
 }
-"""Links from the body's centre: the paper gives the waist one."""
+"""Number of links from the center of the body; the paper gives the waist one."""
 
-MOST_AXES = 200
+MAX_AXES = 200
 """Columns of S_position; the motions of a paper's library span fewer."""
 
 
@@ -56,7 +56,7 @@ class Reading(StrEnum):
 
 
 def link_weights() -> FloatArray:
-    """(13,) W of eq. 14 in SUN_ROLES order: by number of links to the body's centre; sum 1."""
+    """(13,) W of eq. 14 in SUN_ROLES order, by the number of links to the body's center; sum 1."""
     links = np.array([LINKS[role] for role in SUN_ROLES], dtype=np.float64)
     return np.asarray(links / links.sum())
 
@@ -96,7 +96,7 @@ class TaskModel:
         return _by_joint(points @ position @ position.T @ self.axes.axes.T)
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
-        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        """Arrays and JSON-able metadata for `from_arrays`."""
         position, people, tasks = self.svd.factors
         arrays = {
             "centre": self.axes.center,
@@ -111,7 +111,7 @@ class TaskModel:
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> TaskModel:
-        """The record that to_arrays took apart."""
+        """The model from the result of `to_arrays`."""
         modes = (arrays["position_mode"], arrays["people_mode"], arrays["task_mode"])
         return cls(
             tuple(meta["persons"]),
@@ -128,22 +128,23 @@ def fit_task_model(
     tasks: Sequence[str | None],
     ranks: tuple[int | None, int | None, int | None] = (None, None, None),
 ) -> TaskModel:
-    """Fit on motions (n, samples, 13, 3) in the body frame; those without both labels are left
-    out, takes of one cell are averaged.
+    """Fit on motions (n, samples, 13, 3) in the body frame.
+
+    Motions without both labels are left out; the takes of one cell are averaged.
 
     Cells that nobody recorded are completed for the factorization (app.models.cells), and never
     compared with a probe. ranks: columns kept of S_position, S_people and S_task, None for all.
-    Raises NotEnoughLabels without a cell, or with too many.
+    Raises NotEnoughLabels without a cell, or with more than MAX_CELLS cells.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
     cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
     if not len(cells):
         raise NotEnoughLabels("The task model needs motions with a person and a task.")
-    if len(cells.persons) * len(cells.tasks) > MOST_CELLS:
-        raise NotEnoughLabels(f"The task model holds {MOST_CELLS} persons x tasks.")
+    if len(cells.persons) * len(cells.tasks) > MAX_CELLS:
+        raise NotEnoughLabels(f"The task model holds {MAX_CELLS} persons x tasks.")
     flat = np.asarray(poses, dtype=np.float64)[use].reshape(len(use), -1)
     means = cell_means(flat, cells)
-    axes = principal_axes(means, MOST_AXES, centered=False)
+    axes = principal_axes(means, MAX_AXES, centered=False)
     tensor = np.moveaxis(complete_tensor(axes.project(means), cells), 2, 0)
     svd = nmode_svd(tensor, ranks)
     recorded = svd.reconstruct()[:, cells.person, cells.task].T @ axes.axes.T

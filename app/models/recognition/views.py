@@ -1,8 +1,8 @@
-"""The two ways in which the default recogniser looks at a clip, and what hypotheses say of both.
+"""The two views of a clip in the default recognizer, and their log densities.
 
-A full sample (1762,) is the motion sample (1250,), whose 32 poses are of known phases, followed
-by the wide motion vector (512,), to which it is all one when a hand waves. The views overlap:
-the sample's last two numbers, turn and speed, belong to both.
+A full sample (1762,) is the motion sample (1250,) followed by the wide motion vector (512,). The
+motion sample has 32 poses at known phases; the wide motion vector ignores when in the clip a hand
+waves. The views overlap: the last two numbers of the sample, turn and speed, belong to both.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.principal_axes import PrincipalAxes
 
 SAMPLE_DIMENSIONS = 80
-"""PCA coordinates of motion samples."""
+"""Number of PCA coordinates of motion samples."""
 
-LEAST_WIDE, MOST_WIDE = 20, 60
-"""PCA coordinates of wide motion vectors."""
+MIN_WIDTH, MAX_WIDTH = 20, 60
+"""Bounds of the number of PCA coordinates of wide motion vectors."""
 
 FREEDOM = 50.0
-"""Degrees of freedom of the densities that rank labels: one strange number should not decide."""
+"""Degrees of freedom of the densities that rank labels: a single outlier must not decide."""
 
 TURN_AND_SPEED = 2
-"""Numbers at the end of a motion sample that both views have."""
+"""Numbers at the end of a motion sample that belong to both views."""
 
 
 def wide_dimensions(cells: int) -> int:
-    """PCA coordinates of wide motion vectors for so many cells: half as many.
+    """The number of PCA coordinates of wide motion vectors for `cells` cells: half as many.
 
-    What two persons, or two tasks, differ in is learned from cells; in more coordinates than
-    they can tell of, what is new looked known (of libraries of 35 cells drawn from dataset 2,
-    in 60 coordinates .79 of new tasks were told, in 20 .97).
+    The differences between persons, or tasks, are learned from cells. With too many coordinates
+    for the cells, new clips looked known: of libraries of 35 cells drawn from dataset 2, .79 of
+    the new tasks were found in 60 coordinates, and .97 in 20.
     """
-    return min(max(cells // 2, LEAST_WIDE), MOST_WIDE)
+    return min(max(cells // 2, MIN_WIDTH), MAX_WIDTH)
 
 
 def full_samples(samples: FloatArray, wide: FloatArray) -> FloatArray:
@@ -49,7 +49,7 @@ def full_samples(samples: FloatArray, wide: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """One way of looking at clips: coordinates, and the hypotheses among them."""
+    """One view of clips: PCA coordinates, and the hypotheses in these coordinates."""
 
     axes: PrincipalAxes
     hypotheses: Hypotheses
@@ -62,27 +62,27 @@ class View:
 
     @classmethod
     def from_arrays(cls, name: str, arrays: Mapping[str, Any]) -> View:
-        """What to_arrays took apart."""
+        """The view from the result of `to_arrays`."""
         axes = PrincipalAxes(arrays[f"{name}_centre"], arrays[f"{name}_axes"])
         parts = {f.name: arrays[f"{name}_{f.name}"] for f in fields(Hypotheses)}
         return cls(axes, Hypotheses(**parts))
 
 
 class Seen(NamedTuple):
-    """The same n clips as both views have them: (n, numbers or coordinates)."""
+    """The same n clips in both views: (n, numbers or coordinates) each."""
 
     sample: FloatArray
     wide: FloatArray
 
     def of(self, index: IntArray) -> Seen:
-        """Of the clips at these indices."""
+        """The rows of the clips at these indices."""
         return Seen(self.sample[index], self.wide[index])
 
 
 def both_views(samples: FloatArray, sample_length: int = SAMPLE_LENGTH) -> Seen:
-    """Full samples (n, 1762), whose motion samples are of `sample_length`, taken apart.
+    """Split full samples (n, 1762) into motion samples of `sample_length` and wide vectors.
 
-    Where no wide vector follows the motion samples they are both views.
+    If no wide vectors follow the motion samples, both views are the motion samples.
     """
     rows = np.asarray(samples)
     sample = rows[:, :sample_length]
@@ -92,8 +92,10 @@ def both_views(samples: FloatArray, sample_length: int = SAMPLE_LENGTH) -> Seen:
 
 
 class Logs(NamedTuple):
-    """Log densities (n, h) of n clips under the same hypotheses: by `ranking` labels are ranked;
-    by the others is told whether the person, and whether the task, is new."""
+    """Log densities (n, h) of n clips under h hypotheses.
+
+    `ranking` ranks labels; the other two decide whether the person and the task are new.
+    """
 
     ranking: FloatArray
     new_person: FloatArray
@@ -103,10 +105,12 @@ class Logs(NamedTuple):
     def under(
         cls, sample: Hypotheses, wide: Hypotheses, points: Seen, *, persons_by_both: bool
     ) -> Logs:
-        """Ranking by the mean of both views, Student's; what is new by the wide one, Gaussian.
+        """The log densities of both views.
 
-        persons_by_both: where takes are hardly repeated, persons are told by both views. Where
-        they are, the samples' view only disturbs, since takes of one task differ much in it.
+        The mean of both (Student's t) ranks labels; the wide view (Gaussian) decides what is
+        new. persons_by_both: both views decide whether a person is new, if takes are hardly
+        repeated. If they are repeated, the sample view only adds noise, since takes of one task
+        differ much in it.
         """
         of_sample, of_wide = sample.squares(points.sample), wide.squares(points.wide)
         by_sample = sample.log_densities(of_sample, FREEDOM)
@@ -117,13 +121,13 @@ class Logs(NamedTuple):
         return cls((by_sample + by_wide) / 2, person, task)
 
     def of(self, index: BoolArray) -> Logs:
-        """Of some clips."""
+        """The rows of some clips."""
         return Logs(*(logs[index] for logs in self))
 
     def without_others(self, label: IntArray, names: tuple[str, ...], known: str | None) -> Logs:
-        """Without the hypotheses that name another label than the known one.
+        """Exclude the hypotheses with another label than `known`.
 
-        label: (h,) index among `names`, -1 for new.
+        label: (h,) index in `names`, -1 for new.
         """
         if known is None:
             return self
@@ -133,9 +137,9 @@ class Logs(NamedTuple):
 
 
 def evidence(ranking: FloatArray, label: IntArray, labels: int) -> FloatArray:
-    """(n, labels) log of the summed densities of the hypotheses naming each label.
+    """(n, labels) log of the summed densities of each label's hypotheses.
 
-    ranking: (n, h) log densities; label: (h,), -1 for new. Each label is named at least once.
+    ranking: (n, h) log densities; label: (h,), -1 for new. Each label occurs at least once.
     """
     order = np.argsort(label, kind="stable")
     order = order[label[order] >= 0]
@@ -144,7 +148,7 @@ def evidence(ranking: FloatArray, label: IntArray, labels: int) -> FloatArray:
 
 
 def newness(logs: FloatArray, label: IntArray) -> FloatArray:
-    """(n,) log evidence that the label is a new one, less that it is a known one.
+    """(n,) log evidence of a new label minus the log evidence of a known one.
 
     logs: (n, h); label: (h,), -1 for new.
     """

@@ -1,13 +1,14 @@
-"""How takes of one cell differ from each other: of each task, and of each person, in their way.
+"""Covariance of the takes within a cell, for each task, with a factor for each person.
 
-One covariance for all cells takes every walk for like and half of the waves for strange: takes
-of a wave differ in when the hand goes, of a walk hardly at all. So each task has its own, pulled
-towards the pooled one: its size soon, since all d numbers of a take tell of it, its shape later.
-A person may besides be more even than others, at whatever they do: a factor.
+Takes of a wave differ in when the hand moves; takes of a walk hardly differ. With one covariance
+for all cells, every walk would look familiar, and half of the waves would look new. So each task
+has its own covariance, shrunk toward the pooled one. Its size needs fewer takes than its shape,
+since all d numbers of a take contribute to the size. A person may also move more evenly than
+others in all tasks; a factor on the covariance models this.
 
-Shapes: deviations (n, d), of n takes from the means of their cells, in the coordinates of one
-view. Covariances of classes drawn towards the pooled one are regularised discriminant analysis
-(Friedman 1989); size and shape apart, and the factor of persons, are our own.
+Shapes: deviations (n, d) of n takes from the means of their cells, in the coordinates of one view.
+The shrinkage of class covariances toward the pooled one is regularized discriminant analysis
+(Friedman 1989); the separate shrinkage of size and shape, and the factor of persons, are our own.
 """
 
 from __future__ import annotations
@@ -20,20 +21,20 @@ from app.models.cells import Cells
 from app.numerics.arrays import FloatArray, IntArray
 
 PRIOR_OF_SIZE = 5.0
-"""Repeated takes that the pooled size of a covariance counts as."""
+"""Weight of the pooled size of a covariance, in repeated takes."""
 
 PRIOR_OF_SHAPE = 10.0
-"""Repeated takes that the pooled shape of a covariance counts as."""
+"""Weight of the pooled shape of a covariance, in repeated takes."""
 
-MOST_FORMS = 256
-"""Tasks with a covariance of their own, those of most repeated takes; the rest have the pooled
-shape (7 MB of whitening in 60 dimensions)."""
+MAX_FORMS = 256
+"""Largest number of tasks with a covariance of their own: those with the most repeated takes. The
+others have the pooled shape. (The whiteners take 7 MB in 60 dimensions.)"""
 
 
 @dataclass(frozen=True, slots=True)
 class Scatter:
-    """covariances: F times (d, d), the last one pooled; form: (cells,) which one each cell has;
-    spread: (cells,) the factor on it."""
+    """covariances: F matrices (d, d), the last one pooled; form: (cells,) the index of each
+    cell's covariance; spread: (cells,) the factor on it."""
 
     covariances: list[FloatArray]
     form: IntArray
@@ -48,14 +49,15 @@ class Scatter:
 def scatter_within(
     deviations: FloatArray, member: IntArray, cells: Cells, pooled: FloatArray
 ) -> Scatter:
-    """From takes' `deviations` (n, d) from the mean of their cells `member` (n,), all of which
-    have both labels; pooled: (d, d) their covariance, n > cells.
+    """The covariances within cells.
 
-    Raises LinAlgError where `pooled` is not positive definite.
+    deviations: (n, d) of takes from the means of their cells; member: (n,) the cell of each
+    take, all with both labels; pooled: (d, d) the covariance of all deviations, n > cells.
+    Raises LinAlgError if `pooled` is not positive definite.
     """
     factor = np.linalg.cholesky(pooled)
     white = np.linalg.solve(factor, deviations.T).T
-    # n takes tell of n - 1 deviations
+    # n takes have n - 1 degrees of freedom
     weight = 1 - 1 / cells.takes[member]
     squares = (white**2).mean(axis=1)
     usual = max(float(squares.sum() / weight.sum()), 1e-12)
@@ -65,7 +67,7 @@ def scatter_within(
         for label, names in ((task, cells.tasks), (person, cells.persons))
     )
     freedom = np.bincount(task, weight, minlength=len(cells.tasks))
-    own = np.argsort(-freedom, kind="stable")[:MOST_FORMS]
+    own = np.argsort(-freedom, kind="stable")[:MAX_FORMS]
     own = np.sort(own[freedom[own] > 0])
     shapes = [_shape(white[task == each], float(freedom[each])) for each in own]
     form = np.full(len(cells.tasks) + 1, len(own))
@@ -76,7 +78,7 @@ def scatter_within(
 
 
 def _sizes(squares: FloatArray, weight: FloatArray, label: IntArray, labels: int) -> FloatArray:
-    """(labels,) mean square of each label's takes, 1 being usual, pulled towards 1."""
+    """(labels,) mean square of each label's takes (1 is the average), shrunk toward 1."""
     total = np.bincount(label, squares, minlength=labels)
     return np.asarray(
         (PRIOR_OF_SIZE + total) / (PRIOR_OF_SIZE + np.bincount(label, weight, minlength=labels))
@@ -84,7 +86,8 @@ def _sizes(squares: FloatArray, weight: FloatArray, label: IntArray, labels: int
 
 
 def _shape(white: FloatArray, freedom: float) -> FloatArray:
-    """(d, d) of mean variance 1, from a task's deviations (n, d) whitened by the pooled one."""
+    """(d, d) covariance with mean variance 1, of a task's deviations `white` (n, d), which are
+    whitened by the pooled covariance."""
     dimensions = white.shape[1]
     scatter = white.T @ white
     size = max(float(np.trace(scatter)), 1e-12)

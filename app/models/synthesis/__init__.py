@@ -1,1 +1,1 @@
-"""Motions that nobody recorded (Vasilescu 2002, section 4)."""
+"""Synthesis of motions that nobody recorded (Vasilescu 2002, section 4)."""

@@ -1,7 +1,7 @@
-"""Whether takes of a task are the same motion, so that their mean is one, too.
+"""Whether takes of a task are similar enough for their mean to be a motion.
 
-Two bows are a bow; the mean of two dances is a body that trembles on the spot. Where takes do
-not agree one of them is followed.
+The mean of two bows is a bow. The mean of two different dances is a body that trembles on the
+spot; if takes do not agree, synthesis follows one of them.
 """
 
 from __future__ import annotations
@@ -14,24 +14,25 @@ from app.models.synthesis.basis import weights
 from app.numerics.arrays import FloatArray
 
 AGREED = 0.5
-"""Share of their movement that takes must have in common: most. Aligned, one person's takes of a
-gesture have .8 to 1.0, different persons' .6 to .95; unlike dances .0 to .3, and gestures that are
-another one by each person (the *bye* of eight moods) .1. From .35 to .5 hits on new tasks differ by
-.03 at most."""
+"""Share of their movement that takes must have in common. Measured after alignment: takes of a
+gesture by one person .8 to 1.0, by different persons .6 to .95; different dances .0 to .3; gestures
+that each person does in another way (the *bye* of eight moods) .1. With limits from .35 to .5, the
+hits on new tasks differ by at most .03."""
 
 
 def agree(agreement: float | None) -> bool:
-    """Whether takes are the same motion; None, of a single one, is."""
+    """Whether takes with this agreement are the same motion. None (a single take) counts as
+    agreement."""
     return agreement is None or agreement >= AGREED
 
 
 def agreement(shapes: FloatArray) -> float:
-    """Share (at most 1.0, about 0.0 for motions that have nothing to do with each other) of the
-    movement in motion shapes (n, 1378) that they have in common; 1.0 for a single one.
+    """The share of their movement that motion shapes (n, 1378) have in common.
 
-    Movement is what is not posture: each channel beside its mean over the 32 moments. What n
-    motions have in common is estimated by their inner products with each other, not themselves,
-    so that it does not depend on n.
+    It is at most 1.0, about 0.0 for unrelated motions, and 1.0 for a single motion. Movement is
+    each channel minus its mean over the 32 moments (the posture). The common part of n motions
+    is estimated from their inner products with each other, without those with themselves, so
+    that it does not depend on n.
     """
     if len(shapes) < 2:
         return 1.0

@@ -1,4 +1,4 @@
-"""What a motion shape is weighed by, and into which parts of the body it falls, for synthesis."""
+"""The weights of the numbers of a motion shape, and their division into parts of the body."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from app.numerics.arrays import FloatArray, IntArray
 
 VELOCITY_WEIGHT = 0.3
 YAW_WEIGHT = 0.2
-"""Of a body length per second and of a radian per second beside a body length."""
+"""Weight of velocities (body lengths per second, radians per second) relative to body lengths."""
 
 _R = JointRole
 _PARTS = (
@@ -24,14 +24,14 @@ _PARTS = (
 
 
 def weights() -> FloatArray:
-    """(1378,) what each number of a motion shape counts."""
+    """(1378,) the weight of each number of a motion shape."""
     channel = np.ones(CHANNELS)
     channel[40:42], channel[42] = VELOCITY_WEIGHT, YAW_WEIGHT
     return np.concatenate([np.tile(channel, SAMPLES), [1.0, 1.0]])
 
 
 def parts() -> list[IntArray]:
-    """Numbers of a motion shape by part: legs, trunk, arms, and how the whole goes and lasts."""
+    """Indices into a motion shape for each part: legs, trunk, arms, and the path and duration."""
     place = np.arange(SAMPLES * CHANNELS).reshape(SAMPLES, CHANNELS)
     found: list[IntArray] = []
     for roles in _PARTS:

@@ -1,10 +1,10 @@
-"""A course of 13 joint roles, put on a person's own skeleton.
+"""Transfers a course of 13 joint roles to the skeleton of a person.
 
-The rotations of the joints start as a kernel mean of those moments of the person in which the pose
-was most alike. So twists, toes and fingers, which 13 roles do not show, are as the person does
-them. Then the joints are rotated until the roles are where they should be (`motion.posing`), and
-once more with the feet fixed where they stand (`foot_contact`). At last the feet are laid on the
-floor (`synthetic_feet`).
+1. The rotations of the joints start as a kernel mean over the moments with the most similar poses
+   of the person. So twists, toes and fingers, which 13 roles do not show, come from the person.
+2. The joints are rotated until the roles are at their positions (app.motion.posing), and once more
+   with standing feet fixed (app.motion.frame.foot_contact).
+3. The feet are put on the floor (app.models.synthesis.feet).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from app.models.synthesis.feet import LOWEST_QUANTILE, feet_of, floor_of, on_the_floor, sole_depths
+from app.models.synthesis.feet import MIN_QUANTILE, feet_of, floor_of, on_the_floor, sole_depths
 from app.models.synthesis.motion import Course
 from app.motion.frame.body_frame import ANALYSIS_RATE, BodyTrack, turned
 from app.motion.frame.foot_contact import FEET, planted
@@ -26,19 +26,20 @@ from app.motion.skeleton.rotations import conjugate, identity_quaternions, multi
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.euclidean import squared_distances
 
-NEIGHBOURS = 12
-"""Moments of the person's that a pose starts from."""
+MAX_NEIGHBORS = 12
+"""Number of moments of the person whose mean is the start of a pose."""
 
 SMOOTHING = 1.5
-"""Frames (standard deviation): neighbours change from one frame to the next."""
+"""Standard deviation in frames. The start needs smoothing, since the nearest moments change from
+frame to frame."""
 
 _HIPS = SUN_ROLES.index(JointRole.HIPS)
 
 
 @dataclass(frozen=True, slots=True)
 class Donor:
-    """A real clip of the person at ANALYSIS_RATE: turns and places of the joints, the body's
-    track over as many frames, and the joint of each role."""
+    """A real clip of the person at ANALYSIS_RATE: rotations and positions of the joints, the
+    body's track over the same frames, and the joint of each role."""
 
     animation: Animation
     track: BodyTrack
@@ -46,7 +47,7 @@ class Donor:
 
 
 def same_body(donors: Sequence[Donor]) -> list[Donor]:
-    """The donors whose skeleton at rest is that of the first, which comes first."""
+    """The donors with the same rest skeleton as the first donor, in the given order."""
     first = donors[0].animation.skeleton
     return [
         donor
@@ -57,7 +58,7 @@ def same_body(donors: Sequence[Donor]) -> list[Donor]:
 
 
 def embody(course: Course, donors: Sequence[Donor]) -> Animation:
-    """The course on the skeleton of the donors, which they share; the floor is at Y = 0."""
+    """The course on the skeleton that the donors share; the floor is at Y = 0."""
     joints = donors[0].joints
     posed = pose_to(_start(course, donors), joints, course.positions)
     wanted = np.array(course.positions)
@@ -72,7 +73,7 @@ def embody(course: Course, donors: Sequence[Donor]) -> Animation:
         if soles:
             deep = sole_depths(soles, [donor.animation.positions() for donor in donors])
             return on_the_floor(_lowered(posed, floor_of(reached, soles, deep)), soles)
-    return _lowered(posed, float(np.quantile(reached[:, :, 1].min(axis=1), LOWEST_QUANTILE)))
+    return _lowered(posed, float(np.quantile(reached[:, :, 1].min(axis=1), MIN_QUANTILE)))
 
 
 def _lowered(posed: Animation, floor: float) -> Animation:
@@ -82,9 +83,9 @@ def _lowered(posed: Animation, floor: float) -> Animation:
 
 
 def _start(course: Course, donors: Sequence[Donor]) -> Animation:
-    """Kernel means of the donors' turns at the moments most like those of the course."""
+    """Kernel means of the donors' rotations at the moments most similar to the course."""
     local = np.concatenate([donor.track.local for donor in donors])
-    turns = np.concatenate([_towards_heading(donor) for donor in donors])
+    turns = np.concatenate([_toward_heading(donor) for donor in donors])
     places = np.concatenate([donor.animation.translations for donor in donors])
     near, weights = _alike(_poses(course), local)
     rotations = _mean_turns(turns[near], weights)
@@ -93,7 +94,7 @@ def _start(course: Course, donors: Sequence[Donor]) -> Animation:
     rotations[:, hips] = multiply(_about_y(course.heading), rotations[:, hips])
     translations[:, hips] = course.positions[:, _HIPS]
     above = ancestors(skeleton, hips)
-    if above:  # a root on the floor goes along under the hips
+    if above:  # a root on the floor follows the hips
         rotations[:, above] = identity_quaternions((1, 1))
         translations[:, above] = 0.0
         translations[:, 0] = course.positions[:, _HIPS] * [1.0, 0.0, 1.0]
@@ -102,12 +103,12 @@ def _start(course: Course, donors: Sequence[Donor]) -> Animation:
 
 
 def _poses(course: Course) -> FloatArray:
-    """(n, 13, 3) about the hips, in the body's heading, any size."""
+    """(n, 13, 3) poses relative to the hips and to the heading, of any scale."""
     return turned(course.positions - course.positions[:, [_HIPS]], -course.heading)
 
 
 def _alike(poses: FloatArray, others: FloatArray) -> tuple[IntArray, FloatArray]:
-    """The k of `others` (m, 13, 3) that are most like each of `poses` (n, 13, 3).
+    """The k of `others` (m, 13, 3) that are most similar to each of `poses` (n, 13, 3).
 
     Returns their rows (n, k) and their weights (n, k), which sum to 1 for each pose.
     """
@@ -115,7 +116,7 @@ def _alike(poses: FloatArray, others: FloatArray) -> tuple[IntArray, FloatArray]
     rows = rows * (np.linalg.norm(table) / len(table) ** 0.5)
     rows /= max(np.linalg.norm(poses) / len(poses) ** 0.5, 1e-9)
     squares = squared_distances(rows, table)
-    count = min(NEIGHBOURS, len(table))
+    count = min(MAX_NEIGHBORS, len(table))
     near = np.argsort(squares, axis=1, kind="stable")[:, :count]
     away = np.take_along_axis(squares, near, axis=1)
     weights = np.exp(-0.5 * away / np.maximum(away.mean(axis=1, keepdims=True), 1e-9))
@@ -123,7 +124,7 @@ def _alike(poses: FloatArray, others: FloatArray) -> tuple[IntArray, FloatArray]
 
 
 def _mean_turns(turns: FloatArray, weights: FloatArray) -> FloatArray:
-    """(n, joints, 4) weighted means of turns (n, k, joints, 4), smooth over time."""
+    """(n, joints, 4) weighted means of quaternions (n, k, joints, 4), smoothed over time."""
     side = np.sign(np.einsum("nkjc,njc->nkj", turns, turns[:, 0]))
     mean = np.einsum("nk,nkj,nkjc->njc", weights, np.where(side == 0, 1.0, side), turns)
     lengths = np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), 1e-9)
@@ -133,8 +134,8 @@ def _mean_turns(turns: FloatArray, weights: FloatArray) -> FloatArray:
     return np.asarray(smooth / np.maximum(np.linalg.norm(smooth, axis=-1, keepdims=True), 1e-9))
 
 
-def _towards_heading(donor: Donor) -> FloatArray:
-    """(n, joints, 4) the donor's turns, those of the hips seen from the body's heading."""
+def _toward_heading(donor: Donor) -> FloatArray:
+    """(n, joints, 4) the donor's rotations; those of the hips are relative to the heading."""
     rotations = np.array(donor.animation.rotations, dtype=np.float64)
     hips = donor.joints[JointRole.HIPS]
     turn: FloatArray = rotations[:, hips]
@@ -145,6 +146,6 @@ def _towards_heading(donor: Donor) -> FloatArray:
 
 
 def _about_y(angles: FloatArray) -> FloatArray:
-    """(n, 4) turns about Y by angles (n,), radians."""
+    """(n, 4) rotations about Y by angles (n,), radians."""
     nothing = np.zeros_like(angles)
     return np.stack([np.cos(angles / 2), nothing, np.sin(angles / 2), nothing], axis=-1)

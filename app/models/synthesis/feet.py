@@ -1,9 +1,9 @@
-"""How the feet of a made body lie on the floor.
+"""Puts the feet of a synthesized body on the floor.
 
-Thirteen roles tell where the ankles are, not how the feet below them point; what they do in the
-person's other tasks is not what they do here. So the floor is where the standing ankles say,
-and the feet turn about the ankles: their tips stay on the floor from when a foot stands until
-the ankle is too far away for it, and nothing of a foot goes under.
+The thirteen roles give the positions of the ankles, but not the directions of the feet, and other
+tasks of the person have other directions. So the height of the floor follows from the standing
+ankles, and the feet are rotated about the ankles. The tip of a foot stays on the floor from the
+moment the foot stands until the ankle is too far away. No part of a foot goes below the floor.
 """
 
 from __future__ import annotations
@@ -23,19 +23,20 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 GIVING = 0.03
-"""Metres by which an ankle may miss a foot's length to where its tip stands: farther or nearer,
-the tip leaves the floor."""
+"""Meters. The tip leaves the floor if the distance of ankle and tip differs by more than this from
+the length of the foot."""
 
 RELEASE = 2.0
-"""Frames (standard deviation) over which a tip is let go, and comes to stand."""
+"""Standard deviation in frames of the transition between a standing and a free tip."""
 
-LOWEST_QUANTILE = 0.01
-"""Hands, knees and all else but feet go under the floor in this share of frames at most."""
+MIN_QUANTILE = 0.01
+"""Hands, knees and other joints except the feet are below the floor in at most this share of the
+frames."""
 
 
 @dataclass(frozen=True, slots=True)
 class Foot:
-    """An ankle, the joints below it, and which of these is farthest from it: the tip."""
+    """An ankle, the joints below it, and the tip: the one that is farthest from the ankle."""
 
     ankle: int
     below: list[int]
@@ -43,7 +44,7 @@ class Foot:
 
 
 def feet_of(skeleton: Skeleton, ankles: Sequence[int]) -> list[Foot]:
-    """The feet at the ankles; none where an ankle has nothing below it to turn."""
+    """The feet at the ankles; an ankle without joints below it has no foot."""
     still = identity_quaternions((1, len(skeleton)))
     rest = forward_kinematics(skeleton, still, skeleton.offsets[None])[0]
     found = []
@@ -57,8 +58,10 @@ def feet_of(skeleton: Skeleton, ankles: Sequence[int]) -> list[Foot]:
 
 
 def sole_depths(feet: Sequence[Foot], clips: Sequence[FloatArray]) -> FloatArray:
-    """(feet,) metres from each ankle down to the lowest joint of its foot where it stands, the
-    median of real clips, positions (n, joints, 3) each."""
+    """(feet,) height in meters of each ankle above the lowest joint of its standing foot.
+
+    It is the median over real clips; each clip is the positions (n, joints, 3).
+    """
     deep = [
         [_level(clip[:, foot.ankle, 1]) - _level(_lowest(clip, foot)) for foot in feet]
         for clip in clips
@@ -67,17 +70,17 @@ def sole_depths(feet: Sequence[Foot], clips: Sequence[FloatArray]) -> FloatArray
 
 
 def floor_of(positions: FloatArray, feet: Sequence[Foot], depths: FloatArray) -> float:
-    """Y of the floor, metres: under the foot that stands lowest, if nothing else is lower."""
+    """Y of the floor in meters: below the lowest standing foot, or lower if other joints are."""
     stands = [
         _level(positions[:, foot.ankle, 1]) - deep for foot, deep in zip(feet, depths, strict=True)
     ]
     of_feet = [joint for foot in feet for joint in foot.below]
     others = np.delete(positions[:, :, 1], of_feet, axis=1).min(axis=1)
-    return float(min(*stands, np.quantile(others, LOWEST_QUANTILE)))
+    return float(min(*stands, np.quantile(others, MIN_QUANTILE)))
 
 
 def on_the_floor(animation: Animation, feet: Sequence[Foot]) -> Animation:
-    """The animation with its feet turned about the ankles as the floor, Y = 0, wants it."""
+    """The animation with its feet rotated about the ankles to fit the floor Y = 0."""
     positions = animation.positions()
     ankles = np.stack([positions[:, foot.ankle] for foot in feet], axis=1)
     found = stances(ankles, animation.frame_rate)
@@ -102,7 +105,7 @@ def _lowest(positions: FloatArray, foot: Foot) -> FloatArray:
 def _standing_tips(
     positions: FloatArray, foot: Foot, mine: Sequence[Stance]
 ) -> tuple[FloatArray, FloatArray]:
-    """Where a foot's tip is to stand (n, 3), and how surely it stands there (n,), 0..1."""
+    """Target positions (n, 3) of a standing tip, and their weights (n,), 0..1."""
     ankle, n = positions[:, foot.ankle], len(positions)
     bones = positions[:, foot.tip] - ankle
     length = float(np.median(np.linalg.norm(bones, axis=-1)))
@@ -115,7 +118,7 @@ def _standing_tips(
         tip = base * [1.0, 0.0, 1.0] + ahead / max(np.linalg.norm(ahead), 1e-9) * flat
         near = np.exp(-(((np.linalg.norm(tip - ankle, axis=-1) - length) / GIVING) ** 2))
         near[inside] = 1.0
-        # once it has left it stays away
+        # once the tip has left the floor, it stays free
         near[stance.stop :] = np.minimum.accumulate(near[stance.stop :])
         near[: stance.first] = np.minimum.accumulate(near[: stance.first][::-1])[::-1]
         tips = np.where((near > sure)[:, None], tip, tips)
@@ -124,7 +127,7 @@ def _standing_tips(
 
 
 def _between(start: FloatArray, end: FloatArray, share: FloatArray) -> FloatArray:
-    """(n, 4) turns of the world by a share (n,) of the way from start (n, 3) to end (n, 3)."""
+    """(n, 4) world rotations by a share (n,) of the angle from start (n, 3) to end (n, 3)."""
     across = np.cross(start, end)
     sine = np.linalg.norm(across, axis=-1)
     angle = np.arctan2(sine, (start * end).sum(axis=-1)) * share
@@ -132,7 +135,7 @@ def _between(start: FloatArray, end: FloatArray, share: FloatArray) -> FloatArra
 
 
 def _upwards(positions: FloatArray, foot: Foot) -> FloatArray:
-    """(n, 4) turns of the world that raise the foot's tip until no joint of it is under."""
+    """(n, 4) world rotations that raise the tip until no joint of the foot is below the floor."""
     ankle = positions[:, foot.ankle]
     bone = positions[:, foot.tip] - ankle
     ahead = bone * [1.0, 0.0, 1.0]
@@ -149,14 +152,14 @@ def _upwards(positions: FloatArray, foot: Foot) -> FloatArray:
 
 
 def _about(axes: FloatArray, angles: FloatArray) -> FloatArray:
-    """(n, 4) turns about unit axes (n, 3)."""
+    """(n, 4) rotations about unit axes (n, 3) by angles (n,), radians."""
     return np.concatenate(
         [np.cos(angles / 2)[:, None], axes * np.sin(angles / 2)[:, None]], axis=-1
     )
 
 
 def _turned(animation: Animation, foot: Foot, turns: FloatArray) -> Animation:
-    """The ankle turned by turns (n, 4) of the world."""
+    """The animation with the ankle rotated by the world rotations `turns` (n, 4)."""
     above = identity_quaternions((len(turns),))
     for joint in ancestors(animation.skeleton, foot.ankle):
         above = multiply(animation.rotations[:, joint], above)

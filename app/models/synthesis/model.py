@@ -1,12 +1,13 @@
-"""What synthesis learns of a library: the mean motion shape of each person at each task.
+"""The model of synthesis: the mean motion shape of each person at each task.
 
-Means are taken of takes to one side (`synthesis_sides`) and of one course of time
-(`synthesis_timing`), and only where they agree (`synthesis_agreement`): else one take, that most
-like the others, stands for all. From them a person's motion is made for a task that they never
-recorded (Vasilescu 2002, section 4): a new task comes to known persons, and every known task to a
-person of whom there are only some clips. Both are one question, asked of `synthesis_prediction`:
-solving eq. 7 for a signature among few persons came far less near to the truth. All is linear
-within these choices, and deterministic.
+Before the mean, takes are mirrored to one side (app.models.synthesis.sides) and warped to a common
+time (app.models.synthesis.timing). If the takes do not agree (app.models.synthesis.agreement), the
+take that is most like the others replaces the mean.
+
+From these means, app.models.synthesis.prediction predicts the motion of a person at a task that
+they never recorded (Vasilescu 2002, section 4): a new task for known persons, or any known task
+for a person with only a few clips. Solving eq. 7 for a signature among few persons was much less
+accurate. Within these choices, everything is linear and deterministic.
 """
 
 from __future__ import annotations
@@ -30,23 +31,27 @@ from app.numerics.principal_axes import PrincipalAxes, principal_axes
 SYNTHESIS_VERSION = 2
 
 DIMENSIONS = 64
-"""Coordinates in which real clips are compared with what was made."""
+"""Number of coordinates in which real clips are compared with synthesized motions."""
 
-MOST_CELLS = 20_000
-"""Cells that are kept: some 220 MB."""
+MAX_CELLS = 20_000
+"""Largest number of cells; they take about 220 MB."""
 
 
 @dataclass(frozen=True, slots=True)
 class Synthesis:
-    """persons, tasks: sorted labels; means: (cells, 1378) mean motion shapes; person, task:
-    (cells,) index of the label; takes: (cells,) clips of each; agreement: (cells,) how far they
-    agree, below AGREED the mean is one of them.
+    """A fitted model.
 
-    side: (cells,) to which a task is done, 0 where it is not of two sides; aligned: (cells, 1378)
-    the means mirrored to the side +1 and in the task's time; timing: (cells, 32), see `Timed`.
+    persons, tasks: sorted labels; means: (cells, 1378) mean motion shapes; person, task:
+    (cells,) label indices; takes: (cells,) number of clips; agreement: (cells,) agreement of the
+    takes; below AGREED the "mean" is one of the takes.
 
-    axes, points (N, 64), ids (N,), member (N,): the real clips' weighted shapes, among which the
-    nearest to a made one is looked up, and the cell of each."""
+    side: (cells,) side of each task, +1 or -1, 0 for a task without sides; aligned: (cells,
+    1378) the means mirrored to the side +1 and in the time of the task; timing: (cells, 32), see
+    `Timed`.
+
+    axes, points (N, 64), ids (N,), member (N,): coordinates, ids and cells of the N real clips,
+    for finding the real clip that is nearest to a synthesized one.
+    """
 
     persons: tuple[str, ...]
     tasks: tuple[str, ...]
@@ -64,26 +69,26 @@ class Synthesis:
     member: IntArray
 
     def cell(self, person: str, task: str) -> FloatArray | None:
-        """(1378,) the mean of a person's own takes of a task, None where there is none."""
+        """(1378,) the mean of a person's takes of a task, None if there is none."""
         found = np.flatnonzero((self._of(person, self.persons) == self.person) & self.did(task))
         return np.asarray(self.means[found[0]]) if len(found) else None
 
     def cell_agreement(self, person: str, task: str) -> float | None:
-        """How far a person's takes of a task agree, None where there are not two."""
+        """The agreement of a person's takes of a task, None if there are fewer than two."""
         mine = (self._of(person, self.persons) == self.person) & self.did(task)
         found = np.flatnonzero(mine & (self.takes > 1))
         return float(self.agreement[found[0]]) if len(found) else None
 
     def reference(self, task: str) -> FloatArray:
-        """(1378,) the mean of all persons' shapes of a task, to one side and in one time."""
+        """(1378,) the mean of all persons' aligned shapes of a task."""
         return np.asarray(self.aligned[self.did(task)].mean(axis=0))
 
     def is_two_sided(self, task: str) -> bool:
-        """Whether a task is done to the one side by some and to the other by others."""
+        """Whether the persons do a task to two sides (such as left and right)."""
         return bool(self.side[self.did(task)].any())
 
     def tasks_of(self, person: str) -> dict[str, FloatArray]:
-        """Mean shapes (1378,) of what a person did, by task."""
+        """Mean shapes (1378,) of a person by task."""
         cells = np.flatnonzero(self.person == self._of(person, self.persons))
         return {self.tasks[self.task[cell]]: self.means[cell] for cell in cells}
 
@@ -92,7 +97,7 @@ class Synthesis:
         return tuple(self.persons[i] for i in sorted(self.person[self.did(task)]))
 
     def distances(self, shape: FloatArray) -> FloatArray:
-        """(N,) how far the real clips are from a motion shape (1378,)."""
+        """(N,) distances of the real clips from a motion shape (1378,)."""
         return np.asarray(
             np.linalg.norm(self.points - self.axes.project(shape * weights()), axis=1)
         )
@@ -112,7 +117,7 @@ class Synthesis:
         return np.flatnonzero(cells[self.member])
 
     def did(self, task: str) -> BoolArray:
-        """(cells,) which are of a task."""
+        """(cells,) whether each cell is of a task."""
         return np.asarray(self.task == self._of(task, self.tasks))
 
     @staticmethod
@@ -120,7 +125,7 @@ class Synthesis:
         return names.index(name) if name in names else -2
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
-        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        """Arrays and JSON-able metadata for `from_arrays`."""
         arrays = {
             "means": self.means.astype(np.float32),
             "person": self.person,
@@ -145,7 +150,7 @@ class Synthesis:
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> Synthesis:
-        """The record that to_arrays took apart. Raises ValueError on another version."""
+        """The model from the result of `to_arrays`. Raises ValueError on another version."""
         if meta["version"] != SYNTHESIS_VERSION:
             raise ValueError(f"synthesis model of version {meta['version']}")
         return cls(
@@ -207,8 +212,8 @@ def fit_synthesis(
 
 
 def _cell_means(rows: FloatArray, cells: Cells) -> tuple[FloatArray, FloatArray]:
-    """(cells, 1378) the mean of the takes of each, or the one most like the others where they do
-    not agree; and (cells,) how far they do."""
+    """(cells, 1378) the mean of the takes of each cell (or, if they do not agree, the take that is
+    most like the others), and (cells,) their agreement."""
     kept = _of_one_kind(rows, cells)
     member, rows = cells.member[kept], rows[kept]
     order = np.argsort(member, kind="stable")
@@ -228,7 +233,7 @@ def _cell_means(rows: FloatArray, cells: Cells) -> tuple[FloatArray, FloatArray]
 
 
 def _sides(means: FloatArray, cells: Cells) -> IntArray:
-    """(cells,) to which side each task is done, held against the task's other cells alone."""
+    """(cells,) the side of each cell, found by comparison with the other cells of its task."""
     found = np.zeros(len(cells), dtype=np.int64)
     for task in range(len(cells.tasks)):
         of_task = np.flatnonzero(cells.task == task)
@@ -237,7 +242,7 @@ def _sides(means: FloatArray, cells: Cells) -> IntArray:
 
 
 def mean_of_takes(shapes: FloatArray) -> FloatArray:
-    """(1378,) what a cell's takes, motion shapes (n, 1378), n > 0, come to."""
+    """(1378,) the mean of a cell's takes (n, 1378), n > 0, as in `Synthesis.means`."""
     names = ["all"] * len(shapes)
     rows = np.asarray(shapes, dtype=np.float64)
     return np.asarray(_cell_means(rows, find_cells(names, names))[0][0])
@@ -248,12 +253,12 @@ def _check(cells: Cells) -> None:
         raise NotEnoughLabels("Synthesis needs clips of two persons and of two tasks.")
     if np.bincount(cells.task).max() < 2:
         raise NotEnoughLabels("Synthesis needs a task that two persons did.")
-    if len(cells) > MOST_CELLS:
-        raise NotEnoughLabels(f"Synthesis holds {MOST_CELLS} combinations of person and task.")
+    if len(cells) > MAX_CELLS:
+        raise NotEnoughLabels(f"Synthesis holds {MAX_CELLS} combinations of person and task.")
 
 
 def _of_one_kind(rows: FloatArray, cells: Cells) -> IntArray:
-    """The clips that are cyclic as most of their cell are; a mean of both would be neither."""
+    """Indices of the clips that are cyclic, or not, like most clips of their cell."""
     is_cyclic = rows[:, -1] >= 0.5
     share = np.bincount(cells.member, weights=is_cyclic, minlength=len(cells)) / cells.takes
     return np.flatnonzero(is_cyclic == (share >= 0.5)[cells.member])

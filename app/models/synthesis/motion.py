@@ -1,10 +1,9 @@
-"""From a motion shape to a body in the world.
+"""From a motion shape to a body that moves in the world.
 
-A cycle goes round and round. What does not go round has more in it than 32 moments can say
-(a hand that waves): there a real take of the task is followed, led to where the shape wants
-it, slowly, so that what is quick stays the take's own; it hurries and lingers where the shape
-does, else what is quick would come beside what is slow. The way over ground is such that feet
-that stand do not slide.
+A cycle is repeated. Other motions have more detail than 32 moments can hold (a waving hand). For
+them, a real take of the task is the base: a slow correction brings it to the shape and to the
+timing of the shape, so that its quick movements remain. The path over ground is such that standing
+feet do not slide.
 """
 
 from __future__ import annotations
@@ -24,23 +23,26 @@ from app.motion.skeleton.resampling import resample_to, sample_at
 from app.numerics.arrays import FloatArray
 
 USUAL_SECONDS = 4.0
-"""A cycle is repeated until about so long, unless told otherwise."""
+"""Default duration: a cycle is repeated to about this length."""
 
 SLOWLY = 1.0
-"""Of 32 moments (standard deviation): what is quicker is left as the take has it. Unsmoothed,
-the made motions of the bench jerk more than twice as much; at 2.5 they lose half their hits."""
+"""Standard deviation, in moments (of 32), of the smoothing of the correction of a take. Without it,
+the motions of the bench have more than twice the jerk; at 2.5 they lose half their hits."""
 
 TIME_SMOOTHING = 2.0
-"""Of 32 moments: a take is not hurried more suddenly. Unsmoothed, made motions of the bench jerk
-by a quarter more, and are hit no more often."""
+"""Standard deviation, in moments (of 32), of the smoothing of the timing of a take. Without it, the
+motions of the bench have a quarter more jerk, and no more hits."""
 
-SHORTEST_SECONDS = 0.2
+MIN_SECONDS = 0.2
 
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """A body at ANALYSIS_RATE: positions (n, 13, 3) metres, Y up, in SUN_ROLES order, and its
-    heading (n,) radians about Y; cycles: how often it goes round, 0 where it does not."""
+    """A moving body at ANALYSIS_RATE.
+
+    positions: (n, 13, 3) meters, Y up, in SUN_ROLES order; heading: (n,) radians about Y;
+    cycles: number of cycles, 0 for a motion that is not cyclic.
+    """
 
     positions: FloatArray
     heading: FloatArray
@@ -55,23 +57,23 @@ def course_of(
     take: FloatArray | None = None,
     take_shape: FloatArray | None = None,
 ) -> Course:
-    """The motion of a shape (1378,) by a body of `body_length` metres.
+    """The motion of a shape (1378,) by a body of `body_length` meters.
 
-    seconds: wished for; a cycle is repeated to about that long, anything else is stretched to
-    it; by default as long as the shape says. take: (n, 43) moments of a real take that is not
-    cyclic and take_shape (1378,) its shape, for its detail.
+    seconds: the requested duration; a cycle is repeated to about this length, any other motion
+    is stretched to it; None: the duration of the shape (cycles: USUAL_SECONDS). take: (n, 43)
+    moments of a real take that is not cyclic, and take_shape (1378,) its shape, for the detail.
     """
-    told = parts_of(shape)
-    if told.is_cyclic:
-        moments, cycles = _repeated(shape, told, seconds)
+    split = parts_of(shape)
+    if split.is_cyclic:
+        moments, cycles = _repeated(shape, split, seconds)
     else:
-        moments, cycles = _stretched(shape, seconds or told.seconds, take, take_shape), 0
+        moments, cycles = _stretched(shape, seconds or split.seconds, take, take_shape), 0
     return _in_the_world(moments, body_length, cycles)
 
 
-def _repeated(shape: FloatArray, told: Shape, seconds: float | None) -> tuple[FloatArray, int]:
-    """(n, 43) whole cycles, each of as many frames: the end meets the start."""
-    frames = max(round(told.seconds * ANALYSIS_RATE), 4)
+def _repeated(shape: FloatArray, split: Shape, seconds: float | None) -> tuple[FloatArray, int]:
+    """(n, 43) whole cycles of equal length; the end meets the start."""
+    frames = max(round(split.seconds * ANALYSIS_RATE), 4)
     wished = USUAL_SECONDS if seconds is None else seconds
     cycles = max(round(wished * ANALYSIS_RATE / frames), 1)
     around = _moments(shape)
@@ -83,7 +85,7 @@ def _repeated(shape: FloatArray, told: Shape, seconds: float | None) -> tuple[Fl
 def _stretched(
     shape: FloatArray, seconds: float, take: FloatArray | None, take_shape: FloatArray | None
 ) -> FloatArray:
-    frames = max(round(max(seconds, SHORTEST_SECONDS) * ANALYSIS_RATE), 2)
+    frames = max(round(max(seconds, MIN_SECONDS) * ANALYSIS_RATE), 2)
     wanted = _moments(shape)
     if take is None or take_shape is None:
         return resample_to(wanted, frames)
@@ -93,7 +95,7 @@ def _stretched(
     slow = scipy.ndimage.gaussian_filter1d(wanted - there, SLOWLY, axis=0, mode="nearest")
     detailed = _in_time(take, timed.timing[0], frames)
     made = detailed + resample_to(slow, frames)
-    # As high over the floor as the take, and what the shape adds: the sum of two poses is not.
+    # The height is that of the take plus the change of the shape: a sum of poses has another.
     higher = clearance(wanted) - clearance(there)
     higher = scipy.ndimage.gaussian_filter1d(higher, SLOWLY, mode="nearest")[:, None]
     made[:, 39] += clearance(detailed) + resample_to(higher, frames)[:, 0] - clearance(made)
@@ -101,7 +103,7 @@ def _stretched(
 
 
 def _in_time(take: FloatArray, timing: FloatArray, frames: int) -> FloatArray:
-    """(frames, 43) the moments of a take (n, 43) where its own time is late by `timing` (32,)."""
+    """(frames, 43) the moments of a take (n, 43), delayed by `timing` (32,) moments."""
     steady = resample_to(take, frames)
     late = np.interp(np.linspace(0, SAMPLES - 1, frames), np.arange(SAMPLES), timing)
     return sample_at(steady, np.arange(frames) + late * (frames - 1) / (SAMPLES - 1))

@@ -1,5 +1,8 @@
-"""What someone is expected to do who did something else: from the cells of a library to the
-solver's tensors (`synthesis_tensor`) and back to a motion in its own time."""
+"""Predicts the motion of a person at a task from their motions at other tasks.
+
+It collects the tensors for the solver (app.models.synthesis.tensor) and brings the solution back to
+its own time.
+"""
 
 from __future__ import annotations
 
@@ -25,21 +28,25 @@ from app.models.synthesis.tensor import (
 from app.models.synthesis.timing import Timed, in_own_time
 from app.numerics.arrays import FloatArray
 
-MOST_TASKS = 24
-"""Tasks of which one is made: the most alike; more only cost time."""
+MAX_TASKS = 24
+"""Largest number of tasks that a prediction uses: the most similar ones. More only cost time."""
 
-MOST_PERSONS = 64
-"""Persons of whose motions one is made: those who did most of the same tasks."""
+MAX_PERSONS = 64
+"""Largest number of persons that a prediction uses: those who did most of the same tasks."""
 
 TEMPO_SLACK = 0.15
-"""Of log seconds: nobody is made to be much quicker or slower at a task than all who did it."""
+"""In log seconds: how much quicker or slower a prediction may be than all persons who did the
+task."""
 
 
 @dataclass(frozen=True, slots=True)
 class Predicted:
-    """shape: (1378,) the motion shape; follows: the person whose motion it follows where those
-    who did the task do not agree; agreement: how far they do, of a single person how far their
-    takes do, None of a single take."""
+    """A predicted motion.
+
+    shape: (1378,) the motion shape; follows: the person whose motion it follows, if the persons
+    who did the task do not agree; agreement: their agreement; for a single person that of their
+    takes, None for a single take.
+    """
 
     shape: FloatArray
     follows: str | None
@@ -49,22 +56,20 @@ class Predicted:
 def predict(
     record: Synthesis, given: Mapping[str, FloatArray], task: str, but: Sequence[str] = ()
 ) -> Predicted:
-    """`task` by someone whose motion shapes (1378,) of other tasks are `given`.
+    """Predict `task` for a person whose motion shapes (1378,) of other tasks are `given`.
 
-    but: persons who are not to be learned from, as the asked one. Raises NotEnoughLabels where
-    nobody else did the task, or nothing that the asked person did.
+    but: persons to leave out, such as the person themselves. Raises NotEnoughLabels if nobody
+    else did the task, or if nobody who did it did a task of the person.
     """
-    told = {name: shape for name, shape in given.items() if name in record.tasks and name != task}
+    usable = {name: shape for name, shape in given.items() if name in record.tasks and name != task}
     others = [name for name in record.who_did(task) if name not in but]
-    if not told:
-        raise NotEnoughLabels(
-            "A clip of another task of the library is needed of the person asked for."
-        )
+    if not usable:
+        raise NotEnoughLabels("The person must have a clip of another task of the library.")
     if not others:
-        raise NotEnoughLabels(f"Nobody else did the task {task}: a clip of another person's.")
-    chosen = _most_alike(record, told, task)
+        raise NotEnoughLabels(f"Another person must have a clip of the task {task}.")
+    chosen = _most_alike(record, usable, task)
     others = _who_shares_most(record, others, chosen)
-    own = own_motions(record, {name: told[name] for name in chosen})
+    own = own_motions(record, {name: usable[name] for name in chosen})
     aim = wanted_motions(record, task, others, own)
     known = known_tensor(record, others, own, aim.timed)
     follows = None
@@ -79,17 +84,17 @@ def predict(
 
 
 def _made_of_all(known: KnownTensor, wanted: Timed, own: Timed) -> tuple[FloatArray, FloatArray]:
-    """(1378,) and its timing (32,), which is made of the tasks as the motion is."""
+    """A shape (1378,) and its timing (32,), both solved from the other tasks."""
     solution = solve(known.basis, wanted.shapes, own.shapes)
-    beside = solution.weights @ (own.timing - known.timing.mean(axis=0))
-    timing = wanted.timing.mean(axis=0) + solution.carried * beside
+    difference = solution.weights @ (own.timing - known.timing.mean(axis=0))
+    timing = wanted.timing.mean(axis=0) + solution.carried * difference
     return _as_one_does_it(solution.shape, wanted.shapes), timing
 
 
 def _following(
     known: KnownTensor, wanted: WantedMotions, own: Timed
 ) -> tuple[FloatArray, FloatArray]:
-    """(1378,) and timing (32,) of the one most like all."""
+    """A shape (1378,) and timing (32,) from the person who is most like all others."""
     one = wanted.most_like_all
     theirs = wanted.timed.shapes[one]
     shape = follow(known.basis[one], theirs, own.shapes)
@@ -97,7 +102,8 @@ def _following(
 
 
 def _as_one_does_it(shape: FloatArray, wanted: FloatArray) -> FloatArray:
-    """The shape (1378,) of the kind, about as quick and as high as those who do it (K, 1378)."""
+    """The shape (1378,), cyclic or not, with a speed and height like those of the others
+    (K, 1378)."""
     shape = np.array(shape)
     shape[-1] = float(np.mean(wanted[:, -1]) >= 0.5)
     shortest, longest = wanted[:, -2].min(), wanted[:, -2].max()
@@ -106,9 +112,9 @@ def _as_one_does_it(shape: FloatArray, wanted: FloatArray) -> FloatArray:
 
 
 def _off_the_floor(shape: FloatArray, wanted: FloatArray) -> FloatArray:
-    """The shape (1378,) as high over the floor as somebody is who does the task (K, 1378).
+    """The shape (1378,) at the height above the floor of a person who does the task (K, 1378).
 
-    Legs and hips have weights of their own: bent knees would leave the feet in the air.
+    Legs and hips have separate weights, so bent knees could leave the feet in the air.
     """
     moments = shape[:-2].reshape(SAMPLES, CHANNELS)
     there = clearance(wanted[:, :-2].reshape(-1, SAMPLES, CHANNELS))
@@ -117,23 +123,23 @@ def _off_the_floor(shape: FloatArray, wanted: FloatArray) -> FloatArray:
     return np.concatenate([moments.ravel(), shape[-2:]])
 
 
-def _most_alike(record: Synthesis, told: Mapping[str, FloatArray], task: str) -> list[str]:
-    """The told tasks that are most like the wanted one, themselves or mirrored."""
-    if len(told) <= MOST_TASKS:
-        return list(told)
+def _most_alike(record: Synthesis, usable: Mapping[str, FloatArray], task: str) -> list[str]:
+    """The tasks that are most similar to the wanted one, as they are or mirrored."""
+    if len(usable) <= MAX_TASKS:
+        return list(usable)
     scale, aim = weights(), record.reference(task)
-    means = np.stack([record.reference(name) for name in told])
+    means = np.stack([record.reference(name) for name in usable])
     away = [np.linalg.norm((rows - aim) * scale, axis=1) for rows in (means, mirrored(means))]
-    near = np.argsort(np.min(away, axis=0), kind="stable")[:MOST_TASKS]
-    names = list(told)
+    near = np.argsort(np.min(away, axis=0), kind="stable")[:MAX_TASKS]
+    names = list(usable)
     return [names[i] for i in np.sort(near)]
 
 
 def _who_shares_most(record: Synthesis, persons: list[str], tasks: list[str]) -> list[str]:
-    """The persons who did most of these tasks: of them there is least to be completed."""
-    if len(persons) <= MOST_PERSONS:
+    """The persons who did most of these tasks, since they have the fewest missing cells."""
+    if len(persons) <= MAX_PERSONS:
         return persons
     wanted = np.isin(record.task, [record.tasks.index(name) for name in tasks])
     shared = np.bincount(record.person[wanted], minlength=len(record.persons))
     count = [shared[record.persons.index(name)] for name in persons]
-    return [persons[i] for i in np.sort(np.argsort(-np.array(count), kind="stable")[:MOST_PERSONS])]
+    return [persons[i] for i in np.sort(np.argsort(-np.array(count), kind="stable")[:MAX_PERSONS])]

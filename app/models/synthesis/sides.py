@@ -1,9 +1,8 @@
-"""Which side takes of a task are done to: with the right hand, or with the left.
+"""The side of each take of a task: done with the right hand (or leg), or with the left.
 
-Half of a kick with either leg is no kick. Where the takes of a task are truly of two sides,
-that is where changing left and right in some of them makes all of them much more alike, those
-are mirrored before means are taken. Takes of different tasks are never held against each other:
-there the side may be what makes the task.
+The mean of a left and a right kick is not a kick. A task has two sides if mirroring some of its
+takes makes all takes much more similar. These takes are mirrored before means are computed. Takes
+of different tasks are never compared, since the side may be the difference between two tasks.
 """
 
 from __future__ import annotations
@@ -18,16 +17,19 @@ from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.signs import fix_signs
 
 LEFT_OF_SCATTER = 0.8
-"""Share of the takes' scatter that may be left when some are mirrored, for a task of two sides.
-On all tasks of real clips but a dance 1.00 were left; of the demo's kicks .45, of waves .23."""
+"""A task has two sides if mirroring leaves at most this share of its takes' scatter. Measured:
+1.00 for all tasks of real clips except a dance; .45 for the demo's kicks, .23 for its waves."""
 
 ROUNDS = 4
-"""Of changing sides towards the mean; few takes change after the first."""
+"""Rounds of assigning sides by the mean; few takes change after the first round."""
 
 
 def sides(shapes: FloatArray) -> IntArray:
-    """(n,) of motion shapes (n, 1378) of one task, +1 or -1 by side, +1 for the more frequent
-    (else for the first take's); all 0 where the task is not of two sides, or goes round."""
+    """(n,) the side of each of the motion shapes (n, 1378) of one task: +1 or -1.
+
+    +1 is the more frequent side (or the side of the first take if both are equally frequent).
+    All are 0 if the task has no sides or is cyclic.
+    """
     none = np.zeros(len(shapes), dtype=np.int64)
     if len(shapes) < 2 or (shapes[:, -1] >= 0.5).any():
         return none
@@ -37,7 +39,7 @@ def sides(shapes: FloatArray) -> IntArray:
     side = _halves(gram)
     if abs(side.sum()) == len(side):
         return none
-    # mirroring keeps lengths, and of the mean changes only what differs between the sides
+    # mirroring keeps norms; it changes only the part of the mean that differs between the sides
     centred = (rows - rows.mean(axis=0)) * weights()
     scatter = float((centred**2).sum())
     gained = float(side @ gram @ side - gram.sum()) / len(side)
@@ -47,8 +49,11 @@ def sides(shapes: FloatArray) -> IntArray:
 
 
 def to_side(shapes: FloatArray, side: IntArray, wanted: int | IntArray) -> FloatArray:
-    """(n, 1378) motion shapes (n, 1378) of which those of the other side than `wanted`, one or
-    (n,), are mirrored; side: (n,) their sides, where either is 0 they stay as they are."""
+    """(n, 1378) the motion shapes (n, 1378), mirrored where their side is not the wanted one.
+
+    side: (n,) their sides; wanted: one side, or (n,) sides. A shape with a 0 in either stays as
+    it is.
+    """
     changed = np.asarray(side) * wanted < 0
     turned = np.array(shapes, dtype=np.float64)
     if changed.any():
@@ -57,11 +62,11 @@ def to_side(shapes: FloatArray, side: IntArray, wanted: int | IntArray) -> Float
 
 
 def likely_side(asked: Sequence[int], theirs: Sequence[IntArray], wanted: IntArray) -> int:
-    """The side, +1 or -1, to which someone does a task who does others to the sides `asked`.
+    """The likely side, +1 or -1, of a task by a person with the sides `asked` of other tasks.
 
-    theirs: for each of these tasks the sides (K,) of the K persons who did the wanted task, to
-    the sides `wanted` (K,); 0 where not known. As far as persons do both to related sides this
-    tells; else the side that most of them take.
+    theirs: for each of these tasks, the sides (K,) of K persons who did the wanted task to the
+    sides `wanted` (K,); 0 if unknown. The result follows the correlation of the sides of both
+    tasks; without one, it is the most frequent side.
     """
     votes = 0.0
     for own, others in zip(asked, theirs, strict=True):
@@ -74,7 +79,10 @@ def likely_side(asked: Sequence[int], theirs: Sequence[IntArray], wanted: IntArr
 
 
 def _halves(gram: FloatArray) -> IntArray:
-    """(n,) +1 and -1 that make the sum of what these are the inner products of long."""
+    """(n,) signs +1 and -1 that make the norm of the signed sum of n vectors large.
+
+    gram: (n, n) their inner products.
+    """
     _, vectors = np.linalg.eigh(gram)
     first = fix_signs(vectors[:, -1:])[:, 0]
     side = np.where(first >= 0, 1, -1)

@@ -1,17 +1,17 @@
-"""The parameters of a task, solved jointly (Vasilescu 2002, eq. 8), and what they make.
+"""Solves for the parameters of a task (Vasilescu 2002, eq. 8) and predicts its motion.
 
-The weights w with which the tasks that the asked person did make the wanted one of other
-persons' motions are found over all these persons at once (least squares, not a mean of
-inverses); the same w makes it of the person's own. Beyond the paper, each of which raised the
-held-out hits (tests/bench/test_synthesis.py) but for the second, which brought what is made
-nearer to what was left out:
-- what w leaves over of the others' motions is carried over as their mean ("residual");
-- how the asked person moves otherwise than the others is carried over as far as the tasks'
-  movements tell of each other: a kick's does not belong into a bow, how one stands in both does;
-- the parts of the body have weights of their own, drawn towards those of the whole;
-- a mirrored task is a task: raising the left hand tells how one raises the right.
-Where the others do not agree on the task no weights make it of other tasks: one of the others is
-followed, and only the asked person's posture carried over.
+Weights w express the wanted task as a combination of other tasks. They are fitted over all other
+persons at once (least squares, not a mean of inverses). Then w is applied to the asked person's own
+tasks. There are four additions to the paper. All but the second raised the held-out hits
+(tests/bench/test_synthesis.py); the second brought predictions nearer to the left-out motions.
+- The residual of the fit is added as its mean over the other persons.
+- The difference between the asked person and the others is added in proportion to how well the
+  tasks explain each other. The difference in a kick does not belong in a bow; the difference in
+  standing belongs in both.
+- The parts of the body have separate weights, shrunk toward those of the whole body.
+- A mirrored task is another task: raising the left hand helps to predict raising the right.
+If the others do not agree on the task, no weights can express it. Then the prediction follows one
+of the others, and adds only the posture of the asked person.
 """
 
 from __future__ import annotations
@@ -26,20 +26,24 @@ from app.models.synthesis.basis import parts, weights
 from app.numerics.arrays import FloatArray
 
 WHOLE_RIDGE = 0.01
-"""Pull of the weights of the whole towards the mean of the tasks, in mean squares of a task."""
+"""Ridge penalty that shrinks the weights of the whole body toward the mean of the tasks, relative
+to the mean square of a task."""
 
 PART_RIDGE = 0.02
-"""Pull of a part's weights towards those of the whole, likewise."""
+"""Ridge penalty that shrinks the weights of a part toward those of the whole, likewise relative."""
 
 EXPLAINED = 0.5
-"""Share of a task's movement that must come of the other tasks for a person's own way of moving
-to be carried over whole; with less it is in proportion."""
+"""If the other tasks explain at least this share of the movement of a task, the person's difference
+is added in full, else in proportion."""
 
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """shape: (1378,) what is made; weights: (T,) of the tasks, themselves and mirrored, for the
-    body as a whole; carried: share 0..1 of what it moves otherwise that was carried over."""
+    """A solution.
+
+    shape: (1378,) the predicted shape; weights: (T,) weight of each task for the whole body, as
+    it is and mirrored together; carried: share 0..1 of the person's difference that was added.
+    """
 
     shape: FloatArray
     weights: FloatArray
@@ -47,14 +51,17 @@ class Solution:
 
 
 def solve(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> Solution:
-    """What K persons did and the wanted task by each, (K, T, 1378), (K, 1378), and what the asked
-    person did, (T, 1378): eq. 8 jointly, and the residual carried over."""
+    """Solve eq. 8 for all persons jointly, and add the residual.
+
+    basis: (K, T, 1378) shapes of T tasks by K other persons; wanted: (K, 1378) the wanted task by
+    each of them; own: (T, 1378) the T tasks by the asked person.
+    """
     scale, tasks = weights(), basis.shape[1]
     both = np.concatenate([basis, _mirrored(basis)], axis=1) * scale  # (K, 2T, d)
     asked = np.concatenate([own, mirrored(own)]) * scale  # (2T, d)
     target = wanted * scale
     prior = np.concatenate([np.full(tasks, 1 / tasks), np.zeros(tasks)])
-    beside = asked - both.mean(axis=0)
+    difference = asked - both.mean(axis=0)
     split = [(part, np.take(both, part, axis=2)) for part in parts()]
     normal = [_normal(basis, target[:, part]) for part, basis in split]
     gram, aim = (np.sum([pair[i] for pair in normal], axis=0) for i in range(2))
@@ -63,7 +70,7 @@ def solve(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> Solution:
     for (part, basis), (gram, aim) in zip(split, normal, strict=True):
         w = _ridge(gram, aim, shared, PART_RIDGE)
         made[:, part] = np.matmul(w, basis)
-        apart[part] = w @ beside[:, part]
+        apart[part] = w @ difference[:, part]
     held, of_each = _held(apart), shared[:tasks] + shared[tasks:]
     carried = min(_explained(made, target) / EXPLAINED, 1.0)
     shape = (target.mean(axis=0) + held + carried * (apart - held)) / scale
@@ -71,21 +78,25 @@ def solve(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> Solution:
 
 
 def follow(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> FloatArray:
-    """(1378,) what one person did of the wanted task, (1378,), in the posture of another; of what
-    both did otherwise, (T, 1378) by each. How the whole goes and lasts stays as it is: how one
-    walks is not how one goes about another's dance."""
+    """(1378,) the wanted task by another person, in the posture of the asked person.
+
+    basis, own: (T, 1378) other tasks by the followed and by the asked person; wanted: (1378,)
+    the wanted task by the followed person. Path and duration stay those of the followed person:
+    the way one walks does not change the path of another person's dance.
+    """
     posture = _held((own - basis).mean(axis=0))
     posture[parts()[-1]] = 0.0
     return np.asarray(wanted + posture)
 
 
 def effects_only(basis: FloatArray, wanted: FloatArray, own: FloatArray) -> FloatArray:
-    """As `solve`, by person and task effects added up: a baseline."""
+    """(1378,) the sum of person and task effects, a baseline; parameters as in `solve`."""
     return np.asarray(own.mean(axis=0) + (wanted - basis.mean(axis=1)).mean(axis=0))
 
 
 def _held(shapes: FloatArray) -> FloatArray:
-    """(..., 1378) the mean over the 32 moments in each; how long, and whether cyclic, as it is."""
+    """(..., 1378) shapes with the mean over the 32 moments in each moment; duration and cyclicity
+    unchanged."""
     moments = shapes[..., :-2].reshape(*shapes.shape[:-1], SAMPLES, CHANNELS)
     mean = np.broadcast_to(moments.mean(axis=-2, keepdims=True), moments.shape)
     flat = mean.reshape(*shapes.shape[:-1], SAMPLES * CHANNELS)
@@ -93,20 +104,20 @@ def _held(shapes: FloatArray) -> FloatArray:
 
 
 def _explained(made: FloatArray, target: FloatArray) -> float:
-    """Share 0..1 of the movement in `target` (K, 1378) that is in `made`, squares summed."""
+    """The share 0..1 of the movement in `target` (K, 1378) that `made` explains (by squares)."""
     moving = target - _held(target)
     left = moving - (made - _held(made))
     return max(0.0, 1.0 - float((left**2).sum() / max((moving**2).sum(), 1e-12)))
 
 
 def _normal(basis: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(2T, 2T) and (2T,): the normal equations of all persons together."""
+    """(2T, 2T) and (2T,): the sums of the normal equations of all persons."""
     gram = np.matmul(basis, basis.transpose(0, 2, 1)).sum(axis=0)
     return gram, np.matmul(basis, target[:, :, None]).sum(axis=0)[:, 0]
 
 
 def _ridge(gram: FloatArray, aim: FloatArray, prior: FloatArray, ridge: float) -> FloatArray:
-    """(2T,) weights nearest to the aim, drawn towards `prior`."""
+    """(2T,) the solution of the normal equations, shrunk toward `prior` (2T,)."""
     size = len(gram)
     pull = ridge * float(np.trace(gram)) / size + 1e-12
     return np.asarray(prior + np.linalg.solve(gram + pull * np.eye(size), aim - gram @ prior))

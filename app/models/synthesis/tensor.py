@@ -1,7 +1,7 @@
-"""The cells that a motion is made of, to the sides and in the time in which they can be added.
+"""Collects the cells for a prediction, and aligns their sides and times so that they can be added.
 
-Nobody's own motions are mirrored: those of the others are, to the sides to which the asked
-person does things. Missing cells are completed by person and task effects.
+The motions of the asked person are never mirrored. Those of the others are mirrored to the sides of
+the asked person. Missing cells are completed by person and task effects.
 """
 
 from __future__ import annotations
@@ -24,8 +24,11 @@ from app.numerics.arrays import FloatArray, IntArray
 
 @dataclass(frozen=True, slots=True)
 class OwnMotions:
-    """tasks: (T,) names; side: (T,) to which the asked person does each, 0 where it has none;
-    timed: their shapes in the time of the tasks."""
+    """The motions of the asked person.
+
+    tasks: (T,) names; side: (T,) the person's side of each, 0 for a task without sides; timed:
+    the shapes in the time of their tasks.
+    """
 
     tasks: tuple[str, ...]
     side: IntArray
@@ -34,9 +37,12 @@ class OwnMotions:
 
 @dataclass(frozen=True, slots=True)
 class WantedMotions:
-    """timed: the wanted task by K persons, to the side to which the asked one would do it;
-    agreement: how far they agree, of a single person their takes, None of a single take;
-    most_like_all: which of them is most like the others."""
+    """The wanted task by K other persons.
+
+    timed: their shapes, mirrored to the likely side of the asked person; agreement: their
+    agreement, for a single person that of their takes, None for a single take; most_like_all:
+    index of the person who is most like the others.
+    """
 
     timed: Timed
     agreement: float | None
@@ -45,14 +51,14 @@ class WantedMotions:
 
 @dataclass(frozen=True, slots=True)
 class KnownTensor:
-    """basis: (K, T, 1378) what the others did; timing: (K, T, 32)."""
+    """basis: (K, T, 1378) shapes of T tasks by K other persons; timing: (K, T, 32)."""
 
     basis: FloatArray
     timing: FloatArray
 
 
 def own_motions(record: Synthesis, given: Mapping[str, FloatArray]) -> OwnMotions:
-    """What the asked person did, shapes (1378,) by task, as their own tensor."""
+    """The motions of the asked person, from shapes (1378,) by task."""
     tasks = tuple(given)
     shapes = np.stack([given[name] for name in tasks]).astype(np.float64)
     references = np.stack([record.reference(name) for name in tasks])
@@ -70,7 +76,7 @@ def own_motions(record: Synthesis, given: Mapping[str, FloatArray]) -> OwnMotion
 def wanted_motions(
     record: Synthesis, task: str, persons: list[str], own: OwnMotions
 ) -> WantedMotions:
-    """The wanted task by `persons`; sides and time are theirs alone, nobody else's."""
+    """The wanted task by `persons`; sides and time are computed from these persons only."""
     cells = [record.cell(name, task) for name in persons]
     shapes = np.stack([cell for cell in cells if cell is not None])
     side = sides(shapes)
@@ -87,8 +93,10 @@ def wanted_motions(
 def known_tensor(
     record: Synthesis, persons: list[str], own: OwnMotions, wanted: Timed
 ) -> KnownTensor:
-    """What `persons` (K) did of the asked person's tasks; wanted: (K, ...) the wanted task by
-    them, which tells of a person too where something is missing."""
+    """The asked person's tasks by `persons` (K).
+
+    wanted: (K, ...) the wanted task by them; it helps to complete missing cells.
+    """
     person, task = _places(record.persons, persons), _places(record.tasks, list(own.tasks))
     kept = np.flatnonzero((person[record.person] >= 0) & (task[record.task] >= 0))
     rows, columns = person[record.person[kept]], task[record.task[kept]]
@@ -102,7 +110,7 @@ def known_tensor(
 
 
 def _completed(known: FloatArray, own: OwnMotions, wanted: Timed) -> FloatArray:
-    """(missing, ...) what person and task effects expect of the cells that `known` lacks."""
+    """(missing, ...) the missing cells of `known`, predicted by person and task effects."""
     persons, tasks = known.shape[:2]
     missing = np.isnan(known[:, :, 0])
     rows, columns = np.nonzero(~missing)
@@ -121,14 +129,14 @@ def _completed(known: FloatArray, own: OwnMotions, wanted: Timed) -> FloatArray:
 
 
 def _nearer_side(shape: FloatArray, reference: FloatArray) -> int:
-    """The side of a shape (1378,) of a task of two sides; reference: one to the side +1."""
+    """The side of a shape (1378,) of a task with two sides; reference: a shape of the side +1."""
     both = np.stack([shape, mirrored(shape[None])[0]])
     away = np.linalg.norm((both - reference) * weights(), axis=1)
     return 1 if away[0] <= away[1] else -1
 
 
 def _sides_of(record: Synthesis, persons: list[str], tasks: tuple[str, ...]) -> list[IntArray]:
-    """For each task the sides (K,) to which the persons do it, 0 where they do not."""
+    """For each task, the sides (K,) of the persons; 0 if a person did not do it."""
     found = np.zeros((len(tasks), len(persons)), dtype=np.int64)
     person, task = _places(record.persons, persons), _places(record.tasks, list(tasks))
     kept = np.flatnonzero((person[record.person] >= 0) & (task[record.task] >= 0))
@@ -137,7 +145,7 @@ def _sides_of(record: Synthesis, persons: list[str], tasks: tuple[str, ...]) -> 
 
 
 def _places(names: tuple[str, ...], chosen: list[str]) -> IntArray:
-    """(names,) where each stands among the chosen, -1 where it does not."""
+    """(names,) the index of each name in `chosen`, -1 if it is not there."""
     found = np.full(len(names), -1)
     found[[names.index(name) for name in chosen]] = np.arange(len(chosen))
     return found

@@ -1,7 +1,7 @@
-"""Motion shapes warped to the time of their group, and back to a time of their own.
+"""Warps motion shapes to the time of their group, and back to their own time.
 
-Of takes that are not cycles, one begins late and another is slow; the mean of the takes as they
-are would show half a gesture twice. Each is warped onto the mean of its group
+Takes that are not cycles begin at different times and have different speeds; without alignment,
+their mean would show half a gesture twice. Each take is warped onto the mean of its group
 (app.numerics.alignment.group_warping). The difference between its time and that of the group is its
 *timing*, which is learned and carried over like the rest of a motion. Cycles are aligned where
 they are cut, so they are not warped.
@@ -38,8 +38,8 @@ _STEADY: FloatArray = np.arange(SAMPLES, dtype=np.float64)
 
 @dataclass(frozen=True, slots=True)
 class Timed:
-    """shapes: (n, 1378) motion shapes in the time of their group; timing: (n, 32) moments by
-    which each is late in its own time, zeros for cycles and for a take that is alone."""
+    """shapes: (n, 1378) motion shapes in the time of their group; timing: (n, 32) the delay, in
+    moments, of each in its own time; zeros for cycles and for single takes."""
 
     shapes: FloatArray
     timing: FloatArray
@@ -58,10 +58,10 @@ def together(shapes: FloatArray, group: IntArray) -> Timed:
     moments = moments_of_shapes(shapes[chosen])
     group = np.unique(group[chosen], return_inverse=True)[1]
     medoids = moments[_medoids(moments, group)]
-    # the last round gives the times, not another mean
+    # the last round computes only the times
     means = means_of_warped(moments, group, medoids, _by_movement, ROUNDS - 1)
     times = _times(moments, means[group])
-    # the time of the group is the mean of its members'
+    # the time of a group is the mean time of its members
     usual = inverse(rising(group_means(times, group)))[group]
     times = rising(read_at(times[:, :, None], usual)[:, :, 0])
     shapes[chosen, :-2] = read_at(moments, times).reshape(len(chosen), -1)
@@ -102,7 +102,7 @@ def moments_of_shapes(shapes: FloatArray) -> FloatArray:
 
 
 def _can_be_warped(shapes: FloatArray, group: IntArray) -> BoolArray:
-    """(n,) which are in a group of several takes, none of them a cycle."""
+    """(n,) whether each is in a group of several takes without a cycle."""
     count = np.bincount(group)
     cyclic = np.bincount(group, weights=shapes[:, -1] >= 0.5)
     return np.asarray(((count > 1) & (cyclic == 0))[group])
@@ -114,7 +114,7 @@ def _times(moments: FloatArray, references: FloatArray) -> FloatArray:
 
 
 def _by_movement(moments: FloatArray, references: FloatArray) -> FloatArray:
-    """(n, 32, 43) `moments` read at the times that go with the `references`."""
+    """(n, 32, 43) `moments` at the times that correspond to the moments of `references`."""
     return read_at(moments, _times(moments, references))
 
 

@@ -1,1 +1,1 @@
-"""Words and motions: Takano, and the default word model."""
+"""Words and motions: Takano's model and the default word model."""

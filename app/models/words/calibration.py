@@ -1,8 +1,8 @@
-"""From the word model's outputs to probabilities, learned on clips that were held out.
+"""Calibration of the word model: from its outputs to probabilities, learned on held-out clips.
 
-One monotone curve serves all words: the share of (clip, word) pairs that are so, among pairs
-of like output (isotonic regression). A query of several words asks for clips that carry all
-of them; since words go together, that is likelier than the product of their probabilities.
+One monotone curve (isotonic regression) serves all words: the share of true (clip, word) pairs
+among pairs with similar outputs. A query of several words asks for clips with all of them. Since
+words occur together, this is more likely than the product of their probabilities.
 Shapes: clips N, words V, asked words q.
 """
 
@@ -20,19 +20,21 @@ from app.numerics.arrays import FloatArray
 from app.numerics.isotonic import rising_means
 
 FOLDS = 5
-MOST_CLIPS = 2000
-"""Clips on which the calibration is learned: more do not change the curve."""
+MAX_CLIPS = 2000
+"""Largest number of clips of the calibration; more do not change the curve."""
 SMOOTHING = 1e-3
-"""Share of a logistic curve in the calibration: where no held-out output lay, and below those
-that were ever right, more is still likelier than less."""
-MOST_SETS = 300
+"""Share of a logistic curve in the calibration, so that it rises strictly also beyond the held-out
+outputs and below the smallest true one."""
+MAX_SETS = 300
 _DEPENDENCES = np.linspace(0.0, 1.0, 21)
 
 
 @dataclass(frozen=True, slots=True)
 class WordCalibration:
-    """outputs: (k,) rising, shares: (k,) rising in 0..1, between which is interpolated;
-    dependence: 1 where words of a query are independent, 0 where one brings all others along.
+    """A fitted calibration.
+
+    outputs: (k,) ascending; shares: (k,) ascending in 0..1, interpolated between the outputs;
+    dependence: 1 if the words of a query are independent, 0 if one word implies all others.
     """
 
     outputs: FloatArray
@@ -40,16 +42,17 @@ class WordCalibration:
     dependence: float
 
     def probabilities(self, outputs: FloatArray) -> FloatArray:
-        """Of the same shape as `outputs`, strictly rising with them, above 0 and below 1."""
+        """Probabilities of `outputs` (any shape), strictly ascending with them, in (0, 1)."""
         curve = np.interp(outputs, self.outputs, self.shares)
-        # exp never overflows here, whatever an output far from all training clips may be
+        # exp cannot overflow here, even for an output far from all training clips
         logistic = 1.0 / (1.0 + np.exp(-4.0 * np.clip(outputs - 0.5, -50.0, 50.0)))
         return np.asarray((1.0 - SMOOTHING) * curve + SMOOTHING * logistic)
 
     def joint_surprise(self, probabilities: FloatArray) -> FloatArray:
-        """(N,) -ln of the probability that a clip carries all q words, from those of each (N, q).
+        """(N,) -ln of the probability that a clip carries all q words.
 
-        The geometric mean to the power q^dependence: their product where dependence is 1.
+        probabilities: (N, q) of the single words. The result is that of their geometric mean to
+        the power q^dependence; with dependence 1 this is their product.
         """
         count = probabilities.shape[1]
         smallest = np.finfo(np.float64).tiny
@@ -57,7 +60,7 @@ class WordCalibration:
         return np.asarray(mean * count**self.dependence)
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
-        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        """Arrays and JSON-able metadata for `from_arrays`."""
         arrays = {"outputs": self.outputs, "shares": self.shares}
         return arrays, {"dependence": self.dependence}
 
@@ -65,12 +68,12 @@ class WordCalibration:
     def from_arrays(
         cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
     ) -> WordCalibration:
-        """The record that to_arrays took apart."""
+        """The calibration from the result of `to_arrays`."""
         return cls(arrays["outputs"], arrays["shares"], float(meta["dependence"]))
 
 
 AS_THEY_ARE = WordCalibration(np.array([0.0, 1.0]), np.array([0.0, 1.0]), 1.0)
-"""Outputs taken for probabilities: where too few clips are there to hold some out."""
+"""The identity, for libraries with too few clips to hold some out."""
 
 
 def calibrate(
@@ -81,12 +84,13 @@ def calibrate(
     *,
     seed: int = 0,
 ) -> WordCalibration:
-    """Learn how outputs of such a model relate to what held-out clips carry.
+    """Learn the relation between the outputs of `model` and the words of held-out clips.
 
-    model: fitted on all; its kernel's width and penalty serve the folds. statistics: (n, p);
-    labels: (n, V); groups: n, whose members are never parted. Deterministic for a seed.
+    model: fitted on all clips; the folds use the width and penalty of its kernel. statistics:
+    (n, p); labels: (n, V); groups: n, clips of one group are held out together. Deterministic
+    for a seed.
     """
-    chosen = np.sort(np.random.RandomState(seed).permutation(len(statistics))[:MOST_CLIPS])
+    chosen = np.sort(np.random.RandomState(seed).permutation(len(statistics))[:MAX_CLIPS])
     rows, truth = np.asarray(statistics)[chosen], labels[chosen]
     own = [groups[row] for row in chosen]
     folds = min(FOLDS, len(set(own)))
@@ -105,11 +109,11 @@ def calibrate(
 
 
 def _dependence(probabilities: FloatArray, labels: FloatArray, seed: int) -> float:
-    """That under which the label sets of several words are least surprising, held out."""
+    """The dependence with the largest likelihood of the held-out label sets with several words."""
     sets = np.unique(labels[labels.sum(axis=1) > 1.0], axis=0)
     if not len(sets):
         return 1.0
-    sets = sets[np.random.RandomState(seed).permutation(len(sets))[:MOST_SETS]]
+    sets = sets[np.random.RandomState(seed).permutation(len(sets))[:MAX_SETS]]
     losses = np.zeros(len(_DEPENDENCES))
     for wanted in sets > 0.0:
         is_so = labels[:, wanted].all(axis=1)

@@ -1,11 +1,11 @@
 """The correlated space of motions and words (Takano, sections 2.2-2.4, eqs 5-19).
 
-Symbols' coordinates x and label vectors y are projected by CCA to f and g; C takes words
-to the canonical space of motions (eqs 15-19), D motions to that of words. The paper's
-eq. 16, C = S_FG, solves eq. 15 only where S_G is the identity and is printed transposed:
-here both are least squares under a ridge. Close means a small angle by default, which
-ranks better held out than the paper's Euclidean distance (top-3 words .85 against .75 on
-496 real clips); that one stays beside it. Shapes: clips N, words V, dimensions d, k.
+CCA projects the symbols' coordinates x and the label vectors y to f and g. C maps words to the
+canonical space of motions (eqs 15-19), D maps motions to that of words. The paper's eq. 16,
+C = S_FG, solves eq. 15 only if S_G is the identity, and is printed transposed; here both are ridge
+regressions. The default measure is the angle, which ranks better on held-out clips than the paper's
+Euclidean distance (top-3 words .85 against .75 on 496 real clips); the distance is also available.
+Shapes: clips N, words V, dimensions d, k.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ CORRELATED_SPACE_VERSION = 1
 RIDGE = 0.1
 """Share of the mean variance added to each side's covariance in CCA, C and D."""
 
-LEAST_CLIPS = 3
-"""Labelled clips below which there is nothing to correlate."""
+MIN_CLIPS = 3
+"""Labeled clips that a correlated space needs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ class CorrelatedSpace:
         return self.words(np.eye(len(self.pair.y_mean)))
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
-        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        """Arrays and JSON-able metadata for `from_arrays`."""
         arrays = {
             "x_mean": self.pair.x_mean,
             "y_mean": self.pair.y_mean,
@@ -97,7 +97,7 @@ class CorrelatedSpace:
     def from_arrays(
         cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
     ) -> CorrelatedSpace:
-        """The record that to_arrays took apart. Raises ValueError on another version."""
+        """The space from the result of `to_arrays`. Raises ValueError on another version."""
         if meta["version"] != CORRELATED_SPACE_VERSION:
             raise ValueError(f"correlated space of version {meta['version']}")
         names = ("x_mean", "y_mean", "a", "b", "correlations")
@@ -108,14 +108,14 @@ class CorrelatedSpace:
 def fit_correlated_space(
     points: FloatArray, labels: FloatArray, *, ridge: float = RIDGE
 ) -> CorrelatedSpace:
-    """Fit on symbol coordinates (n, d) and label vectors (n, V) of the labelled clips.
+    """Fit on symbol coordinates (n, d) and label vectors (n, V) of the labeled clips.
 
-    ridge: 0 for the pseudo-inverse, as printed: then the covariance of g is the identity, and
-    C is the diagonal of canonical correlations (eq. 16).
-    Raises NotEnoughLabels below LEAST_CLIPS clips or without words.
+    ridge: 0 selects the pseudo-inverse, as printed; then the covariance of g is the identity,
+    and C is the diagonal matrix of canonical correlations (eq. 16).
+    Raises NotEnoughLabels with fewer than MIN_CLIPS clips or without words.
     """
-    if len(points) < LEAST_CLIPS or labels.shape[1] == 0:
-        raise NotEnoughLabels(f"{len(points)} clips have words; {LEAST_CLIPS} are needed.")
+    if len(points) < MIN_CLIPS or labels.shape[1] == 0:
+        raise NotEnoughLabels(f"{len(points)} clips have words; {MIN_CLIPS} are needed.")
     pair = fit_cca(points, labels, ridge=ridge)
     motions = (points - pair.x_mean) @ pair.a
     words = (labels - pair.y_mean) @ pair.b
@@ -123,13 +123,13 @@ def fit_correlated_space(
 
 
 def _cosines(left: FloatArray, right: FloatArray) -> FloatArray:
-    """(N, M) cosines of the rows of (N, k) and (M, k); 0 where a row has no length."""
+    """(N, M) cosines of the rows of (N, k) and (M, k); 0 for a row of zeros."""
     lengths = np.linalg.norm(left, axis=1)[:, None] * np.linalg.norm(right, axis=1)
     return np.asarray(left @ right.T / np.maximum(lengths, 1e-12))
 
 
 def _regress(inputs: FloatArray, outputs: FloatArray, ridge: float) -> FloatArray:
-    """(k, k) T minimising |outputs - inputs T|^2 under the ridge (eq. 15)."""
+    """(k, k) T minimizing |outputs - inputs T|^2 under the ridge (eq. 15)."""
     normal = inputs.T @ inputs
     if ridge == 0.0:
         return np.asarray(np.linalg.lstsq(inputs, outputs, rcond=None)[0])

@@ -1,12 +1,15 @@
-"""From angles in the correlated space to probabilities, learned on clips that were held out.
+"""Calibration of the correlated space: from angles to probabilities, learned on held-out clips.
 
-An angle alone says nothing of how common a word is: a clip at the same angle to *walk* and to
-*juggle* is likelier to be walked. One logistic curve therefore serves all words, over the
-cosine and the log odds that any clip carries the word. Held out on 501 real clips its Brier
-score is .0405 for single words, against .0466 for a rising curve of the cosine alone and .0457
-for the words' frequencies; of whole label sets, which it never saw, .0073 against .0078.
-Clips for words and words for clips lie at other angles (Takano, sections 2.3 and 2.4), so each
-has a curve of its own. Shapes: clips N, words V.
+An angle does not show how common a word is: a clip at the same angle to *walk* and to *juggle* is
+more likely a walk. So one logistic curve for all words depends on the cosine and on the log odds
+that a clip carries the word. On 501 real clips, held out, its Brier score for single words is
+.0405; it is .0466 for a monotone curve of the cosine alone, and .0457 for the words' frequencies.
+For whole label sets, which were not part of the fit, it is .0073 instead of .0078.
+
+The search for clips by words and the search for words by clips have different angles (Takano,
+sections 2.3 and 2.4), so each has its own curve. Shapes: clips N, words V.
+--
+<<
 """
 
 from __future__ import annotations
@@ -19,25 +22,25 @@ import numpy as np
 import scipy
 
 from app.models.folds import grouped_folds
-from app.models.words.correlated_space import LEAST_CLIPS, CorrelatedSpace, fit_correlated_space
+from app.models.words.correlated_space import MIN_CLIPS, CorrelatedSpace, fit_correlated_space
 from app.numerics.arrays import FloatArray
 
 FOLDS = 5
-MOST_CLIPS = 2000
-"""Clips on which the curve is learned: more do not change three numbers."""
+MAX_CLIPS = 2000
+"""Largest number of clips of the calibration; more hardly change its three numbers."""
 
 LEVELS, SLOPES, WEIGHTS = (-10.0, 10.0), (0.5, 50.0), (0.0, 2.0)
-"""Bounds: a score rises with the cosine and with how common a word is, whatever the clips say."""
+"""Bounds: a score always rises with the cosine, and never falls with the frequency of a word."""
 
 START = (0.0, 4.0, 1.0)
-"""Level, slope and weight where too few clips are there to hold some out."""
+"""Level, slope and weight if there are too few clips to hold some out."""
 
 
 @dataclass(frozen=True, slots=True)
 class CosineCalibration:
     """Probability 1 / (1 + exp(-level - slope cosine - weight ln(share / (1 - share)))).
 
-    shares: (V,) how much of the clips carry each word, above 0 and below 1.
+    shares: (V,) the share of clips that carry each word, in (0, 1).
     """
 
     shares: FloatArray
@@ -46,9 +49,9 @@ class CosineCalibration:
     weight: float
 
     def probabilities(self, cosines: FloatArray, shares: FloatArray | float) -> FloatArray:
-        """Of the same shape as `cosines`, strictly rising with them.
+        """Probabilities of `cosines` (any shape), strictly ascending with them.
 
-        shares: of the clips that carry what was asked for, to go with the cosines.
+        shares: the share of clips that carry the words of each cosine; it must broadcast.
         """
         odds = self.level + self.slope * cosines + self.weight * _log_odds(shares)
         return np.asarray(1.0 / (1.0 + np.exp(-odds)))
@@ -58,7 +61,7 @@ class CosineCalibration:
         return self.probabilities(cosines, self.shares)
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
-        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        """Arrays and JSON-able metadata for `from_arrays`."""
         meta = {"level": self.level, "slope": self.slope, "weight": self.weight}
         return {"shares": self.shares}, meta
 
@@ -66,13 +69,14 @@ class CosineCalibration:
     def from_arrays(
         cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
     ) -> CosineCalibration:
-        """The record that to_arrays took apart."""
+        """The calibration from the result of `to_arrays`."""
         return cls(arrays["shares"], meta["level"], meta["slope"], meta["weight"])
 
 
 Cosines = Callable[[CorrelatedSpace, FloatArray], FloatArray]
-"""(N, V) of a space and symbol coordinates (N, d): CorrelatedSpace.single_word_cosines, where
-words ask for clips, or CorrelatedSpace.word_cosines, where clips ask for words."""
+"""Computes cosines (N, V) from a space and symbol coordinates (N, d). It is
+CorrelatedSpace.single_word_cosines to find clips by words, and CorrelatedSpace.word_cosines to find
+words by clips."""
 
 
 def calibrate_cosines(
@@ -83,19 +87,19 @@ def calibrate_cosines(
     *,
     seed: int = 0,
 ) -> CosineCalibration:
-    """Learn how cosines in a correlated space relate to what held-out clips carry.
+    """Learn the relation between cosines in a correlated space and the words of held-out clips.
 
-    points: (n, d) symbol coordinates; labels: (n, V); groups: n, whose members are never
-    parted. Deterministic for a seed.
+    points: (n, d) symbol coordinates; labels: (n, V); groups: n, clips of one group are held out
+    together. Deterministic for a seed.
     """
     shares = (labels.sum(axis=0) + 0.5) / (len(labels) + 1.0)
-    chosen = np.sort(np.random.RandomState(seed).permutation(len(points))[:MOST_CLIPS])
+    chosen = np.sort(np.random.RandomState(seed).permutation(len(points))[:MAX_CLIPS])
     rows, truth, own = points[chosen], labels[chosen], [groups[row] for row in chosen]
     folds = min(FOLDS, len(set(own)))
     if folds < 2:
         return CosineCalibration(shares, *START)
     fold = grouped_folds(own, folds, seed=seed)
-    if np.bincount(fold).max() > len(rows) - LEAST_CLIPS:
+    if np.bincount(fold).max() > len(rows) - MIN_CLIPS:
         return CosineCalibration(shares, *START)
     cosines = np.zeros(truth.shape)
     for one in range(folds):
@@ -108,16 +112,16 @@ def calibrate_cosines(
 def _likeliest(
     cosines: FloatArray, shares: FloatArray, truth: FloatArray
 ) -> tuple[float, float, float]:
-    """Level, slope and weight under which `truth` (n, V) is least surprising."""
-    told = np.stack(
+    """Level, slope and weight with the largest likelihood of `truth` (n, V)."""
+    terms = np.stack(
         [np.ones(cosines.size), cosines.ravel(), np.tile(_log_odds(shares), len(cosines))], axis=1
     )
     is_so = truth.ravel()
 
     def loss(curve: FloatArray) -> tuple[float, FloatArray]:
-        odds = told @ curve
+        odds = terms @ curve
         missed = 1.0 / (1.0 + np.exp(-odds)) - is_so
-        return float(np.mean(np.logaddexp(0.0, odds) - is_so * odds)), missed @ told / len(told)
+        return float(np.mean(np.logaddexp(0.0, odds) - is_so * odds)), missed @ terms / len(terms)
 
     bounds = (LEVELS, SLOPES, WEIGHTS)
     level, slope, weight = scipy.optimize.minimize(

@@ -1,7 +1,7 @@
-"""All that a library has learned about words, as one record that is fitted and swapped whole.
+"""The word models of a library, as one record that is fitted and replaced as a whole.
 
-Holds the vocabulary, the default word model, and for the mode `cca` the symbol space and
-the correlated space, which need LEAST_CLIPS labelled clips. Shapes: clips N, words V.
+It holds the vocabulary, the default word model, and the symbol space and the correlated space for
+the mode `cca`, which need MIN_CLIPS labeled clips. Shapes: clips N, words V.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from app.errors import NotEnoughLabels
 from app.models.words.calibration import WordCalibration, calibrate
-from app.models.words.correlated_space import LEAST_CLIPS, CorrelatedSpace, fit_correlated_space
+from app.models.words.correlated_space import MIN_CLIPS, CorrelatedSpace, fit_correlated_space
 from app.models.words.cosine_calibration import CosineCalibration, calibrate_cosines
 from app.models.words.language.wordnet import Meanings
 from app.models.words.model import WordModel, fit_word_model
@@ -30,10 +30,13 @@ _Part = WordModel | WordCalibration | SymbolSpace | CorrelatedSpace | CosineCali
 
 @dataclass(frozen=True, slots=True)
 class LibraryWords:
-    """vocabulary: V words; model: the default; calibration: of its outputs; space: of all
-    symbols; correlated: None where too few clips have words, and so are cosines and
-    back_cosines, the calibrations of its angles from words to clips and from clips to words;
-    meanings: what WordNet knows of its words (models.language.wordnet), put in by whoever fits.
+    """The fitted word models.
+
+    vocabulary: V words; model: the default word model; calibration: of its outputs; space: of
+    all symbols; correlated: None if too few clips have words; cosines, back_cosines: the
+    calibrations of its angles from words to clips and from clips to words, None likewise;
+    meanings: related words from WordNet (app.models.words.language.wordnet), added by the
+    caller of the fit.
     """
 
     vocabulary: WordVocabulary
@@ -46,20 +49,21 @@ class LibraryWords:
     meanings: Meanings = field(default_factory=Meanings)
 
     def ask(self, texts: Iterable[str]) -> WordsAsked:
-        """What a query of words, phrases or sentences asks of this library."""
+        """The meaning of a query of words, phrases or sentences in this library."""
         return understand(texts, self.vocabulary, self.meanings.related)
 
     def word_scores(self, statistics: FloatArray) -> FloatArray:
-        """(N, V) probability that each word is said of each clip, by its statistics (N, p)."""
+        """(N, V) probability that each clip carries each word, from statistics (N, p)."""
         return self.calibration.probabilities(self.model.outputs(statistics))
 
     def clip_surprises(
         self, scores: FloatArray, columns: Sequence[str], meant: Sequence[Mapping[str, float]]
     ) -> FloatArray:
-        """(N,) -ln of the probability that clips carry all that was asked for.
+        """(N,) -ln of the probability that clips carry everything that was asked for.
 
-        scores: (N, c) word_scores of the words `columns`; meant: at least one, see WordsAsked.
-        Of the words that may stand for one the likeliest counts, as far as it may.
+        scores: (N, c) word_scores of the words `columns`; meant: at least one item, see
+        WordsAsked. If several words can replace an item, the most likely one counts, times its
+        weight.
         """
         place = {word: column for column, word in enumerate(columns)}
         asked = [
@@ -69,10 +73,10 @@ class LibraryWords:
         return self.calibration.joint_surprise(np.stack(asked, axis=1))
 
     def word_scores_cca(self, points: FloatArray) -> FloatArray:
-        """(N, V) probability that each word is said of each clip, by where its symbol (N, d)
-        lies in the correlated space (section 2.4).
+        """(N, V) probability that each clip carries each word, in the correlated space (Takano,
+        section 2.4).
 
-        Raises NotEnoughLabels where there is no correlated space.
+        points: (N, d) symbol coordinates. Raises NotEnoughLabels without a correlated space.
         """
         space, _, calibration = self._correlated()
         return calibration.of_words(space.word_cosines(points))
@@ -80,15 +84,15 @@ class LibraryWords:
     def clip_angles(self, points: FloatArray, asked: WordsAsked) -> FloatArray:
         """(N,) 1 - cosine, 0..2, between clips at symbol coordinates (N, d) and a query.
 
-        Raises NotEnoughLabels where there is no correlated space.
+        Raises NotEnoughLabels without a correlated space.
         """
         space, *_ = self._correlated()
         return 1.0 - space.clip_cosines(points, self.vocabulary.vector(asked.weights))
 
     def angle_scores(self, angles: FloatArray, asked: WordsAsked) -> FloatArray:
-        """(N,) probability that clips at `clip_angles` (N,) carry all that was asked for.
+        """(N,) probability that clips at `clip_angles` (N,) carry everything asked for.
 
-        Raises NotEnoughLabels where there is no correlated space.
+        Raises NotEnoughLabels without a correlated space.
         """
         _, calibration, _ = self._correlated()
         words = self.vocabulary.words
@@ -97,11 +101,11 @@ class LibraryWords:
 
     def _correlated(self) -> tuple[CorrelatedSpace, CosineCalibration, CosineCalibration]:
         if self.correlated is None or self.cosines is None or self.back_cosines is None:
-            raise NotEnoughLabels(f"The mode cca needs {LEAST_CLIPS} clips that have words.")
+            raise NotEnoughLabels(f"The mode cca needs {MIN_CLIPS} clips that have words.")
         return self.correlated, self.cosines, self.back_cosines
 
     def to_arrays(self) -> tuple[Arrays, dict[str, Any]]:
-        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        """Arrays and JSON-able metadata for `from_arrays`."""
         parts: dict[str, _Part | None] = {
             "model": self.model,
             "calibration": self.calibration,
@@ -125,7 +129,7 @@ class LibraryWords:
     def from_arrays(
         cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
     ) -> LibraryWords:
-        """The record that to_arrays took apart. Raises ValueError on another version."""
+        """The record from the result of `to_arrays`. Raises ValueError on another version."""
         correlated, cosines, back = None, None, None
         if "correlated" in meta:
             own = _part(arrays, "correlated")
@@ -148,7 +152,7 @@ class LibraryWords:
 
 @dataclass(frozen=True, slots=True)
 class FittedWords:
-    """words: what was learned; points: (N, d) where the clips' symbols lie in its space."""
+    """words: the fitted models; points: (N, d) coordinates of the clips' symbols in its space."""
 
     words: LibraryWords
     points: FloatArray
@@ -162,24 +166,24 @@ def fit_library_words(
     *,
     seed: int = 0,
 ) -> FittedWords:
-    """Fit on all clips: symbols N, statistics (N, p), label sets N (empty: not labelled).
+    """Fit on all clips: symbols N, statistics (N, p), label sets N (empty: not labeled).
 
-    groups: N, equal for files of one recording, that scores are not calibrated on copies.
+    groups: N, equal for files of one recording, so that copies do not bias the calibration.
 
-    Deterministic for a seed. Raises NotEnoughLabels where no clip has words.
+    Deterministic for a seed. Raises NotEnoughLabels if no clip has words.
     """
     vocabulary = WordVocabulary.of(label_sets)
     labels = vocabulary.label_matrix(label_sets)
-    labelled = np.flatnonzero(labels.any(axis=1))
-    rows, truth = np.asarray(statistics)[labelled], labels[labelled]
+    labeled = np.flatnonzero(labels.any(axis=1))
+    rows, truth = np.asarray(statistics)[labeled], labels[labeled]
     model = fit_word_model(rows, truth, seed=seed)
-    own = [str(row) if groups is None else groups[row] for row in labelled]
+    own = [str(row) if groups is None else groups[row] for row in labeled]
     calibration = calibrate(model, rows, truth, own, seed=seed)
     space = fit_symbol_space(symbols, seed=seed)
     points = space.place(symbols)
     correlated, cosines, back = None, None, None
-    if len(labelled) >= LEAST_CLIPS:
-        there = points[labelled]
+    if len(labeled) >= MIN_CLIPS:
+        there = points[labeled]
         correlated = fit_correlated_space(there, truth)
         cosines = calibrate_cosines(there, truth, own, seed=seed)
         back = calibrate_cosines(there, truth, own, CorrelatedSpace.word_cosines, seed=seed)

@@ -1,10 +1,10 @@
-"""Which symbol of a library an observed motion is likeliest of (Takano, section 2.4).
+"""The most likely symbol of a library for an observed motion (Takano, section 2.4).
 
-The likelihood of a motion under every symbol of a library of 500 costs .2 s, so only the NEAREST
-by divergence from the motion's own symbol are asked. On 501 real clips, among symbols of other
-recordings, the likeliest of all was the very nearest for 72 %, among the 20 nearest for 95.8 %,
-among 60 for 96.8 %. Through it no more is recognised than through the nearest: the two share a
-word in 90.0 and 91.6 %, the task in 84.8 and 87.8 %.
+The likelihoods of a motion under all symbols of a library of 500 cost .2 s. So they are computed
+only for the NEAREST symbols by divergence from the motion's own symbol. On 501 real clips, among
+symbols of other recordings, the most likely symbol was the nearest for 72 %, among the 20 nearest
+for 95.8 %, and among the 60 nearest for 96.8 %. It does not recognize more than the nearest symbol:
+it shares a word with the motion for 90.0 % (the nearest: 91.6 %), the task for 84.8 % (87.8 %).
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from app.numerics.hmm.model import GaussianHMM, log_likelihoods
 
 NEAREST = 20
 _UNASKED = -1e30
-"""Below every likelihood; less a divergence, so that the unasked stay in order too."""
+"""Below every likelihood. A divergence is subtracted, so that symbols without a computed likelihood
+stay in order too."""
 
 
 def likelihoods_of_symbols(
@@ -27,10 +28,11 @@ def likelihoods_of_symbols(
     sequence: Callable[[int], FloatArray],
     nearest: int = NEAREST,
 ) -> FloatArray:
-    """(N, N) log P(motion i | symbol j) of the N motions that the symbols were made of.
+    """(N, N) log P(motion i | symbol j) of the N motions of the symbols.
 
-    distances: (N, N) of the symbols, with _UNASKED less their multiple where the likelihood was
-    not computed; sequence: the channels (T, D) of a motion.
+    If a likelihood is not computed, the entry is _UNASKED minus a multiple of the distance.
+    distances: (N, N) between the symbols; sequence: a function from a row to the channels
+    (T, D) of its motion.
     """
     found = _UNASKED * (1.0 + np.asarray(distances, dtype=np.float64))
     for row in range(len(symbols)):

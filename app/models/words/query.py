@@ -1,7 +1,7 @@
-"""What a query of words means to a library: weights of its words, and words to leave out.
+"""The meaning of a query of words in a library: weights of its words, and words to exclude.
 
-Words are read as people write them (models.language): inflected, as a sentence, by other
-words of the same meaning; `expanded` and `unknown` tell what became of each.
+Words may be inflected, in a sentence, or replaced by other words of the same meaning
+(app.models.words.language); `expanded` and `unknown` report what each word became.
 """
 
 from __future__ import annotations
@@ -9,17 +9,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from app.models.words.language.meaning import neighbours
+from app.models.words.language.meaning import neighbors
 from app.models.words.language.sentence import read_query
 from app.models.words.vocabulary import WordVocabulary
 
 
 @dataclass(frozen=True, slots=True)
 class WordsAsked:
-    """weights: 0..1 by word of the vocabulary, 1 for what was asked for itself; meant: of each
-    thing asked for, weights by the words that may stand for it; excluded: words
-    of the vocabulary; unknown: what means nothing to the library; expanded: the vocabulary's
-    words that stand for a word which is not one of them.
+    """A query that a library understands.
+
+    weights: 0..1 by word of the vocabulary, 1 for a word of the query itself; meant: for each
+    item of the query, weights by the words that can replace it; excluded: words of the
+    vocabulary; unknown: words without a meaning in the library; expanded: for each word outside
+    the vocabulary, the words that replace it.
     """
 
     weights: Mapping[str, float]
@@ -34,9 +36,9 @@ def understand(
     vocabulary: WordVocabulary,
     related: Mapping[str, Mapping[str, float]],
 ) -> WordsAsked:
-    """What `texts` (words, phrases, sentences) ask of a library with this vocabulary.
+    """The meaning of `texts` (words, phrases, sentences) for this vocabulary.
 
-    related: neighbours in meaning that WordNet knows (models.language.wordnet), may be empty.
+    related: related words from WordNet (app.models.words.language.wordnet); may be empty.
     """
     asked = read_query(texts, lambda word: vocabulary.find(word) is not None)
     weights: dict[str, float] = {}
@@ -63,8 +65,8 @@ def understand(
 def _meant(
     word: str, vocabulary: WordVocabulary, related: Mapping[str, Mapping[str, float]]
 ) -> dict[str, float]:
-    """The vocabulary's words for `word`, by weight; none where it means nothing here."""
+    """Weights of the vocabulary's words for `word`; empty if it has no meaning here."""
     found = vocabulary.find(word)
     if found is not None:
         return {found: 1.0}
-    return {near.word: near.likeness for near in neighbours(word, vocabulary.words, related)}
+    return {near.word: near.likeness for near in neighbors(word, vocabulary.words, related)}

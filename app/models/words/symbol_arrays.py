@@ -1,4 +1,4 @@
-"""Many symbols in a few arrays, for records that hold symbols; no pickle."""
+"""Stores many symbols in a few arrays, for records that hold symbols (without pickle)."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from app.numerics.hmm.model import GaussianHMM
 
 
 def pack_symbols(symbols: Sequence[GaussianHMM]) -> dict[str, np.ndarray[Any, Any]]:
-    """Arrays of N >= 1 symbols: states (N,); and, states of all one after another,
-    means and variances (sum K, D), stay (sum K,).
+    """Arrays of N >= 1 symbols.
+
+    states: (N,) numbers of states K; means, variances: (sum K, D) and stay: (sum K,), the
+    states of all symbols in a row.
     """
     return {
         "states": np.array([symbol.states for symbol in symbols], dtype=np.int64),
@@ -23,7 +25,7 @@ def pack_symbols(symbols: Sequence[GaussianHMM]) -> dict[str, np.ndarray[Any, An
 
 
 def unpack_symbols(arrays: Mapping[str, np.ndarray[Any, Any]]) -> tuple[GaussianHMM, ...]:
-    """The symbols that pack_symbols packed."""
+    """The symbols from the result of `pack_symbols`."""
     cuts = np.cumsum(arrays["states"])[:-1]
     parts = (np.split(arrays[name], cuts) for name in ("stay", "means", "variances"))
     return tuple(

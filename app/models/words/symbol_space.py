@@ -1,10 +1,10 @@
-"""The motion symbol space: symbols as points whose distances are their divergences
-(Takano, section 2.1, eqs 2-4; DESIGN 6).
+"""The motion symbol space: symbols as points with distances like their divergences
+(Takano, section 2.1, eqs 2-4).
 
 The distance of two symbols is log1p of their symmetric Kullback-Leibler divergence per
-frame. Small libraries are scaled in whole; larger ones by random landmarks, against
-which all others are placed, so that cost grows with N, not N squared. A symbol that
-comes later is placed the same way. Shapes: symbols N, landmarks L, dimensions d.
+frame. In a small library all symbols are scaled together. In a larger one random landmarks are
+scaled, and all others are placed by their distances to them, so that the cost grows with N and not
+with N squared. New symbols are placed likewise. Shapes: symbols N, landmarks L, dimensions d.
 """
 
 from __future__ import annotations
@@ -24,13 +24,14 @@ from app.numerics.mds import metric_mds, place
 SYMBOL_SPACE_VERSION = 1
 
 DIMENSIONS = 10
-"""Of the space (Takano, fig. 3)."""
+"""Dimensions of the space (Takano, fig. 3)."""
 
 WHOLE_LIBRARY = 200
-"""Up to so many symbols all are landmarks."""
+"""Up to this number of symbols, all are landmarks."""
 
 LANDMARKS = 100
-"""Above that, so many: at least 2.5 x dimensions; word recognition keeps (DESIGN 6)."""
+"""Number of landmarks of a larger library: at least 2.5 x dimensions. The figures of word
+recognition do not change."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +48,7 @@ class SymbolSpace:
         return place(symbol_distances(symbols, self.landmarks), self.points)
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
-        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        """Arrays and JSON-able metadata for `from_arrays`."""
         arrays = {f"landmark_{name}": a for name, a in pack_symbols(self.landmarks).items()}
         return {**arrays, "points": self.points}, {"version": SYMBOL_SPACE_VERSION}
 
@@ -55,7 +56,7 @@ class SymbolSpace:
     def from_arrays(
         cls, arrays: Mapping[str, np.ndarray[Any, Any]], meta: Mapping[str, Any]
     ) -> SymbolSpace:
-        """The record that to_arrays took apart. Raises ValueError on another version."""
+        """The space from the result of `to_arrays`. Raises ValueError on another version."""
         if meta["version"] != SYMBOL_SPACE_VERSION:
             raise ValueError(f"symbol space of version {meta['version']}")
         prefix = "landmark_"
@@ -71,7 +72,7 @@ def fit_symbol_space(symbols: Sequence[GaussianHMM], *, seed: int = 0) -> Symbol
 
 
 def landmark_rows(count: int, *, seed: int = 0) -> IntArray:
-    """(L,) which of `count` symbols are landmarks, sorted; all of a small library."""
+    """(L,) sorted indices of the landmarks among `count` symbols; all in a small library."""
     rows = np.arange(count)
     if count > WHOLE_LIBRARY:
         rows = np.sort(np.random.RandomState(seed).permutation(count)[:LANDMARKS])

@@ -1,8 +1,8 @@
 """Words as label vectors (Takano, section 2.2).
 
-A word is normalised (lower case, phrases joined by underscores) and brought to its base form
-(jumping, jumps: jump); a vocabulary is the sorted list of those that a library carries; a
-clip's label set is a binary vector over it.
+A word is normalized (lower case, phrases joined by underscores) and reduced to its base form
+(jumping, jumps: jump). A vocabulary is the sorted list of the base forms in a library. The label
+set of a clip is a binary vector over it.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ import numpy as np
 
 from app.models.words.language.inflection import base_form, base_forms
 from app.models.words.language.lexicon import is_known
-from app.models.words.language.normalise import normalise_words
+from app.models.words.language.normalize import normalize_words
 from app.numerics.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True)
 class WordVocabulary:
-    """The words of a library, sorted, normalised base forms; V of them."""
+    """The words of a library, sorted, normalized base forms; V of them."""
 
     words: tuple[str, ...]
 
@@ -29,8 +29,8 @@ class WordVocabulary:
 
     @classmethod
     def of(cls, label_sets: Iterable[Iterable[str]]) -> WordVocabulary:
-        """All words of the label sets, each in its base form where that is a word too."""
-        carried = {word for labels in label_sets for word in normalise_words(labels)}
+        """All words of the label sets, each in its base form if that is a word too."""
+        carried = {word for labels in label_sets for word in normalize_words(labels)}
 
         def is_word(word: str) -> bool:
             return word in carried or is_known(word)
@@ -38,9 +38,9 @@ class WordVocabulary:
         return cls(tuple(sorted({_label(word, is_word) for word in carried})))
 
     def find(self, word: str) -> str | None:
-        """The vocabulary's word for a normalised one, inflected or not; None where it has none.
+        """The vocabulary's word for a normalized word, inflected or not; None if there is none.
 
-        Both ways: *jumps* finds *jump*, and *jump* finds *jumping* where only that is carried.
+        *jumps* finds *jump*, and *jump* finds *jumping* if the library has only that.
         """
         found = base_form(word, self._column_of().__contains__)
         if found is not None:
@@ -53,7 +53,7 @@ class WordVocabulary:
         matrix = np.zeros((len(label_sets), len(self.words)))
         found: dict[str, str | None] = {}
         for row, labels in enumerate(label_sets):
-            for word in normalise_words(labels):
+            for word in normalize_words(labels):
                 if word not in found:
                     found[word] = self.find(word)
                 if (ours := found[word]) is not None:
@@ -69,7 +69,7 @@ class WordVocabulary:
         return made
 
     def columns(self, words: Iterable[str]) -> IntArray:
-        """(c,) where these words of the vocabulary stand in it."""
+        """(c,) column indices of these words of the vocabulary."""
         return np.array([self.words.index(word) for word in words], dtype=np.int64)
 
     def _column_of(self) -> dict[str, int]:
@@ -77,7 +77,7 @@ class WordVocabulary:
 
 
 def _label(word: str, is_word: Callable[[str], bool]) -> str:
-    """The base form under which a carried word is counted; itself where there is no other."""
+    """The base form under which a word is counted; the word itself if there is no other."""
     if is_known(word):
         return word
     return next(filter(is_word, base_forms(word)), word)

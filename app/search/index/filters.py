@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from app.errors import BadField, Place
-from app.models.words.language.normalise import normalise_word
+from app.models.words.language.normalize import normalize_word
 from app.store.clips.filter import ClipFilter
 
 LABEL_KEYS = ("person", "task", "word", "license", "source")
@@ -51,7 +51,7 @@ def as_filter(given: ClipFilter | Mapping[str, Any] | None) -> ClipFilter:
 def as_kept(key: str, value: str) -> str:
     """A label in the form in which clips keep it: NFC, without outer spaces; words normalized."""
     tidy = unicodedata.normalize("NFC", value).strip()
-    return normalise_word(tidy) if key == "word" else tidy
+    return normalize_word(tidy) if key == "word" else tidy
 
 
 def _read(key: str, value: Any) -> tuple[str, ...] | float | None:

@@ -1,12 +1,12 @@
-"""Stick figures that move: an SVG animated by itself (SMIL), without a script.
+"""Animated stick figures as SVG with SMIL animation, without a script.
 
-Any page can show it as an image, under any content security policy, and any browser opens it
-as a file. A viewer that knows no SMIL shows the first frame. Several figures stand side by
-side, in one time, seen from one side and in one scale, as in Perera 2009, fig. 12.
+Any page can show the SVG as an image, under any content security policy, and any browser opens it
+as a file. A viewer without SMIL shows the first frame. Several figures are side by side, with the
+same time, direction and scale, as in Perera 2009, fig. 12.
 
-The side is the one from which most is seen to move. Who stays in place is seen by a camera
-that stands still; who goes far is followed, and the marks on the floor, half a metre apart,
-pass by. The bar below fills as time goes.
+The direction is the one that shows most of the movement. If the body stays in place, the camera
+does not move. Otherwise it follows the body, and marks on the floor, half a meter apart, pass by.
+The bar at the bottom shows the time.
 """
 
 from __future__ import annotations
@@ -19,28 +19,28 @@ import numpy as np
 from app.motion.skeleton.resampling import resample
 from app.numerics.arrays import FloatArray
 from app.services.figures.camera import HEIGHT, MARGIN, WIDTH, Camera, Figure, camera_for
-from app.services.figures.stick_figure import GROUND, LEFT, PAPER, RIGHT, TRUNK, colour, limbs, text
+from app.services.figures.stick_figure import GROUND, LEFT, PAPER, RIGHT, TRUNK, color, limbs, text
 
 RATE = 15.0
-"""Frames a second; browsers draw straight lines in time between them."""
-MOST_FRAMES = 1200
-"""Of one picture; longer motions have fewer frames a second."""
+"""Frames per second; browsers interpolate linearly between them."""
+MAX_FRAMES = 1200
+"""Largest number of frames of a picture; longer motions have fewer frames per second."""
 MARKS_APART = 0.5
-"""Metres."""
-MOST_MARKS = 400
+"""Meters."""
+MAX_MARKS = 400
 HEAD = "head"
 BAR = 4
 """Pixels."""
 
 
 def animated_svg(figures: Sequence[Figure], rate: float, title: str) -> str:
-    """An endless animation of figures of as many frames each, `rate` Hz, side by side.
+    """An endless animation of figures side by side; all have the same frames, at `rate` Hz.
 
     Raises ValueError without a figure or a frame.
     """
     if not figures or not all(len(figure.positions) for figure in figures):
         raise ValueError("nothing can be animated without a frame")
-    shown = min(rate, RATE, MOST_FRAMES * rate / len(figures[0].positions))
+    shown = min(rate, RATE, MAX_FRAMES * rate / len(figures[0].positions))
     moving = [
         replace(f, positions=resample(f.positions.astype(np.float64), rate, shown)) for f in figures
     ]
@@ -62,22 +62,22 @@ def animated_svg(figures: Sequence[Figure], rate: float, title: str) -> str:
 
 
 class _Time:
-    """How long one round takes."""
+    """Makes animations with the duration of one round."""
 
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
 
     def animate(self, attribute: str, values: Sequence[str]) -> str:
-        """An attribute that takes values at equal times; nothing where nothing changes."""
-        told = self._told(values)
-        return told and f'<animate attributeName="{attribute}" {told}/>'
+        """Animates an attribute with values at equal intervals; empty if they do not change."""
+        timing = self._timing(values)
+        return timing and f'<animate attributeName="{attribute}" {timing}/>'
 
     def move(self, values: Sequence[str]) -> str:
-        """A translation that takes values at equal times."""
-        told = self._told(values)
-        return told and f'<animateTransform attributeName="transform" type="translate" {told}/>'
+        """Animates a translation with values at equal intervals; empty if they do not change."""
+        timing = self._timing(values)
+        return timing and f'<animateTransform attributeName="transform" type="translate" {timing}/>'
 
-    def _told(self, values: Sequence[str]) -> str:
+    def _timing(self, values: Sequence[str]) -> str:
         if self._seconds <= 0 or len(set(values)) < 2:
             return ""
         listed = ";".join(values)
@@ -88,9 +88,9 @@ def _panel(figure: Figure, camera: Camera, time: _Time) -> str:
     points = camera.pixels(figure)
     order = (LEFT, TRUNK, RIGHT)  # as if seen from the right
     lines = sorted(
-        limbs(np.asarray(figure.parents)), key=lambda line: order.index(colour(line, figure.names))
+        limbs(np.asarray(figure.parents)), key=lambda line: order.index(color(line, figure.names))
     )
-    drawn = "".join(_limb(points[:, line], colour(line, figure.names), time) for line in lines)
+    drawn = "".join(_limb(points[:, line], color(line, figure.names), time) for line in lines)
     return (
         f"{_floor(figure, camera, time)}"
         '<g fill="none" stroke-width="5" stroke-linecap="round" stroke-linejoin="round">'
@@ -114,17 +114,17 @@ def _head(figure: Figure, points: FloatArray, camera: Camera, time: _Time) -> st
 
 
 def _floor(figure: Figure, camera: Camera, time: _Time) -> str:
-    """The floor with its marks, which pass by where the camera goes along."""
+    """The floor with its marks, which pass by if the camera follows the body."""
     passed = camera.passed(figure)
     reach = 0.5 * WIDTH / camera.scale
-    first, last = passed.min() + camera.centre - reach, passed.max() + camera.centre + reach
+    first, last = passed.min() + camera.center - reach, passed.max() + camera.center + reach
     apart = MARKS_APART
-    while (last - first) / apart > MOST_MARKS:
+    while (last - first) / apart > MAX_MARKS:
         apart *= 2
     places = apart * np.arange(np.ceil(first / apart), np.floor(last / apart) + 1)
     marks = "".join(
         f"M{x} {camera.ground:.1f}v6"
-        for x in _numbers(0.5 * WIDTH + camera.scale * (places - camera.centre))
+        for x in _numbers(0.5 * WIDTH + camera.scale * (places - camera.center))
     )
     shifts = [f"{x} 0" for x in _numbers(-camera.scale * passed)]
     return (

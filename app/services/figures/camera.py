@@ -1,4 +1,4 @@
-"""From where moving bodies are seen: a side, a scale, and whether the camera goes along."""
+"""The camera of an animated figure: direction, scale, and whether it follows the body."""
 
 from __future__ import annotations
 
@@ -16,17 +16,19 @@ MARGIN = 16.0
 CAPTION = 22.0
 """Pixels kept free above figures that have labels."""
 FOLLOW_BELOW = 0.6
-"""A camera that stands still may leave this much of the figure's size, and no less."""
+"""If a fixed camera would reduce the figure below this share of its size, the camera follows."""
 HEAD_SIZE = 0.06
-"""Radius of a head, of the height of what is seen."""
+"""Radius of a head as a share of the height of the visible body."""
 _SMALLEST = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """One body: positions (frames, joints, 3) metres, Y up; parents (joints,), -1 for a root;
-    names of joints, by which limbs get their colour and a head is drawn; a label to stand
-    above it."""
+    """One body.
+
+    positions: (frames, joints, 3) meters, Y up; parents: (joints,), -1 for a root; names: of
+    joints, for the colors of limbs and the head; label: text above the figure.
+    """
 
     positions: FloatArray
     parents: IntArray
@@ -35,7 +37,7 @@ class Figure:
 
     @property
     def root(self) -> FloatArray:
-        """(frames, 3) where the first root is."""
+        """(frames, 3) positions of the first root."""
         first = int(np.flatnonzero(np.asarray(self.parents) < 0)[0])
         return np.asarray(self.positions[:, first])
 
@@ -43,32 +45,32 @@ class Figure:
 @dataclass(frozen=True, slots=True)
 class Camera:
     """direction: (2,) horizontal unit vector (x, z), the picture's x axis; scale: pixels a
-    metre; centre: metres along `direction` in the middle of the panel; floor: metres above 0;
+    meter; center: meters along `direction` in the middle of the panel; floor: meters above 0;
     ground: its y in pixels; head: radius in pixels; follows: whether it goes with the root."""
 
     direction: FloatArray
     scale: float
-    centre: float
+    center: float
     floor: float
     ground: float
     head: float
     follows: bool
 
     def passed(self, figure: Figure) -> FloatArray:
-        """(frames,) metres along `direction` that the camera has gone."""
+        """(frames,) meters that the camera has moved along `direction`."""
         gone = figure.root[:, [0, 2]] @ self.direction
         return np.asarray(gone if self.follows else np.zeros(len(gone)))
 
     def pixels(self, figure: Figure) -> FloatArray:
-        """(frames, joints, 2) x and y in the figure's panel."""
+        """(frames, joints, 2) x and y in pixels in the figure's panel."""
         across = figure.positions[..., [0, 2]] @ self.direction - self.passed(figure)[:, None]
-        x = 0.5 * WIDTH + self.scale * (across - self.centre)
+        x = 0.5 * WIDTH + self.scale * (across - self.center)
         y = self.ground - self.scale * (figure.positions[..., 1] - self.floor)
         return np.stack([x, y], axis=-1)
 
 
 def camera_for(figures: Sequence[Figure]) -> Camera:
-    """One camera for all figures, in which all of them stay within their panels."""
+    """A common camera for all figures that keeps each of them inside its panel."""
     around = np.concatenate([f.positions - f.root[:, None] for f in figures], axis=1)
     root = figures[0].root
     direction = widest_direction(around, root[-1] - root[0])
@@ -84,7 +86,7 @@ def camera_for(figures: Sequence[Figure]) -> Camera:
     return Camera(
         direction=direction,
         scale=scale,
-        centre=0.5 * float(seen.min() + seen.max()),
+        center=0.5 * float(seen.min() + seen.max()),
         floor=float(heights.min()),
         ground=HEIGHT - MARGIN - (most - scale) * tall / 3,
         head=HEAD_SIZE * scale * tall,
@@ -93,6 +95,6 @@ def camera_for(figures: Sequence[Figure]) -> Camera:
 
 
 def _scale(across: FloatArray, tall: float, most: float) -> float:
-    """Pixels a metre, so that what extends over `across` (m) and is `tall` fits."""
+    """Pixels per meter at which a body of extent `across` (m) and height `tall` (m) fits."""
     wide = max(float(np.ptp(across)), _SMALLEST) + 2 * HEAD_SIZE * tall
     return min(most, (WIDTH - 2 * MARGIN) / wide)

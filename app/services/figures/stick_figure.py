@@ -1,4 +1,4 @@
-"""What pictures of bodies share: colours, the side that shows most, text that XML allows."""
+"""Common parts of pictures of bodies: colors, the best direction of view, and text for XML."""
 
 from __future__ import annotations
 
@@ -10,21 +10,22 @@ import numpy as np
 from app.numerics.arrays import FloatArray, IntArray
 
 LEFT, TRUNK, RIGHT = "#c2622d", "#2b3440", "#1f6f8b"
-"""Of limbs: left ones are orange, right ones blue."""
+"""Colors of limbs: left ones are orange, right ones blue."""
 PAPER, GROUND = "#f6f4ef", "#d5cfc2"
 
 EXTENT_WEIGHT = 0.05
-"""Of how far the body extends, beside how far it moves: settles the side of a still one."""
+"""Weight of the extent of the body relative to its movement. It decides the direction of view for a
+body that does not move."""
 STAYS = 0.05
-"""Metres along the picture's x axis below which nobody is said to travel."""
+"""Meters along the picture's x axis; a body that moves less far counts as staying in place."""
 
 
 def widest_direction(around: FloatArray, travelled: FloatArray) -> FloatArray:
     """(2,) horizontal unit vector (x, z) along which a body moves most, and extends.
 
-    around: (frames, joints, 3) metres from the hips; travelled: (3,) from the first to the
-    last frame. Whoever travels goes to the right; else the sign is fixed, so that pictures
-    are stable.
+    around: (frames, joints, 3) meters relative to the hips; travelled: (3,) meters from the first
+    to the last frame. A traveling body moves to the right; otherwise the sign is fixed, so that
+    pictures are stable.
     """
     flat = np.asarray(around, dtype=np.float64)[:, :, [0, 2]]
     moving = (flat - flat.mean(axis=0)).reshape(-1, 2)
@@ -38,7 +39,7 @@ def widest_direction(around: FloatArray, travelled: FloatArray) -> FloatArray:
 
 
 def limbs(parents: IntArray) -> list[list[int]]:
-    """A skeleton as lines: each from a joint that branches, or a root, to the next or an end.
+    """A skeleton as lines. Each goes from a root or branching joint to the next one or to an end.
 
     parents: (joints,), -1 for a root.
     """
@@ -48,7 +49,7 @@ def limbs(parents: IntArray) -> list[list[int]]:
     lines = []
     for start, after in children.items():
         if start < 0 or (len(after) == 1 and parents[start] >= 0):
-            continue  # above the roots, or within a line
+            continue  # above the roots, or inside a line
         for joint in after:
             line = [start, joint]
             while len(children.get(line[-1], ())) == 1:
@@ -57,12 +58,12 @@ def limbs(parents: IntArray) -> list[list[int]]:
     return lines
 
 
-def colour(line: Sequence[int], names: Sequence[str]) -> str:
-    """Of a line, by the name of its last joint (`left_...`, `right_...`); the trunk's else."""
+def color(line: Sequence[int], names: Sequence[str]) -> str:
+    """The color of a line by the name of its last joint (`left_...`, `right_...`), else TRUNK."""
     name = names[line[-1]] if names else ""
     return LEFT if name.startswith("left_") else RIGHT if name.startswith("right_") else TRUNK
 
 
 def text(value: str) -> str:
-    """Without the characters that XML does not allow, and escaped."""
+    """The value without characters that XML does not allow, escaped."""
     return escape("".join(c for c in value if c.isprintable()))

@@ -1,9 +1,9 @@
-"""A clip as a small picture: a few stick figures over time, seen from a good side.
+"""A clip as a small picture with a few stick figures over time.
 
-The side is chosen so that most is seen to move: the horizontal direction in which the joints
-move most around the hips becomes the picture's x axis (a walk is seen from its side, a waving
-person from the front). The poses are those that differ most from each other, in the order of
-time, so that a kick shows the kick. No scripts, no outside references: safe to embed.
+The x axis of the picture is the horizontal direction in which the joints move most relative to the
+hips: a walk is seen from the side, a waving person from the front. The poses are those that differ
+most from each other, in the order of time, so that a kick shows the kick. The SVG has no scripts
+and no external references, so it is safe to embed.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from app.services.figures.stick_figure import (
 
 WIDTH, HEIGHT = 320, 180
 MARGIN = 12.0
-"""Pixels left free on each side."""
+"""Free pixels on each side."""
 POSES = 5
-"""Figures in a picture; fewer where the clip has fewer frames."""
+"""Figures in a picture; fewer if the clip has fewer frames."""
 
 _R = JointRole
 _LIMBS: tuple[tuple[str, tuple[JointRole, ...]], ...] = (
@@ -38,14 +38,14 @@ _LIMBS: tuple[tuple[str, tuple[JointRole, ...]], ...] = (
     ("near", (_R.HIPS, _R.RIGHT_KNEE, _R.RIGHT_FOOT)),
     ("near", (_R.NECK, _R.RIGHT_SHOULDER, _R.RIGHT_ELBOW, _R.RIGHT_HAND)),
 )
-_COLOURS = {"far": LEFT, "trunk": TRUNK, "near": RIGHT}
+_COLORS = {"far": LEFT, "trunk": TRUNK, "near": RIGHT}
 _COLUMN = {role: index for index, role in enumerate(SUN_ROLES)}
 
 
 def thumbnail(positions: FloatArray, title: str) -> str:
-    """An SVG of 320 x 180 from (frames, 13, 3) metres, Y up, in Sun's order of roles.
+    """An SVG of 320 x 180 from (frames, 13, 3) meters, Y up, in Sun's order of roles.
 
-    Time runs from left to right and from pale to full colour; the left limbs are orange,
+    Time runs from left to right and from pale to full color; the left limbs are orange,
     the right ones blue.
     """
     chosen = _spread(positions)
@@ -68,7 +68,7 @@ def thumbnail(positions: FloatArray, title: str) -> str:
 
 
 def _spread(positions: FloatArray) -> FloatArray:
-    """(poses, 13, 3): the first frame and those farthest from all chosen before, by time."""
+    """(poses, 13, 3) by time: the first frame, then those farthest from the chosen ones."""
     relative = _around_hips(positions).reshape(len(positions), -1)
     chosen = [0]
     nearest = np.linalg.norm(relative - relative[0], axis=1)
@@ -79,20 +79,20 @@ def _spread(positions: FloatArray) -> FloatArray:
 
 
 def _around_hips(positions: FloatArray) -> FloatArray:
-    """(frames, 13, 3) metres from the hips."""
+    """(frames, 13, 3) meters relative to the hips."""
     hips = positions[:, [_COLUMN[_R.HIPS]], :]
     return np.asarray(positions - hips, dtype=np.float64)
 
 
 def _project(poses: FloatArray, direction: FloatArray) -> FloatArray:
-    """(poses, 13, 2) metres: along `direction` from the hips, and height above the floor."""
+    """(poses, 13, 2) meters: along `direction` relative to the hips, and height above the floor."""
     across = _around_hips(poses)[:, :, [0, 2]] @ direction
     height = poses[:, :, 1] - poses[:, :, 1].min()
     return np.stack([across, height], axis=-1)
 
 
 def _place(flat: FloatArray) -> tuple[FloatArray, float, float]:
-    """Pixels (poses, 13, 2), the head's radius, and the floor's y."""
+    """Points (poses, 13, 2), radius of the head and y of the floor, all in pixels."""
     lefts, rights = flat[:, :, 0].min(axis=1), flat[:, :, 0].max(axis=1)
     head_size = 0.12 * max(float(flat[:, :, 1].max()), 1e-3)
     needed = float((rights - lefts).sum()) + head_size * (len(flat) + 1)
@@ -109,10 +109,10 @@ def _place(flat: FloatArray) -> tuple[FloatArray, float, float]:
 def _figure(points: FloatArray, head: float, opacity: float) -> str:
     """One figure from its 13 points (13, 2) in pixels."""
     limbs = "".join(
-        f'<path d="{_line(points, roles)}" stroke="{_COLOURS[side]}"/>' for side, roles in _LIMBS
+        f'<path d="{_line(points, roles)}" stroke="{_COLORS[side]}"/>' for side, roles in _LIMBS
     )
     x, y = points[_COLUMN[_R.HEAD]]
-    circle = f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{head:.1f}" fill="{_COLOURS["trunk"]}"/>'
+    circle = f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{head:.1f}" fill="{_COLORS["trunk"]}"/>'
     return f'<g opacity="{opacity:.2f}">{limbs}{circle}</g>'
 
 

@@ -186,6 +186,7 @@ def analyze_file(request: AnalysisRequest, limits: Limits) -> Analysis:
     """
     from app.analysis import analyze
     from app.analysis.keyposes.keyposes import T1, T2
+    from app.analysis.rhythm.rhythm import RhythmInput
     from app.motion.canonical.canonical import canonicalize
     from app.motion.roles.joint_roles import JointRole
 

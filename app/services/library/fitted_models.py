@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from app.models.keyposes.thresholds import KeyposeThresholds
     from app.models.metric.learned_metric import LearnedMetric
     from app.models.recognition.multilinear import Multilinear
-    from app.models.recognition.perera import TensorRecogniser
-    from app.models.recognition.recogniser import Recogniser
+    from app.models.recognition.perera import TensorRecognizer
+    from app.models.recognition.recognizer import Recognizer
     from app.models.synthesis.model import Synthesis
     from app.models.words.library import LibraryWords
 
@@ -40,7 +40,7 @@ class ModelKind(StrEnum):
     """The same on joint angles, as Vasilescu did it."""
     PERERA = "perera"
     """Perera's task model: who does what by weighted distances of joints."""
-    RECOGNISER = "recogniser"
+    RECOGNIZER = "recogniser"
     """Who does what, with an honest unknown."""
     METRIC_TASK = "metric-task"
     """How near two clips are in task."""
@@ -58,7 +58,7 @@ METRICS = (ModelKind.METRIC_TASK, ModelKind.METRIC_PERSON)
 FALSE_ACCEPT_RATE = "false_accept_rate"
 """A setting of a recogniser: how often something new may be called known."""
 
-TELLING_UNKNOWN = (ModelKind.RECOGNISER, ModelKind.PERERA)
+TELLING_UNKNOWN = (ModelKind.RECOGNIZER, ModelKind.PERERA)
 """Recognisers that have that setting."""
 
 _WITHOUT_PERSONS = frozenset({ModelKind.WORDS, ModelKind.METRIC_TASK, ModelKind.KEYPOSES})
@@ -87,7 +87,7 @@ class Fitted(Generic[Model]):
     settings: Mapping[str, Any]
 
 
-class ModelShelf:
+class FittedModels:
     """Models by kind; a cheap query each time tells whether a newer one is in force."""
 
     def __init__(self) -> None:
@@ -100,11 +100,11 @@ class ModelShelf:
 
         return self._get(store, ModelKind.WORDS, LibraryWords.from_arrays)
 
-    def recogniser(self, store: Store) -> Fitted[Recogniser]:
+    def recognizer(self, store: Store) -> Fitted[Recognizer]:
         """The default recogniser in force; raises ModelNotFitted."""
-        from app.models.recognition.recogniser import Recogniser
+        from app.models.recognition.recognizer import Recognizer
 
-        fitted = self._get(store, ModelKind.RECOGNISER, Recogniser.from_arrays)
+        fitted = self._get(store, ModelKind.RECOGNIZER, Recognizer.from_arrays)
         rate = fitted.settings.get(FALSE_ACCEPT_RATE)
         return fitted if rate is None else replace(fitted, model=fitted.model.accepting(rate))
 
@@ -120,11 +120,11 @@ class ModelShelf:
 
         return self._get(store, ModelKind.SIGNATURES, Multilinear.from_arrays)
 
-    def perera(self, store: Store) -> Fitted[TensorRecogniser]:
+    def perera(self, store: Store) -> Fitted[TensorRecognizer]:
         """Perera's recogniser in force; raises ModelNotFitted."""
-        from app.models.recognition.perera import TensorRecogniser
+        from app.models.recognition.perera import TensorRecognizer
 
-        fitted = self._get(store, ModelKind.PERERA, TensorRecogniser.from_arrays)
+        fitted = self._get(store, ModelKind.PERERA, TensorRecognizer.from_arrays)
         rate = fitted.settings.get(FALSE_ACCEPT_RATE)
         return fitted if rate is None else replace(fitted, model=fitted.model.accepting(rate))
 

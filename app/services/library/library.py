@@ -16,7 +16,7 @@ from app.search.index.vector_index import VectorIndex
 from app.search.pose.by_pose import POSES
 from app.search.windows.parts import parts_layout
 from app.services.library.analysis_pool import AnalysisPool, Limits
-from app.services.library.fitted_models import METRICS, ModelKind, ModelShelf
+from app.services.library.fitted_models import METRICS, FittedModels, ModelKind
 from app.store import identity
 from app.store.folders import warn_if_open
 from app.store.store import Store
@@ -43,7 +43,7 @@ class Library:
     health: Health
     index: VectorIndex
     arrays: ArrayCache
-    models: ModelShelf
+    models: FittedModels
     word_scores: ModelRows
     symbol_points: ModelRows
     pool: AnalysisPool
@@ -71,7 +71,7 @@ class Library:
             health=Health(store),
             index=index,
             arrays=kept,
-            models=ModelShelf(),
+            models=FittedModels(),
             word_scores=ModelRows(),
             symbol_points=ModelRows(),
             pool=AnalysisPool(query_limits(settings)),

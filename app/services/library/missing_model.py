@@ -16,7 +16,7 @@ UPGRADING = (
     "version of Kinedex needs them: ask again when that has ended."
 )
 WHY_REMOVED = (
-    "a person whom it held was removed from the library, or recognising people was switched off"
+    "a person whom it held was removed from the library, or recognizing people was switched off"
 )
 
 

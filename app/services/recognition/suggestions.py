@@ -8,7 +8,7 @@ import numpy as np
 
 from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.words.language.inflection import base_forms
-from app.models.words.language.normalise import normalise_word
+from app.models.words.language.normalize import normalize_word
 from app.models.words.library import LibraryWords
 from app.numerics.arrays import FloatArray
 from app.services import fields
@@ -78,7 +78,7 @@ def accept(lib: Library, clip_id: str, words: Sequence[str] | None = None) -> Cl
 def complete(lib: Library, beginning: str, limit: int = 10) -> list[LabelCount]:
     """The library's words that begin with `beginning`, then those that contain it, the most
     frequent first. If there are none: the words of which it is an inflected form."""
-    typed, carried = normalise_word(beginning), labels.words(lib)
+    typed, carried = normalize_word(beginning), labels.words(lib)
     found = [word for word in carried if typed in word.name]
     if not found:
         forms = base_forms(typed)

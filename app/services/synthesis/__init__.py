@@ -1,1 +1,1 @@
-"""Make a motion that was not recorded."""
+"""Synthesizes motions that were not recorded."""

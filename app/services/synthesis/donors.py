@@ -1,5 +1,5 @@
-"""What a synthesised motion takes from real clips beside its shape: a body, its habits, and
-the quick detail of a take."""
+"""The parts of a synthesized motion that come from real clips: a skeleton with its habits, and the
+fast detail of a take."""
 
 from __future__ import annotations
 
@@ -28,15 +28,18 @@ from app.services.training.synthesis_fit import SHAPE
 from app.services.views.export import own_animation
 from app.store.clips.record import ClipRecord
 
-MOST_DONORS = 5
-"""Clips of the person whose poses are looked at: those most like what is to be made."""
+MAX_DONORS = 5
+"""Largest number of clips of the person that give poses: those most like the predicted shape."""
 
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """donors: of one body; body_length: metres; take: (n, 43) moments of a real take and
-    take_shape (1378,), None where the motion goes round; license, words: what all sources and
-    takes share; roles: joint names by role where a client had to say them."""
+    """The real material of a synthesis.
+
+    donors: clips with the same skeleton; body_length: meters; take: (n, 43) moments of a real
+    take and take_shape: (1378,) its shape, None for a cyclic motion; license, words: those that
+    all sources and takes share; roles: joint names by role, if a client gave them.
+    """
 
     donors: list[Donor]
     body_length: float
@@ -48,13 +51,13 @@ class Material:
 
 
 def material_of(lib: Library, model: Synthesis, plan: Plan) -> Material:
-    """What the plan's motion is made of. Raises NotEnoughLabels where the clips are gone."""
+    """The material for a plan. Raises NotEnoughLabels if its clips were removed."""
     away = dict(zip(model.ids, model.distances(plan.shape), strict=True))
     own = _still_there(lib, sorted(plan.own, key=lambda clip: away.get(clip, np.inf)))
     takes = _still_there(lib, sorted(plan.takes, key=lambda clip: away.get(clip, np.inf)))
     if not own or not takes:
-        raise NotEnoughLabels("The clips that this would be made of are gone: fit the models.")
-    donors = same_body([_donor(lib, clip) for clip in own[:MOST_DONORS]])
+        raise NotEnoughLabels("The source clips of this motion were removed: fit the models again.")
+    donors = same_body([_donor(lib, clip) for clip in own[:MAX_DONORS]])
     take, take_shape = None, None
     if plan.shape[-1] < 0.5:
         take, take_shape = _detail(lib, takes, plan.shape)
@@ -77,14 +80,14 @@ def _still_there(lib: Library, clip_ids: list[str]) -> list[ClipRecord]:
         try:
             found.append(ready_clip(lib, clip_id))
         except (ClipNotFound, ClipNotReady):
-            continue  # removed, or being analysed again, since the models were fitted
+            continue  # removed, or in a new analysis, since the fit of the models
     return found
 
 
 def _detail(
     lib: Library, takes: list[ClipRecord], wanted: FloatArray
 ) -> tuple[FloatArray | None, FloatArray | None]:
-    """The take nearest to the wanted motion that does not go round, as moments and as shape."""
+    """The non-cyclic take that is nearest to the wanted motion, as moments and as shape."""
     with lib.store.read() as tx:
         shapes = usable_arrays.get_many(tx, [clip.id for clip in takes], SHAPE)
     for clip in takes:
@@ -97,11 +100,11 @@ def _detail(
 def detail_of(
     motion: Motion, shape: FloatArray, wanted: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """(n, 43) moments of a take and its shape (1378,), to be led to the wanted shape (1378,).
+    """(n, 43) moments of a take and its shape (1378,), prepared for correction to `wanted` (1378,).
 
-    A take that begins in a pose which is no part of it is followed from its second frame. Its
-    shape has that pose as first moment, and so may the wanted one, learnt of such takes: there
-    the way to lead is that of the second moment.
+    If a take begins with a pose that does not belong to it, it is used from its second frame. Its
+    shape has that pose as first moment, and the wanted shape may have it too, if it was learned
+    from such takes; there the correction of the second moment is used.
     """
     moving = without_posed_start(motion)
     led = np.array(shape, dtype=np.float64)
@@ -117,10 +120,10 @@ def _donor(lib: Library, clip: ClipRecord) -> Donor:
 
 
 def donor_of(motion: Motion, animation: Animation) -> Donor:
-    """A clip's motion and how its joints turn, over as many frames."""
+    """A donor from the motion of a clip and its animation, which have the same frames."""
     joints = dict(motion.roles)
     if np.sum(animation.skeleton.parents < 0) != 1:
-        # Markers are no skeleton: the body for all is put in.
+        # markers have no skeleton, so the canonical body is used
         animation = on_canonical_body(motion)
         joints = {JointRole(name): i for i, name in enumerate(animation.skeleton.names)}
     track, turning = body_track(motion), animation.resampled(ANALYSIS_RATE)

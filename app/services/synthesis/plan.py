@@ -1,4 +1,4 @@
-"""Of whose clips a motion is made: what the asked person did, and who did what they did not."""
+"""Plans a synthesis: which clips of the person and of others it uses."""
 
 from __future__ import annotations
 
@@ -22,23 +22,26 @@ from app.store.clips.record import ClipRecord
 
 
 class SynthesisKind(StrEnum):
-    """What was asked for."""
+    """The kind of a synthesis."""
 
     NEW_TASK = "new_task"
     """A task that a known person never recorded."""
     NEW_PERSON = "new_person"
     """A task by the person of some clips."""
     SEEN = "seen"
-    """What the person did record: the mean of their takes, or one where these do not agree."""
+    """A recorded task: the mean of the person's takes, or one take if they do not agree."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """shape: (1378,) what is to be made. person: None of clips without one; own: ids of real
-    clips of the person, for their body; given_tasks: of the person; given_persons: who did the
-    task; takes: ids of real clips of the task by them; follows: the person whose take is followed,
-    where those that there are do not agree on what the task is (see `AGREED`): then `takes` are
-    theirs; agreement: how far they agree, None of a single one."""
+    """The plan of a synthesis.
+
+    shape: (1378,) the predicted motion shape; person: None if the clips have no person; own: ids
+    of real clips of the person, for their skeleton; given_tasks: tasks of the person;
+    given_persons: persons who did the task; takes: ids of real clips of the task by them;
+    follows: the person whose take is followed if the takes do not agree (see `AGREED`); then
+    `takes` are of that person; agreement: of the takes, None for a single take.
+    """
 
     kind: SynthesisKind
     person: str | None
@@ -59,7 +62,7 @@ def plan_of(
     person: str | None,
     clip_ids: tuple[str, ...] | None,
 ) -> Plan:
-    """What is made of what. Raises as `synthesise`."""
+    """The plan for a query. Raises the errors of `synthesize`."""
     if task not in model.tasks:
         raise _unknown("task", task, model.tasks)
     if clip_ids is not None:
@@ -83,7 +86,7 @@ def _of_person(model: Synthesis, task: str, person: str) -> Plan:
 
 
 def _of_clips(lib: Library, model: Synthesis, task: str, clip_ids: tuple[str, ...]) -> Plan:
-    """As though the library had no other clip of that person: what comes of these alone."""
+    """A plan from these clips alone, as if the library had no other clip of the person."""
     by_id = ready_clips(lib, clip_ids, "clip_ids")
     found, own = list(by_id.values()), tuple(by_id)
     person = _whose(found)
@@ -103,7 +106,7 @@ def _plan(
     given: Mapping[str, FloatArray],
     persons: tuple[str, ...],
 ) -> Plan:
-    """persons: who did the task."""
+    """The plan for a prediction; persons: those who did the task."""
     followed = persons if predicted.follows is None else (predicted.follows,)
     takes = [model.ids[i] for name in followed for i in model.clips_of(name, task)]
     return Plan(
@@ -130,21 +133,21 @@ def _whose(found: list[ClipRecord]) -> str | None:
 def _by_task(
     lib: Library, model: Synthesis, found: list[ClipRecord], task: str
 ) -> dict[str, FloatArray]:
-    """Shapes of the clips by task, but for the wanted one; what several takes come to."""
+    """The mean shapes of the clips by task, without the wanted task."""
     with lib.store.read() as tx:
         shapes = usable_arrays.get_many(tx, [clip.id for clip in found], SHAPE)
     by_task: dict[str, list[FloatArray]] = {}
     for clip in found:
         if clip.id not in shapes:
             raise ClipNotReady(
-                "The clip was analysed by an older Kinedex: run `kinedex reanalyze`.",
-                places=[Place("clip_ids", f"{clip.id} was analysed by an older Kinedex")],
+                "The clip was analyzed by an older Kinedex: run `kinedex reanalyze`.",
+                places=[Place("clip_ids", f"{clip.id} was analyzed by an older Kinedex")],
             )
         if clip.task in model.tasks and clip.task != task:
             by_task.setdefault(clip.task or "", []).append(shapes[clip.id])
     if not by_task:
         known = ", ".join(name for name in model.tasks if name != task)
-        message = f"at least one must be labelled with another task of the library: {known}"
+        message = f"at least one must be labeled with another task of the library: {known}"
         raise NotEnoughLabels(
             f"Nothing can be learned from these clips: {message}.",
             places=[Place("clip_ids", message)],
@@ -155,7 +158,7 @@ def _by_task(
 def _unknown(field: str, name: str, known: tuple[str, ...]) -> NotFound:
     shown = ", ".join(known[:20]) + (", ..." if len(known) > 20 else "")
     return NotFound(
-        f"No model knows the {field} {name!r}. Known: {shown}. Clips that were added or labelled"
-        " since count once the models are fitted again.",
+        f"No model knows the {field} {name!r}. Known: {shown}. Clips that were added or labeled"
+        " later count after the next fit of the models.",
         places=[Place(field, f"must be one of: {shown}")],
     )

@@ -1,4 +1,4 @@
-"""How far a synthesised motion can be trusted: what it looks like, and what to expect."""
+"""The quality of a synthesized motion: its nearest real clip, and the expected error rates."""
 
 from __future__ import annotations
 
@@ -19,23 +19,24 @@ from app.store import models
 from app.store.clips import repository as clips
 from app.store.clips.record import ClipRecord, ClipState
 
-MOST_TAKES = 5
-"""Real takes whose feet are looked at."""
+MAX_TAKES = 5
+"""Largest number of real takes whose foot skate is measured."""
 
 
 @dataclass(frozen=True, slots=True)
 class Quality:
     """kind, given_persons, given_tasks: see Plan.
 
-    nearest: the real clip that is most like the made motion, analysed as any other, None where
-    it is gone; nearest_person, nearest_task: its labels; distance to it; person_is_right,
-    task_is_right: whether the labels are those asked for.
+    nearest: the real clip that is most like the synthesized motion, which is analyzed like any
+    clip; None if it was removed; nearest_person, nearest_task: its labels; distance: to it;
+    person_is_right, task_is_right: whether its labels are those of the query.
     follows, agreement: see Plan.
-    expected_hit: share of cells left out when the model was fitted, made of as many takes, whose
-    nearest real clip was right in both; of those that followed one take if this one does, else of
-    those that did not; expected_given, expected_trials: how many persons (or tasks) and cells
-    that was; real_hit: that share of the cells' real takes, beyond which nothing
-    can be expected; all None for what was seen, or where nothing could be left out.
+    expected_hit: share of the cells that were left out of the fit, and synthesized from as many
+    persons (or tasks), whose nearest real clip had both labels right; it counts those that
+    followed one take if this motion does, else the others; expected_given, expected_trials: the
+    numbers of persons (or tasks) and of cells of that share; real_hit: the same share for the
+    cells' real takes, an upper limit. All are None for a recorded cell, or if no cell could be
+    left out.
     skate, real_skate: mean horizontal speed of feet that are low, m/s, of this motion and of
     real takes of the task.
     """
@@ -62,7 +63,7 @@ class Quality:
 def judge(
     lib: Library, fitted: Fitted[Synthesis], plan: Plan, motion: Motion, shape: FloatArray
 ) -> Quality:
-    """The quality of a made motion; shape: (1378,) as it was analysed."""
+    """The quality of a synthesized motion; shape: (1378,) from its analysis."""
     model = fitted.model
     away = model.distances(shape)
     first = int(np.argmin(away))
@@ -94,9 +95,12 @@ def judge(
 
 
 def expected_of(figures: dict[str, Any], plan: Plan) -> dict[str, Any]:
-    """The hits of motions like this one, that followed one take or did not, in the row of the
-    held-out figures for as many given that has any, or the nearest fewer, or else more; where
-    none has, the hits of all."""
+    """The held-out hits of motions like this one.
+
+    They are of motions that followed one take if the plan does, else of the others. The row is
+    the one with as many given persons (or tasks), or else the nearest smaller, or else the
+    nearest larger number that has such motions. Without any, the hits are of all motions.
+    """
     rows = figures.get("held_out", {}).get(plan.kind.value, [])
     like = "averaged" if plan.follows is None else "followed"
     parted = [{**row, **row[like]} for row in rows if row[like]["trials"]]
@@ -112,6 +116,6 @@ def _skate(motion: Motion) -> float:
 
 
 def _real_skate(lib: Library, takes: list[ClipRecord]) -> float | None:
-    ready = [clip for clip in takes if clip.state is ClipState.READY][:MOST_TAKES]
+    ready = [clip for clip in takes if clip.state is ClipState.READY][:MAX_TAKES]
     found = [_skate(load_motion(lib, clip)) for clip in ready]
     return float(np.mean(found)) if found else None

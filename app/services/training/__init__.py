@@ -1,1 +1,1 @@
-"""Fit the models, and decide when."""
+"""Fits the models, and decides when a fit is due."""

@@ -1,4 +1,4 @@
-"""Clips whose keyposes people named: what thresholds are learned from, and judged on."""
+"""Clips with keyposes that people annotated. Thresholds are learned and judged on them."""
 
 from __future__ import annotations
 
@@ -23,9 +23,11 @@ from app.store.store import Store
 
 @dataclass(frozen=True, slots=True)
 class AnnotatedClip:
-    """A ready clip; true: (k,) seconds, its keyposes as a person named them; beats: of the
-    clip, None where it was analysed before they were kept; group: what files of one recording
-    share."""
+    """A ready clip with an annotation.
+
+    true: (k,) times of the annotated keyposes in seconds; beats: of the clip, None if its
+    analysis is older than the storage of beats; group: equal for files of one recording.
+    """
 
     clip: ClipRecord
     group: str
@@ -34,16 +36,16 @@ class AnnotatedClip:
     true: FloatArray
 
 
-def annotated_ids(store: Store, wanted: ClipFilter | None = None) -> tuple[str, ...]:
-    """The ready clips that carry an annotation and pass a filter."""
+def annotated_ids(store: Store, filter: ClipFilter | None = None) -> tuple[str, ...]:
+    """The ids of the ready clips that have an annotation and pass the filter."""
     with store.read() as tx:
-        return _annotated_ids(tx, wanted)
+        return _annotated_ids(tx, filter)
 
 
-def read_annotated(store: Store, wanted: ClipFilter | None = None) -> tuple[AnnotatedClip, ...]:
-    """The ready clips that carry an annotation and pass a filter, by name and id."""
+def read_annotated(store: Store, filter: ClipFilter | None = None) -> tuple[AnnotatedClip, ...]:
+    """The ready clips that have an annotation and pass the filter, sorted by name and id."""
     with store.read() as tx:
-        ids = _annotated_ids(tx, wanted)
+        ids = _annotated_ids(tx, filter)
         found = clips.get_many(tx, ids)
         named = keypose_annotations.get_many(tx, ids)
         tracks = {clip.id: body_track(read_motion(tx, clip)) for clip in found.values()}
@@ -60,6 +62,6 @@ def read_annotated(store: Store, wanted: ClipFilter | None = None) -> tuple[Anno
     )
 
 
-def _annotated_ids(tx: Tx, wanted: ClipFilter | None) -> tuple[str, ...]:
-    ready = set(clip_listing.list_ids(tx, ready_only(wanted)))
+def _annotated_ids(tx: Tx, filter: ClipFilter | None) -> tuple[str, ...]:
+    ready = set(clip_listing.list_ids(tx, ready_only(filter)))
     return tuple(clip_id for clip_id in keypose_annotations.annotated(tx) if clip_id in ready)

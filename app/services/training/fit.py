@@ -1,4 +1,4 @@
-"""Fit all models of a library, each with its held-out figures, each swapped in whole."""
+"""Fits all models of a library with their held-out figures. Each model is replaced as a whole."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from app.models.held_out.recognition import (
 from app.models.held_out.words import held_out_word_figures
 from app.models.metric.learned_metric import Factor, LearnedMetric, fit_axes
 from app.models.recognition.multilinear import fit_multilinear
-from app.models.recognition.perera import fit_tensor_recogniser
-from app.models.recognition.recogniser import fit_recogniser
+from app.models.recognition.perera import fit_tensor_recognizer
+from app.models.recognition.recognizer import fit_recognizer
 from app.models.words.language.wordnet import Meanings
 from app.models.words.library import fit_library_words
 from app.services.library.fitted_models import SHAPES_FITTED, ModelKind, holds_persons, input_shapes
@@ -42,7 +42,7 @@ Meta = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """A fitted model as it is stored; figures: held out, by method."""
+    """A fitted model as it is stored; figures: held-out figures by method."""
 
     arrays: dict[str, Any]
     meta: Meta
@@ -51,9 +51,8 @@ class Fit:
 
 @dataclass(frozen=True, slots=True)
 class Before:
-    """What a fit may build on: the meta and settings of the model that is to be replaced, empty
-    where there is none, whether new words may be looked up in WordNet (seconds), and where
-    else to read."""
+    """The context of a fit: metadata and settings of the model that it replaces (empty if there
+    is none), whether to look up new words in WordNet (takes seconds), and the store."""
 
     meta: Meta
     settings: Meta
@@ -62,12 +61,12 @@ class Before:
 
 
 def fit_library(store: Store, *, wordnet: bool = False, persons: bool = True) -> dict[str, Any]:
-    """Fit and save every model that the labels allow; says what came of each.
+    """Fit and save every model that the labels allow.
 
-    The result holds `library_version` and `library_size` of what was fitted on, and for each
-    kind its `outcome`: "fitted" with version and figures, or "skipped" with the reason. A model
-    that fails does not keep the others from being fitted. wordnet: look new words up there
-    (seconds); persons: whether persons may be recognised.
+    The result has the `library_version` and `library_size` of the fit, and for each kind of
+    model its `outcome`: "fitted" with version and figures, or "skipped" with the reason. If one
+    model fails, the others are still fitted. wordnet: look up new words there (takes seconds);
+    persons: whether persons may be recognized.
     """
     training = replace(read_training_set(store), is_anonymous=not persons)
     outcomes = {kind.value: _fit_one(store, training, kind, wordnet) for kind in ModelKind}
@@ -85,7 +84,7 @@ def _fit_one(store: Store, training: TrainingSet, kind: ModelKind, wordnet: bool
     except NotEnoughLabels as reason:
         return {"outcome": "skipped", "reason": reason.detail}
     except Exception as defect:  # noqa: BLE001
-        # A defect in one model must not cost the others; it is told where it is looked for.
+        # a defect in one model must not stop the others; it goes to the log and to the result
         _log.exception("the %s model could not be fitted", kind.value)
         return {"outcome": "failed", "reason": f"{type(defect).__name__}: {defect}"}
     with store.write() as tx:
@@ -109,7 +108,7 @@ def _fit_one(store: Store, training: TrainingSet, kind: ModelKind, wordnet: bool
 
 
 def _is_someone_gone(tx: Tx, training: TrainingSet) -> bool:
-    """Whether a person of the training set is in the library no more."""
+    """Whether a person of the training set is no longer in the library."""
     return not set(filter(None, training.persons)) <= labels.person_names(tx)
 
 
@@ -135,7 +134,7 @@ def _fit_words(training: TrainingSet, before: Before) -> Fit:
 
 
 def word_figures(training: TrainingSet) -> Meta:
-    """Held-out figures of the word models beside the prior, or why there are none."""
+    """Held-out figures of the word models and the prior, or the reason why there are none."""
     try:
         found = held_out_word_figures(
             training.symbols, training.statistics, training.label_sets, training.groups
@@ -143,7 +142,7 @@ def word_figures(training: TrainingSet) -> Meta:
     except NotEnoughLabels as reason:
         return {"reason": reason.detail}
     shown = asdict(found)
-    # Curves and words one by one are long; `kinedex evaluate words` shows them.
+    # curves and figures of single words are long; `kinedex evaluate words` shows them
     del shown["by_word"]
     for name in ("figures", "in_sample"):
         shown[name] = [{k: v for k, v in row.items() if k != "precision"} for row in shown[name]]
@@ -155,22 +154,22 @@ def word_figures(training: TrainingSet) -> Meta:
 
 
 def recognition_figures(training: TrainingSet) -> dict[str, dict[str, float]]:
-    """Held-out shares recognised by method: "default", "multilinear", "perera", "pca" and
-    "prior"."""
+    """Held-out shares of recognized clips for the methods "default", "multilinear", "perera",
+    "pca" and "prior"."""
     return held_out_recognition_figures(
         training.samples, training.persons, training.tasks, training.groups, wide=training.wide
     )
 
 
-def _fit_recogniser(training: TrainingSet, _: Before) -> Fit:
-    model = fit_recogniser(training.full_samples, training.persons, training.tasks, training.groups)
+def _fit_recognizer(training: TrainingSet, _: Before) -> Fit:
+    model = fit_recognizer(training.full_samples, training.persons, training.tasks, training.groups)
     arrays, meta = model.to_arrays()
     figures: Meta = {"held_out": recognition_figures(training)}
     return Fit(arrays, meta, figures | {"unknown": unknown_figures(model)})
 
 
 def _fit_multilinear(training: TrainingSet, _: Before) -> Fit:
-    # Its held-out figures stand beside those of the default recogniser.
+    # its held-out figures are with those of the default recognizer
     model = fit_multilinear(training.samples, training.persons, training.tasks)
     arrays, meta = model.to_arrays()
     return Fit(arrays, meta, {})
@@ -184,7 +183,7 @@ def _fit_signatures(training: TrainingSet, _: Before) -> Fit:
 
 
 def _fit_perera(training: TrainingSet, _: Before) -> Fit:
-    model = fit_tensor_recogniser(
+    model = fit_tensor_recognizer(
         training.samples, training.persons, training.tasks, training.groups
     )
     arrays, meta = model.to_arrays()
@@ -216,7 +215,7 @@ def _fit_metric(factor: Factor, training: TrainingSet, _: Before) -> Fit:
 
 _FITS: dict[ModelKind, Callable[[TrainingSet, Before], Fit]] = {
     ModelKind.WORDS: _fit_words,
-    ModelKind.RECOGNISER: _fit_recogniser,
+    ModelKind.RECOGNIZER: _fit_recognizer,
     ModelKind.MULTILINEAR: _fit_multilinear,
     ModelKind.SIGNATURES: _fit_signatures,
     ModelKind.PERERA: _fit_perera,

@@ -1,4 +1,4 @@
-"""A fit in a process of its own: what that process runs. Light to import."""
+"""The entry point of a fit in a child process. It must be fast to import."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from app.config import Settings
 
 
 def fit_in_child(settings: Settings) -> dict[str, Any]:
-    """Open the library's store and fit; returns the job's result."""
+    """Open the library's store and fit its models; returns the result of the job."""
     from app.services.training.fit import fit_library
     from app.store.store import Store
 

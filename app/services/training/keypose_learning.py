@@ -1,4 +1,4 @@
-"""Thresholds of keyposes from the clips that people annotated, each method its own."""
+"""Learns the keypose thresholds of each energy method from clips that people annotated."""
 
 from __future__ import annotations
 
@@ -10,19 +10,25 @@ from app.analysis.energy.energy import EnergyMethod
 from app.analysis.keyposes.keyposes import find_candidates
 from app.errors import NotEnoughLabels
 from app.models.keyposes.matching import TOLERANCE, Counts, match, total
-from app.models.keyposes.thresholds import USUAL, Example, KeyposeThresholds, Lesson, lesson
+from app.models.keyposes.thresholds import (
+    USUAL,
+    Example,
+    KeyposeThresholds,
+    ThresholdGrid,
+    threshold_grid,
+)
 from app.services.training.annotated import AnnotatedClip
 
-NOBODY = "No ready clip carries keyposes that a person named."
+NOBODY = "No ready clip has keyposes that a person annotated."
 
 
 def learn_keyposes(
     annotated: Sequence[AnnotatedClip],
 ) -> tuple[KeyposeThresholds, dict[str, Any]]:
-    """Thresholds under which most of what people named is found, and figures as JSON.
+    """Learn the thresholds that find the annotated keyposes best; returns figures as JSON too.
 
-    Figures by method: thresholds `learned` on the other recordings beside the `usual` ones.
-    Raises NotEnoughLabels.
+    Figures by method: of the thresholds `learned` from the other recordings, and of the `usual`
+    ones. Raises NotEnoughLabels without annotated clips.
     """
     if not annotated:
         raise NotEnoughLabels(NOBODY)
@@ -30,38 +36,40 @@ def learn_keyposes(
     learned, figures = {}, {}
     for method in EnergyMethod:
         examples = examples_of(annotated, method)
-        taught = lesson(examples)
-        learned[method.value] = taught.learned()
-        figures[method.value] = _figures(examples, taught, groups)
+        grid = threshold_grid(examples)
+        learned[method.value] = grid.learned()
+        figures[method.value] = _figures(examples, grid, groups)
     return KeyposeThresholds(learned), _framed(figures, groups)
 
 
 def examples_of(annotated: Sequence[AnnotatedClip], method: EnergyMethod) -> list[Example]:
-    """The candidates of each clip by that energy, with what is true."""
+    """The candidates of each clip by the energy method, with the annotated times."""
     return [
         Example(find_candidates(clip.track, method=method, beats=clip.beats), clip.true)
         for clip in annotated
     ]
 
 
-def told(counts: Counts) -> dict[str, Any]:
-    """Counts with what follows from them, for JSON."""
+def counts_document(counts: Counts) -> dict[str, Any]:
+    """The counts with precision, recall and F, for JSON."""
     shares = {"precision": counts.precision, "recall": counts.recall, "f": counts.f}
     return asdict(counts) | shares
 
 
-def _figures(examples: Sequence[Example], taught: Lesson, groups: Sequence[str]) -> dict[str, Any]:
+def _figures(
+    examples: Sequence[Example], grid: ThresholdGrid, groups: Sequence[str]
+) -> dict[str, Any]:
     usual = total(
         match(example.candidates.times(USUAL.t1, USUAL.t2), example.true) for example in examples
     )
-    figures = {"usual": told(usual)}
+    figures = {"usual": counts_document(usual)}
     if len(set(groups)) > 1:
-        figures["learned"] = told(total(counts for _, counts in taught.held_out(groups)))
+        figures["learned"] = counts_document(total(counts for _, counts in grid.held_out(groups)))
     return figures
 
 
 def _framed(figures: dict[str, Any], groups: Sequence[str]) -> dict[str, Any]:
     framed = {"clips": len(groups), "tolerance": TOLERANCE, "methods": figures}
     if len(set(groups)) < 2:
-        framed["reason"] = "Thresholds can be held out from two annotated recordings on."
+        framed["reason"] = "Held-out figures need two annotated recordings."
     return framed

@@ -1,4 +1,4 @@
-"""The fitted models of a library: what is in force, and when to fit again."""
+"""The fitted models of a library: the active ones, their settings, and when to fit again."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from app.store.jobs.record import JobKind, JobRecord, JobState, NewJob
 from app.store.models import ModelRecord
 
 FIT_PRIORITY = 30
-"""After every ingest."""
-LEAST_CLIPS = 2
-"""Ready clips below which nothing is fitted unasked: a model of one clip tells nothing."""
+"""A fit runs after all ingest jobs."""
+MIN_CLIPS = 2
+"""Ready clips that an automatic fit needs: a model of one clip is useless."""
 FIT_KEY = "fit"
 _READY = ClipFilter(state=(ClipState.READY,))
 
 
 @dataclass(frozen=True, slots=True)
 class Unfitted:
-    """A kind of model that the last fit left as it was; outcome: "skipped" or "failed"."""
+    """A kind of model that the last fit did not replace; outcome: "skipped" or "failed"."""
 
     kind: str
     outcome: str
@@ -35,13 +35,13 @@ class Unfitted:
 
 
 def list_models(lib: Library) -> tuple[ModelRecord, ...]:
-    """The model in force of each kind; `meta["figures"]` holds its held-out figures."""
+    """The active model of each kind; `meta["figures"]` holds its held-out figures."""
     with lib.store.read() as tx:
         return stored.list_current(tx)
 
 
 def list_unfitted(lib: Library) -> tuple[Unfitted, ...]:
-    """What the last fit could not fit, with the reason; nothing before the first fit."""
+    """The models that the last fit could not fit, with the reasons; empty before a first fit."""
     with lib.store.read() as tx:
         last = jobs.list_jobs(tx, kind=JobKind.FIT, state=JobState.SUCCEEDED, limit=1).items
     outcomes = (last[0].result or {}).get("models", {}) if last else {}
@@ -53,10 +53,11 @@ def list_unfitted(lib: Library) -> tuple[Unfitted, ...]:
 
 
 def set_false_accept_rate(lib: Library, model_id: str, rate: float | None) -> ModelRecord:
-    """How often a recogniser may call something new known; None: where both errors weigh alike.
+    """Set how often a recognizer may call something new known.
 
-    Takes effect with the next question, on every replica, and stays when the model is fitted
-    anew. Raises NotFound, BadField for another kind of model or a rate outside 0..1.
+    rate: in (0, 1); None: the fitted threshold, which weighs both errors equally. It takes
+    effect with the next query in all processes, and also applies to later fits. Raises
+    NotFound, and BadField for another kind of model or a wrong rate.
     """
     if rate is not None and not 0 < rate < 1:
         raise fields.bad_field(FALSE_ACCEPT_RATE, "must be above 0 and below 1, or null")
@@ -69,7 +70,7 @@ def set_false_accept_rate(lib: Library, model_id: str, rate: float | None) -> Mo
 
 
 def request_fit(lib: Library) -> JobRecord:
-    """Queue a fit of all models; one that is queued already is enough."""
+    """Queue a fit of all models; returns the queued job if there is one already."""
     with lib.store.write() as tx:
         return enqueue_fit(tx)
 
@@ -80,13 +81,13 @@ def enqueue_fit(tx: Tx) -> JobRecord:
 
 
 def is_fit_due(tx: Tx, growth: float) -> bool:
-    """Whether the library has changed by the part `growth` since its last fit.
+    """Whether the share `growth` of the library has changed since the last fit.
 
-    Counts clips that were added, analysed again or labelled anew, and those that are gone.
-    Never due while a fit or an ingest is still to end, or below LEAST_CLIPS ready clips.
+    Changes are clips that were added, analyzed again, labeled again or removed. A fit is never
+    due while a fit or an ingest is open, or with fewer than MIN_CLIPS ready clips.
     """
     ready = count_clips(tx, _READY)
-    if ready < LEAST_CLIPS or _is_open(tx, JobKind.FIT) or _is_open(tx, JobKind.INGEST):
+    if ready < MIN_CLIPS or _is_open(tx, JobKind.FIT) or _is_open(tx, JobKind.INGEST):
         return False
     last = _last_fit(tx)
     if last is None:
@@ -97,7 +98,7 @@ def is_fit_due(tx: Tx, growth: float) -> bool:
 
 
 def _last_fit(tx: Tx) -> tuple[int, int] | None:
-    """Library version and size that the last fit saw, whether or not it could fit anything."""
+    """Library version and size of the last fit, even if it could not fit any model."""
     found = [(r.library_version, r.library_size) for r in stored.list_current(tx)]
     for job in jobs.list_jobs(tx, kind=JobKind.FIT, state=JobState.SUCCEEDED, limit=1).items:
         result = job.result or {}

@@ -1,4 +1,4 @@
-"""Fitting the synthesis of motions on a library."""
+"""Fits the synthesis model on a library."""
 
 from __future__ import annotations
 
@@ -17,16 +17,18 @@ SHAPE = "motion_shape"
 
 
 def fit_on(store: Store, training: TrainingSet) -> tuple[Synthesis, dict[str, Any]]:
-    """The model and its held-out figures, on the clips that have a motion shape and both labels.
+    """The model and its held-out figures, from the clips with a motion shape and both labels.
 
-    Raises NotEnoughLabels.
+    Raises NotEnoughLabels if the labels are too few.
     """
     labels = zip(training.clips, training.persons, training.tasks, strict=True)
-    told = [(clip.id, person, task) for clip, person, task in labels if person and task]
+    labeled = [(clip.id, person, task) for clip, person, task in labels if person and task]
     with store.read() as tx:
-        found = usable_arrays.get_many(tx, [clip_id for clip_id, _, _ in told], SHAPE)
-    told = [row for row in told if row[0] in found]  # clips of an older analysis have none
-    shapes = np.array([found[clip_id] for clip_id, _, _ in told]).reshape(-1, SHAPE_LENGTH)
-    ids, persons, tasks = ([row[column] for row in told] for column in range(3))
+        found = usable_arrays.get_many(tx, [clip_id for clip_id, _, _ in labeled], SHAPE)
+    labeled = [
+        row for row in labeled if row[0] in found
+    ]  # clips of an older analysis have no shape
+    shapes = np.array([found[clip_id] for clip_id, _, _ in labeled]).reshape(-1, SHAPE_LENGTH)
+    ids, persons, tasks = ([row[column] for row in labeled] for column in range(3))
     model = fit_synthesis(shapes, persons, tasks, ids)
     return model, {"held_out": held_out_synthesis(model)}

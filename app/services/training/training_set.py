@@ -1,4 +1,4 @@
-"""What the models of a library are fitted on, read from the store at one moment."""
+"""The training set of a library's models, read from the store in one snapshot."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ READY = ClipFilter(state=(ClipState.READY,))
 class TrainingSet:
     """N ready clips, sorted by id, at a library version.
 
-    groups: (N,) clips of one recording share a name; symbols: N; statistics: (N, 131);
-    samples: (N, 1250); vectors: (N, 128); wide: (N, 512); angles: (642,) by clip id, of those that
-    have been analysed since there are joint angles; is_anonymous: persons are not told, since none
-    is to be recognised.
+    groups: (N,) equal for clips of one recording; symbols: N; statistics: (N, 131); samples:
+    (N, 1250); vectors: (N, 128); wide: (N, 512); angles: (642,) by clip id, missing for clips of
+    an analysis without joint angles; is_anonymous: the set has no persons, since persons must
+    not be recognized.
     """
 
     library_version: int
@@ -54,17 +54,17 @@ class TrainingSet:
 
     @property
     def persons(self) -> Sequence[str | None]:
-        """(N,) who moves; None of all where the set is anonymous."""
+        """(N,) the person of each clip; all None if the set is anonymous."""
         return [None if self.is_anonymous else clip.person for clip in self.clips]
 
     @property
     def tasks(self) -> Sequence[str | None]:
-        """(N,) what is done."""
+        """(N,) the task of each clip."""
         return [clip.task for clip in self.clips]
 
     @property
     def label_sets(self) -> Sequence[tuple[str, ...]]:
-        """(N,) in which words."""
+        """(N,) the words of each clip."""
         return [clip.words for clip in self.clips]
 
     def with_angles(self) -> tuple[FloatArray, list[str | None], list[str | None], list[str]]:
@@ -80,31 +80,33 @@ class TrainingSet:
 
     @property
     def full_samples(self) -> FloatArray:
-        """(N, 1762) what the default recogniser looks at."""
+        """(N, 1762) the input of the default recognizer."""
         return full_samples(self.samples, self.wide)
 
     @property
     def described(self) -> Described:
-        """What learned metrics look at."""
+        """The input of learned metrics."""
         return Described(self.vectors, self.samples, self.statistics)
 
 
-def ready_only(wanted: ClipFilter | None) -> ClipFilter:
-    """A filter that besides lets only ready clips pass, and none that we made ourselves: they
-    would tell of the methods what the methods think."""
-    given = wanted or READY
+def ready_only(filter: ClipFilter | None) -> ClipFilter:
+    """The filter, restricted to ready clips that were not synthesized.
+
+    Synthesized clips would judge the methods by their own output.
+    """
+    given = filter or READY
     refused = (*given.not_source, SYNTHESIZED)
     return replace(given, state=READY.state, not_source=refused)
 
 
-def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
-    """All clips that pass a filter, ready ones by default, in one snapshot.
+def read_training_set(store: Store, filter: ClipFilter = READY) -> TrainingSet:
+    """Read all clips that pass the filter (by default the ready ones) in one snapshot.
 
-    Synthesised clips are left out: nothing is to be learned from them.
+    Synthesized clips are left out, since models must not learn from them.
     """
     with store.read() as tx:
         version = library.version(tx)
-        ids = sorted(clip_listing.list_ids(tx, wanted))
+        ids = sorted(clip_listing.list_ids(tx, filter))
         found = {name: usable_arrays.get_many(tx, ids, name) for name in NAMES}
         whole = [clip_id for clip_id in ids if all(clip_id in part for part in found.values())]
         records = clips.get_many(tx, whole)
@@ -127,9 +129,9 @@ def read_training_set(store: Store, wanted: ClipFilter = READY) -> TrainingSet:
 
 
 def recording_of_clip(clip: ClipRecord) -> str:
-    """What files of one recording share: their name but for its ending, and their labels.
+    """The key of a recording: the file name without its ending, and the labels.
 
-    The labels are there because libraries call takes of different people by the same name.
+    The labels are needed since libraries use the same name for takes of different people.
     """
     return f"{recording_of(clip.file_name)}|{clip.person}|{clip.task}"
 

@@ -1,1 +1,1 @@
-"""Look at a clip: motion, keyposes, segments, exports, low-dimensional motion."""
+"""Views of a clip: motion, keyposes, segments, exports, low-dimensional motion."""

@@ -1,4 +1,4 @@
-"""A ready clip as a picture that moves, whole or drawn from few dimensions."""
+"""A ready clip as an animated picture, as it is or reduced to a few dimensions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ROLE_NAMES = tuple(role.value for role in SUN_ROLES)
 
 
 def role_figure(positions: FloatArray, label: str = "") -> Figure:
-    """A body of positions (frames, 13, 3) in SUN_ROLES order, to be drawn."""
+    """A figure to draw from positions (frames, 13, 3) in SUN_ROLES order."""
     return Figure(positions, np.array(SUN_PARENTS), ROLE_NAMES, label)
 
 
@@ -32,7 +32,7 @@ def animation_svg(
     start: float | None = None,
     end: float | None = None,
 ) -> str:
-    """A clip, or its part from `start` to `end` seconds, as an SVG that moves.
+    """A clip, or its part from `start` to `end` seconds, as an animated SVG.
 
     Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes.
     """

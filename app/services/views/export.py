@@ -1,12 +1,12 @@
-"""A ready clip as a file for other programs: BVH, GLB, NPZ or CSV (DESIGN 8).
+"""Exports a ready clip as a file for other programs: BVH, GLB, NPZ or CSV.
 
-BVH and GLB hold rotations. They are the file's own where it had some: its bytes are read
-again, in a child process, and turned and scaled as the clip was. Otherwise, and where the
-bytes no longer give the stored positions, they are solved from the positions. Joints whose
-bones change their length have translations; positions come back within 0.1 mm.
+BVH and GLB need rotations. If the clip's file has rotations, a child process reads it again, and
+they are rotated and scaled like the clip. If the file has none, or if it no longer gives the stored
+positions, they are solved from the positions. Joints with bones of variable length get
+translations; the positions are restored within 0.1 mm.
 
-A motion drawn from few dimensions has the 13 joint roles, and rotations solved from their
-positions; its bones change their length, on the canonical body they do not.
+A motion reduced to few dimensions has the 13 joint roles and rotations solved from their positions.
+Its bones have variable lengths, except on the canonical body.
 """
 
 from __future__ import annotations
@@ -44,12 +44,12 @@ from app.store.clips.record import ClipRecord
 _Kind = TypeVar("_Kind", bound=StrEnum)
 
 POSITION_FORMATS = frozenset({"c3d", "npy"})
-"""Formats that hold no rotations: their bytes need not be read again."""
+"""File formats without rotations; such files need not be read again."""
 
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """A file: its name, and its content piece by piece."""
+    """A file: its name, and its content in pieces."""
 
     file_name: str
     blocks: Iterable[bytes]
@@ -74,7 +74,7 @@ def export(
 ) -> Export:
     """A clip as a file of `format`, resampled by time to `fps` (default: its own rate).
 
-    reduction: drawn from few dimensions instead, on the 13 joint roles, by default at 30 Hz.
+    reduction: reduce the motion to few dimensions, on the 13 joint roles, by default at 30 Hz.
     Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes.
     """
     wanted = _choice("format", ExportFormat, format)
@@ -119,13 +119,12 @@ def _resampled(motion: Motion, rate: float) -> Motion:
 
 
 def own_animation(lib: Library, clip: ClipRecord, motion: Motion, rate: float) -> Animation:
-    """The clip's joints turning at `rate` Hz: as its file says where it does, else as solved from
-    their positions."""
+    """The clip's joint rotations at `rate` Hz: those of its file, else solved from positions."""
     if clip.format not in POSITION_FORMATS:
         try:
             recording = lib.pool.read(analysis_request(lib, clip))
         except (BadContent, FileDamaged, StoredFileMissing):
-            recording = None  # the positions are what counts, and they are stored
+            recording = None  # the stored positions are enough
         animation = animation_of_recording(recording, motion) if recording else None
         if animation is not None:
             return animation.resampled(rate)
@@ -149,13 +148,13 @@ def _of_animation(wanted: ExportFormat, animation: Animation, clip: ClipRecord) 
     )
 
 
-def _of_positions(wanted: ExportFormat, told: _Positions) -> Iterable[bytes]:
+def _of_positions(wanted: ExportFormat, tracks: _Positions) -> Iterable[bytes]:
     if wanted is ExportFormat.NPZ:
-        return [write_npz(told.names, told.parents, told.positions, told.frame_rate)]
-    return write_csv(told.names, told.positions, told.frame_rate)
+        return [write_npz(tracks.names, tracks.parents, tracks.positions, tracks.frame_rate)]
+    return write_csv(tracks.names, tracks.positions, tracks.frame_rate)
 
 
 def _safe_stem(clip: ClipRecord) -> str:
-    """The clip's name as a file name that no system takes for anything else."""
+    """The clip's name as a file name that is valid on all systems."""
     kept = "".join(c if c.isalnum() or c in " ._-()+" else "_" for c in clip.name)
     return kept.strip(" ._")[:100] or clip.id

@@ -1,4 +1,4 @@
-"""What a clip can be exported as: names alone, so that `kinedex export --help` starts at once."""
+"""The names of export formats. The module imports nothing slow, for `kinedex export --help`."""
 
 from __future__ import annotations
 
@@ -6,22 +6,22 @@ from enum import StrEnum
 
 
 class ExportFormat(StrEnum):
-    """What a clip can be exported as."""
+    """The format of an export."""
 
     BVH = "bvh"
-    """Text, centimetres, Y up."""
+    """Text, centimeters, Y up."""
     GLB = "glb"
-    """Binary glTF 2.0 with a skinned body of sticks, metres, Y up."""
+    """Binary glTF 2.0 with a skinned body of sticks, meters, Y up."""
     NPZ = "npz"
-    """NumPy arrays (see `app.formats.npz.reader`), metres, Y up."""
+    """NumPy arrays (see `app.formats.npz.reader`), meters, Y up."""
     CSV = "csv"
-    """A row a frame: time, then x, y, z of each joint; seconds, metres, Y up."""
+    """A row a frame: time, then x, y, z of each joint; seconds, meters, Y up."""
 
 
 class ExportSkeleton(StrEnum):
-    """On which body."""
+    """The skeleton of an export."""
 
     OWN = "own"
     """The clip's own joints."""
     CANONICAL = "canonical"
-    """One body for all clips: 18 joints called by role, 1.7 m tall."""
+    """The same body for all clips: 18 joints named by role, 1.7 m tall."""

@@ -1,4 +1,4 @@
-"""The frame rate at which a client wants a motion: one rule for all calls that take one."""
+"""The rule for the frame rate that a client requests, for all calls that take one."""
 
 from __future__ import annotations
 
@@ -8,33 +8,33 @@ from app.services import fields
 from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
 
-LEAST_FPS, MOST_FPS = 1.0, 1000.0
-"""Frames a second that can be asked for."""
+MIN_FPS, MAX_FPS = 1.0, 1000.0
+"""Bounds of a requested frame rate, in Hz."""
 
-MOST_POSITIONS = 30_000_000
-"""Frames times joints that are resampled, or made, for one call: an hour at 120 Hz with 60
-joints has 26 million. As float32 they take 360 MB."""
+MAX_POSITIONS = 30_000_000
+"""Largest number of frames times joints that one call reads or makes. An hour at 120 Hz with 60
+joints has 26 million. The limit is 360 MB as float32."""
 
 
 def wanted_rate(
     lib: Library, clip: ClipRecord, fps: float | None, *, source: float, joints: int
 ) -> float:
-    """`fps`, or the rate `source` (Hz) at which the motion is made where None is asked for.
+    """The frame rate: `fps`, or if it is None, the rate `source` (Hz) of the motion.
 
-    joints: of the motion. Raises BadField for a rate out of bounds, and for one that would make
-    too many frames or too much work.
+    joints: number of joints of the motion. Raises BadField for a rate out of bounds, and for a
+    rate that would make too many frames or too much work.
     """
     if fps is None or fps == source:
         return source
-    if not (math.isfinite(fps) and LEAST_FPS <= fps <= MOST_FPS):
-        raise fields.bad_field("fps", f"must be from {LEAST_FPS:g} to {MOST_FPS:g}")
+    if not (math.isfinite(fps) and MIN_FPS <= fps <= MAX_FPS):
+        raise fields.bad_field("fps", f"must be from {MIN_FPS:g} to {MAX_FPS:g}")
     seconds, most = clip.duration or 0.0, max(lib.settings.max_frames, clip.frames or 0)
     if fps * seconds > most:
         raise fields.bad_field("fps", f"would make more than {most} frames")
-    if max(fps, source) * seconds * joints > MOST_POSITIONS:
+    if max(fps, source) * seconds * joints > MAX_POSITIONS:
         message = (
             f"{seconds:.0f} s of {joints} joints from {source:g} to {fps:g} Hz are too much work: "
-            f"at most {MOST_POSITIONS:,} positions, frames times joints, are read or made"
+            f"at most {MAX_POSITIONS:,} positions, frames times joints, are read or made"
         )
         raise fields.bad_field("fps", message)
     return fps

@@ -1,4 +1,4 @@
-"""The keyposes of ready clips: found, with what they were found from, and named by people."""
+"""The keyposes of ready clips: those that are found, and those that people named."""
 
 from __future__ import annotations
 
@@ -29,21 +29,21 @@ WEIGHTS = tuple(weights.value for weights in Weights)
 
 
 class ThresholdSource(StrEnum):
-    """Whence a threshold is."""
+    """Where a threshold comes from."""
 
     GIVEN = "given"
-    """The client said it."""
+    """The client gave it."""
 
     LEARNED = "learned"
-    """From the clips whose keyposes people named."""
+    """It was learned from the clips whose keyposes people named."""
 
     DEFAULT = "default"
-    """The usual one."""
+    """It is the usual one."""
 
 
 @dataclass(frozen=True, slots=True)
 class UsedThresholds:
-    """T1 and T2, whence each is, and the version of the model where one was asked."""
+    """T1 and T2, the source of each, and the version of the model, if one was used."""
 
     values: Thresholds
     t1_source: ThresholdSource
@@ -55,8 +55,8 @@ class UsedThresholds:
 class KeyposesView:
     """Keyposes at the analysis rate (30 Hz), with the pose at each.
 
-    found: frames, times, beats and energy curves; poses: (keyposes, 13, 3) metres; named: the
-    keyposes that a person named, seconds, None where nobody did.
+    found: frames, times, beats and energy curves; poses: (keyposes, 13, 3) meters; named: times
+    of the keyposes that a person named, in seconds, None if nobody named any.
     """
 
     found: Keyposes
@@ -75,8 +75,9 @@ def view(
     *,
     weights: str = Weights.UNIFORM,
 ) -> KeyposesView:
-    """A clip's keyposes by Perera's thresholds T1 and T2; where None the learned ones, else
-    the usual ones.
+    """A clip's keyposes by Perera's thresholds T1 and T2.
+
+    A threshold of None is the learned one, or the usual one if none was learned.
 
     Raises BadField, ClipNotFound, ClipNotReady.
     """
@@ -105,7 +106,8 @@ def thresholds(
     t1: float | None = None,
     t2: float | None = None,
 ) -> UsedThresholds:
-    """The thresholds for an energy: what is given, else learned, else usual. Raises BadField."""
+    """The thresholds for an energy method: the given ones, else the learned ones, else the usual
+    ones. Raises BadField."""
     for name, value in (("t1", t1), ("t2", t2)):
         if value is not None and not (math.isfinite(value) and value > 0):
             raise fields.bad_field(name, "must be a number above 0")
@@ -130,16 +132,16 @@ def _learned(lib: Library, method: str) -> tuple[Thresholds | None, int | None]:
 
 
 def name_keyposes(lib: Library, clip_id: str, times: Sequence[float]) -> tuple[float, ...]:
-    """Say where a clip's keyposes are, in seconds; none of them take what was said away.
+    """Store the times of a clip's keyposes, in seconds; an empty list removes the annotation.
 
-    What is built on the keyposes of a ready clip follows at once. Raises BadField for a time
-    outside the clip, ClipNotFound.
+    The data that depend on the keyposes of a ready clip are updated at once. Raises BadField for
+    a time outside the clip, and ClipNotFound.
     """
     tidy = fields.keyposes(times, "times") or ()
     with lib.store.read() as tx:
         before = clips.get(tx, clip_id)
     _check_within(before, tidy)
-    # Found before the transaction, so that no other writer waits for it.
+    # computed before the transaction, so that no other writer waits for it
     instead = np.array(tidy) if tidy else _found_anew(lib, before)
     with lib.store.write() as tx:
         now = clips.get(tx, clip_id)
@@ -152,12 +154,12 @@ def name_keyposes(lib: Library, clip_id: str, times: Sequence[float]) -> tuple[f
 
 def _check_within(clip: ClipRecord, times: tuple[float, ...]) -> None:
     if clip.duration is not None and times and times[-1] > clip.duration:
-        message = f"{times[-1]:g} s lies behind the clip's end at {clip.duration:.3f} s"
+        message = f"{times[-1]:g} s is after the clip's end at {clip.duration:.3f} s"
         raise fields.bad_field("times", message)
 
 
 def _found_anew(lib: Library, clip: ClipRecord) -> FloatArray | None:
-    """What is found in a ready clip; None where the analysis is still to come."""
+    """The keyposes found in a ready clip; None if its analysis is not done yet."""
     if clip.state is not ClipState.READY:
         return None
     track = body_track(load_motion(lib, clip))

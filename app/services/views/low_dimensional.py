@@ -1,4 +1,4 @@
-"""A ready clip drawn from few dimensions, by a model of its own poses or of other clips'."""
+"""A ready clip reduced to few dimensions, by a model of its own poses or of other clips' poses."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ from app.services.views.frame_rates import wanted_rate
 from app.services.views.views import MotionView
 from app.store.clips.record import ClipRecord
 
-FEWEST_POSES = 2
-"""Of a model: one pose spans no dimension."""
-MOST_MODEL_CLIPS = 50
-MOST_POSES = 1000
-"""Uniform poses of one clip that can be asked for."""
+MIN_POSES = 2
+"""Poses that a model needs: one pose spans no dimension."""
+MAX_MODEL_CLIPS = 50
+MAX_POSES = 1000
+"""Largest number of uniform poses of one clip."""
 
 Keyposes = dict[str, list[int]]
 """Frames at 30 Hz by clip id."""
@@ -45,12 +45,12 @@ Keyposes = dict[str, list[int]]
 
 @dataclass(frozen=True, slots=True)
 class Reduction:
-    """How a motion is drawn from few dimensions.
+    """How to reduce a motion to few dimensions.
 
-    dimensions: K', from 1 to the model's poses (default: 3, or fewer where those are fewer);
-    model_clips: ids of the clips whose poses make the model, default the clip itself; poses:
-    of each clip, with the uniform basis only (default: as many as it has keyposes);
-    keyposes: frames at 30 Hz by clip id, where they are known, in place of model_clips.
+    dimensions: K', from 1 to the number of the model's poses (default: 3, or that number if it is
+    smaller); model_clips: ids of the clips whose poses make the model (default: the clip
+    itself); poses: number of poses of each clip, only with the uniform basis (default: its
+    number of keyposes); keyposes: frames at 30 Hz by clip id, instead of model_clips.
     """
 
     dimensions: int | None = None
@@ -62,7 +62,7 @@ class Reduction:
 
 @dataclass(frozen=True, slots=True)
 class ModelPose:
-    """A pose of the model: the clip and when, in seconds."""
+    """A pose of the model: its clip and its time in seconds."""
 
     clip_id: str
     time: float
@@ -70,11 +70,11 @@ class ModelPose:
 
 @dataclass(frozen=True, slots=True)
 class Reduced:
-    """A motion and what few dimensions leave of it.
+    """A motion and its reduction to few dimensions.
 
-    model: made of `poses` (K of them); eigen_poses: (K, 3) where those lie along the first
-    axes (figs 7, 8); original, reduced: the motion before and after, at 30 Hz; eigen_motion:
-    (n, 3) its curve (fig. 9); variance_kept, errors: (K,) at K' = 1..K, the errors in metres.
+    model: made of K `poses`; eigen_poses: (K, 3) their coordinates along the first axes (figs 7,
+    8); original, reduced: the motion before and after, at 30 Hz; eigen_motion: (n, 3) its curve
+    (fig. 9); variance_kept, errors: (K,) for K' = 1..K, errors in meters.
     """
 
     basis: Basis
@@ -91,8 +91,8 @@ class Reduced:
 
 @dataclass(frozen=True, slots=True)
 class ReducedView:
-    """`reduced` as it is shown: motion and eigen_motion at the frame rate that was asked for;
-    faults of the motion and of the original, in frames at 30 Hz."""
+    """A reduced motion to show: motion and eigen_motion at the requested frame rate; faults of
+    the motion and of the original, in frames at 30 Hz."""
 
     reduced: Reduced
     motion: MotionView
@@ -102,7 +102,7 @@ class ReducedView:
 
 
 def view(lib: Library, clip_id: str, wanted: Reduction, fps: float | None = None) -> ReducedView:
-    """A clip drawn from few dimensions, resampled by time to `fps` (default 30 Hz).
+    """A clip reduced to few dimensions, resampled by time to `fps` (default 30 Hz).
 
     Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes.
     """
@@ -122,7 +122,7 @@ def view(lib: Library, clip_id: str, wanted: Reduction, fps: float | None = None
 
 
 def reduce(lib: Library, clip: ClipRecord, wanted: Reduction) -> Reduced:
-    """A ready clip's motion drawn from few dimensions.
+    """A ready clip's motion reduced to few dimensions.
 
     Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes.
     """
@@ -149,7 +149,7 @@ def reduce(lib: Library, clip: ClipRecord, wanted: Reduction) -> Reduced:
 
 
 def keyposes_of(lib: Library, clip: ClipRecord, model_clips: Sequence[str] = ()) -> Keyposes:
-    """The frames, at 30 Hz by clip id, that would make a model of `model_clips`, or of `clip`.
+    """The frames (at 30 Hz, by clip id) of the model of `model_clips`, or of `clip` itself.
 
     Raises BadField, ClipNotFound, ClipNotReady.
     """
@@ -164,13 +164,13 @@ def keyposes_of(lib: Library, clip: ClipRecord, model_clips: Sequence[str] = ())
 
 
 def frame_rate(lib: Library, clip: ClipRecord, fps: float | None) -> float:
-    """`fps`, or 30 Hz. Raises BadField where that makes no motion, or one that is too long."""
+    """`fps`, or 30 Hz if it is None. Raises BadField for a rate that is not possible."""
     return wanted_rate(lib, clip, fps, source=ANALYSIS_RATE, joints=len(SUN_ROLES))
 
 
 def as_motion(found: Reduced, clip: ClipRecord) -> Motion:
-    """The reduced motion on a skeleton of the 13 joint roles, each after its parent, at 30 Hz,
-    in the clip's own size: what files are written from."""
+    """The reduced motion for files: a skeleton of the 13 joint roles, each after its parent, at
+    30 Hz and in the size of the clip."""
     order = _parents_first()
     place = {joint: index for index, joint in enumerate(order)}
     missing = tuple(JointRole(role) for role in clip.missing_roles)
@@ -199,7 +199,7 @@ def _parents_first() -> list[int]:
 def _model_poses(
     lib: Library, clip: ClipRecord, track: BodyTrack, wanted: Reduction, basis: Basis
 ) -> tuple[tuple[ModelPose, ...], FloatArray]:
-    """The poses that make the model, and where their joints are: (K, 13, 3) body lengths."""
+    """The K poses of the model, and their joint positions (K, 13, 3) in body lengths."""
     poses: list[ModelPose] = []
     local: list[FloatArray] = []
     counts: dict[str, int] = {}
@@ -220,26 +220,26 @@ def _model_poses(
             frames = uniform_frames(found.frames, min(count, found.frames))
         poses += [ModelPose(clip_id, float(frame / found.rate)) for frame in frames]
         local.append(found.local[frames])
-    if len(poses) < FEWEST_POSES:
+    if len(poses) < MIN_POSES:
         raise _too_few(counts, len(poses))
     return tuple(poses), np.concatenate(local)
 
 
 def _within(frames: Sequence[int], track: BodyTrack) -> IntArray:
-    """Of frames that were kept, those that the clip still has: it may be read anew since."""
+    """The stored frames that the clip still has; it may have changed in a new analysis."""
     return np.array([frame for frame in frames if 0 <= frame < track.frames], dtype=np.int64)
 
 
 def _too_few(counts: dict[str, int], poses: int) -> NotEnoughKeyposes:
     return NotEnoughKeyposes(
-        f"A model needs at least {FEWEST_POSES} poses; found {poses}. Take other model_clips, "
-        "or basis=uniform and say how many poses, or tell which frames are keyposes.",
+        f"A model needs at least {MIN_POSES} poses; found {poses}. Take other model_clips, "
+        "or basis=uniform with a number of poses, or annotate the keyposes.",
         places=[Place("model_clips", f"{clip_id}: keyposes: {n}") for clip_id, n in counts.items()],
     )
 
 
 def _checked(wanted: Reduction) -> Basis:
-    """The basis, where all else may be asked for too. Raises BadField."""
+    """The basis of a valid reduction. Raises BadField for an invalid one."""
     try:
         basis = Basis(wanted.basis)
     except ValueError:
@@ -248,19 +248,19 @@ def _checked(wanted: Reduction) -> Basis:
         raise fields.bad_field("dimensions", "must be at least 1")
     _check_clips(wanted.model_clips)
     if wanted.poses is not None and basis is not Basis.UNIFORM:
-        raise fields.bad_field("poses", "goes with basis=uniform; keyposes are as many as they are")
-    if wanted.poses is not None and not 1 <= wanted.poses <= MOST_POSES:
-        raise fields.bad_field("poses", f"must be from 1 to {MOST_POSES}")
+        raise fields.bad_field("poses", "needs basis=uniform; the number of keyposes is fixed")
+    if wanted.poses is not None and not 1 <= wanted.poses <= MAX_POSES:
+        raise fields.bad_field("poses", f"must be from 1 to {MAX_POSES}")
     return basis
 
 
 def _check_clips(model_clips: Sequence[str]) -> None:
-    if len(model_clips) > MOST_MODEL_CLIPS:
-        raise fields.bad_field("model_clips", f"must be at most {MOST_MODEL_CLIPS} clips")
+    if len(model_clips) > MAX_MODEL_CLIPS:
+        raise fields.bad_field("model_clips", f"must be at most {MAX_MODEL_CLIPS} clips")
 
 
 def _shown(model: EigenModel, poses: FloatArray) -> FloatArray:
-    """(n, 3) coordinates along the first three axes; 0 along those that the model lacks."""
+    """(n, 3) coordinates along the first three axes; 0 for axes that the model does not have."""
     found = np.zeros((len(poses), SHOWN))
     kept = min(SHOWN, model.poses)
     found[:, :kept] = model.coordinates(poses, kept)

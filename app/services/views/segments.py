@@ -29,8 +29,8 @@ _NAMES = (SEGMENT_SPANS, SEGMENT_VECTORS, SEGMENT_CYCLES)
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """What is danced from one keypose to the next: its number from 0, start and end in
-    seconds, and the number of the cycle that it belongs to, if any."""
+    """The motion from one keypose to the next: its number from 0, start and end in seconds, and
+    the number of its cycle, if it has one."""
 
     index: int
     start: float
@@ -45,8 +45,8 @@ class Segment:
 
 @dataclass(frozen=True, slots=True)
 class SegmentCycle:
-    """One time through what is repeated: segments first..first+count-1, from start to end
-    (seconds). Cycles of one run are repetitions of each other."""
+    """One repetition of a repeated sequence: segments first..first+count-1, from start to end in
+    seconds. The cycles of one run are repetitions of each other."""
 
     index: int
     run: int
@@ -63,7 +63,7 @@ class SegmentCycle:
 
 @dataclass(frozen=True, slots=True)
 class Segments:
-    """The segments of a clip and their cycles, both in order of time."""
+    """The segments of a clip and their cycles, both sorted by time."""
 
     segments: tuple[Segment, ...]
     cycles: tuple[SegmentCycle, ...]
@@ -85,8 +85,10 @@ def list_segments(lib: Library, clip_id: str) -> Segments:
 
 
 def segment_arrays(lib: Library, clip: ClipRecord) -> dict[str, NDArray[Any]]:
-    """What is stored of a ready clip's segments, by name (see `describe_segments`); described
-    anew for a clip that was analysed before they were stored."""
+    """The stored arrays of a ready clip's segments, by name (see `describe_segments`).
+
+    They are computed here for a clip whose analysis is older than their storage.
+    """
     try:
         with lib.store.read() as tx:
             return {name: arrays.get_one(tx, clip.id, name) for name in _NAMES}

@@ -1,9 +1,9 @@
-"""The study behind Perera's Table 2: which of two low-dimensional motions is nearer to the
-original, as people see it.
+"""The study of Perera's Table 2: which of two low-dimensional motions do people find nearer to the
+original?
 
-A pair shows a clip drawn from as many dimensions of keyposes and of uniform poses, on sides
-that are drawn by lot and told to nobody: not in the pair, nor in what its motions look like
-as answers. Votes are tallied by sequence, which is a clip, a model and its dimensions.
+A pair shows a clip reduced to the same number of dimensions by keyposes and by uniform poses. Their
+sides are random. Neither the pair nor the form of its motions reveals them. Votes are counted by
+sequence: a clip, a model and its dimensions.
 """
 
 from __future__ import annotations
@@ -33,30 +33,30 @@ from app.store.clips import repository as stored_clips
 from app.store.database.paging import Page
 from app.store.studies import Choice, PairRecord, VoteCount
 
-MOST_SEQUENCES = 1000
-"""Sequences that a tally tells one by one; those of one clip can be asked for by themselves."""
-MOST_VOTER = 200
-"""Characters of what a page calls a voter."""
+MAX_SEQUENCES = 1000
+"""Largest number of sequences that a tally lists; a tally of one clip lists those of the clip."""
+MAX_VOTER = 200
+"""Largest number of characters of a voter's name."""
 
 
 class Side(StrEnum):
-    """What of a pair is shown."""
+    """Which motion of a pair to show."""
 
     LEFT = "left"
-    """One of the two versions."""
+    """One of the two reductions."""
     ORIGINAL = "original"
-    """The motion itself."""
+    """The original motion."""
     RIGHT = "right"
-    """The other version."""
+    """The other reduction."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """Votes as in Table 2.
+    """Counts of votes as in Table 2.
 
-    keypose, uniform, same: how often each was chosen; share: of those who could tell, who
-    preferred keyposes, None where nobody could; interval: of the share, 95 % (Wilson);
-    chance: the probability of a share as far from one half if nobody could tell.
+    keypose, uniform, same: numbers of votes; share: of the keypose votes among those that
+    preferred one side, None without such votes; interval: 95 % confidence interval of the share
+    (Wilson); chance: probability of a share at least as far from one half under random votes.
     """
 
     keypose: int
@@ -69,7 +69,7 @@ class Tally:
 
 @dataclass(frozen=True, slots=True)
 class SequenceTally:
-    """The tally of one sequence."""
+    """The vote counts of one sequence."""
 
     clip_id: str
     name: str
@@ -79,8 +79,11 @@ class SequenceTally:
 
 @dataclass(frozen=True, slots=True)
 class StudyTally:
-    """Each sequence, and all together; left_share: how often those who could tell chose the
-    left side, None where nobody could: far from one half says that they did not look."""
+    """The counts of each sequence and of all.
+
+    left_share: share of the left side among the votes that preferred one side, None without such
+    votes. A share far from one half shows that voters did not look.
+    """
 
     sequences: tuple[SequenceTally, ...]
     total: Tally
@@ -93,42 +96,42 @@ def draw_pair(
     dimensions: int = SHOWN,
     model_clips: Sequence[str] = (),
 ) -> PairRecord:
-    """A new pair of a clip's low-dimensional versions, sides by lot.
+    """Create a pair of a clip's two reductions, on random sides.
 
-    The keyposes are those of now: later ones do not change what is voted on. Raises BadField,
+    The pair keeps the present keyposes; later changes do not affect it. Raises BadField,
     ClipNotFound, ClipNotReady, NotEnoughKeyposes.
     """
     clip = ready_clip(lib, clip_id)
     keyposes = keyposes_of(lib, clip, model_clips)
     for basis in Basis:
         reduce(lib, clip, Reduction(dimensions, basis, keyposes=keyposes))
-    told = json.dumps([clip_id, dimensions, keyposes])
-    sequence = hashlib.sha256(told.encode()).hexdigest()
+    key = json.dumps([clip_id, dimensions, keyposes])
+    sequence = hashlib.sha256(key.encode()).hexdigest()
     left = secrets.choice(list(Basis))
     with lib.store.write() as tx:
         return stored.add_pair(tx, clip_id, dimensions, keyposes, sequence, left.value)
 
 
 def get_pair(lib: Library, pair_id: str) -> PairRecord:
-    """A pair by id; raises NotFound."""
+    """Return a pair by id. Raises NotFound."""
     with lib.store.read() as tx:
         return stored.get_pair(tx, pair_id)
 
 
 def list_pairs(lib: Library, limit: int = 50, cursor: str | None = None) -> Page[PairRecord]:
-    """One page of pairs, newest first. Raises BadField for a bad cursor."""
+    """One page of pairs, the newest first. Raises BadField for a bad cursor."""
     with lib.store.read() as tx:
         return stored.list_pairs(tx, limit=limit, cursor=cursor)
 
 
 def delete_pair(lib: Library, pair_id: str) -> None:
-    """Forgets a pair and its votes; raises NotFound."""
+    """Delete a pair and its votes. Raises NotFound."""
     with lib.store.write() as tx:
         stored.delete_pair(tx, pair_id)
 
 
 def motion(lib: Library, pair_id: str, side: Side, fps: float | None = None) -> MotionView:
-    """What stands on a side of a pair, resampled by time to `fps` (default 30 Hz).
+    """The motion on a side of a pair, resampled by time to `fps` (default 30 Hz).
 
     Raises NotFound, BadField, ClipNotReady.
     """
@@ -141,7 +144,7 @@ def motion(lib: Library, pair_id: str, side: Side, fps: float | None = None) -> 
 
 
 def animation(lib: Library, pair_id: str) -> str:
-    """The three of them in one picture that moves, the original in the middle (fig. 12).
+    """The three motions in one animated picture, the original in the middle (fig. 12).
 
     Raises NotFound, ClipNotReady.
     """
@@ -156,25 +159,25 @@ def animation(lib: Library, pair_id: str) -> str:
 
 
 def vote(lib: Library, pair_id: str, choice: Choice | str, voter: str | None = None) -> str:
-    """Keeps what a voter found nearer to the original; returns the vote's id.
+    """Store a vote on which side is nearer to the original; returns the id of the vote.
 
-    voter: anything that tells voters apart, such as a number that their page drew; it is
-    kept as a hash only, and may vote once on each sequence. Raises NotFound, BadField,
+    voter: any text that identifies the voter, such as a random number of their page. Only its
+    hash is stored. A voter has one vote on each sequence. Raises NotFound, BadField,
     AlreadyVoted.
     """
     try:
         chosen = Choice(choice)
     except ValueError:
         raise fields.bad_field("choice", f"must be one of {', '.join(Choice)}") from None
-    if voter is not None and not 0 < len(voter) <= MOST_VOTER:
-        raise fields.bad_field("voter", f"must have from 1 to {MOST_VOTER} characters")
+    if voter is not None and not 0 < len(voter) <= MAX_VOTER:
+        raise fields.bad_field("voter", f"must have from 1 to {MAX_VOTER} characters")
     known = None if voter is None else hashlib.sha256(voter.encode()).hexdigest()
     with lib.store.write() as tx:
         return stored.add_vote(tx, stored.get_pair(tx, pair_id), chosen, known)
 
 
 def tally(lib: Library, clip_id: str | None = None) -> StudyTally:
-    """The votes on one clip's pairs, or on all. Raises ClipNotFound."""
+    """Count the votes on the pairs of one clip, or of all clips. Raises ClipNotFound."""
     with lib.store.read() as tx:
         if clip_id is not None:
             stored_clips.get(tx, clip_id)
@@ -191,9 +194,9 @@ def tally(lib: Library, clip_id: str | None = None) -> StudyTally:
     ]
     sequences.sort(key=lambda one: (one.name, one.clip_id, one.dimensions))
     left = sum(count.votes for count in counts if count.choice is Choice.LEFT)
-    told = sum(count.votes for count in counts if count.choice is not Choice.SAME)
+    decided = sum(count.votes for count in counts if count.choice is not Choice.SAME)
     return StudyTally(
-        tuple(sequences[:MOST_SEQUENCES]), _tally(counts), left / told if told else None
+        tuple(sequences[:MAX_SEQUENCES]), _tally(counts), left / decided if decided else None
     )
 
 
@@ -201,19 +204,19 @@ def _tally(counts: Iterable[VoteCount]) -> Tally:
     votes = {Basis.KEYPOSE: 0, Basis.UNIFORM: 0, None: 0}
     for count in counts:
         votes[_chosen(count)] += count.votes
-    keypose, told = votes[Basis.KEYPOSE], votes[Basis.KEYPOSE] + votes[Basis.UNIFORM]
+    keypose, decided = votes[Basis.KEYPOSE], votes[Basis.KEYPOSE] + votes[Basis.UNIFORM]
     return Tally(
         keypose=keypose,
         uniform=votes[Basis.UNIFORM],
         same=votes[None],
-        share=keypose / told if told else None,
-        interval=wilson_interval(keypose, told),
-        chance=fair_coin_probability(keypose, told),
+        share=keypose / decided if decided else None,
+        interval=wilson_interval(keypose, decided),
+        chance=fair_coin_probability(keypose, decided),
     )
 
 
 def _chosen(count: VoteCount) -> Basis | None:
-    """Which basis a choice means; None for neither."""
+    """The basis of a choice; None for neither."""
     left = Basis(count.left_basis)
     if count.choice is Choice.SAME:
         return None

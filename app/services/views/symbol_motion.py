@@ -1,4 +1,4 @@
-"""What a clip's motion symbol generates, to look at and to play (Takano, fig. 6)."""
+"""The motion that a clip's motion symbol generates (Takano, fig. 6)."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from app.store.clips import arrays
 
 @dataclass(frozen=True, slots=True)
 class SymbolMotionView:
-    """states: K of the symbol; generated: the channels' trajectories and the motion; motion:
-    the same motion to draw, 13 joint roles."""
+    """states: number of states K of the symbol; generated: the trajectories of the channels, and
+    the motion; motion: the motion to draw, with 13 joint roles."""
 
     states: int
     generated: SymbolMotion

@@ -1,4 +1,4 @@
-"""Ready clips to look at: their motion, descriptors, and a small picture."""
+"""Views of a ready clip: its motion, its descriptors, and a small picture."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CONVERGENCE = "msv_convergence"
 
 @dataclass(frozen=True, slots=True)
 class MotionView:
-    """A motion to draw: positions (frames, joints, 3) float32, metres, Y up; parents, -1 a root."""
+    """A motion to draw: positions (frames, joints, 3) float32, meters, Y up; parents, -1 a root."""
 
     frame_rate: float
     joint_names: tuple[str, ...]
@@ -37,9 +37,9 @@ class DescriptorView:
     """A clip's descriptors.
 
     msv_lambda: weight; msv_rho: (13,); msv_epsilon: (n,); msv_convergence: (iterations, 2)
-    error and change of lambda, None of a clip analysed before they were kept;
-    motion_vector: (128,);
-    symbol_states: K; symbol_means, symbol_variances: (K, 26); analysis_version: of them all.
+    error and change of lambda, None if the analysis is older than their storage;
+    motion_vector: (128,); symbol_states: K; symbol_means, symbol_variances: (K, 26);
+    analysis_version: of all of them.
     """
 
     msv_lambda: float

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.cli.evaluate.confusion_table import MOST_PAIRS, print_confusion
+from app.cli.evaluate.confusion_table import MAX_PAIRS, print_confusion
 from app.cli.output import WIDEST
 from app.numerics.arrays import FloatArray
 
@@ -47,7 +47,7 @@ def test_of_many_classes_the_largest_confusions_are_told(
         ["c39", "c40", "39", "61"],
         ["c38", "c39", "38", "62"],
     ]
-    assert len(lines[1 : lines.index("")]) == MOST_PAIRS
+    assert len(lines[1 : lines.index("")]) == MAX_PAIRS
     assert lines[-1].startswith("41 classes, the 25 largest of 39 confusions; --json")
 
 

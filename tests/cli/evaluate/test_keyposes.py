@@ -78,6 +78,6 @@ def test_pictures_need_no_annotation(kinedex: Kinedex, tmp_path: Path) -> None:
 def test_what_cannot_be_done_is_said(kinedex: Kinedex) -> None:
     ended = kinedex(*COMMAND)
     assert ended.code != 0
-    assert "keyposes that a person named" in ended.err
+    assert "keyposes that a person annotated" in ended.err
     assert kinedex(*COMMAND, "--tolerance", "0").code != 0
     assert kinedex(*COMMAND, "--picture", "x.bmp").code != 0

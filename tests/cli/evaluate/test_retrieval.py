@@ -15,11 +15,13 @@ def test_tables_for_people(kinedex: Kinedex) -> None:
     ended = kinedex(*QUICK, "--k", "3")
     assert ended.code == 0, ended.err
     lines = ended.out.splitlines()
-    assert lines[0] == "12 clips ask for the others of their task, among 12:"
+    assert lines[0] == "12 clips are queries for the others of their task, among 12:"
     assert lines[2].split() == ["method", "1-NN", "P@4", "P@20", "MAP"]
     assert [line.split()[0] for line in lines[3:6]] == ["vector", "msv-xcorr", "msv-xcorr"]
     assert ["method", "kick", "walk", "wave", "overall"] in [line.split() for line in lines]
-    assert any(line.startswith("What the 3 nearest are by msv-xcorr") for line in lines)
+    assert any(
+        line.startswith("True classes, and classes of the 3 nearest clips by") for line in lines
+    )
     row = next(line for line in lines if line.startswith(" 1 kick"))
     assert sum(int(cell) for cell in row.split()[2:] if cell != ".") == pytest.approx(100, abs=1)
     assert "Compression ratio (section 5.3): 0.0" in ended.out
@@ -54,7 +56,7 @@ def test_pictures_go_where_they_are_wanted(kinedex: Kinedex, tmp_path: Path) -> 
     ("words", "told"),
     [
         (("--classes", "walk,fly"), "'fly'; they do of kick, walk, wave"),
-        (("--filter", '{"task": "walk"}'), "'walk': whatever is found is right"),
+        (("--filter", '{"task": "walk"}'), "'walk', so every answer would be right"),
         (("--filter", '{"task": "nothing"}'), "nothing can be judged"),
         (("--picture", "figure.gif"), ".svg, .png, .pdf"),
         (("--pictures", "figures", "--picture-format", "bmp"), ".svg, .png, .pdf"),

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from app.evaluate.charts import Format, confusion, confusion_picture, confusions_picture
-from app.evaluate.charts.drawing import MOST_INCHES
+from app.evaluate.charts.drawing import MAX_INCHES
 
 SIGNATURES: dict[Format, bytes] = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
 
@@ -76,7 +76,7 @@ def test_names_do_not_run_into_one_another(
     def measured(
         draw: Callable[[Figure], None], inches: tuple[float, float], form: Format
     ) -> bytes:
-        width, height = (min(side, MOST_INCHES) for side in inches)
+        width, height = (min(side, MAX_INCHES) for side in inches)
         figure = Figure(figsize=(width, height), layout="constrained")
         draw(figure)
         FigureCanvasAgg(figure).draw()

@@ -10,7 +10,7 @@ import pytest
 
 from app.errors import BadField, ExtraNeeded
 from app.evaluate.charts import confusion_picture, format_of, need_plots
-from app.evaluate.charts.drawing import LONGEST_NAME, colour, dashes, marker, shown
+from app.evaluate.charts.drawing import MAX_NAME_LENGTH, color, dashes, marker, shown
 
 
 def test_the_suffix_says_which_format() -> None:
@@ -34,12 +34,12 @@ def test_without_matplotlib_it_is_said_what_to_install(monkeypatch: pytest.Monke
 
 def test_groups_are_told_apart() -> None:
     groups = range(28)
-    assert len({(colour(g), str(dashes(g))) for g in groups}) == 28
-    assert len({(colour(g), marker(g)) for g in range(70)}) == 70
+    assert len({(color(g), str(dashes(g))) for g in groups}) == 28
+    assert len({(color(g), marker(g)) for g in range(70)}) == 70
 
 
 def test_long_names_lose_their_middle_and_odd_characters_their_effect() -> None:
     assert shown("walk") == "walk"
     long = shown("a" * 30 + "b" * 30)
-    assert (len(long), long[0], long[-1]) == (LONGEST_NAME, "a", "b")
+    assert (len(long), long[0], long[-1]) == (MAX_NAME_LENGTH, "a", "b")
     assert shown("a\nb\x1b") == "a\N{REPLACEMENT CHARACTER}b\N{REPLACEMENT CHARACTER}"

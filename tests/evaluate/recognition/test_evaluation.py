@@ -28,20 +28,20 @@ def judged() -> RecognitionEvaluation:
 def test_all_that_can_be_judged_is(judged: RecognitionEvaluation) -> None:
     assert set(judged.held_out) == set(LeftOut)
     assert set(judged.takes) == {3, 1}
-    assert [one.method for one in judged.told] == list(QUICK)
+    assert [one.method for one in judged.label_given] == list(QUICK)
     assert judged.not_judged == {}
     assert all(seconds.fit >= 0 and seconds.probe > 0 for seconds in judged.seconds.values())
 
 
 def test_the_default_stands_above_its_baselines(judged: RecognitionEvaluation) -> None:
     for held in (*judged.held_out.values(), *judged.takes.values()):
-        default, mean_motion, prior = (one.recognised.task.value for one in held.methods)
+        default, mean_motion, prior = (one.recognized.task.value for one in held.methods)
         assert default is not None
         assert default >= mean_motion
         assert default > prior + 0.3
     by_take = judged.held_out[LeftOut.TAKE].methods[0]
-    assert by_take.recognised.both.value == 1.0
-    assert by_take.recognised.both.of == 48
+    assert by_take.recognized.both.value == 1.0
+    assert by_take.recognized.both.of == 48
     assert by_take.confusion["person"][1].tolist() == np.eye(3).tolist()
 
 
@@ -60,16 +60,16 @@ def test_each_left_out_label_is_a_category(judged: RecognitionEvaluation) -> Non
 
 def test_no_person_spans_sources(judged: RecognitionEvaluation) -> None:
     for one in judged.held_out[LeftOut.SOURCE].methods:
-        assert one.recognised.person.of == 0
+        assert one.recognized.person.of == 0
         assert set(one.by_name) == {"s0", "s1", "s2"}
         assert all(found.task.of == 16 for found in one.by_name.values())
     assert "task" not in judged.held_out[LeftOut.SOURCE].methods[0].unknown
 
 
 def test_told_the_other_label_the_mean_motion_knows_more(judged: RecognitionEvaluation) -> None:
-    mean_motion = judged.told[1]
-    assert (mean_motion.told.person.value or 0) > (mean_motion.neither.person.value or 0)
-    assert mean_motion.told.person.of == 48
+    mean_motion = judged.label_given[1]
+    assert (mean_motion.given.person.value or 0) > (mean_motion.neither.person.value or 0)
+    assert mean_motion.given.person.of == 48
 
 
 def test_the_same_again(judged: RecognitionEvaluation) -> None:
@@ -77,7 +77,7 @@ def test_the_same_again(judged: RecognitionEvaluation) -> None:
     again = judge_clips(invented(persons=3, tasks=4, takes=4, sources=3), guessing)
     for way, held in judged.held_out.items():
         for one, other in zip(held.methods[1:], again.held_out[way].methods, strict=True):
-            assert one.recognised == other.recognised
+            assert one.recognized == other.recognized
             assert repr(one.unknown) == repr(other.unknown)
 
 
@@ -106,8 +106,8 @@ def test_a_method_that_cannot_learn_is_told_alone() -> None:
     assert "multilinear" not in [one.method for one in found.held_out[LeftOut.TAKE].methods]
     assert "two persons" in found.not_judged["take, multilinear"]
     default = found.held_out[LeftOut.TAKE].methods[0]
-    assert default.recognised.person.value is None
-    assert default.recognised.task.value == 1.0
+    assert default.recognized.person.value is None
+    assert default.recognized.task.value == 1.0
 
 
 def test_a_lone_recording_of_a_task_is_not_counted() -> None:
@@ -115,7 +115,7 @@ def test_a_lone_recording_of_a_task_is_not_counted() -> None:
     clips = replace(clips, tasks=["hop", *list(clips.tasks)[1:]])
     found = judge_clips(clips, {"mean-motion": METHODS["mean-motion"]})
     one = found.held_out[LeftOut.TAKE].methods[0]
-    assert one.recognised.task.of == 59
+    assert one.recognized.task.of == 59
     names, shares = one.confusion["task"]
     assert "hop" not in names or not shares[names.index("hop")].any()
 
@@ -133,7 +133,7 @@ def test_a_library_is_read(ready_library: Library) -> None:
     assert all(0 <= row["hit"] <= 1 for rows in found.made.values() for row in rows)
 
 
-def test_where_persons_are_not_recognised_none_is_read(ready_library: Library) -> None:
+def test_where_persons_are_not_recognized_none_is_read(ready_library: Library) -> None:
     settings = ready_library.settings
     anonymous = settings.model_copy(update={"recognize_persons": False})
     object.__setattr__(ready_library, "settings", anonymous)

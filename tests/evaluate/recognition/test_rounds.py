@@ -14,7 +14,7 @@ from app.errors import NotEnoughLabels
 from app.evaluate.recognition.clips import JudgedClips
 from app.evaluate.recognition.rounds import (
     DRAWS,
-    MOST_ROUNDS,
+    MAX_ROUNDS,
     LeftOut,
     rounds,
     rounds_by_recording,
@@ -62,10 +62,10 @@ def test_a_label_is_left_out_whole_beside_known_ones(factor: str) -> None:
 
 
 def test_many_labels_leave_in_parties() -> None:
-    clips = invented(persons=MOST_ROUNDS + 5, tasks=2, takes=2)
+    clips = invented(persons=MAX_ROUNDS + 5, tasks=2, takes=2)
     found = rounds(clips, LeftOut.PERSON)
-    assert len(found) == MOST_ROUNDS
-    assert sum(len(one.left_out) for one in found) == MOST_ROUNDS + 5
+    assert len(found) == MAX_ROUNDS
+    assert sum(len(one.left_out) for one in found) == MAX_ROUNDS + 5
 
 
 def test_a_source_leaves_whole_and_alone() -> None:
@@ -109,7 +109,7 @@ def test_each_recording_leaves_alone_where_they_are_few() -> None:
     clips = invented(persons=2, tasks=3, takes=2)
     alone = sorted(one.probe.tolist() for one in rounds_by_recording(clips))
     assert alone == [[i] for i in range(12)]
-    assert len(rounds_by_recording(invented())) == MOST_ROUNDS
+    assert len(rounds_by_recording(invented())) == MAX_ROUNDS
 
 
 @pytest.mark.parametrize(

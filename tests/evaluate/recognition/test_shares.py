@@ -8,39 +8,43 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.evaluate.recognition.methods import NO_GUESS, Guess
-from app.evaluate.recognition.shares import Share, chance, confusion, recognised, unknown
-from app.evaluate.recognition.trials import Told, Trial
+from app.evaluate.recognition.shares import Share, chance, confusion, recognized, unknown
+from app.evaluate.recognition.trials import FactorResult, Trial
 
-NOBODY = Told(None, True, NO_GUESS, 0)
-
-
-def told(truth: str | None, guess: str, novelty: float = -1.0, *, new: bool = False) -> Told:
-    return Told(truth, new, Guess(guess, novelty <= 0, novelty), 4)
+NOBODY = FactorResult(None, True, NO_GUESS, 0)
 
 
-def trial(task: Told, person: Told = NOBODY, left_out: tuple[str, ...] = ()) -> Trial:
+def result(
+    truth: str | None, guess: str, novelty: float = -1.0, *, new: bool = False
+) -> FactorResult:
+    return FactorResult(truth, new, Guess(guess, novelty <= 0, novelty), 4)
+
+
+def trial(
+    task: FactorResult, person: FactorResult = NOBODY, left_out: tuple[str, ...] = ()
+) -> Trial:
     return Trial(0, left_out, person, task, together=task.guess.novelty < -2)
 
 
 def test_shares_count_clips_whose_label_was_seen() -> None:
     trials = [
-        trial(told("walk", "walk"), told("ada", "bruno")),
-        trial(told("run", "walk"), told("ada", "ada")),
-        trial(told("run", "run", 2.0), told("ada", "ada")),  # refused, but the best candidate
-        trial(told("hop", "run", new=True), told("ada", "ada")),
-        trial(told(None, "walk"), told("ada", "ada")),
+        trial(result("walk", "walk"), result("ada", "bruno")),
+        trial(result("run", "walk"), result("ada", "ada")),
+        trial(result("run", "run", 2.0), result("ada", "ada")),  # refused, but the best candidate
+        trial(result("hop", "run", new=True), result("ada", "ada")),
+        trial(result(None, "walk"), result("ada", "ada")),
     ]
-    found = recognised(trials)
+    found = recognized(trials)
     assert (found.task, found.person, found.both) == (Share(2, 3), Share(4, 5), Share(1, 3))
     assert chance(trials) == (0.25, 0.25, 0.0625)
 
 
 def test_nothing_judged_has_no_share() -> None:
-    found = recognised([trial(told(None, "walk"))])
+    found = recognized([trial(result(None, "walk"))])
     assert found.task.value is None
     assert found.task.interval == (0.0, 1.0)
     assert chance([]) == (None, None, None)
-    assert unknown([trial(told("walk", "walk"))], "task") is None
+    assert unknown([trial(result("walk", "walk"))], "task") is None
     names, shares = confusion([], "task")
     assert names == ()
     assert shares.shape == (0, 0)
@@ -48,7 +52,7 @@ def test_nothing_judged_has_no_share() -> None:
 
 def test_rows_of_the_confusion_are_true_labels() -> None:
     trials = [
-        trial(told(truth, guess)) for truth, guess in ("ab", "ab", "ab", "aa", "bb", "bb", "ca")
+        trial(result(truth, guess)) for truth, guess in ("ab", "ab", "ab", "aa", "bb", "bb", "ca")
     ]
     names, shares = confusion(trials, "task")
     assert names == ("a", "b", "c")
@@ -57,12 +61,12 @@ def test_rows_of_the_confusion_are_true_labels() -> None:
 
 def test_errors_on_the_new() -> None:
     trials = [
-        trial(told("hop", "run", 3.0, new=True), left_out=("hop",)),
-        trial(told("hop", "run", -1.0, new=True), left_out=("hop",)),
-        trial(told("walk", "walk", -2.0), left_out=("hop",)),
-        trial(told("walk", "run", 1.0), left_out=("hop",)),
-        trial(told("sit", "run", 2.0, new=True), left_out=("sit",)),
-        trial(told("walk", "walk", -3.0), left_out=("sit",)),
+        trial(result("hop", "run", 3.0, new=True), left_out=("hop",)),
+        trial(result("hop", "run", -1.0, new=True), left_out=("hop",)),
+        trial(result("walk", "walk", -2.0), left_out=("hop",)),
+        trial(result("walk", "run", 1.0), left_out=("hop",)),
+        trial(result("sit", "run", 2.0, new=True), left_out=("sit",)),
+        trial(result("walk", "walk", -3.0), left_out=("sit",)),
     ]
     found = unknown(trials, "task")
     assert found is not None
@@ -86,8 +90,8 @@ _NOVELTIES = st.lists(st.integers(-5, 5).map(float), min_size=1, max_size=12)
 
 @given(known=_NOVELTIES, new=_NOVELTIES)
 def test_the_curve_is_what_counting_says(known: list[float], new: list[float]) -> None:
-    trials = [trial(told("a", "a", n)) for n in known]
-    trials += [trial(told("b", "a", n, new=True), left_out=("b",)) for n in new]
+    trials = [trial(result("a", "a", n)) for n in known]
+    trials += [trial(result("b", "a", n, new=True), left_out=("b",)) for n in new]
     found = unknown(trials, "task")
     assert found is not None
     thresholds = [-np.inf, *sorted(set(known + new))]

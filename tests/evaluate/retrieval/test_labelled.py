@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from app.errors import BadField, NotEnoughLabels
-from app.evaluate.retrieval.labelled import LabelledClips, labelled_among
+from app.evaluate.retrieval.labelled import LabeledClips, labeled_among
 from app.store.clips.record import ClipRecord
 
 
@@ -34,18 +34,18 @@ def some(ready_clips: list[ClipRecord]) -> list[ClipRecord]:
 
 
 def test_classes_are_tasks_of_two_recordings_the_largest_first(some: list[ClipRecord]) -> None:
-    labelled = labelled_among(some)
-    assert labelled.classes == ("walk", "run")  # one bow as two files cannot find another
-    assert [clip.id for clip in labelled.in_a_class] == list("abcde")
-    assert len(labelled.clips) == 8
-    assert labelled.unlabelled == 1
+    labeled = labeled_among(some)
+    assert labeled.classes == ("walk", "run")  # one bow as two files cannot find another
+    assert [clip.id for clip in labeled.in_a_class] == list("abcde")
+    assert len(labeled.clips) == 8
+    assert labeled.unlabeled == 1
 
 
 def test_copies_of_the_recording_and_unlabelled_clips_are_not_judged(
     some: list[ClipRecord],
 ) -> None:
-    labelled = labelled_among(some)
-    judged = labelled.judge(some[1], ["c", "i", "f", "a", "d"], k=20)  # b's own copy is c
+    labeled = labeled_among(some)
+    judged = labeled.judge(some[1], ["c", "i", "f", "a", "d"], k=20)  # b's own copy is c
     assert judged.precision.tolist() == pytest.approx([0, 1 / 3, 1 / 3])  # f a d are left
     assert judged.average_precision == pytest.approx(1 / 2)
     assert judged.retrieved.tolist() == [1.0, 0.0]  # of a, the first that is of a class
@@ -54,20 +54,20 @@ def test_copies_of_the_recording_and_unlabelled_clips_are_not_judged(
 def test_queries_are_drawn_evenly_and_the_same_each_time(ready_clips: list[ClipRecord]) -> None:
     told = [(f"w{i:02}", f"w{i}.bvh", "walk") for i in range(30)]
     told += [(f"r{i}", f"r{i}.bvh", "run") for i in range(4)]
-    labelled = labelled_among(_clips(ready_clips[0], *told))
-    assert len(labelled.queries(1000)) == 34
-    some = labelled.queries(10)
+    labeled = labeled_among(_clips(ready_clips[0], *told))
+    assert len(labeled.queries(1000)) == 34
+    some = labeled.queries(10)
     assert Counter(clip.task for clip in some) == {"walk": 6, "run": 4}
-    assert some == labelled.queries(10)
-    assert Counter(clip.task for clip in labelled.queries(1)) == {"walk": 1, "run": 1}
+    assert some == labeled.queries(10)
+    assert Counter(clip.task for clip in labeled.queries(1)) == {"walk": 1, "run": 1}
 
 
 def test_the_classes_of_table_1_are_those_told_or_the_largest(some: list[ClipRecord]) -> None:
-    labelled = labelled_among(some)
-    assert labelled.chosen(None, 1) == ("walk",)
-    assert labelled.chosen(["run", "walk", "run"], 4) == ("run", "walk")
+    labeled = labeled_among(some)
+    assert labeled.chosen(None, 1) == ("walk",)
+    assert labeled.chosen(["run", "walk", "run"], 4) == ("run", "walk")
     with pytest.raises(BadField, match="'bow'; they do of walk, run"):
-        labelled.chosen(["bow"], 4)
+        labeled.chosen(["bow"], 4)
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_the_classes_of_table_1_are_those_told_or_the_largest(some: list[ClipRec
         ([], "No two ready clips carry the same task"),
         ([None, None], "No two ready clips carry the same task"),
         (["walk", "run"], "No two ready clips carry the same task"),
-        (["walk", "walk"], "All labelled clips carry the task 'walk'"),
+        (["walk", "walk"], "All labeled clips carry the task 'walk'"),
     ],
 )
 def test_what_cannot_be_judged_is_said(
@@ -84,12 +84,12 @@ def test_what_cannot_be_judged_is_said(
 ) -> None:
     told = [(str(i), f"{i}.bvh", task) for i, task in enumerate(tasks)]
     with pytest.raises(NotEnoughLabels, match=message):
-        labelled_among(_clips(ready_clips[0], *told))
+        labeled_among(_clips(ready_clips[0], *told))
 
 
 def test_one_class_among_others_can_be_judged(ready_clips: list[ClipRecord]) -> None:
     told = [("a", "a.bvh", "walk"), ("b", "b.bvh", "walk"), ("c", "c.bvh", "run")]
-    labelled: LabelledClips = labelled_among(_clips(ready_clips[0], *told))
-    assert labelled.classes == ("walk",)
-    judged = labelled.judge(labelled.clips[0], ["c", "b"], k=20)
+    labeled: LabeledClips = labeled_among(_clips(ready_clips[0], *told))
+    assert labeled.classes == ("walk",)
+    judged = labeled.judge(labeled.clips[0], ["c", "b"], k=20)
     assert (judged.true_positives, judged.retrieved.tolist()) == (0.0, [1.0])

@@ -37,9 +37,9 @@ def test_every_picture_is_drawn_and_named(
 
 
 def test_the_paper_s_methods_stand_beside_the_default(found: RetrievalEvaluation) -> None:
-    assert retrieval_pictures.shown_ways(found) == ("msv-xcorr",)
-    only = RetrievalEvaluation(found.ways[:1], found.chosen, found.classes, 20, 12, 0, 0)
-    assert retrieval_pictures.shown_ways(only) == ("vector",)
+    assert retrieval_pictures.shown_methods(found) == ("msv-xcorr",)
+    only = RetrievalEvaluation(found.methods[:1], found.chosen, found.classes, 20, 12, 0, 0)
+    assert retrieval_pictures.shown_methods(only) == ("vector",)
     one = retrieval_pictures.confusion_figure(found, ["vector"], "png")
     two = retrieval_pictures.confusion_figure(found, ["vector", "msv-xcorr"], "png")
     assert len(two) > len(one)

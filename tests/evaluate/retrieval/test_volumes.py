@@ -35,7 +35,7 @@ def test_what_is_saved_is_what_the_formula_says(
 def test_of_a_large_class_some_are_told(
     ready_library: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(under_test, "MOST_OF_A_CLASS", 2)
+    monkeypatch.setattr(under_test, "MAX_PER_CLASS", 2)
     monkeypatch.setattr(under_test, "AT_ONCE", 5)
     found = evaluate.judge_volumes(ready_library)
     assert Counter(len(some) for some in found.factors.values()) == {2: 4}

@@ -28,7 +28,7 @@ def test_clear_dances_fill_all_tables() -> None:
     assert rows[2].balanced_accuracy > 0.6
 
 
-def test_noise_is_recognised_by_chance() -> None:
+def test_noise_is_recognized_by_chance() -> None:
     rows = perera_tables(danced_by(5, 4, 3, own=0.0, change=100.0))
     assert rows[0].accuracy < 0.5
     assert rows[1].accuracy < 0.5

@@ -7,7 +7,7 @@ from app.models.held_out.recognition import (
     signature_figures,
     unknown_figures,
 )
-from app.models.recognition.recogniser import fit_recogniser
+from app.models.recognition.recognizer import fit_recognizer
 from tests.models.factor_clips import POSES, factor_clips
 
 
@@ -52,7 +52,7 @@ def test_a_library_without_persons_has_task_figures_only() -> None:
 
 def test_errors_on_the_unknown_are_told() -> None:
     clips = factor_clips()
-    figures = unknown_figures(fit_recogniser(clips.samples, clips.persons, clips.tasks))
+    figures = unknown_figures(fit_recognizer(clips.samples, clips.persons, clips.tasks))
     assert set(figures) == {"person", "task"}
     for shares in figures.values():
         errors = shares["false_acceptance"] + shares["false_rejection"]

@@ -25,7 +25,7 @@ def test_more_dimensions_err_less(found: SymbolFigures) -> None:
     assert found.errors[-1].gamma is None
 
 
-def test_the_paper_s_own_error_is_lowest_where_it_is_what_is_minimised(
+def test_the_paper_s_own_error_is_lowest_where_it_is_what_is_minimized(
     found: SymbolFigures,
 ) -> None:
     short_of_exact = found.errors[:-1]  # as many dimensions as points leave nothing but rounding

@@ -39,7 +39,7 @@ def test_unlabelled_clips_do_not_count_and_large_libraries_are_sampled(
     groups = [str(row) for row in range(len(words))]
     words[0] = words[5] = ()
     assert held_out_word_figures(symbols, statistics, words, groups).clips == 14
-    monkeypatch.setattr(word_figures, "MOST_CLIPS", 9)
+    monkeypatch.setattr(word_figures, "MAX_CLIPS", 9)
     assert held_out_word_figures(symbols, statistics, words, groups).clips == 9
 
 

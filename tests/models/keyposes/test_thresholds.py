@@ -17,7 +17,7 @@ from app.models.keyposes.thresholds import (
     Thresholds,
     curve_of_t1,
     curve_of_t2,
-    lesson,
+    threshold_grid,
 )
 from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
@@ -45,26 +45,29 @@ DEEP = Example(Known((0.9, 0.9, 0.9), (0.45, 0.48, 0.55)), np.array([2.0]))
 
 
 def test_what_the_examples_need_is_learned() -> None:
-    assert lesson([SMALL]).learned() == Thresholds(0.4, USUAL.t2)
-    assert lesson([DEEP]).learned() == Thresholds(USUAL.t1, 0.5)
-    assert lesson([SMALL, DEEP]).learned() == Thresholds(0.4, 0.5)
+    assert threshold_grid([SMALL]).learned() == Thresholds(0.4, USUAL.t2)
+    assert threshold_grid([DEEP]).learned() == Thresholds(USUAL.t1, 0.5)
+    assert threshold_grid([SMALL, DEEP]).learned() == Thresholds(0.4, 0.5)
 
 
 def test_without_examples_and_where_all_do_as_well_the_usual_ones_stay() -> None:
-    assert lesson([]).learned() == USUAL
-    assert lesson([Example(Known((0.0, 0.0), (9.0, 9.0)), np.array([0.0, 1.0]))]).learned() == USUAL
+    assert threshold_grid([]).learned() == USUAL
+    assert (
+        threshold_grid([Example(Known((0.0, 0.0), (9.0, 9.0)), np.array([0.0, 1.0]))]).learned()
+        == USUAL
+    )
 
 
 def test_a_clip_is_judged_by_what_others_taught() -> None:
-    (pair, counts), _ = lesson([SMALL, DEEP]).held_out(["one", "two"])
+    (pair, counts), _ = threshold_grid([SMALL, DEEP]).held_out(["one", "two"])
     assert pair == Thresholds(USUAL.t1, 0.5)
     assert (counts.true, counts.found) == (2, 0)
-    together = lesson([SMALL, SMALL, DEEP]).held_out(["one", "one", "two"])
+    together = threshold_grid([SMALL, SMALL, DEEP]).held_out(["one", "one", "two"])
     assert together[0][0] == pair  # the copy in its own group taught nothing
-    apart = lesson([SMALL, SMALL, DEEP]).held_out(["one", "three", "two"])
+    apart = threshold_grid([SMALL, SMALL, DEEP]).held_out(["one", "three", "two"])
     assert apart[0][0] == Thresholds(0.4, 0.5)
     assert apart[0][1].f == 1.0
-    assert lesson([SMALL]).held_out(["alone"])[0][0] == USUAL
+    assert threshold_grid([SMALL]).held_out(["alone"])[0][0] == USUAL
 
 
 def test_the_curves_are_those_of_figures_4_and_5() -> None:
@@ -91,7 +94,7 @@ def annotated() -> list[Example]:
 
 def test_dances_teach_thresholds_that_find_other_dances() -> None:
     examples = annotated()
-    judged = total(counts for _, counts in lesson(examples).held_out(list("abcd")))
+    judged = total(counts for _, counts in threshold_grid(examples).held_out(list("abcd")))
     assert judged.f > 0.97
     curve = curve_of_t1(examples, USUAL.t2)
     wide = (curve.values >= 0.2) & (curve.values <= 0.4)

@@ -46,7 +46,7 @@ def test_a_metric_brings_unseen_clips_of_one_label_together(factor: Factor) -> N
     unseen = np.flatnonzero(clips.takes == 0)
     known = [None if take == 0 else name for take, name in zip(clips.takes, labels, strict=True)]
     learned = share_found(fit_axes(described(clips), known, factor), clips, labels, unseen)
-    nothing = MetricAxes(described(clips).beside().mean(axis=0), np.eye(sum(WIDTHS)))
+    nothing = MetricAxes(described(clips).concatenated().mean(axis=0), np.eye(sum(WIDTHS)))
     assert learned > share_found(nothing, clips, labels, unseen) + 0.15
     assert learned > 0.85
 
@@ -63,7 +63,7 @@ def test_more_labels_make_it_better_and_two_a_class_already_help() -> None:
         axes = fit_axes(described(clips), known, Factor.TASK)
         shares.append(share_found(axes, clips, clips.tasks, unseen))
     assert shares == sorted(shares)
-    nothing = MetricAxes(described(clips).beside().mean(axis=0), np.eye(sum(WIDTHS)))
+    nothing = MetricAxes(described(clips).concatenated().mean(axis=0), np.eye(sum(WIDTHS)))
     assert shares[0] > share_found(nothing, clips, clips.tasks, unseen) + 0.1
 
 

@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 
 from app.errors import NotEnoughLabels
-from app.models.recognition.flat_pca import fit_flat_pca, recognise_flat
+from app.models.recognition.flat_pca import fit_flat_pca, recognize_flat
 from tests.models.factor_clips import factor_clips
 
 
 @pytest.mark.parametrize("known", ["person", "task", "neither"])
-def test_held_out_takes_are_recognised(known: str) -> None:
+def test_held_out_takes_are_recognized(known: str) -> None:
     clips = factor_clips()
     record = fit_flat_pca(*clips.where(clips.takes > 0))
     for sample, who, what in zip(*clips.where(clips.takes == 0), strict=True):
-        found = recognise_flat(
+        found = recognize_flat(
             record,
             sample,
             known_person=who if known == "person" else None,
@@ -33,7 +33,7 @@ def test_what_a_person_never_did_is_not_told_by_their_other_tasks() -> None:
     clips = factor_clips()
     missing = np.array([p == "p1" and t == "t2" for p, t in clips.labels])
     record = fit_flat_pca(*clips.where(~missing))
-    found = recognise_flat(record, clips.samples[missing][0], known_task="t2")
+    found = recognize_flat(record, clips.samples[missing][0], known_task="t2")
     scores = {candidate.label: candidate.score for candidate in found.person.candidates}
     assert scores["p1"] == 0.0
 

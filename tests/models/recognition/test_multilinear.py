@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.errors import NotEnoughLabels
-from app.models.recognition.multilinear import Multilinear, fit_multilinear, recognise_multilinear
+from app.models.recognition.multilinear import Multilinear, fit_multilinear, recognize_multilinear
 from tests.models.factor_clips import FactorClips, factor_clips
 
 
@@ -31,9 +31,9 @@ def test_cell_means_map_onto_the_signatures_and_action_parameters(clips: FactorC
 
 
 @pytest.mark.parametrize("known", ["person", "task", "neither"])
-def test_held_out_takes_are_recognised(clips: FactorClips, record: Multilinear, known: str) -> None:
+def test_held_out_takes_are_recognized(clips: FactorClips, record: Multilinear, known: str) -> None:
     for sample, who, what in zip(*clips.where(clips.takes == 0), strict=True):
-        found = recognise_multilinear(
+        found = recognize_multilinear(
             record,
             sample,
             known_person=who if known == "person" else None,
@@ -47,12 +47,12 @@ def test_held_out_takes_are_recognised(clips: FactorClips, record: Multilinear, 
 def test_missing_cells_are_completed(clips: FactorClips) -> None:
     missing = np.array([p == "p1" and t == "t2" for p, t in clips.labels])
     record = fit_multilinear(*clips.where(~missing))
-    found = recognise_multilinear(record, clips.samples[missing][0], known_task="t2")
+    found = recognize_multilinear(record, clips.samples[missing][0], known_task="t2")
     assert found.person.candidates[0].label == "p1"
 
 
 def test_a_motion_of_no_cell_is_unknown(clips: FactorClips, record: Multilinear) -> None:
-    far = recognise_multilinear(record, clips.samples[0] + 5.0)
+    far = recognize_multilinear(record, clips.samples[0] + 5.0)
     assert far.person.label is None
     assert far.task.label is None
     assert far.task.candidates
@@ -61,14 +61,14 @@ def test_a_motion_of_no_cell_is_unknown(clips: FactorClips, record: Multilinear)
 def test_ranks_can_be_reduced(clips: FactorClips) -> None:
     record = fit_multilinear(clips.samples, clips.persons, clips.tasks, ranks=(3, 4))
     assert record.svd.core.shape[:2] == (3, 4)
-    assert recognise_multilinear(record, clips.samples[0]).task.candidates[0].label == "t0"
+    assert recognize_multilinear(record, clips.samples[0]).task.candidates[0].label == "t0"
 
 
 def test_a_record_comes_back_from_its_arrays(clips: FactorClips, record: Multilinear) -> None:
     arrays, meta = record.to_arrays()
     again = Multilinear.from_arrays(arrays, json.loads(json.dumps(meta)))
     sample = clips.samples[5]
-    assert recognise_multilinear(again, sample) == recognise_multilinear(record, sample)
+    assert recognize_multilinear(again, sample) == recognize_multilinear(record, sample)
     with pytest.raises(ValueError, match="version"):
         Multilinear.from_arrays(arrays, meta | {"version": 0})
 

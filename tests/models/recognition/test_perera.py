@@ -7,10 +7,10 @@ import pytest
 
 from app.errors import NotEnoughLabels
 from app.models.recognition.perera import (
-    TensorRecogniser,
-    fit_tensor_recogniser,
+    TensorRecognizer,
+    fit_tensor_recognizer,
     poses_of,
-    recognise_by_tensor,
+    recognize_by_tensor,
 )
 from app.numerics.arrays import FloatArray
 from tests.models.danced import danced_by
@@ -33,10 +33,10 @@ class Clips:
         )
         self.probe = danced.cycle == 0
 
-    def fit(self) -> TensorRecogniser:
+    def fit(self) -> TensorRecognizer:
         index = np.flatnonzero(self.train)
         who, what = ([names[i] for i in index] for names in (self.persons, self.tasks))
-        return fit_tensor_recogniser(self.samples[index], who, what)
+        return fit_tensor_recognizer(self.samples[index], who, what)
 
 
 def _samples(poses: FloatArray) -> FloatArray:
@@ -49,7 +49,7 @@ def clips() -> Clips:
 
 
 @pytest.fixture(scope="module")
-def record(clips: Clips) -> TensorRecogniser:
+def record(clips: Clips) -> TensorRecognizer:
     return clips.fit()
 
 
@@ -59,10 +59,10 @@ def test_the_poses_of_a_sample_are_all_but_its_turn_and_speed(clips: Clips) -> N
 
 
 @pytest.mark.parametrize("told", ["person", "task", "nothing"])
-def test_held_out_takes_are_recognised(clips: Clips, record: TensorRecogniser, told: str) -> None:
+def test_held_out_takes_are_recognized(clips: Clips, record: TensorRecognizer, told: str) -> None:
     for i in np.flatnonzero(clips.probe)[::3]:
         who, what = clips.persons[i], clips.tasks[i]
-        (found,) = recognise_by_tensor(
+        (found,) = recognize_by_tensor(
             record,
             clips.samples[[i]],
             known_person=who if told == "person" else None,
@@ -81,44 +81,44 @@ def test_what_was_never_seen_is_unknown(factor: str) -> None:
     record = clips.fit()
     labels = clips.persons if factor == "person" else clips.tasks
     new = np.array([label in ("p2", "t3") for label in labels])
-    strange = recognise_by_tensor(record, clips.samples[new])
-    usual = recognise_by_tensor(record, clips.samples[clips.probe & ~new])
+    strange = recognize_by_tensor(record, clips.samples[new])
+    usual = recognize_by_tensor(record, clips.samples[clips.probe & ~new])
     assert np.mean([not getattr(f, factor).known for f in strange]) > 0.8
     assert np.mean([getattr(f, factor).known for f in usual]) > 0.8
     assert all(getattr(f, factor).label is None for f in strange if not getattr(f, factor).known)
 
 
-def test_a_stricter_rate_accepts_less(clips: Clips, record: TensorRecogniser) -> None:
+def test_a_stricter_rate_accepts_less(clips: Clips, record: TensorRecognizer) -> None:
     strict = record.accepting(0.001)
     assert strict.task_calibration.error_rates()[0] == 0.0
     assert strict.task_calibration.threshold <= record.task_calibration.threshold
 
 
-def test_labels_that_the_library_lacks_tell_nothing(clips: Clips, record: TensorRecogniser) -> None:
-    (plain,) = recognise_by_tensor(record, clips.samples[:1])
-    (told,) = recognise_by_tensor(record, clips.samples[:1], known_person="nobody")
+def test_labels_that_the_library_lacks_tell_nothing(clips: Clips, record: TensorRecognizer) -> None:
+    (plain,) = recognize_by_tensor(record, clips.samples[:1])
+    (told,) = recognize_by_tensor(record, clips.samples[:1], known_person="nobody")
     assert told.task == plain.task
     assert told.person.label is None
 
 
-def test_a_record_comes_back_from_its_arrays(clips: Clips, record: TensorRecogniser) -> None:
+def test_a_record_comes_back_from_its_arrays(clips: Clips, record: TensorRecognizer) -> None:
     arrays, meta = record.to_arrays()
-    again = TensorRecogniser.from_arrays(arrays, json.loads(json.dumps(meta)))
-    ours, theirs = (recognise_by_tensor(r, clips.samples[:5]) for r in (record, again))
+    again = TensorRecognizer.from_arrays(arrays, json.loads(json.dumps(meta)))
+    ours, theirs = (recognize_by_tensor(r, clips.samples[:5]) for r in (record, again))
     assert ours == theirs
     with pytest.raises(ValueError, match="version"):
-        TensorRecogniser.from_arrays(arrays, meta | {"version": 0})
+        TensorRecognizer.from_arrays(arrays, meta | {"version": 0})
 
 
 @pytest.mark.parametrize("labels", [["a", "a"], ["a", "b"], ["a", "b", "c", "c"]])
 def test_the_smallest_and_stillest_libraries_give_finite_answers(labels: list[str]) -> None:
     still = np.zeros((len(labels), 4 * 39 + 2))
-    record = fit_tensor_recogniser(still, labels, labels)
+    record = fit_tensor_recognizer(still, labels, labels)
     for probe in (still[:1], still[:1] + 1e3):
-        (found,) = recognise_by_tensor(record, probe)
+        (found,) = recognize_by_tensor(record, probe)
         assert np.isfinite([found.person.score, found.task.score]).all()
 
 
 def test_clips_without_labels_are_refused() -> None:
     with pytest.raises(NotEnoughLabels):
-        fit_tensor_recogniser(np.zeros((2, 4 * 39 + 2)), ["a", None], [None, "x"])
+        fit_tensor_recognizer(np.zeros((2, 4 * 39 + 2)), ["a", None], [None, "x"])

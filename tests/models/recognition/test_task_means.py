@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.models.recognition.multilinear import Multilinear, fit_multilinear, recognise_multilinear
+from app.models.recognition.multilinear import Multilinear, fit_multilinear, recognize_multilinear
 from app.models.recognition.task_means import fit_task_means
 from app.numerics.arrays import FloatArray
 
@@ -51,8 +51,8 @@ def test_persons_are_told_apart_whatever_their_timing() -> None:
     hits = []
     for i in np.flatnonzero(~train):
         for known in (None, tasks[i]):
-            found = recognise_multilinear(again, samples[i], known_task=known)
-            assert found == recognise_multilinear(model, samples[i], known_task=known)
+            found = recognize_multilinear(again, samples[i], known_task=known)
+            assert found == recognize_multilinear(model, samples[i], known_task=known)
             hits.append(found.person.candidates[0].label == persons[i])
     assert np.mean(hits) > 0.9
 

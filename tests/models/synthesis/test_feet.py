@@ -11,7 +11,7 @@ from app.numerics.arrays import FloatArray
 
 RATE = 30.0
 FLAT = 0.08
-"""Metres from the ankle to the floor."""
+"""Meters from the ankle to the floor."""
 
 
 def leg(ankles: FloatArray, pitch: FloatArray) -> Animation:

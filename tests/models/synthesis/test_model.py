@@ -187,8 +187,8 @@ def test_of_a_large_library_the_most_alike_tasks_and_persons_are_taken(
 ) -> None:
     truth, own = all_cells.cell("p0", "t0"), lacking.tasks_of("p0")
     everything = predict(lacking, own, "t0").shape
-    monkeypatch.setattr(synthesis_prediction, "MOST_TASKS", 4)
-    monkeypatch.setattr(synthesis_prediction, "MOST_PERSONS", 2)
+    monkeypatch.setattr(synthesis_prediction, "MAX_TASKS", 4)
+    monkeypatch.setattr(synthesis_prediction, "MAX_PERSONS", 2)
     made = predict(lacking, own, "t0").shape
     mean = np.mean([lacking.tasks_of(name)["t0"] for name in ("p1", "p2", "p3")], axis=0)
     assert not np.array_equal(made, everything)

@@ -101,7 +101,7 @@ def test_the_pseudo_inverse_solves_the_printed_equations(
 
 
 def test_c_and_d_are_least_squares_under_the_ridge(points: np.ndarray, labels: np.ndarray) -> None:
-    """Eq. 15: no other transform near it has a smaller penalised error."""
+    """Eq. 15: no other transform near it has a smaller penalized error."""
     space = fit_correlated_space(points, labels)
     f, g = space.motions(points), space.words(labels)
     for inputs, outputs, found in (

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.models.words.language.normalise import normalise_word, normalise_words
+from app.models.words.language.normalize import normalize_word, normalize_words
 from app.models.words.vocabulary import WordVocabulary
 
 
@@ -18,12 +18,12 @@ from app.models.words.vocabulary import WordVocabulary
         ("--", ""),
     ],
 )
-def test_normalising(word: str, expected: str) -> None:
-    assert normalise_word(word) == expected
+def test_normalizing(word: str, expected: str) -> None:
+    assert normalize_word(word) == expected
 
 
 def test_words_come_once_in_their_order() -> None:
-    assert normalise_words(["run", "Jog", "", "RUN"]) == ("run", "jog")
+    assert normalize_words(["run", "Jog", "", "RUN"]) == ("run", "jog")
 
 
 def test_label_matrix() -> None:

@@ -14,8 +14,8 @@ from app.services.find.find import find_motion
 from app.services.find.queries import MotionQuery
 from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
-from app.services.recognition import recognise
-from app.services.recognition.recognise import RecogniseQuery
+from app.services.recognition import recognize
+from app.services.recognition.recognize import RecognizeQuery
 from app.services.training import models
 from app.services.training.fit import fit_library
 from app.store.clips.record import ClipState
@@ -45,7 +45,7 @@ def _bytes_of(folder: Path) -> bytes:
 def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoClip]) -> None:
     ids = _library(lib, some_demo_clips)
     theirs = ids[f"{NAME} wave"]
-    before = recognise.recognise(lib, RecogniseQuery(QuerySource(theirs)))
+    before = recognize.recognize(lib, RecognizeQuery(QuerySource(theirs)))
     assert NAME in {candidate.label for candidate in before.person.candidates}
     assert NAME.encode() in _bytes_of(lib.settings.data_dir)
 
@@ -57,7 +57,7 @@ def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoCl
     with pytest.raises(
         ModelBeingFitted, match="removed: a person whom it held was removed"
     ) as refused:
-        recognise.recognise(lib, RecogniseQuery(QuerySource(theirs)))
+        recognize.recognize(lib, RecognizeQuery(QuerySource(theirs)))
     (waiting,) = jobs.list_jobs(lib, kind=JobKind.FIT, state=JobState.QUEUED).items
     assert f"ask again when the job {waiting.id} has ended" in refused.value.detail
     assert NAME not in refused.value.detail
@@ -65,7 +65,7 @@ def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoCl
     assert NAME.encode() not in _bytes_of(lib.settings.data_dir)
 
     work(lib.settings)
-    after = recognise.recognise(lib, RecogniseQuery(QuerySource(theirs)))
+    after = recognize.recognize(lib, RecognizeQuery(QuerySource(theirs)))
     assert NAME not in {candidate.label for candidate in after.person.candidates}
     assert after.task.candidates[0].label == "wave"
     with pytest.raises(NotFound):
@@ -79,13 +79,13 @@ def test_a_person_whose_clips_are_deleted_can_be_forgotten(
     for label, clip_id in ids.items():
         if label.startswith(NAME):
             clips.delete_clip(lib, clip_id)
-    asked = RecogniseQuery(ids["bruno bow"])
-    held = recognise.recognise(lib, asked)
+    asked = RecognizeQuery(ids["bruno bow"])
+    held = recognize.recognize(lib, asked)
     assert NAME in {candidate.label for candidate in held.person.candidates}
 
     persons.forget_person(lib, NAME)
     with pytest.raises(ModelBeingFitted):
-        recognise.recognise(lib, asked)
+        recognize.recognize(lib, asked)
     lib.store.erase_traces()
     assert NAME.encode() not in _bytes_of(lib.settings.data_dir)
     with pytest.raises(NotFound):
@@ -125,7 +125,7 @@ def test_a_fit_that_began_before_brings_nobody_back(
 
     monkeypatch.setattr(fitting, "read_training_set", read_then_forget)
     outcome = fit_library(lib.store)["models"]
-    assert outcome["recogniser"]["outcome"] == "skipped"
+    assert outcome["recognizer"]["outcome"] == "skipped"
     assert outcome["words"]["outcome"] == "fitted"
     assert {record.kind for record in models.list_models(lib)} == {"words", "metric-task"}
 
@@ -138,10 +138,10 @@ def test_switched_off_no_model_holds_a_person(
     with_persons.close()
     lib = Library.open(settings_for(tmp_path, recognize_persons=False))
     try:
-        early = recognise.recognise(lib, RecogniseQuery(QuerySource(ids["bruno bow"])))
+        early = recognize.recognize(lib, RecognizeQuery(QuerySource(ids["bruno bow"])))
         assert (early.person.label, early.person.candidates) == (None, ())
         work(lib.settings)
-        found = recognise.recognise(lib, RecogniseQuery(QuerySource(ids["bruno bow"])))
+        found = recognize.recognize(lib, RecognizeQuery(QuerySource(ids["bruno bow"])))
         assert (found.person.label, found.person.candidates) == (None, ())
         assert found.task.candidates[0].label == "bow"
         for record in models.list_models(lib):

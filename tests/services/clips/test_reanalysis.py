@@ -16,9 +16,9 @@ from app.services.clips import reanalysis
 from app.services.find.find import find_motion, find_words
 from app.services.find.queries import MotionQuery, WordQuery
 from app.services.find.query_source import QuerySource
-from app.services.library.fitted_models import ModelShelf
+from app.services.library.fitted_models import FittedModels
 from app.services.library.library import Library
-from app.services.recognition.recognise import RecogniseQuery, recognise
+from app.services.recognition.recognize import RecognizeQuery, recognize
 from app.services.training import models
 from app.store.clips import arrays
 from app.store.clips import repository as stored
@@ -136,7 +136,7 @@ def test_during_an_upgrade_that_changes_shapes_searches_go_on_without_the_old_cl
             assert found, (scope, method)
             assert old not in found, (scope, method)
     assert find_words(lib, WordQuery(["walk"], limit=100)).items
-    assert recognise(lib, RecogniseQuery(QuerySource(asked))).words
+    assert recognize(lib, RecognizeQuery(QuerySource(asked))).words
     with pytest.raises(ClipNotReady, match="another version"):
         find_motion(lib, MotionQuery(QuerySource(old)))
 
@@ -155,7 +155,7 @@ def test_a_model_fitted_on_arrays_of_other_shapes_is_not_used(
     other = {**array_shapes.SHAPES, "symbol_statistics": (140,)}
     monkeypatch.setattr("app.services.library.fitted_models.SHAPES", other)
     with pytest.raises(ModelNotFitted, match="another version"):
-        ModelShelf().words(lib.store)
+        FittedModels().words(lib.store)
 
 
 def test_what_is_up_to_date_is_left_alone(lib: Library, some_demo_clips: list[DemoClip]) -> None:

@@ -26,8 +26,8 @@ from app.services.find.queries import MotionQuery
 from app.services.find.query_source import QuerySource
 from app.services.imports import imports
 from app.services.library.library import Library
-from app.services.recognition import recognise
-from app.services.recognition.recognise import RecogniseQuery
+from app.services.recognition import recognize
+from app.services.recognition.recognize import RecognizeQuery
 from app.store.clips.record import ClipRecord, ClipState
 from tests.formats.acclaim.files import acclaim_person
 from tests.formats.c3d.files import c3d, marker_person, stacked
@@ -118,7 +118,7 @@ def test_an_upload_that_is_no_pair_is_refused_by_searches(
     with pytest.raises(failure):
         find.find_motion(paired, MotionQuery(sent()))
     with pytest.raises(KinedexError):
-        recognise.recognise(paired, RecogniseQuery(sent()))
+        recognize.recognize(paired, RecognizeQuery(sent()))
 
 
 @pytest.mark.parametrize(

@@ -13,8 +13,8 @@ from app.services.find import find
 from app.services.find.queries import MotionQuery
 from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
-from app.services.recognition import recognise
-from app.services.recognition.recognise import RecogniseQuery
+from app.services.recognition import recognize
+from app.services.recognition.recognize import RecognizeQuery
 from app.services.views import export
 from app.store.clips.record import ClipRecord, ClipState, Reanalysis
 from tests.formats.fbx.takes import person_takes
@@ -96,8 +96,8 @@ def test_a_query_is_read_from_its_stack(lib: Library) -> None:
     with pytest.raises(BadField, match="bow, sway"):
         find.find_motion(lib, MotionQuery(QuerySource(content=io.BytesIO(TAKES), stack="run")))
     with pytest.raises(BadField, match="bow, sway"):
-        recognise.recognise(
-            lib, RecogniseQuery(QuerySource(content=io.BytesIO(TAKES), stack="run"))
+        recognize.recognize(
+            lib, RecognizeQuery(QuerySource(content=io.BytesIO(TAKES), stack="run"))
         )
     with pytest.raises(BadField, match="uploaded file"):
         find.find_motion(lib, MotionQuery(QuerySource(clip.id, stack="bow")))

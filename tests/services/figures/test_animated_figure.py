@@ -11,7 +11,7 @@ import pytest
 
 from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.numerics.arrays import FloatArray
-from app.services.figures.animated_figure import MOST_FRAMES, animated_svg
+from app.services.figures.animated_figure import MAX_FRAMES, animated_svg
 from app.services.figures.camera import HEIGHT, WIDTH, Figure
 from app.services.figures.stick_figure import LEFT, RIGHT, limbs
 from app.services.views.animations import role_figure
@@ -26,21 +26,21 @@ def _parsed(*bodies: FloatArray, rate: float = 30.0, title: str = "a clip") -> E
     return ElementTree.fromstring(animated_svg([role_figure(b) for b in bodies], rate, title))
 
 
-def _points(element: ElementTree.Element, colour: str) -> list[FloatArray]:
-    """(frames, joints, 2) of each line of a colour; one frame where nothing moves."""
+def _points(element: ElementTree.Element, color: str) -> list[FloatArray]:
+    """(frames, joints, 2) of each line of a color; one frame where nothing moves."""
     found = []
     for line in element.iter(f"{SVG}polyline"):
         moves = line.find(f"{SVG}animate")
         told = line.get("points", "") if moves is None else moves.get("values", "")
-        if line.get("stroke") == colour:
+        if line.get("stroke") == color:
             frames = [[xy.split(",") for xy in frame.split()] for frame in told.split(";")]
             found.append(np.array(frames, dtype=float))
     return found
 
 
-def _arm(element: ElementTree.Element, colour: str) -> FloatArray:
+def _arm(element: ElementTree.Element, color: str) -> FloatArray:
     """(frames, 4, 2): neck, shoulder, elbow, hand."""
-    return next(line for line in _points(element, colour) if line.shape[1] == 4)
+    return next(line for line in _points(element, color) if line.shape[1] == 4)
 
 
 def test_it_holds_nothing_active_but_time() -> None:
@@ -117,7 +117,7 @@ def test_long_motions_keep_their_time_with_fewer_frames() -> None:
     )
     (told,) = re.findall(r'attributeName="width" dur="([\d.]+)s"', picture)
     assert float(told) == pytest.approx(200, abs=0.5)
-    assert all(len(moves.split(";")) <= MOST_FRAMES for _, moves in values)
+    assert all(len(moves.split(";")) <= MAX_FRAMES for _, moves in values)
     assert len(picture) < 400_000
 
 

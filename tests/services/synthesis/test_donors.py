@@ -19,8 +19,8 @@ def fastest(wanted: FloatArray, take: FloatArray, take_shape: FloatArray) -> tup
     return float(steps[:2].max()), float(steps[2:].max())
 
 
-@pytest.mark.parametrize("learnt", ["of such takes", "of others"])
-def test_a_take_that_begins_in_a_t_pose_is_followed_without_it(learnt: str) -> None:
+@pytest.mark.parametrize("learned", ["of such takes", "of others"])
+def test_a_take_that_begins_in_a_t_pose_is_followed_without_it(learned: str) -> None:
     wave = waving(6.0)
     t_pose = np.array(wave[:1])
     for role, x in ((JointRole.LEFT_HAND, 0.8), (JointRole.RIGHT_HAND, -0.8)):
@@ -28,7 +28,7 @@ def test_a_take_that_begins_in_a_t_pose_is_followed_without_it(learnt: str) -> N
     thrown = motion_of(np.concatenate([t_pose, wave]))
     shape = motion_shape(body_track(thrown)).astype(np.float64)
     others = motion_shape(body_track(motion_of(wave))).astype(np.float64)
-    wanted = shape if learnt == "of such takes" else others
+    wanted = shape if learned == "of such takes" else others
     start, rest = fastest(wanted, *detail_of(thrown, shape, wanted))
     assert start < 1.2 * rest
     start, rest = fastest(shape, moments_of(body_track(thrown)), shape)

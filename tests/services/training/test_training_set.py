@@ -20,9 +20,9 @@ def test_nothing_is_judged_on_what_we_made(lib: Library, some_demo_clips: list[D
     work(lib.settings)
     studio, made, field, unsaid = ids
 
-    def judged(wanted: ClipFilter | None) -> set[str]:
+    def judged(filter: ClipFilter | None) -> set[str]:
         with lib.store.read() as tx:
-            return set(list_ids(tx, ready_only(wanted)))
+            return set(list_ids(tx, ready_only(filter)))
 
     assert judged(None) == {studio, field, unsaid}
     assert judged(ClipFilter(not_source=("field",))) == {studio, unsaid}

@@ -36,7 +36,7 @@ def exported(lib: Library, clip: ClipRecord, format: str, **options: object) -> 
 
 
 def positions_of(content: bytes, format: str) -> tuple[tuple[str, ...], FloatArray]:
-    """Joint names and (frames, joints, 3) metres of an exported file."""
+    """Joint names and (frames, joints, 3) meters of an exported file."""
     if format == "glb":
         glb = Glb(content)
         joints = glb.document["skins"][0]["joints"]

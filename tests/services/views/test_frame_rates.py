@@ -62,8 +62,8 @@ def test_too_much_work_is_refused_on_both_sides_of_the_filter(
     ready_library: Library, clip: ClipRecord, fps: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     positions = 600 * 60 * max(fps, 120.0)
-    monkeypatch.setattr(frame_rates, "MOST_POSITIONS", positions)
+    monkeypatch.setattr(frame_rates, "MAX_POSITIONS", positions)
     assert rate(ready_library, clip, fps) == fps
-    monkeypatch.setattr(frame_rates, "MOST_POSITIONS", positions - 1)
+    monkeypatch.setattr(frame_rates, "MAX_POSITIONS", positions - 1)
     with pytest.raises(BadField, match="too much work"):
         rate(ready_library, clip, fps)

@@ -1,9 +1,9 @@
-"""Base forms of English words: jumping, jumps and jumped are jump; knives are a knife.
+"""Base forms of English words: jumping, jumps, jumped -> jump; knives -> knife.
 
-Rules make candidates, and whoever asks says which of them are words: only a base form that
-is known is ever taken, so that "bus" stays and "wing" is not the present of "w". Phrases
-(left_legs) are taken apart at their underscores. After the rules of regular English verbs and
-nouns; the irregular ones are those of movement.
+Rules produce candidates, and the caller decides which of them are words. Only a known base form is
+used, so that "bus" stays and "wing" does not become "w". Phrases (left_legs) are split at their
+underscores. The rules are those of regular English verbs and nouns; the list of irregular ones
+covers movement.
 """
 
 from __future__ import annotations
@@ -87,30 +87,30 @@ IRREGULAR: dict[str, str] = {
     }.items()
     for form in forms.split()
 }
-"""Base by form."""
+"""Base form by inflected form."""
 
 _VOWELS = frozenset("aeiouy")
 _SHORTEST = 2
-"""Letters of a base form."""
-_MOST_PHRASES = 64
-"""Combinations of base forms of a phrase's words that are looked at."""
+"""Smallest number of letters of a base form."""
+_MAX_PHRASES = 64
+"""Largest number of combinations of base forms that are tried for a phrase."""
 
 IsWord = Callable[[str], bool]
 
 
 def base_form(word: str, is_word: IsWord) -> str | None:
-    """The likeliest base form of `word` that is a word; the word itself comes first.
+    """The most likely base form of `word` that is a word; the word itself comes first.
 
-    None where neither it nor any base form is one. Words are normalised (word_vocabulary).
+    None if neither the word nor a base form is one. Words are normalized (see `normalize`).
     """
     return next(filter(is_word, (word, *base_forms(word))), None)
 
 
 def base_forms(word: str) -> tuple[str, ...]:
-    """Candidates for the base form of `word`, other than itself, the likeliest first."""
+    """Candidates for the base form of `word`, without itself, the most likely first."""
     parts = word.split("_")
     choices = [tuple(dict.fromkeys((part, *_of_one(part)))) for part in parts]
-    phrases = islice(("_".join(chosen) for chosen in product(*choices)), _MOST_PHRASES)
+    phrases = islice(("_".join(chosen) for chosen in product(*choices)), _MAX_PHRASES)
     return tuple(phrase for phrase in phrases if phrase != word)
 
 
@@ -142,7 +142,7 @@ def _by_rule(word: str) -> Iterator[str]:
 
 
 def _before(stem: str) -> Iterator[str]:
-    """What may stand before -ing, -ed or -er: walk-, jog(g)-, wav(e)-."""
+    """Possible base forms of a stem before -ing, -ed or -er: walk-, jog(g)-, wav(e)-."""
     yield stem
     yield stem + "e"
     if len(stem) > _SHORTEST and stem[-1] == stem[-2]:

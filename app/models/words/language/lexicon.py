@@ -1,9 +1,9 @@
-"""A small lexicon of human movement, of our own writing (DESIGN 10, words).
+"""A small lexicon of human movement, written for this project.
 
-What annotators and searchers call the same: groups of words of one meaning, and which
-meaning is a kind of which. It lets a query find clips whose annotator chose another word
-(*sprint* -> *run*). Likeness of two words: 1 the same word, .9 the same meaning, .7 a kind
-of each other, .5 kinds of the same; 0 beyond.
+It has groups of words with the same meaning, and the kinds of each meaning. So a query finds clips
+whose annotator chose another word (*sprint* -> *run*). The likeness of two words is 1 for the same
+word, .9 for the same meaning, .7 if one is a kind of the other, .5 if both are kinds of the same
+meaning, and else 0.
 """
 
 from __future__ import annotations
@@ -195,7 +195,7 @@ def _meaning_of() -> dict[str, int]:
 
 @cache
 def _broader() -> dict[int, frozenset[int]]:
-    """Meanings that each is a kind of."""
+    """For each meaning, the meanings that it is a kind of."""
     of: dict[int, set[int]] = {}
     for line in _KINDS.strip().splitlines():
         broad, kinds = line.split(":")
@@ -205,12 +205,12 @@ def _broader() -> dict[int, frozenset[int]]:
 
 
 def is_known(word: str) -> bool:
-    """Whether the lexicon has `word` (normalised)."""
+    """Whether the lexicon has `word` (normalized)."""
     return word in _meaning_of()
 
 
 def likeness(one: str, other: str) -> float:
-    """0..1, symmetric: how near two normalised words are in meaning; 0 for unknown ones."""
+    """The likeness in meaning of two normalized words: 0..1, symmetric, 0 for unknown words."""
     if one == other:
         return 1.0
     meaning = _meaning_of()
@@ -227,5 +227,5 @@ def likeness(one: str, other: str) -> float:
 
 @cache
 def _says_little() -> frozenset[int]:
-    """Meanings so broad that kinds of them need not be alike: walking is not jumping."""
+    """Meanings that are so broad that their kinds need not be similar: walking is not jumping."""
     return frozenset({_meaning_of()["move"]})

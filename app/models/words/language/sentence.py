@@ -1,9 +1,8 @@
-"""What a query asks for: words, phrases and whole sentences, and words to leave out.
+"""Reads a query of words, phrases or sentences into words to find and words to exclude.
 
-*an old man waves with his left hand* is read as old, wave, left, hand: words that the library
-knows are kept, the longest phrases first (left_hand where that is a label), then what is no
-mere function word. A word with a minus before it (-left), or after a *without* in a sentence,
-is to be left out.
+*an old man waves with his left hand* becomes old, wave, left, hand. Words that the library knows
+are kept, the longest phrases first (left_hand if that is a label), and then all words except
+function words. A word after a minus (-left), or after *without* in a sentence, is excluded.
 """
 
 from __future__ import annotations
@@ -12,10 +11,10 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
-from app.models.words.language.normalise import normalise_word
+from app.models.words.language.normalize import normalize_word
 
-LONGEST_PHRASE = 4
-"""Words of a phrase that is looked for in a sentence."""
+MAX_PHRASE_WORDS = 4
+"""Largest number of words of a phrase in a sentence."""
 
 _TOKEN = re.compile(r"(?<![\w-])-?[\w'’]+(?:-[\w'’]+)*")
 
@@ -37,24 +36,24 @@ motion motions movement movements clip clips animation animations video action a
 find show search me please
 """
 FUNCTION_WORDS = frozenset(_FUNCTION_WORDS.split())
-"""Left out of a sentence unless a clip of the library carries them."""
+"""Words that are ignored in a sentence unless a clip of the library carries them."""
 
 NEGATIONS = frozenset({"no", "not", "never", "without"})
-"""The next word of the sentence is to be left out."""
+"""The word of the sentence after one of these is excluded."""
 
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """Normalised words that are wanted, and those to be left out, each once, in order."""
+    """Distinct normalized words to find (`wanted`) and to exclude, in their order."""
 
     wanted: tuple[str, ...]
     excluded: tuple[str, ...]
 
 
 def read_query(texts: Iterable[str], is_word: Callable[[str], bool]) -> Asked:
-    """What `texts` ask for; each is a word, a phrase or a sentence.
+    """Read `texts`; each is a word, a phrase or a sentence.
 
-    is_word: whether the library has a normalised word, inflected or not.
+    is_word: whether the library has a normalized word, inflected or not.
     """
     wanted: list[str] = []
     excluded: list[str] = []
@@ -65,14 +64,14 @@ def read_query(texts: Iterable[str], is_word: Callable[[str], bool]) -> Asked:
 
 
 def _words_of(text: str, is_word: Callable[[str], bool]) -> Iterator[tuple[str, bool]]:
-    """(normalised word, whether it is to be left out) of each word of `text`."""
-    whole = normalise_word(text)
+    """(normalized word, whether it is excluded) for each word of `text`."""
+    whole = normalize_word(text)
     if whole and not text.startswith("-") and is_word(whole):
         yield whole, False
         return
     tokens = [token.replace("’", "'") for token in _TOKEN.findall(text)]
-    if len(tokens) == 1:  # asked for by itself: no word is too small
-        word = normalise_word(tokens[0])
+    if len(tokens) == 1:  # a single word is used even if it is a function word
+        word = normalize_word(tokens[0])
         if word:
             yield word, tokens[0].startswith("-")
         return
@@ -88,11 +87,11 @@ def _words_of(text: str, is_word: Callable[[str], bool]) -> Iterator[tuple[str, 
 
 
 def _longest(tokens: list[str], is_word: Callable[[str], bool]) -> tuple[str, int]:
-    """The longest known phrase at the beginning of `tokens`, else the first word; its length."""
-    for length in range(min(LONGEST_PHRASE, len(tokens)), 1, -1):
+    """The longest known phrase at the start of `tokens` (else the first word), and its length."""
+    for length in range(min(MAX_PHRASE_WORDS, len(tokens)), 1, -1):
         if any(token.startswith("-") for token in tokens[1:length]):
             continue
-        phrase = normalise_word(" ".join(tokens[:length]))
+        phrase = normalize_word(" ".join(tokens[:length]))
         if is_word(phrase):
             return phrase, length
-    return normalise_word(tokens[0]).removesuffix("'s"), 1
+    return normalize_word(tokens[0]).removesuffix("'s"), 1

@@ -1,9 +1,9 @@
-"""Neighbours in meaning from WordNet, for words that our own lexicon lacks (extra `words`).
+"""Related words from WordNet, for words that our own lexicon lacks (extra `words`).
 
-Loading WordNet takes seconds and some 350 MB, so it is done when a library is fitted, in the
-fit's own process, and only for words that were not looked up before. What is kept is a table
-from foreign words to the library's: *canter* -> *run*. Likeness by the relation between the
-usual senses of both: the same synset, one a kind of the other, two steps, similar adjectives.
+Loading WordNet takes seconds and about 350 MB. So it is done in the process of a fit, and only for
+words that were not looked up before. The result is a table from foreign words to the library's
+words: *canter* -> *run*. The likeness depends on the relation of their usual senses: the same
+synset, one a kind of the other, two steps apart, or similar adjectives.
 """
 
 from __future__ import annotations
@@ -14,30 +14,31 @@ from importlib.util import find_spec
 from typing import Any, Self
 
 Related = dict[str, dict[str, float]]
-"""likeness by word of the library by foreign word."""
+"""Maps a foreign word to words of the library and their likeness."""
 
 SAME_SYNSET, KIND, BROADER, KIND_OF_KIND, SIMILAR = 0.85, 0.65, 0.6, 0.5, 0.6
 USUAL_SENSES = 4
-"""Of a word in each part of speech; rarer ones bring nonsense (*run* a risk)."""
+"""Number of senses of a library's word for each part of speech; rarer senses give wrong results
+(*run* a risk)."""
 FOREIGN_SENSES = 3
-"""Of a foreign word, likewise (a *ball* that is a dance)."""
+"""Number of senses of a foreign word, likewise (a *ball* that is a dance)."""
 PARTS_OF_SPEECH = ("v", "n", "a")
 
 
 @dataclass(frozen=True, slots=True)
 class Meanings:
-    """What WordNet was asked: words of a library, and the foreign words near them.
+    """The words of a library that were looked up in WordNet, and the results.
 
-    looked_up: normalised words; related: foreign words near those, with their likeness.
+    looked_up: normalized words; related: the foreign words that are related to them.
     """
 
     looked_up: tuple[str, ...] = ()
     related: Related = field(default_factory=dict)
 
     def of(self, words: Iterable[str], *, look_up: bool) -> Self:
-        """The meanings of `words`: what is known already and, if wanted, the others looked up.
+        """The meanings of `words`: the known ones and, with `look_up`, the others from WordNet.
 
-        Without the extra `words` nothing new is looked up.
+        Without the extra `words`, nothing new is looked up.
         """
         wanted = set(words)
         kept = wanted & set(self.looked_up)
@@ -53,22 +54,22 @@ class Meanings:
         return type(self)(tuple(sorted(kept)), related)
 
     def to_meta(self) -> dict[str, Any]:
-        """JSON-able, for from_meta."""
+        """JSON-able metadata for `from_meta`."""
         return {"looked_up": list(self.looked_up), "related": self.related}
 
     @classmethod
     def from_meta(cls, meta: Mapping[str, Any]) -> Self:
-        """What to_meta took apart; nothing where `meta` is empty."""
+        """The meanings from the result of `to_meta`; none if `meta` is empty."""
         return cls(tuple(meta.get("looked_up", ())), dict(meta.get("related", {})))
 
 
 def is_installed() -> bool:
-    """Whether the extra `words` is there."""
+    """Whether the extra `words` is installed."""
     return find_spec("wn") is not None
 
 
 def related_words(words: Iterable[str]) -> Related:
-    """Foreign words near each of `words` (normalised), by their likeness.
+    """The foreign words that are related to `words` (normalized), with their likeness.
 
     Raises ModuleNotFoundError without the extra `words`.
     """
@@ -77,14 +78,14 @@ def related_words(words: Iterable[str]) -> Related:
     wordnet = WordNet()
     related: Related = {}
     for word in sorted(set(words)):
-        for foreign, likeness in _neighbours(wordnet, word):
+        for foreign, likeness in _neighbors(wordnet, word):
             if foreign != word:
                 known = related.setdefault(foreign, {})
                 known[word] = max(known.get(word, 0.0), likeness)
     return related
 
 
-def _neighbours(wordnet: Any, word: str) -> Iterator[tuple[str, float]]:
+def _neighbors(wordnet: Any, word: str) -> Iterator[tuple[str, float]]:
     for part in PARTS_OF_SPEECH:
         for synset in wordnet.synsets(word, part)[:USUAL_SENSES]:
             for near, likeness in _around(synset):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.models.words.language.lexicon import likeness
-from app.models.words.language.meaning import neighbours
+from app.models.words.language.meaning import neighbors
 from app.models.words.language.wordnet import Meanings, is_installed
 
 LIBRARY = ("bow", "elderly", "jump", "kick", "punch", "run", "sit", "tired", "walk", "wave")
@@ -25,12 +25,12 @@ LIBRARY = ("bow", "elderly", "jump", "kick", "punch", "run", "sit", "tired", "wa
     ],
 )
 def test_the_lexicon_knows_what_movers_say(word: str, ours: str) -> None:
-    assert neighbours(word, LIBRARY, {})[0].word == ours
+    assert neighbors(word, LIBRARY, {})[0].word == ours
 
 
 def test_a_stranger_has_no_neighbours() -> None:
-    assert neighbours("zebra", LIBRARY, {}) == ()
-    assert neighbours("sprint", (), {}) == ()
+    assert neighbors("zebra", LIBRARY, {}) == ()
+    assert neighbors("sprint", (), {}) == ()
 
 
 def test_likeness_is_symmetric_and_the_same_word_is_the_nearest() -> None:
@@ -44,9 +44,9 @@ def test_likeness_is_symmetric_and_the_same_word_is_the_nearest() -> None:
 
 def test_what_wordnet_found_serves_where_the_lexicon_is_silent() -> None:
     related = {"canter": {"run": 0.65, "walk": 0.5}, "sprint": {"walk": 0.9}}
-    assert [near.word for near in neighbours("canter", LIBRARY, related)] == ["run"]
-    assert neighbours("cantering", LIBRARY, related)[0].word == "run"
-    assert neighbours("sprint", LIBRARY, related)[0].word == "run"
+    assert [near.word for near in neighbors("canter", LIBRARY, related)] == ["run"]
+    assert neighbors("cantering", LIBRARY, related)[0].word == "run"
+    assert neighbors("sprint", LIBRARY, related)[0].word == "run"
 
 
 def test_words_that_a_library_no_longer_carries_are_forgotten() -> None:
@@ -71,5 +71,5 @@ def test_wordnet_knows_more() -> None:
         "perambulate": "walk",
         "flap": "wave",
     }.items():
-        found = [near.word for near in neighbours(word, LIBRARY, related)]
+        found = [near.word for near in neighbors(word, LIBRARY, related)]
         assert ours in found, (word, found)

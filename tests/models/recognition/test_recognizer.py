@@ -7,7 +7,7 @@ import pytest
 
 from app.errors import NotEnoughLabels
 from app.models.recognition.answers import Recognition
-from app.models.recognition.recogniser import Recogniser, fit_recogniser, recognise, recognise_many
+from app.models.recognition.recognizer import Recognizer, fit_recognizer, recognize, recognize_many
 from tests.models.factor_clips import WIDTH, FactorClips, factor_clips
 
 
@@ -17,8 +17,8 @@ def clips() -> FactorClips:
 
 
 @pytest.fixture(scope="module")
-def record(clips: FactorClips) -> Recogniser:
-    return fit_recogniser(*clips.where(clips.takes > 0))
+def record(clips: FactorClips) -> Recognizer:
+    return fit_recognizer(*clips.where(clips.takes > 0))
 
 
 def share_of_tasks(found: list[Recognition], truth: list[str]) -> float:
@@ -26,11 +26,11 @@ def share_of_tasks(found: list[Recognition], truth: list[str]) -> float:
     return float(np.mean([label == task for label, task in zip(best, truth, strict=True)]))
 
 
-def test_held_out_takes_are_recognised_with_calibrated_scores(
-    clips: FactorClips, record: Recogniser
+def test_held_out_takes_are_recognized_with_calibrated_scores(
+    clips: FactorClips, record: Recognizer
 ) -> None:
     samples, who, what = clips.where(clips.takes == 0)
-    found = recognise_many(record, samples)
+    found = recognize_many(record, samples)
     assert np.mean([f.person.label == p for f, p in zip(found, who, strict=True)]) > 0.9
     assert np.mean([f.task.label == t for f, t in zip(found, what, strict=True)]) > 0.9
     for one in found:
@@ -41,10 +41,10 @@ def test_held_out_takes_are_recognised_with_calibrated_scores(
             assert sum(scores) <= 1 + 1e-9
 
 
-def test_a_cell_never_recorded_is_recognised_by_its_person_and_task(clips: FactorClips) -> None:
+def test_a_cell_never_recorded_is_recognized_by_its_person_and_task(clips: FactorClips) -> None:
     missing = np.array([p == "p1" and t == "t2" for p, t in clips.labels])
-    record = fit_recogniser(*clips.where(~missing))
-    found = recognise_many(record, clips.samples[missing])
+    record = fit_recognizer(*clips.where(~missing))
+    found = recognize_many(record, clips.samples[missing])
     assert {(f.person.candidates[0].label, f.task.candidates[0].label) for f in found} == {
         ("p1", "t2")
     }
@@ -54,11 +54,11 @@ def test_a_cell_never_recorded_is_recognised_by_its_person_and_task(clips: Facto
 def test_what_was_never_seen_is_unknown_and_has_no_label(clips: FactorClips, factor: str) -> None:
     labels = clips.persons if factor == "person" else clips.tasks
     new = np.array([label.endswith("3") for label in labels])
-    record = fit_recogniser(*clips.where(~new & (clips.takes > 0)))
-    strange = [getattr(f, factor) for f in recognise_many(record, clips.samples[new])]
+    record = fit_recognizer(*clips.where(~new & (clips.takes > 0)))
+    strange = [getattr(f, factor) for f in recognize_many(record, clips.samples[new])]
     usual = [
         getattr(f, factor)
-        for f in recognise_many(record, clips.where(~new & (clips.takes == 0))[0])
+        for f in recognize_many(record, clips.where(~new & (clips.takes == 0))[0])
     ]
     assert np.mean([not a.known for a in strange]) > 0.8
     assert np.mean([a.known for a in usual]) > 0.8
@@ -66,9 +66,9 @@ def test_what_was_never_seen_is_unknown_and_has_no_label(clips: FactorClips, fac
 
 
 def test_one_take_a_cell_is_enough(clips: FactorClips) -> None:
-    record = fit_recogniser(*clips.where(clips.takes == 1))
+    record = fit_recognizer(*clips.where(clips.takes == 1))
     samples, who, what = clips.where(clips.takes == 0)
-    found = recognise_many(record, samples)
+    found = recognize_many(record, samples)
     right = [
         f.person.candidates[0].label == p and f.task.candidates[0].label == t
         for f, p, t in zip(found, who, what, strict=True)
@@ -81,10 +81,10 @@ def test_what_is_new_is_told_from_one_take_a_cell_too(factor: str) -> None:
     clips = factor_clips(persons=6, tasks=7)
     labels = clips.persons if factor == "person" else clips.tasks
     new = np.array([label.endswith("3") for label in labels])
-    record = fit_recogniser(*clips.where(~new & (clips.takes == 1)))
+    record = fit_recognizer(*clips.where(~new & (clips.takes == 1)))
     assert record.persons_by_both
     known = [
-        np.mean([getattr(f, factor).known for f in recognise_many(record, clips.where(asked)[0])])
+        np.mean([getattr(f, factor).known for f in recognize_many(record, clips.where(asked)[0])])
         for asked in (~new & (clips.takes != 1), new)
     ]
     assert known[0] > 0.9
@@ -95,45 +95,45 @@ def test_libraries_that_lack_labels_answer_what_they_can(clips: FactorClips) -> 
     samples, who, what = clips.where(clips.takes > 0)
     probe, _, truth = clips.where(clips.takes == 0)
     none: list[str | None] = [None] * len(who)
-    found = recognise_many(fit_recogniser(samples, none, what), probe)
+    found = recognize_many(fit_recognizer(samples, none, what), probe)
     assert all(f.person.label is None and not f.person.candidates for f in found)
     assert (
         np.mean([f.task.candidates[0].label == t for f, t in zip(found, truth, strict=True)]) > 0.9
     )
     halves = [p if i % 2 else None for i, p in enumerate(who)]
-    mixed = recognise_many(fit_recogniser(samples, halves, what), probe)
+    mixed = recognize_many(fit_recognizer(samples, halves, what), probe)
     assert (
         np.mean([f.task.candidates[0].label == t for f, t in zip(mixed, truth, strict=True)]) > 0.9
     )
-    persons_only = recognise(fit_recogniser(samples, who, none), probe[0])
+    persons_only = recognize(fit_recognizer(samples, who, none), probe[0])
     assert persons_only.task.candidates == ()
     assert persons_only.person.candidates
 
 
-def test_what_the_asker_knows_is_kept_and_helps(clips: FactorClips, record: Recogniser) -> None:
-    told = recognise(record, clips.samples[-1], known_person="p4")
+def test_what_the_asker_knows_is_kept_and_helps(clips: FactorClips, record: Recognizer) -> None:
+    told = recognize(record, clips.samples[-1], known_person="p4")
     assert (told.person.label, told.person.score) == ("p4", 1.0)
     assert told.task.label == "t5"
-    misled = recognise(record, clips.samples[-1], known_person="p0")
+    misled = recognize(record, clips.samples[-1], known_person="p0")
     assert misled.task.score <= told.task.score
-    stranger = recognise(record, clips.samples[0], known_person="nobody")
+    stranger = recognize(record, clips.samples[0], known_person="nobody")
     assert stranger.person.label is None
     assert stranger.task.candidates[0].label == "t0"
-    assert recognise(record, clips.samples[0], known_task="t0").person.candidates[0].label == "p0"
+    assert recognize(record, clips.samples[0], known_task="t0").person.candidates[0].label == "p0"
 
 
-def test_a_record_comes_back_from_its_arrays(clips: FactorClips, record: Recogniser) -> None:
+def test_a_record_comes_back_from_its_arrays(clips: FactorClips, record: Recognizer) -> None:
     arrays, meta = record.to_arrays()
-    again = Recogniser.from_arrays(arrays, json.loads(json.dumps(meta)))
+    again = Recognizer.from_arrays(arrays, json.loads(json.dumps(meta)))
     for known in (None, "p1"):
-        ours, theirs = (recognise(r, clips.samples[3], known) for r in (record, again))
+        ours, theirs = (recognize(r, clips.samples[3], known) for r in (record, again))
         assert ours == theirs
     with pytest.raises(ValueError, match="version"):
-        Recogniser.from_arrays(arrays, meta | {"version": 0})
+        Recognizer.from_arrays(arrays, meta | {"version": 0})
 
 
-def test_fitting_twice_gives_the_same(clips: FactorClips, record: Recogniser) -> None:
-    arrays, meta = fit_recogniser(*clips.where(clips.takes > 0)).to_arrays()
+def test_fitting_twice_gives_the_same(clips: FactorClips, record: Recognizer) -> None:
+    arrays, meta = fit_recognizer(*clips.where(clips.takes > 0)).to_arrays()
     ours, our_meta = record.to_arrays()
     assert meta == our_meta
     for name, array in arrays.items():
@@ -148,8 +148,8 @@ def test_what_only_the_wide_vector_tells_is_told(clips: FactorClips) -> None:
     _, who, what = clips.where(clips.takes > 0)
     _, truth, _ = clips.where(clips.takes == 0)
     told = [
-        recognise_many(
-            fit_recogniser(rows[clips.takes > 0][:, :end], who, what, sample_length=20),
+        recognize_many(
+            fit_recognizer(rows[clips.takes > 0][:, :end], who, what, sample_length=20),
             rows[clips.takes == 0][:, :end],
         )
         for rows, end in ((blind, WIDTH), (blind, 20))
@@ -165,13 +165,13 @@ def test_what_only_the_wide_vector_tells_is_told(clips: FactorClips) -> None:
 @pytest.mark.parametrize("labels", [[], [None, None, None], ["a", None, None]])
 def test_too_few_labels_are_refused(labels: list[str | None]) -> None:
     with pytest.raises(NotEnoughLabels):
-        fit_recogniser(np.zeros((len(labels), WIDTH)), labels, [None] * len(labels))
+        fit_recognizer(np.zeros((len(labels), WIDTH)), labels, [None] * len(labels))
 
 
 @pytest.mark.parametrize("labels", [["a", "a"], ["a", "b"], ["a", "b", "c", "c"]])
 def test_the_smallest_and_stillest_libraries_give_finite_answers(labels: list[str]) -> None:
-    record = fit_recogniser(np.ones((len(labels), WIDTH)), labels, labels)
+    record = fit_recognizer(np.ones((len(labels), WIDTH)), labels, labels)
     for probe in (np.ones(WIDTH), np.full(WIDTH, 1e6)):
-        found = recognise(record, probe)
+        found = recognize(record, probe)
         assert np.isfinite(found.person.score)
         assert np.isfinite(found.task.score)

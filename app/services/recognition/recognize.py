@@ -8,9 +8,9 @@ import numpy as np
 
 from app.errors import ModelNotFitted
 from app.models.recognition.answers import NO_ANSWER, Answer, Recognition
-from app.models.recognition.multilinear import recognise_multilinear
-from app.models.recognition.perera import recognise_by_tensor
-from app.models.recognition.recogniser import recognise as recognise_by_default
+from app.models.recognition.multilinear import recognize_multilinear
+from app.models.recognition.perera import recognize_by_tensor
+from app.models.recognition.recognizer import recognize as recognize_by_default
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.find.by_words import STATISTICS
@@ -33,7 +33,7 @@ WordScores = tuple[tuple[str, float], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class RecogniseQuery:
+class RecognizeQuery:
     """The motion to recognize, and what is known of it already; method: one of METHODS."""
 
     source: QuerySource
@@ -43,7 +43,7 @@ class RecogniseQuery:
 
 
 @dataclass(frozen=True, slots=True)
-class Recognised:
+class Recognized:
     """Person, task, and words with their scores, the best first."""
 
     person: Answer
@@ -51,7 +51,7 @@ class Recognised:
     words: WordScores = field(default=())
 
 
-def recognise(lib: Library, query: RecogniseQuery) -> Recognised:
+def recognize(lib: Library, query: RecognizeQuery) -> Recognized:
     """Who moves, what they do, and which words describe it.
 
     Words are left out where no word model could be fitted. Raises BadField, ClipNotFound,
@@ -69,24 +69,24 @@ def recognise(lib: Library, query: RecogniseQuery) -> Recognised:
     arrays = describe(lib, query.source, (*names, STATISTICS)).arrays
     sample = np.concatenate([arrays[name] for name in names])
     found = _who_does_what(lib, sample, query)
-    return Recognised(found.person, found.task, words_of(lib, arrays[STATISTICS]))
+    return Recognized(found.person, found.task, words_of(lib, arrays[STATISTICS]))
 
 
-def _who_does_what(lib: Library, sample: FloatArray, query: RecogniseQuery) -> Recognition:
+def _who_does_what(lib: Library, sample: FloatArray, query: RecognizeQuery) -> Recognition:
     """Person and task of a clip, by its method's INPUTS."""
     person = fields.text("known_person", query.known_person)
     task = fields.text("known_task", query.known_task)
     if query.method == "multilinear":
         model = lib.models.multilinear(lib.store).model
-        found = recognise_multilinear(model, sample, person, task)
+        found = recognize_multilinear(model, sample, person, task)
     elif query.method == "signatures":
         model = lib.models.signatures(lib.store).model
-        found = recognise_multilinear(model, sample, person, task)
+        found = recognize_multilinear(model, sample, person, task)
     elif query.method == "perera":
         tensor = lib.models.perera(lib.store).model
-        (found,) = recognise_by_tensor(tensor, sample[None], person, task)
+        (found,) = recognize_by_tensor(tensor, sample[None], person, task)
     else:
-        found = recognise_by_default(lib.models.recogniser(lib.store).model, sample, person, task)
+        found = recognize_by_default(lib.models.recognizer(lib.store).model, sample, person, task)
     if not lib.settings.recognize_persons:
         return replace(found, person=NO_ANSWER)
     return found

@@ -12,21 +12,21 @@ from app.demo import DemoClip
 from app.errors import BadField, ModelNotFitted
 from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
-from app.services.recognition import recognise
-from app.services.recognition.recognise import METHODS, RecogniseQuery
+from app.services.recognition import recognize
+from app.services.recognition.recognize import METHODS, RecognizeQuery
 from app.services.training import models
-from app.services.training.errors_in_force import errors_in_force
+from app.services.training.active_errors import active_errors
 from app.store.jobs.record import JobKind, JobState
 from app.store.jobs.repository import list_jobs
 from tests.libraries import FindClip, settings_for, upload, work
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_stored_clip_is_recognised(
+def test_a_stored_clip_is_recognized(
     ready_library: Library, clip_of: FindClip, method: str
 ) -> None:
-    asked = RecogniseQuery(QuerySource(clip_of("ada", "wave").id), method=method)
-    found = recognise.recognise(ready_library, asked)
+    asked = RecognizeQuery(QuerySource(clip_of("ada", "wave").id), method=method)
+    found = recognize.recognize(ready_library, asked)
     assert found.task.candidates[0].label == "wave"
     assert found.person.candidates[0].label == "ada"
     scores = [score for _, score in found.words]
@@ -35,22 +35,22 @@ def test_a_stored_clip_is_recognised(
 
 
 def test_what_is_known_is_taken_as_given(ready_library: Library, clip_of: FindClip) -> None:
-    asked = RecogniseQuery(
+    asked = RecognizeQuery(
         QuerySource(clip_of("ada", "wave").id), known_person="ada", known_task=" wave "
     )
-    found = recognise.recognise(ready_library, asked)
+    found = recognize.recognize(ready_library, asked)
     assert (found.person.label, found.task.label) == ("ada", "wave")
 
 
-def test_an_upload_is_recognised_as_its_stored_twin(
+def test_an_upload_is_recognized_as_its_stored_twin(
     ready_library: Library, some_demo_clips: list[DemoClip], clip_of: FindClip
 ) -> None:
     demo = next(c for c in some_demo_clips if (c.person, c.task) == ("chika", "bow"))
-    theirs = recognise.recognise(
-        ready_library, RecogniseQuery(QuerySource(content=io.BytesIO(demo.content)))
+    theirs = recognize.recognize(
+        ready_library, RecognizeQuery(QuerySource(content=io.BytesIO(demo.content)))
     )
-    ours = recognise.recognise(
-        ready_library, RecogniseQuery(QuerySource(clip_of("chika", "bow").id))
+    ours = recognize.recognize(
+        ready_library, RecognizeQuery(QuerySource(clip_of("chika", "bow").id))
     )
     assert theirs.task.candidates[0].label == ours.task.candidates[0].label == "bow"
     assert theirs.words[0] == pytest.approx(ours.words[0])
@@ -58,8 +58,8 @@ def test_an_upload_is_recognised_as_its_stored_twin(
 
 def test_another_method_is_refused(ready_library: Library, clip_of: FindClip) -> None:
     with pytest.raises(BadField, match="method"):
-        recognise.recognise(
-            ready_library, RecogniseQuery(QuerySource(clip_of("ada", "bow").id), method="x")
+        recognize.recognize(
+            ready_library, RecognizeQuery(QuerySource(clip_of("ada", "bow").id), method="x")
         )
 
 
@@ -67,13 +67,13 @@ def test_models_tell_what_they_were_fitted_on_and_how_good_they_are(
     ready_library: Library,
 ) -> None:
     fitted = {record.kind: record for record in models.list_models(ready_library)}
-    kinds = {"words", "recogniser", "multilinear", "metric-task", "metric-person", "synthesis"}
+    kinds = {"words", "recognizer", "multilinear", "metric-task", "metric-person", "synthesis"}
     kinds |= {"signatures", "perera"}
     assert set(fitted) == kinds
     assert {record.library_size for record in fitted.values()} == {12}
     words = {row["method"]: row for row in fitted["words"].meta["figures"]["figures"]}
     assert words["default"]["top_3_recognition"] >= words["prior"]["top_3_recognition"]
-    assert "default" in fitted["recogniser"].meta["figures"]["held_out"]
+    assert "default" in fitted["recognizer"].meta["figures"]["held_out"]
 
 
 def test_what_cannot_be_fitted_is_skipped_with_its_reason(
@@ -90,11 +90,11 @@ def test_what_cannot_be_fitted_is_skipped_with_its_reason(
     assert done.result is not None
     outcomes = done.result["models"]
     assert outcomes["words"]["outcome"] == "fitted"
-    assert outcomes["recogniser"]["outcome"] == outcomes["multilinear"]["outcome"] == "skipped"
-    assert outcomes["recogniser"]["reason"]
+    assert outcomes["recognizer"]["outcome"] == outcomes["multilinear"]["outcome"] == "skipped"
+    assert outcomes["recognizer"]["reason"]
     clip = upload(lib, some_demo_clips[0]).clip
     with pytest.raises(ModelNotFitted):
-        recognise.recognise(lib, RecogniseQuery(QuerySource(clip.id)))
+        recognize.recognize(lib, RecognizeQuery(QuerySource(clip.id)))
 
 
 def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
@@ -104,17 +104,17 @@ def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
         upload(lib, clip)
     models.request_fit(lib)
     work(lib.settings)
-    (record,) = (r for r in models.list_models(lib) if r.kind == "recogniser")
+    (record,) = (r for r in models.list_models(lib) if r.kind == "recognizer")
     curve = record.meta["figures"]["unknown"]["person"]["curve"]
     assert {"threshold", "false_acceptance", "false_rejection"} == set(curve[0])
-    threshold = lib.models.recogniser(lib.store).model.person_calibration.threshold
+    threshold = lib.models.recognizer(lib.store).model.person_calibration.threshold
 
     changed = models.set_false_accept_rate(lib, record.id, 0.001)
     assert changed.settings == {"false_accept_rate": 0.001}
-    strict = lib.models.recogniser(lib.store).model.person_calibration
+    strict = lib.models.recognizer(lib.store).model.person_calibration
     assert strict.error_rates()[0] == 0.0
     assert strict.threshold <= threshold
-    told = errors_in_force(lib, changed)
+    told = active_errors(lib, changed)
     assert told is not None
     person = told["person"]
     assert (person.threshold, person.false_acceptance) == (strict.threshold, 0.0)
@@ -124,7 +124,7 @@ def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
 
     models.request_fit(lib)
     work(lib.settings)
-    (again,) = (r for r in models.list_models(lib) if r.kind == "recogniser")
+    (again,) = (r for r in models.list_models(lib) if r.kind == "recognizer")
     assert again.settings == changed.settings
     assert models.set_false_accept_rate(lib, again.id, None).settings == {}
 
@@ -140,13 +140,13 @@ def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
 
 
 @pytest.mark.parametrize("method", sorted(set(METHODS) - {"default"}))
-def test_methods_that_need_persons_say_so_where_persons_are_not_recognised(
+def test_methods_that_need_persons_say_so_where_persons_are_not_recognized(
     ready_library: Library, clip_of: FindClip, method: str
 ) -> None:
     closed = replace(
         ready_library, settings=settings_for(Path("/nowhere"), recognize_persons=False)
     )
     with pytest.raises(ModelNotFitted, match="switched off"):
-        recognise.recognise(
-            closed, RecogniseQuery(QuerySource(clip_of("ada", "wave").id), method=method)
+        recognize.recognize(
+            closed, RecognizeQuery(QuerySource(clip_of("ada", "wave").id), method=method)
         )

@@ -1,4 +1,4 @@
-"""How often a recogniser errs on what is new, at the threshold that is in force."""
+"""The error rates of a recognizer on new persons and tasks, at its active threshold."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from app.errors import ModelNotFitted
 from app.models.recognition.calibration import Calibration
-from app.models.recognition.perera import TensorRecogniser
-from app.models.recognition.recogniser import Recogniser
+from app.models.recognition.perera import TensorRecognizer
+from app.models.recognition.recognizer import Recognizer
 from app.services.library.fitted_models import TELLING_UNKNOWN, Fitted, ModelKind
 from app.services.library.library import Library
 from app.store.models import ModelRecord
@@ -16,24 +16,27 @@ from app.store.models import ModelRecord
 
 @dataclass(frozen=True, slots=True)
 class Errors:
-    """Shares of clips that were held out at the fit: of what was new and is called known, and
-    of what was known and is called new; threshold: the novelty above which something is new."""
+    """Error rates on clips that were held out of the fit.
+
+    threshold: the novelty above which a clip is called new; false_acceptance: share of the new
+    clips that are called known; false_rejection: share of the known clips that are called new.
+    """
 
     threshold: float
     false_acceptance: float
     false_rejection: float
 
 
-def errors_in_force(lib: Library, record: ModelRecord) -> Mapping[str, Errors] | None:
-    """The errors by "person" and "task" at the false-accept rate that is set, or at the usual
-    threshold; without a factor of which nothing was held out.
+def active_errors(lib: Library, record: ModelRecord) -> Mapping[str, Errors] | None:
+    """The errors by "person" and "task" at the configured false-accept rate, or at the fitted
+    threshold. A factor without held-out clips is missing.
 
-    None of models that call nothing unknown, and of one that has just been replaced.
+    None for models that call nothing unknown, and for a model that was just replaced.
     """
     if record.kind not in TELLING_UNKNOWN:
         return None
     try:
-        fitted = _in_force(lib, record.kind)
+        fitted = _active(lib, record.kind)
     except ModelNotFitted:
         return None
     if fitted.id != record.id:
@@ -43,10 +46,10 @@ def errors_in_force(lib: Library, record: ModelRecord) -> Mapping[str, Errors] |
     return {factor: _errors(one) for factor, one in calibrations.items() if _is_judged(one)}
 
 
-def _in_force(lib: Library, kind: str) -> Fitted[Recogniser] | Fitted[TensorRecogniser]:
+def _active(lib: Library, kind: str) -> Fitted[Recognizer] | Fitted[TensorRecognizer]:
     if kind == ModelKind.PERERA:
         return lib.models.perera(lib.store)
-    return lib.models.recogniser(lib.store)
+    return lib.models.recognizer(lib.store)
 
 
 def _is_judged(calibration: Calibration) -> bool:

@@ -1,5 +1,7 @@
-"""Motions that nobody recorded: a known person's for another task, or anyone's of whom there
-are some clips (DESIGN 8, "synthesize"; Vasilescu 2002, section 4)."""
+"""Synthesizes motions that nobody recorded (Vasilescu 2002, section 4).
+
+The person is one of the library at another task, or the person of some given clips.
+"""
 
 from __future__ import annotations
 
@@ -31,17 +33,20 @@ from app.store.clips.record import ClipRecord
 from app.store.jobs.record import JobRecord
 
 SECONDS = (0.5, 60.0)
-"""Between which a length may be wished for."""
+"""Bounds of the requested duration."""
 
-MOST_CLIPS = 100
-"""Of a new person; more are refused."""
+MAX_CLIPS = 100
+"""Largest number of clips of a new person."""
 
 
 @dataclass(frozen=True, slots=True)
 class SynthesisQuery:
-    """Exactly one of `person`, who is known, and `clip_ids`, of one person; task: what they are
-    to do; seconds: how long, by default as long as it usually takes, or some cycles; store:
-    whether to keep the motion as a clip."""
+    """A query for a synthesis, with either `person` or `clip_ids`.
+
+    person: a known person; clip_ids: clips of one person; task: the task to synthesize; seconds:
+    duration, by default the usual one of the task, or a few cycles; store: whether to keep the
+    motion as a clip.
+    """
 
     task: str
     person: str | None = None
@@ -51,11 +56,14 @@ class SynthesisQuery:
 
 
 @dataclass(frozen=True, slots=True)
-class Synthesised:
-    """person, task: of whom, doing what; name: for a file; clip, job: where it was stored;
-    is_new: False where the same motion was stored before; motion; bvh: the file's bytes;
-    cycles: how often it goes round, 0 where it does not; license: of all that it is made of,
-    None where they differ; roles: joint names by role."""
+class Synthesized:
+    """A synthesized motion.
+
+    person, task: its labels; name: for a file; clip, job: if it was stored; is_new: False if the
+    same motion was stored before; bvh: content of the BVH file; cycles: number of cycles, 0 if
+    it is not cyclic; license: that of all sources, None if they differ; roles: joint names by
+    role.
+    """
 
     person: str | None
     task: str
@@ -76,11 +84,11 @@ class Synthesised:
         return MotionView(self.motion.frame_rate, self.motion.names, parents, self.motion.positions)
 
 
-def synthesise(lib: Library, query: SynthesisQuery) -> Synthesised:
-    """The motion asked for, and how far it can be trusted.
+def synthesize(lib: Library, query: SynthesisQuery) -> Synthesized:
+    """Synthesize the motion of a query, and judge its quality.
 
-    Raises BadField, NotFound for a person or task that the model does not know, ClipNotFound,
-    ClipNotReady, NotEnoughLabels where there is nothing to make it of, ModelNotFitted.
+    Raises BadField; NotFound for a person or task that the model does not know; ClipNotFound;
+    ClipNotReady; NotEnoughLabels if the library lacks the clips for it; ModelNotFitted.
     """
     query = _tidied(query)
     fitted = _model(lib)
@@ -96,10 +104,10 @@ def synthesise(lib: Library, query: SynthesisQuery) -> Synthesised:
     animation = embody(course, material.donors)
     motion = _as_motion(animation, material.donors[0].joints)
     quality = judge(lib, fitted, plan, motion, motion_shape(body_track(motion)))
-    made = Synthesised(
+    made = Synthesized(
         person=plan.person,
         task=plan.task,
-        # Without the person, whose name must go when they are forgotten.
+        # the name has no person, since the name of a forgotten person must not remain
         name=f"{plan.task} (synthesized)",
         clip=None,
         job=None,
@@ -120,8 +128,8 @@ def _tidied(query: SynthesisQuery) -> SynthesisQuery:
     query = replace(query, task=task, person=person)
     if (query.person is None) == (query.clip_ids is None):
         raise fields.bad_field("person", "send exactly one of person and clip_ids")
-    if query.clip_ids is not None and not 1 <= len(query.clip_ids) <= MOST_CLIPS:
-        raise fields.bad_field("clip_ids", f"must be 1 to {MOST_CLIPS} clips")
+    if query.clip_ids is not None and not 1 <= len(query.clip_ids) <= MAX_CLIPS:
+        raise fields.bad_field("clip_ids", f"must be 1 to {MAX_CLIPS} clips")
     if query.seconds is not None and not SECONDS[0] <= query.seconds <= SECONDS[1]:
         raise fields.bad_field("seconds", f"must be from {SECONDS[0]:g} to {SECONDS[1]:g}")
     return query
@@ -130,8 +138,8 @@ def _tidied(query: SynthesisQuery) -> SynthesisQuery:
 def _model(lib: Library) -> Fitted[Synthesis]:
     if not lib.settings.recognize_persons:
         raise ModelNotFitted(
-            "Persons are not told apart here (KINEDEX_RECOGNIZE_PERSONS is off), and a motion is"
-            " synthesized of what tells them apart."
+            "Synthesis needs models of persons, and these are switched off"
+            " (KINEDEX_RECOGNIZE_PERSONS)."
         )
     return lib.models.synthesis(lib.store)
 
@@ -150,7 +158,7 @@ def _as_motion(animation: Animation, joints: dict[JointRole, int]) -> Motion:
     )
 
 
-def _stored(lib: Library, made: Synthesised, material: Material, plan: Plan) -> Synthesised:
+def _stored(lib: Library, made: Synthesized, material: Material, plan: Plan) -> Synthesized:
     """The motion as a clip like any other, marked by its source."""
     said = {
         "name": made.name,

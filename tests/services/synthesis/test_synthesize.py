@@ -32,7 +32,7 @@ from app.services.library.stored_motion import load_motion
 from app.services.library.synthesized import SYNTHESIZED, is_synthesized
 from app.services.synthesis.donors import donor_of
 from app.services.synthesis.plan import SynthesisKind
-from app.services.synthesis.synthesise import SynthesisQuery, synthesise
+from app.services.synthesis.synthesize import SynthesisQuery, synthesize
 from app.services.training import models
 from app.services.training.fit import fit_library
 from app.services.training.training_set import read_training_set
@@ -71,7 +71,7 @@ def clip_of(lib: Library, person: str, task: str) -> ClipRecord:
 
 
 def test_a_known_person_does_what_they_never_did(fitted: Library) -> None:
-    made = synthesise(fitted, SynthesisQuery("walk", person="chika"))
+    made = synthesize(fitted, SynthesisQuery("walk", person="chika"))
     quality = made.quality
     assert quality.kind is SynthesisKind.NEW_TASK
     assert quality.given_persons == ("ada", "bruno")
@@ -90,7 +90,7 @@ def test_a_known_person_does_what_they_never_did(fitted: Library) -> None:
 
 
 def test_the_file_is_the_motion_on_the_persons_own_skeleton(fitted: Library) -> None:
-    made = synthesise(fitted, SynthesisQuery("walk", person="chika"))
+    made = synthesize(fitted, SynthesisQuery("walk", person="chika"))
     recording = read_recording(made.bvh)
     own = clip_of(fitted, "chika", "bow")
     theirs = read_recording(clips.open_file(fitted, own.id).path.read_bytes())
@@ -102,12 +102,12 @@ def test_the_file_is_the_motion_on_the_persons_own_skeleton(fitted: Library) -> 
 
 
 def test_a_made_walk_stands_on_the_floor_as_a_real_one_does(fitted: Library) -> None:
-    made = synthesise(fitted, SynthesisQuery("walk", person="chika")).motion
+    made = synthesize(fitted, SynthesisQuery("walk", person="chika")).motion
     real = load_motion(fitted, clip_of(fitted, "ada", "walk"))
     lowest = made.positions[:, :, 1].min(axis=1)
     assert lowest.min() > -1e-3
     assert np.median(lowest) < 5e-3
-    assert toe_speed(real) < 0.05  # metres per second
+    assert toe_speed(real) < 0.05  # meters per second
     assert toe_speed(made) < 0.15
 
 
@@ -122,7 +122,7 @@ def toe_speed(motion: Motion) -> float:
 
 
 def test_what_the_person_did_is_allowed_and_told(fitted: Library) -> None:
-    made = synthesise(fitted, SynthesisQuery("wave", person="ada"))
+    made = synthesize(fitted, SynthesisQuery("wave", person="ada"))
     assert made.quality.kind is SynthesisKind.SEEN
     assert made.quality.expected_hit is None
     assert (made.quality.nearest_person, made.quality.nearest_task) == ("ada", "wave")
@@ -130,7 +130,7 @@ def test_what_the_person_did_is_allowed_and_told(fitted: Library) -> None:
 
 
 def test_of_dances_that_do_not_agree_one_is_followed_and_it_says_so(fitted: Library) -> None:
-    made = synthesise(fitted, SynthesisQuery("dance", person="bruno"))
+    made = synthesize(fitted, SynthesisQuery("dance", person="bruno"))
     quality = made.quality
     assert quality.kind is SynthesisKind.NEW_TASK
     assert quality.given_persons == ("ada", "chika")
@@ -141,7 +141,7 @@ def test_of_dances_that_do_not_agree_one_is_followed_and_it_says_so(fitted: Libr
     real = load_motion(fitted, clip_of(fitted, quality.follows, "dance"))
     assert made.motion.duration == pytest.approx(real.duration, rel=0.05)
     assert jumps(made.motion) < 1.5 * jumps(real)
-    walk = synthesise(fitted, SynthesisQuery("walk", person="chika")).quality
+    walk = synthesize(fitted, SynthesisQuery("walk", person="chika")).quality
     assert walk.follows is None
     assert walk.agreement is not None
     assert walk.agreement > AGREED
@@ -155,17 +155,17 @@ def jumps(motion: Motion) -> float:
 
 def test_all_tasks_come_to_the_person_of_some_clips(fitted: Library) -> None:
     ids = tuple(clip_of(fitted, "chika", task).id for task in ("bow", "dance", "wave"))
-    made = synthesise(fitted, SynthesisQuery("walk", clip_ids=ids))
+    made = synthesize(fitted, SynthesisQuery("walk", clip_ids=ids))
     assert made.quality.kind is SynthesisKind.NEW_PERSON
     assert made.person == "chika"
     assert set(made.quality.given_tasks) == {"bow", "dance", "wave"}
     assert made.quality.given_persons == ("ada", "bruno")
-    known = synthesise(fitted, SynthesisQuery("walk", person="chika"))
+    known = synthesize(fitted, SynthesisQuery("walk", person="chika"))
     np.testing.assert_allclose(made.motion.positions, known.motion.positions, atol=0.05)
 
 
 def test_clips_count_as_though_there_were_no_others_of_that_person(fitted: Library) -> None:
-    made = synthesise(fitted, SynthesisQuery("bow", clip_ids=(clip_of(fitted, "ada", "walk").id,)))
+    made = synthesize(fitted, SynthesisQuery("bow", clip_ids=(clip_of(fitted, "ada", "walk").id,)))
     assert made.quality.kind is SynthesisKind.NEW_PERSON
     assert made.quality.given_persons == ("bruno", "chika")
 
@@ -173,7 +173,7 @@ def test_clips_count_as_though_there_were_no_others_of_that_person(fitted: Libra
 def test_a_clip_that_is_named_twice_counts_once(fitted: Library) -> None:
     walk = clip_of(fitted, "ada", "walk").id
     once, twice = (
-        synthesise(fitted, SynthesisQuery("bow", clip_ids=ids)) for ids in ((walk,), (walk, walk))
+        synthesize(fitted, SynthesisQuery("bow", clip_ids=ids)) for ids in ((walk,), (walk, walk))
     )
     np.testing.assert_array_equal(once.motion.positions, twice.motion.positions)
     assert once.quality == twice.quality
@@ -181,19 +181,19 @@ def test_a_clip_that_is_named_twice_counts_once(fitted: Library) -> None:
 
 def test_it_lasts_as_long_as_wished_and_is_the_same_each_time(fitted: Library) -> None:
     query = SynthesisQuery("walk", person="chika", seconds=7.0)
-    made, again = synthesise(fitted, query), synthesise(fitted, query)
+    made, again = synthesize(fitted, query), synthesize(fitted, query)
     assert made.motion.duration == pytest.approx(7.0, abs=0.8)
     assert made.bvh == again.bvh
-    stretched = synthesise(fitted, SynthesisQuery("bow", person="ada", seconds=3.0))
+    stretched = synthesize(fitted, SynthesisQuery("bow", person="ada", seconds=3.0))
     assert stretched.motion.duration == pytest.approx(3.0, abs=0.05)
 
 
 def test_a_stored_one_is_a_clip_from_which_nothing_is_learned(mine: Library) -> None:
     query = SynthesisQuery("walk", person="chika", store=True)
-    made = synthesise(mine, query)
+    made = synthesize(mine, query)
     assert made.clip is not None
     assert made.job is not None
-    again = synthesise(mine, query)
+    again = synthesize(mine, query)
     assert again.clip is not None
     assert (again.clip.id, again.is_new) == (made.clip.id, False)
     work(mine.settings)
@@ -204,21 +204,21 @@ def test_a_stored_one_is_a_clip_from_which_nothing_is_learned(mine: Library) -> 
     assert is_synthesized(clip)
     assert "chika" not in clip.name + clip.file_name  # who must be forgotten on request
     assert clip.id not in {c.id for c in read_training_set(mine.store).clips}
-    assert synthesise(mine, query).quality.kind is SynthesisKind.NEW_TASK
+    assert synthesize(mine, query).quality.kind is SynthesisKind.NEW_TASK
 
 
 def test_what_cannot_be_made_is_refused_with_its_reason(fitted: Library) -> None:
     with pytest.raises(NotFound, match=r"person 'nobody'.*ada"):
-        synthesise(fitted, SynthesisQuery("walk", person="nobody"))
+        synthesize(fitted, SynthesisQuery("walk", person="nobody"))
     with pytest.raises(NotFound, match="task 'fly'"):
-        synthesise(fitted, SynthesisQuery("fly", person="ada"))
+        synthesize(fitted, SynthesisQuery("fly", person="ada"))
     with pytest.raises(ClipNotFound):
-        synthesise(fitted, SynthesisQuery("walk", clip_ids=("clip_nowhere",)))
+        synthesize(fitted, SynthesisQuery("walk", clip_ids=("clip_nowhere",)))
     with pytest.raises(NotEnoughLabels, match="another task"):
-        synthesise(fitted, SynthesisQuery("bow", clip_ids=(clip_of(fitted, "ada", "bow").id,)))
+        synthesize(fitted, SynthesisQuery("bow", clip_ids=(clip_of(fitted, "ada", "bow").id,)))
     both = tuple(clip_of(fitted, person, "bow").id for person in ("ada", "bruno"))
     with pytest.raises(BadField, match="one person"):
-        synthesise(fitted, SynthesisQuery("walk", clip_ids=both))
+        synthesize(fitted, SynthesisQuery("walk", clip_ids=both))
     for query in (
         SynthesisQuery("walk"),
         SynthesisQuery("  ", person="ada"),
@@ -227,26 +227,26 @@ def test_what_cannot_be_made_is_refused_with_its_reason(fitted: Library) -> None
         SynthesisQuery("walk", person="ada", seconds=0.1),
     ):
         with pytest.raises(BadField):
-            synthesise(fitted, query)
+            synthesize(fitted, query)
 
 
 def test_a_person_who_is_forgotten_is_in_no_synthesis(mine: Library) -> None:
-    assert synthesise(mine, SynthesisQuery("walk", person="chika")).person == "chika"
+    assert synthesize(mine, SynthesisQuery("walk", person="chika")).person == "chika"
     persons.forget_person(mine, "chika")
     with pytest.raises(ModelNotFitted):
-        synthesise(mine, SynthesisQuery("walk", person="chika"))
+        synthesize(mine, SynthesisQuery("walk", person="chika"))
     fit_library(mine.store)
     with pytest.raises(NotFound):
-        synthesise(mine, SynthesisQuery("walk", person="chika"))
+        synthesize(mine, SynthesisQuery("walk", person="chika"))
     fitted = mine.models.synthesis(mine.store).model
     assert fitted.persons == ("ada", "bruno")
-    assert synthesise(mine, SynthesisQuery("wave", person="bruno")).person == "bruno"
+    assert synthesize(mine, SynthesisQuery("wave", person="bruno")).person == "bruno"
 
 
 def test_nothing_is_made_where_persons_are_not_told_apart(mine: Library) -> None:
     closed = replace(mine, settings=settings_for(Path("/nowhere"), recognize_persons=False))
     with pytest.raises(ModelNotFitted, match="KINEDEX_RECOGNIZE_PERSONS"):
-        synthesise(closed, SynthesisQuery("walk", person="chika"))
+        synthesize(closed, SynthesisQuery("walk", person="chika"))
     outcome = fit_library(mine.store, persons=False)["models"][ModelKind.SYNTHESIS.value]
     assert outcome["outcome"] == "skipped"
     assert "two persons" in outcome["reason"]

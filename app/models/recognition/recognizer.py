@@ -1,10 +1,11 @@
-"""The default recogniser: which person does which task, or that it is someone or something new.
+"""The default recognizer: which person does which task, or whether the person or task is new.
 
-Clips are looked at in two ways (app.models.recognition.views), each brought to PCA coordinates
-and held against all hypotheses (app.models.recognition.hypotheses). Evidence of a label is the sum
-over the hypotheses that name it. Novelty weighs those that say "new" against those that do not; it
-separates new from known better than the distance to the nearest cell over the radius of that cell.
-Both are calibrated on clips, persons and tasks held out at fit.
+A clip has two views (app.models.recognition.views). Each is projected to PCA coordinates and
+compared with all hypotheses (app.models.recognition.hypotheses). The evidence of a label is the
+sum of the densities of its hypotheses. The novelty is the log ratio of the hypotheses that say
+"new" to the others; it separates new from known better than the distance to the nearest cell
+divided by the radius of that cell. Both are calibrated on clips, persons and tasks that are held
+out of the fit.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import numpy as np
 from app.analysis.descriptors.motion_sample import SAMPLE_LENGTH
 from app.errors import NotEnoughLabels
 from app.models.cells import find_cells
-from app.models.holding_out import MOST_PROBES, Held, rounds
+from app.models.holding_out import MAX_PROBES, Held, rounds
 from app.models.recognition.answers import Answer, Recognition, answer, given
 from app.models.recognition.calibration import NEW, Calibration, fit_calibration
 from app.models.recognition.hypotheses import fit_hypotheses
@@ -35,23 +36,26 @@ from app.models.recognition.views import (
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.principal_axes import principal_axes
 
-RECOGNISER_VERSION = 3
+RECOGNIZER_VERSION = 3
 
 MOSTLY_REPEATED = 0.5
-"""Share of clips beside which there must be another of the same person at the same task for takes
-to count as repeated."""
+"""The takes of a library count as repeated if at least this share of its clips has another clip of
+the same person at the same task."""
 
 IMAGINED = 3
-"""Takes of each cell that are imagined, by which novelty is judged where takes are not repeated."""
+"""Simulated takes of each cell, by which novelty is calibrated if takes are not repeated."""
 
 _Arrays = dict[str, np.ndarray[Any, Any]]
 
 
 @dataclass(frozen=True, slots=True)
-class Recogniser:
-    """persons, tasks: sorted labels, to which indices elsewhere refer; sample, wide: the two
-    ways of looking, whose hypotheses are of the same kinds and labels in the same order;
-    persons_by_both: whether new persons are told by both (see Logs)."""
+class Recognizer:
+    """A fitted recognizer.
+
+    persons, tasks: sorted labels; label indices refer to them. sample, wide: the two views;
+    their hypotheses have the same kinds and labels in the same order. persons_by_both: whether
+    both views decide that a person is new (see Logs).
+    """
 
     persons: tuple[str, ...]
     tasks: tuple[str, ...]
@@ -61,8 +65,9 @@ class Recogniser:
     person_calibration: Calibration
     task_calibration: Calibration
 
-    def accepting(self, false_accept_rate: float) -> Recogniser:
-        """The same, calling something new known at this rate at most (of held-out clips)."""
+    def accepting(self, false_accept_rate: float) -> Recognizer:
+        """The same recognizer with the threshold at which at most this share (0..1) of new
+        held-out clips is called known."""
         return replace(
             self,
             person_calibration=self.person_calibration.at_false_acceptance(false_accept_rate),
@@ -70,9 +75,9 @@ class Recogniser:
         )
 
     def to_arrays(self) -> tuple[_Arrays, dict[str, Any]]:
-        """Arrays and JSON-able meta from which from_arrays makes the same record."""
+        """Arrays and JSON-able metadata for `from_arrays`."""
         arrays = self.sample.to_arrays("sample") | self.wide.to_arrays("wide")
-        meta: dict[str, Any] = {"version": RECOGNISER_VERSION}
+        meta: dict[str, Any] = {"version": RECOGNIZER_VERSION}
         meta |= {"persons": list(self.persons), "tasks": list(self.tasks)}
         meta["persons_by_both"] = self.persons_by_both
         for name in ("person", "task"):
@@ -82,10 +87,10 @@ class Recogniser:
         return arrays, meta
 
     @classmethod
-    def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> Recogniser:
-        """The record that to_arrays took apart. Raises ValueError on another version."""
-        if meta["version"] != RECOGNISER_VERSION:
-            raise ValueError(f"recogniser of version {meta['version']}")
+    def from_arrays(cls, arrays: Mapping[str, Any], meta: Mapping[str, Any]) -> Recognizer:
+        """The recognizer from the result of `to_arrays`. Raises ValueError on another version."""
+        if meta["version"] != RECOGNIZER_VERSION:
+            raise ValueError(f"recognizer of version {meta['version']}")
         return cls(
             tuple(meta["persons"]),
             tuple(meta["tasks"]),
@@ -97,18 +102,18 @@ class Recogniser:
         )
 
 
-def fit_recogniser(
+def fit_recognizer(
     samples: FloatArray,
     persons: Sequence[str | None],
     tasks: Sequence[str | None],
     groups: Sequence[str] | None = None,
     sample_length: int = SAMPLE_LENGTH,
-) -> Recogniser:
-    """Fit on full samples with their labels, None where there is none.
+) -> Recognizer:
+    """Fit on full samples with their labels (None: no label).
 
     samples: (clips, 1762), motion samples of `sample_length` (1250) each followed by the clip's
     wide motion vector; groups: (clips,) clips of one recording share a value and are held out
-    together. Raises NotEnoughLabels below two labelled clips.
+    together. Raises NotEnoughLabels below two labeled clips.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if any(labels)]
     if len(use) < 2:
@@ -127,29 +132,30 @@ def fit_recogniser(
     repeated = int(cells.takes[cells.takes > 1].sum())
     by_both = repeated < MOSTLY_REPEATED * len(use)
     person, task = _calibrations(points, persons, tasks, together, views, by_both)
-    return Recogniser(cells.persons, cells.tasks, *views, by_both, person, task)
+    return Recognizer(cells.persons, cells.tasks, *views, by_both, person, task)
 
 
-def recognise(
-    record: Recogniser,
+def recognize(
+    record: Recognizer,
     sample: FloatArray,
     known_person: str | None = None,
     known_task: str | None = None,
 ) -> Recognition:
-    """Who does what in one full sample (1762,), given what the asker knows.
+    """Recognize who does what in one full sample (1762,).
 
-    A known label that the library lacks is taken at its word: someone, or something, new.
+    known_person, known_task: the label that the caller knows. A known label that the library
+    does not have counts as a new person or task.
     """
-    return recognise_many(record, np.asarray(sample)[None], known_person, known_task)[0]
+    return recognize_many(record, np.asarray(sample)[None], known_person, known_task)[0]
 
 
-def recognise_many(
-    record: Recogniser,
+def recognize_many(
+    record: Recognizer,
     samples: FloatArray,
     known_person: str | None = None,
     known_task: str | None = None,
 ) -> list[Recognition]:
-    """`recognise` for each of `samples` (n, 1762)."""
+    """`recognize` for each of `samples` (n, 1762)."""
     rows = both_views(samples, len(record.sample.axes.center))
     sample, wide = record.sample, record.wide
     points = Seen(sample.axes.project(rows.sample), wide.axes.project(rows.wide))
@@ -157,10 +163,10 @@ def recognise_many(
     logs = Logs.under(sample.hypotheses, h, points, persons_by_both=record.persons_by_both)
     logs = logs.without_others(h.person, record.persons, known_person)
     logs = logs.without_others(h.task, record.tasks, known_task)
-    told = record.persons, record.person_calibration, known_person
-    who = _answers(logs.ranking, logs.new_person, h.person, *told)
-    told = record.tasks, record.task_calibration, known_task
-    what = _answers(logs.ranking, logs.new_task, h.task, *told)
+    of_factor = record.persons, record.person_calibration, known_person
+    who = _answers(logs.ranking, logs.new_person, h.person, *of_factor)
+    of_factor = record.tasks, record.task_calibration, known_task
+    what = _answers(logs.ranking, logs.new_task, h.task, *of_factor)
     return [Recognition(person, task) for person, task in zip(who, what, strict=True)]
 
 
@@ -172,7 +178,7 @@ def _answers(
     calibration: Calibration,
     known: str | None,
 ) -> list[Answer]:
-    """From log densities (n, h) by which labels are ranked and by which is told what is new."""
+    """Answers from two arrays of log densities (n, h): one ranks labels, one decides novelty."""
     if known is not None or not names:
         return [given(known or "", names)] * len(ranking)
     new = newness(novelty, label)
@@ -195,8 +201,11 @@ def _calibrations(
     views: tuple[View, View],
     persons_by_both: bool,
 ) -> tuple[Calibration, Calibration]:
-    """For persons and for tasks, from rounds that hold out clips, persons and tasks, and from
-    further takes as the `views` on all clips imagine them."""
+    """The calibrations for persons and for tasks.
+
+    They come from rounds that hold out clips, persons and tasks, and from simulated takes of the
+    `views` of all clips.
+    """
     of_persons, of_tasks = [], []
     names = [tuple(sorted({label for label in labels if label})) for labels in (persons, tasks)]
     for held, train, probe in rounds(persons, tasks, groups):
@@ -210,13 +219,14 @@ def _calibrations(
             new = newness(logs.new_person, h.person)
             ranked = logs.ranking, h.person, seen.persons
             of_persons.append(_held_out(*ranked, new, who, names[0], again))
-        # A stranger's walk is a walk: persons held out count as known tasks.
+        # the task of a new person can be known: held-out persons count as known tasks
         new = newness(logs.new_task, h.task)
         of_tasks.append(_held_out(logs.ranking, h.task, seen.tasks, new, what, names[1], again))
-    # Judged by clips of whom and what were recorded together, at the cost of strangers: unless a
-    # gap parts new tasks from known ones, their walk is called unknown, with `walk` the best.
+    # The error rates are those of clips whose person and task were recorded together. A task of a
+    # new person may then be called unknown (with the right best candidate), unless there is a gap
+    # between new and known tasks.
     sample, h = (view.hypotheses for view in views)
-    further = Seen(*(each.further_takes(IMAGINED, MOST_PROBES) for each in (sample, h)))
+    further = Seen(*(each.further_takes(IMAGINED, MAX_PROBES) for each in (sample, h)))
     imagined = Logs.under(sample, h, further, persons_by_both=persons_by_both)
     return (
         _calibrated(of_persons, len(names[0]), newness(imagined.new_person, h.person)),
@@ -233,7 +243,7 @@ def _held_out(
     names: tuple[str, ...],
     again: BoolArray,
 ) -> _HeldOut:
-    """What a round said of its labelled probes; labels not `seen` have no evidence."""
+    """The results of a round for its labeled probes; labels that are not `seen` get no evidence."""
     has = np.array([bool(name) for name in truth], dtype=bool)
     if not seen or not has.any():
         return _nothing(len(names))
