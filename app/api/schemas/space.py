@@ -9,7 +9,7 @@ from pydantic import Field
 from app.api.schemas.base import Outgoing
 from app.api.schemas.filters import Filter
 from app.search.index.filters import parse_filter
-from app.services.find.map import MOST_POINTS, Map, SpaceName
+from app.services.find.map import MAX_POINTS, Map, SpaceName
 from app.store.clips.filter import ClipFilter
 
 
@@ -21,7 +21,7 @@ class SpaceQuery(Filter):
     )
     dimensions: Literal["2", "3"] = "2"
     limit: int = Field(
-        10_000, ge=1, le=MOST_POINTS, description="Most points; of more clips, evenly picked ones."
+        10_000, ge=1, le=MAX_POINTS, description="Most points; of more clips, evenly picked ones."
     )
 
     def as_filter(self) -> ClipFilter:

@@ -24,7 +24,7 @@ from app.services.find.query import QueryDescriptors, describe
 from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
 
-LONGEST_SECONDS = 120.0
+MAX_SECONDS = 120.0
 """Of a query in windows. A longer motion is a clip of its own, and found as one."""
 
 
@@ -86,7 +86,7 @@ def _view(lib: Library, wanted: ClipFilter, scale: WindowScale) -> Parts:
 
 def _query_segment(query: QueryDescriptors) -> QuerySegment:
     seconds = query.seconds
-    if seconds > LONGEST_SECONDS:
-        most = f"{LONGEST_SECONDS:g} s are the most that is looked for in windows"
+    if seconds > MAX_SECONDS:
+        most = f"{MAX_SECONDS:g} s are the most that is looked for in windows"
         raise fields.bad_field("end", f"{most}; start and end leave {seconds:.1f} s")
     return QuerySegment(query.arrays[FEATURES], seconds)

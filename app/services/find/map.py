@@ -27,7 +27,7 @@ from app.store.clips.record import ClipRecord
 
 SPACES = ("symbols", "vectors")
 DIMENSIONS = (2, 3)
-MOST_POINTS = 100_000
+MAX_POINTS = 100_000
 
 SpaceName = Literal["symbols", "vectors"]
 
@@ -65,8 +65,8 @@ def draw_map(
         raise fields.bad_field("space", f"must be one of {', '.join(SPACES)}")
     if dimensions not in DIMENSIONS:
         raise fields.bad_field("dimensions", "must be 2 or 3")
-    if not 1 <= limit <= MOST_POINTS:
-        raise fields.bad_field("limit", f"must be from 1 to {MOST_POINTS}")
+    if not 1 <= limit <= MAX_POINTS:
+        raise fields.bad_field("limit", f"must be from 1 to {MAX_POINTS}")
     version = lib.index.catch_up(lib.store)
     every = lib.index.state[1].labels
     passed = np.flatnonzero(every.mask(clip_filter or ClipFilter()))

@@ -18,7 +18,7 @@ from app.search.windows.overlap_merging import MAX_OVERLAP
 from app.services.clips import catalogue as clips
 from app.services.find import find
 from app.services.find.hits import Hit, Hits
-from app.services.find.in_windows import LONGEST_SECONDS
+from app.services.find.in_windows import MAX_SECONDS
 from app.services.library.library import Library
 from tests.bodies import turned_about_y
 from tests.libraries import settings_for, work
@@ -200,7 +200,7 @@ def test_a_query_that_is_too_long_is_told_how_long_it_may_be(hidden: Hidden) -> 
     with pytest.raises(BadField, match=r"120 s .* 130\.0 s") as refused:
         search(hidden.lib, content=io.BytesIO(npz_of(body, 30.0)))
     assert [place.location for place in refused.value.places] == ["end"]
-    part = search(hidden.lib, content=io.BytesIO(npz_of(body, 30.0)), end=LONGEST_SECONDS)
+    part = search(hidden.lib, content=io.BytesIO(npz_of(body, 30.0)), end=MAX_SECONDS)
     assert part.items
 
 
