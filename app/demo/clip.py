@@ -1,4 +1,4 @@
-"""A file of the demo library and what is known of it."""
+"""A file of the demo library and what is known about it."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ def prepare(actor: Actor, task: str, number: int) -> Take:
 
 
 def enlivened(controls: Controls, take: Take, times: FloatArray) -> Controls:
-    """The same with breathing and the small sway that no living body is without."""
+    """The same performance with breathing and the small sway of a living body."""
     draw, style = take.draw, take.actor.style
     sway = 0.006 * style.sway
     drift = np.stack(

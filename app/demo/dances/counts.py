@@ -22,7 +22,7 @@ TIMING = 0.015
 """Seconds (standard deviation) by which dancers miss a beat."""
 
 SOONEST = 0.65
-"""Seconds from the first frame to the first beat: nobody is recorded in the midst of a jerk."""
+"""Seconds from the first frame to the first beat. A recording does not begin within a movement."""
 
 THROUGH_A_POSE = 0.5
 """How often a passed beat has a pose of its own, through which the limbs run."""

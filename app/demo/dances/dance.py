@@ -1,8 +1,8 @@
 """Dances by seed: a dancer, beats, keyposes on them, and a recording of what was danced to.
 
-Other than the demo's task `dance`, whose figures are few and whose tempo is steady, these
-are drawn anew for each seed: dancer, poses, rhythm, drift of the tempo, pass-through beats,
-freezes, ornaments and noise. What was meant comes with the clip.
+The demo's task `dance` has few figures and a steady tempo. For these dances, everything is drawn
+anew for each seed: dancer, poses, rhythm, drift of the tempo, beats without a stop, freezes,
+ornaments and noise. The intended beats and keyposes come with the clip.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ from app.numerics.arrays import FloatArray
 
 UNITS_PER_METER = 100.0
 AFTERWARDS = 0.7
-"""Beats that go on after the last keypose is left."""
+"""How many beats follow after the last keypose."""
 
 LAGS = {"hips": -0.02, "trunk": 0.0, "head": -0.04, "left": 0.015, "right": 0.015}
-"""Seconds by which parts of the body follow the trunk, about."""
+"""About how many seconds parts of the body follow the trunk."""
 
 
 def dance(

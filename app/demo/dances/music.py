@@ -77,7 +77,7 @@ SCALE = (0, 2, 4, 7, 9, 12)
 
 LOUDEST = 0.8
 HISS = 0.002
-"""Of full scale: no recording is without noise."""
+"""The noise of a recording, as a share of full scale."""
 
 
 def clicks(draw: np.random.RandomState, beats: FloatArray, seconds: float) -> FloatArray:

@@ -47,7 +47,7 @@ JITTER = 0.12
 
 HIGHEST_FLEX, HIGHEST_ABDUCT = 2.9, 2.5
 FULL_MOVE = 0.5
-"""Seconds; what is given less time is danced smaller."""
+"""Seconds. A pose with less time is danced smaller."""
 
 LOOSE = 0.02
 """Seconds (standard deviation) by which parts of the body arrive and leave apart."""

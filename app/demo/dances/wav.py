@@ -1,4 +1,4 @@
-"""WAV files without the audio library, which the demo must not need."""
+"""Writes WAV files without the audio library, because the demo must work without it."""
 
 from __future__ import annotations
 

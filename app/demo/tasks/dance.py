@@ -1,7 +1,7 @@
 """Dancing on a beat: keyposes struck and held at beats, one foot moved at a time.
 
-The beats and the times of the keyposes are known, so that what is found by analysis can be
-held against them.
+The beats and the times of the keyposes are known, so that the results of the analysis can be
+compared with them.
 """
 
 from __future__ import annotations

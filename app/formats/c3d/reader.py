@@ -27,7 +27,7 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 RATE_FOR_GAPS = 100.0
-"""Hz; how long a gap is where the file does not say its rate."""
+"""Hz: the rate by which gaps are measured if the file does not give its rate."""
 
 _R = JointRole
 _PARENTS: dict[JointRole, JointRole] = {
@@ -134,7 +134,7 @@ def _parents_first(centers: Mapping[JointRole, Center]) -> list[JointRole]:
 
 
 def _above(role: JointRole, centers: Mapping[JointRole, Center]) -> JointRole | None:
-    """The nearest role toward the hips that has a center."""
+    """The nearest role toward the hips that has a center; None if there is none."""
     while role is not _R.HIPS:
         role = _PARENTS.get(role, role.towards_trunk())
         if role in centers:

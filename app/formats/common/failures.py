@@ -1,4 +1,4 @@
-"""Failures of readers, with their place in the file."""
+"""Errors of readers, with their place in the file."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from app.errors import Place, TooLarge, Unreadable
 
 
 def unreadable(line: int, message: str) -> Unreadable:
-    """An Unreadable that names the line, counted from 1."""
+    """An Unreadable with the line, counted from 1."""
     location = f"line {line}"
     return Unreadable(f"{location}: {message}", places=[Place(location, message)])
 
 
 def unreadable_at(offset: int, message: str) -> Unreadable:
-    """An Unreadable of a binary file that names the byte, counted from 0."""
+    """An Unreadable of a binary file with the byte, counted from 0."""
     location = f"byte {offset}"
     return Unreadable(f"{location}: {message}", places=[Place(location, message)])
 
 
 def too_large(location: str, message: str) -> TooLarge:
-    """A TooLarge that names where: a line, byte, or what is counted."""
+    """A TooLarge with its place: a line, a byte, or what is counted."""
     return TooLarge(f"{location}: {message}", places=[Place(location, message)])

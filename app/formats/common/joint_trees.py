@@ -39,14 +39,14 @@ def parents_of(array: NDArray[Any], key: str, names: Sequence[str]) -> IntArray:
 
 
 def in_tree_order(parents: IntArray) -> IntArray:
-    """(joints,) indices that put every joint after its parent, else in the order given."""
+    """(joints,) indices that put every joint after its parent and otherwise keep the order."""
     if (parents < np.arange(len(parents))).all():
         return np.arange(len(parents))
     return np.argsort(_depths(parents), kind="stable")
 
 
 def _depths(parents: IntArray) -> IntArray:
-    """(joints,) steps to the root; joints on a circle come out at the number of joints."""
+    """(joints,) the steps to the root; for joints on a circle, the number of joints."""
     depths = np.zeros(len(parents), dtype=np.int64)
     above = parents.copy()
     while (climbing := above >= 0).any() and depths.max(initial=0) < len(parents):

@@ -1,4 +1,4 @@
-"""Limits that all readers hold."""
+"""The limits of all readers."""
 
 from __future__ import annotations
 

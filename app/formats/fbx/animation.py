@@ -51,7 +51,7 @@ class Stack:
         return [times for times in found if len(times)]
 
     def refuse_unknown(self, nodes: Iterable[FbxObject]) -> None:
-        """Raise FormatNotSupported where layers or odd properties move these nodes."""
+        """Raise FormatNotSupported if layers or unusual properties move these nodes."""
         ids = {node.id for node in nodes}
         for (node, name), driver in self.base.items():
             if node in ids and name in FIXED and driver.curves:
@@ -65,7 +65,7 @@ class Stack:
     def channel(
         self, scene: FbxScene, node: FbxObject, name: str, still: FloatArray, ticks: FloatArray
     ) -> FloatArray:
-        """Values (frames, 3) float32 at `ticks` (frames,), or (1, 3) where they are still."""
+        """(frames, 3) float32 the values at `ticks` (frames,); (1, 3) if they do not change."""
         driver = self.base.get((node.id, name))
         if driver is None:
             return still[None].astype(np.float32)
@@ -110,7 +110,7 @@ def _curves(scene: FbxScene, curve_node: FbxObject) -> dict[int, FbxObject]:
 
 
 def _is_neutral(driver: Driver) -> bool:
-    """Whether curves of an upper layer are all zero, as a layer without edits has them."""
+    """Whether all curves of an upper layer are zero, as in a layer without edits."""
     return not any(np.any(read_keys(curve).values) for curve in driver.curves.values())
 
 
@@ -130,11 +130,11 @@ def choose_stack(stacks: list[Stack], lengths: list[float], name: str | None) ->
 
 
 def listed(names: list[str]) -> str:
-    """Stacks' names for people to pick from."""
+    """The names of the stacks, for a message to people."""
     more = f" and {len(names) - NAMES_SHOWN} more" if len(names) > NAMES_SHOWN else ""
     return ", ".join(names[:NAMES_SHOWN]) + more
 
 
 def _as_sent(name: str) -> str:
-    """A name as it arrives by a form: composed (NFC), without surrounding space."""
+    """A name as a form sends it: composed (NFC), without surrounding space."""
     return unicodedata.normalize("NFC", name).strip()

@@ -19,9 +19,9 @@ from app.formats.fbx.scene import FbxObject, refused_at
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 KTIME = 46_186_158_000
-"""Ticks of a second."""
+"""The number of ticks in a second."""
 ON_KEY = 1e-6
-"""Parts of a gap in which a time counts as that of the key."""
+"""The share of a gap within which a time counts as that of the key."""
 USUAL_WEIGHT = 1 / 3
 WEIGHT_UNIT = 1e-4
 
@@ -30,11 +30,11 @@ _NEXT = 0x100
 """With _CONSTANT: the value is that of the next key."""
 _TCB, _USER = 0x200, 0x400
 _CLAMP, _TIMED, _PROGRESSIVE = 0x1000, 0x2000, 0x4000
-"""Of automatic tangents: flat beside an equal value; along the neighbors' chord rather
-than the mean of both sides' slopes; never beyond the neighbors' values."""
+"""Flags of automatic tangents: flat next to an equal value; along the chord of the neighbors
+instead of the mean slope of both sides; never beyond the values of the neighbors."""
 _WEIGHTED_RIGHT, _WEIGHTED_NEXT_LEFT = 0x1000000, 0x2000000
 _FLAT = 1e-4
-"""Neighboring values that differ by less make a clamped tangent flat."""
+"""A clamped tangent is flat if neighboring values differ by less."""
 _SOLVING_STEPS = 60
 _SOLVED = 1e-12
 """Parts of a gap."""
@@ -98,7 +98,7 @@ def _floats(curve: FbxObject, name: str) -> FloatArray:
 
 
 def _array(curve: FbxObject, name: str, kind: str) -> FloatArray | IntArray:
-    """A child's numbers (n,); none where there is no such child."""
+    """(n,) the numbers of a child; empty if there is no such child."""
     record = curve.record.child(name)
     found = record.array() if record is not None else np.zeros(0)
     if len(found) and found.dtype.kind != kind:
@@ -131,7 +131,7 @@ def sample(curve: FbxObject, ticks: FloatArray) -> FloatArray | None:
 
 
 def _refuse_going_on(curve: FbxObject, keys: Keys, ticks: FloatArray) -> None:
-    """Refuse curves that repeat or go on where they have no keys."""
+    """Refuse curves that repeat or continue outside their keys."""
     for name, beyond in (
         ("Pre-Extrapolation", ticks[0] < keys.times[0]),
         ("Post-Extrapolation", ticks[-1] > keys.times[-1]),

@@ -1,4 +1,4 @@
-"""The records of a binary FBX file, read where they are asked for.
+"""The records of a binary FBX file. Each is read only when it is needed.
 
 A record is a header (end, number of properties, their length, name), its properties and
 its children; a header of zeros ends a list of children. Offsets are 32 bits wide before
@@ -27,11 +27,12 @@ FIRST_VERSION, LAST_VERSION = 7000, 7999
 WIDE_VERSION = 7500
 """From here on offsets have 64 bits."""
 MAX_ARRAY_BYTES = 64_000_000
-"""Inflated, of one array: more keys than a curve may have frames."""
+"""The largest decompressed size of one array: more keys than a curve may have frames."""
 MAX_DEFLATE_RATIO = 1040
-"""Deflate cannot do better."""
+"""The largest ratio of sizes that deflate can reach."""
 MAX_INFLATED_RATIO = 200
-"""Of all arrays that are read to the file; MAX_ARRAY_BYTES are free."""
+"""The largest ratio of the size of all decompressed arrays to that of the file. The first
+MAX_ARRAY_BYTES do not count."""
 
 _HEADER_BYTES = len(MAGIC) + 4
 _SCALARS = {
@@ -79,15 +80,15 @@ class FbxFile:
         self._inflatable = MAX_ARRAY_BYTES + MAX_INFLATED_RATIO * len(content)
 
     def records(self) -> Iterator[FbxRecord]:
-        """The records at the top."""
+        """The records at the top level."""
         return self.records_between(_HEADER_BYTES, len(self.content))
 
     def top(self, name: str) -> FbxRecord | None:
-        """The first record of this name at the top."""
+        """The first record of this name at the top level."""
         return next((record for record in self.records() if record.name == name), None)
 
     def records_between(self, start: int, end: int) -> Iterator[FbxRecord]:
-        """The records of a list of children, which a record of zeros may end."""
+        """The records of a list of children. A record of zeros may end the list."""
         while start < end:
             record = self._record(start, end)
             if record is None:
@@ -165,7 +166,7 @@ class FbxRecord:
         return found
 
     def array(self) -> FloatArray | IntArray:
-        """The array (n,) that is its first property; none makes it empty."""
+        """(n,) the array that is the first property; empty if there is none."""
         first = self.properties(1)
         if not first:
             return np.zeros(0)
@@ -203,6 +204,6 @@ class FbxRecord:
 
 
 def unreadable_byte(offset: int, message: str) -> Unreadable:
-    """An Unreadable that names the byte, counted from 0."""
+    """An Unreadable with the byte, counted from 0."""
     location = f"byte {offset}"
     return Unreadable(f"{location}: {message}", places=[Place(location, message)])

@@ -29,11 +29,11 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray, IntArray
 
 METERS_PER_CENTIMETRE = 0.01
-"""UnitScaleFactor counts centimeters."""
+"""UnitScaleFactor is in centimeters."""
 SCALES = (1e-6, 1e3)
-"""Meters per unit that can be meant."""
+"""The smallest and the largest plausible meters per unit."""
 STILL = 1e-5
-"""Translations that change by less, in parts of the skeleton's size, are still."""
+"""Translations that change by less than this share of the skeleton's size count as constant."""
 
 _CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 

@@ -1,4 +1,4 @@
-"""What an FBX file holds: objects with their properties, and how they are connected.
+"""The content of an FBX file: objects with their properties, and their connections.
 
 Source: the objects, connections and property templates as Autodesk's FBX SDK documents
 them ("FBX object model"); a property that an object lacks has its template's value, and
@@ -45,21 +45,21 @@ class FbxObject:
 
     @property
     def place(self) -> str:
-        """Where it stands, for messages."""
+        """The place of the object in the file, for messages."""
         return f"node Objects/{self.kind} {self.id}"
 
     def unreadable(self, message: str) -> Unreadable:
-        """An Unreadable that names this object."""
+        """An Unreadable with the name of this object."""
         return unreadable_at(self.place, message)
 
 
 def unreadable_at(place: str, message: str) -> Unreadable:
-    """An Unreadable that names a node."""
+    """An Unreadable with the name of a node."""
     return Unreadable(f"{place}: {message}", places=[Place(place, message)])
 
 
 def refused_at(place: str, message: str) -> FormatNotSupported:
-    """A FormatNotSupported that names a node."""
+    """A FormatNotSupported with the name of a node."""
     return FormatNotSupported(f"{place}: {message}", places=[Place(place, message)])
 
 
@@ -150,7 +150,7 @@ class FbxScene:
 
     @cached_property
     def _templates(self) -> dict[str, dict[str, Numbers]]:
-        """By kind: the numbers that its objects have unless they say otherwise."""
+        """For each kind of object, the default numbers of its properties."""
         found: dict[str, dict[str, Numbers]] = {}
         definitions = self._file.top("Definitions")
         for record in definitions.children("ObjectType") if definitions else ():

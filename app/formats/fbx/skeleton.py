@@ -116,7 +116,7 @@ def _joints(parents: list[int], limbs: list[bool], moves: list[bool]) -> list[bo
 
 
 def _roots(parents: list[int], joints: list[bool]) -> list[int]:
-    """The topmost joint that each joint hangs on, -1 for what is no joint."""
+    """The topmost joint above each joint, -1 for nodes that are no joint."""
     roots: list[int] = []
     for index, parent in enumerate(parents):
         higher = roots[parent] if parent >= 0 else -1

@@ -1,4 +1,4 @@
-"""When an FBX clip is sampled: from where, to where, at what rate.
+"""When an FBX clip is sampled: the start, the end and the rate.
 
 This is the scene's frame rate (TimeMode), unless its keys are denser. Dense keys are samples at a
 higher rate, and a scene's rate is often only the default of the program.
@@ -23,7 +23,7 @@ TIME_MODES: dict[int, float] = {
     10: 25.0, 11: 24.0, 12: 1000.0, 13: 24 * NTSC, 15: 96.0, 16: 72.0, 17: 60 * NTSC,
     18: 120 * NTSC,
 }  # fmt: skip
-"""Hz by number; 14 is CustomFrameRate, 0 says nothing."""
+"""The rate in Hz for each number of TimeMode; 14 is CustomFrameRate, 0 gives no rate."""
 CUSTOM_MODE = 14
 UNSAID_RATE = 30.0
 """Hz: the rate for sparse keys in a scene without a rate."""
@@ -91,7 +91,7 @@ def find_timing(
 
 
 def scene_rate(settings: dict[str, Numbers]) -> float | None:
-    """Hz of GlobalSettings, None where it says none that can be."""
+    """The rate of GlobalSettings in Hz; None if there is none or it is impossible."""
     mode = int(settings.get("TimeMode", (0.0,))[0]) if _finite(settings, "TimeMode") else 0
     if mode == CUSTOM_MODE and _finite(settings, "CustomFrameRate"):
         rate = settings["CustomFrameRate"][0]
@@ -104,7 +104,7 @@ def _finite(settings: dict[str, Numbers], name: str) -> bool:
 
 
 def key_rate(times: list[IntArray]) -> float | None:
-    """Hz of keys that lie evenly, None where they do not."""
+    """The rate of evenly spaced keys in Hz; None if they are not evenly spaced."""
     if not times:
         return None
     gaps = np.concatenate([np.diff(one) for one in times]).astype(np.float64)
@@ -122,6 +122,6 @@ def key_rate(times: list[IntArray]) -> float | None:
 
 
 def _on_grid(times: list[IntArray], period: float) -> bool:
-    """Whether most keys lie on whole frames counted from time 0."""
+    """Whether most keys are on whole frames, counted from time 0."""
     phase = np.concatenate([one / period for one in times])
     return bool(np.mean(np.abs(phase - np.round(phase)) <= ON_GRID) > DENSE)

@@ -25,13 +25,13 @@ from app.motion.skeleton.rotations import (
 from app.numerics.arrays import FloatArray, IntArray
 
 ROTATION_ORDERS = ("XYZ", "XZY", "YZX", "YXZ", "ZXY", "ZYX")
-"""By number; the first axis turns first. The sixth, SphericXYZ, is no rotation of axes."""
+"""The order for each number; the first axis turns first. The sixth, SphericXYZ, is unsupported."""
 R_S_INDEPENDENT, R_S_TOGETHER, WITHOUT_PARENT = 0, 1, 2
 """InheritType: RrSs (scales multiply apart from rotations), RSrs (matrices multiply),
 Rrs (the parent's own scale is left out)."""
 ANIMATED = ("Lcl Translation", "Lcl Rotation", "Lcl Scaling")
 SHEAR = 1e-4
-"""Off the diagonal, to its largest entry."""
+"""The largest entry off the diagonal, relative to the largest entry, of a matrix without shear."""
 
 _ZERO, _ONE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 _FIXED = (
@@ -39,7 +39,7 @@ _FIXED = (
     "ScalingPivot",
 )  # fmt: skip
 FIXED = (*_FIXED, "RotationOrder", "InheritType", "RotationActive")
-"""Properties of the chain that we take as still."""
+"""Properties of the chain that must not be animated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,10 @@ class FbxNode:
 
 
 def read_node(scene: FbxScene, node: FbxObject) -> FbxNode:
-    """Raises FormatNotSupported for chains that we do not know, Unreadable."""
+    """Read the chain of a node.
+
+    Raises FormatNotSupported for unknown chains, and Unreadable.
+    """
     # A node whose rotation is not "active" turns in XYZ about nothing else.
     active = scene.number(node, "RotationActive", 0.0) != 0
     active &= scene.number(node, "RotationSpaceForLimitOnly", 0.0) == 0

@@ -1,9 +1,9 @@
-"""What a file's numbers measure, judged from the stature of the body in them.
+"""The unit of a file's numbers, judged from the stature of the body.
 
-Stature comes from the shanks, thighs and arms by the proportions of Drillis and Contini
-(1966; Winter, "Biomechanics and motor control of human movement", fig. 4.1): shank .246,
-thigh .245, upper arm .186, forearm .146 of stature. Medians over frames and segments, so
-that a bad frame or an odd bone does not matter.
+The stature is estimated from shanks, thighs and arms by the proportions of Drillis and Contini
+(1966; Winter, "Biomechanics and motor control of human movement", fig. 4.1): shank .246, thigh
+.245, upper arm .186, forearm .146 of the stature. Medians over frames and segments are used, so
+that a bad frame or an unusual bone does not matter.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ METERS_PER_UNIT: dict[str, float] = {
     "dm": 0.1,
     "cmu": 0.056444,
 }
-"""Names that a client may use; "cmu" is the unit of CMU's ASF/AMC files (1 / .45 inch)."""
+"""The unit names that a client may use. "cmu" is the unit of CMU's ASF/AMC files (1 / .45 inch)."""
 SCALES = (1e-6, 1e3)
-"""Meters per unit, the least and the most that a client may say."""
+"""Meters per unit: the smallest and the largest value that a client may give."""
 TYPICAL_STATURE = 1.7
 """Meters."""
 MIN_STATURE = 1e-6
-"""In any unit; below it a body has no size."""
+"""In any unit. A body with a smaller stature has no size."""
 USUAL_STATURES = (1.35, 2.15)
-"""Meters; outside we say that the unit is a guess."""
+"""Meters. Outside this range, a caution says that the unit is a guess."""
 FARTHEST_FACTOR = 1.6
-"""If no unit brings stature within this factor of the typical one, it is scaled to it."""
+"""If no unit gives a stature within this factor of the typical one, the body is scaled to it."""
 BELIEVED_FACTOR = 2.5
-"""A file's own unit is believed while stature is within this factor of the typical one."""
+"""The unit of a file is accepted if the stature is within this factor of the typical one."""
 
 _R = JointRole
 _SEGMENTS: tuple[tuple[JointRole, JointRole, float], ...] = (
@@ -58,14 +58,17 @@ _SEGMENTS: tuple[tuple[JointRole, JointRole, float], ...] = (
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """metres_per_unit, and a caution where it is a guess."""
+    """The meters per unit, and a caution if they are a guess."""
 
     metres_per_unit: float
     cautions: tuple[Caution, ...] = ()
 
 
 def stature(positions: FloatArray, roles: Mapping[JointRole, int]) -> float:
-    """Height of the person, in the unit of positions (frames, joints, 3); 0 if unknown."""
+    """The stature of the person, in the unit of `positions` (frames, joints, 3); 0 if unknown.
+
+    roles: the joint of each role.
+    """
     estimates = []
     for start, end, share in _SEGMENTS:
         if start in roles and end in roles:
@@ -77,7 +80,7 @@ def stature(positions: FloatArray, roles: Mapping[JointRole, int]) -> float:
 
 
 def judge_unit(positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
-    """The unit of positions (frames, joints, 3) that makes the person most ordinary."""
+    """The unit of `positions` (frames, joints, 3) that makes the stature most usual."""
     height = stature(positions, roles)
     if height < MIN_STATURE:
         detail = "the body has no size, so its unit cannot be judged; taken as meters"
@@ -97,9 +100,10 @@ def judge_unit(positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
 
 
 def confirm_unit(declared: float, positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
-    """The file's own meters per unit, unless the person would be no human: then as judged.
+    """The unit that a file declares, in meters per unit, or else the judged unit.
 
-    Exporters often write a scale that their numbers do not follow.
+    The judged unit is used if the declared one gives an impossible stature. Exporters often write
+    a scale that does not fit their numbers.
     """
     height = stature(positions, roles) * declared
     if height < MIN_STATURE or abs(np.log(height / TYPICAL_STATURE)) <= np.log(BELIEVED_FACTOR):

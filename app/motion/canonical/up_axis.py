@@ -1,8 +1,8 @@
-"""Which way is up, and turning it to Y.
+"""Finds the axis that points up, and turns it to Y.
 
-People mostly have the head above the feet. The axis along which that is so in the motion
-is up; where it speaks against the file's own axis, the rest pose must not contradict it,
-since people also lie down.
+People mostly have the head above the feet. The axis along which this is so in the motion is up. If
+it differs from the axis that the file declares, the rest pose must not agree with the file, because
+people also lie down.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from app.motion.roles.joint_roles import JointRole
 from app.numerics.arrays import FloatArray
 
 CLEARLY = 2.0
-"""Head over feet along another axis has to be this many times that along the declared one."""
+"""The height of the head above the feet along another axis must be larger by this factor than that
+along the declared axis."""
 
 _TO_Y_UP: dict[str, list[list[int]]] = {
     "x": [[0, -1, 0], [1, 0, 0], [0, 0, 1]],
@@ -34,9 +35,10 @@ def judge_up_axis(
     roles: Mapping[JointRole, int],
     declared: str,
 ) -> str:
-    """The axis that is up: "x", "y", "z" or one of them with a minus sign.
+    """The axis that points up: "x", "y", "z" or one of them with a minus sign.
 
-    positions: (frames, joints, 3); rest: (joints, 3) positions with all rotations 0.
+    positions: (frames, joints, 3). rest: (joints, 3) the positions if all rotations are 0.
+    declared: the axis that the file declares.
     """
     upright = _head_over_feet(positions, roles).mean(axis=0)
     moving = _axis(upright)
@@ -48,7 +50,7 @@ def judge_up_axis(
 
 
 def to_y_up(positions: FloatArray, up_axis: str) -> FloatArray:
-    """Positions (..., 3) turned so that `up_axis` becomes Y."""
+    """(..., 3) `positions` turned so that `up_axis` becomes Y."""
     if up_axis == "y":
         return positions
     turn = np.array(_TO_Y_UP[up_axis], dtype=positions.dtype)
@@ -56,7 +58,7 @@ def to_y_up(positions: FloatArray, up_axis: str) -> FloatArray:
 
 
 def _head_over_feet(positions: FloatArray, roles: Mapping[JointRole, int]) -> FloatArray:
-    """(frames, 3): from the middle of the feet (else knees) to the head (else neck)."""
+    """(frames, 3) the vector from the middle of the feet (or knees) to the head (or neck)."""
     top = roles.get(JointRole.HEAD, roles.get(JointRole.NECK))
     pairs = (
         (JointRole.LEFT_FOOT, JointRole.RIGHT_FOOT),
@@ -69,7 +71,7 @@ def _head_over_feet(positions: FloatArray, roles: Mapping[JointRole, int]) -> Fl
 
 
 def _axis(direction: FloatArray) -> str | None:
-    """The signed axis that a direction (3,) is nearest to."""
+    """The signed axis nearest to `direction` (3,); None for a zero vector."""
     if not np.any(direction):
         return None
     index = int(np.argmax(np.abs(direction)))

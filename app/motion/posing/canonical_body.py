@@ -1,11 +1,12 @@
-"""One body for all: any clip's movement on a skeleton of fixed bones.
+"""The canonical body: the movement of any clip on one skeleton of fixed bones.
 
-The body has Sun's 13 roles and those around them, 1.7 m tall, segments by Drillis and
-Contini (1966; Winter, "Biomechanics and motor control of human movement", fig. 4.1), in a
-T-pose facing Z with left at +X. Its joints turn so that its bones point where the clip's
-do. The way over ground is scaled by the length of the legs, and in each frame the lower
-foot is as far above the floor as the clip's, scaled likewise: feet that stand stay on it.
-Roles that a clip lacks keep the T-pose in their parent's frame.
+The body has Sun's 13 roles and a few more. It is 1.7 m tall, and its segments are those of Drillis
+and Contini (1966; Winter, "Biomechanics and motor control of human movement", fig. 4.1). Its rest
+pose is a T-pose that faces Z, with left at +X. Its joints turn so that its bones have the
+directions of the clip's bones. The path over the ground is scaled by the length of the legs. In
+each frame, the lower foot is as far above the floor as that of the clip, scaled in the same way. So
+standing feet stay on the floor. Roles that a clip does not have keep the T-pose relative to their
+parent.
 """
 
 from __future__ import annotations
@@ -22,13 +23,13 @@ from app.numerics.arrays import FloatArray
 STATURE = 1.7
 """Meters."""
 ANKLE_HEIGHT = 0.039 * STATURE
-"""Of the ankle above the sole that stands (Winter)."""
+"""Meters: the height of the ankle above a flat sole (Winter)."""
 FLOOR_PERCENTILE = 5.0
-"""Of the lower foot's heights over a clip: where the floor is. A few frames may be lower."""
+"""The percentile of the lower foot's heights that is the floor. A few frames may be lower."""
 CHEST_SHARE = 0.6
-"""Where on the line from hips to neck a chest is put that a clip lacks."""
+"""The position of a missing chest on the line from hips (0) to neck (1)."""
 MIN_LEG_LENGTH = 1e-3
-"""Meters; below it legs have no length to scale by."""
+"""Meters: the smallest leg length by which paths are scaled."""
 
 _R = JointRole
 # role: role that it hangs on, offset in shares of stature
@@ -53,7 +54,7 @@ _BODY: dict[JointRole, tuple[JointRole | None, tuple[float, float, float]]] = {
     _R.RIGHT_TOES: (_R.RIGHT_FOOT, (0, -0.03, 0.08)),
 }
 BODY_ROLES: tuple[JointRole, ...] = tuple(_BODY)
-"""The body's joints, in its order."""
+"""The joints of the body, in its order."""
 
 _COLUMN = {role: column for column, role in enumerate(BODY_ROLES)}
 _LEGS = (

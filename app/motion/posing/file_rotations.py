@@ -1,8 +1,8 @@
-"""The rotations that a file had, brought to the canonical form that its positions have.
+"""The rotations of a file in the canonical form, in which its positions are stored.
 
-A canonical motion is the recording turned to Y up and scaled to meters. Turn and scale are
-found again by holding the recording against the stored positions, so that a file that is
-now read otherwise is noticed rather than exported wrongly.
+A canonical motion is the recording turned to Y up and scaled to meters. The turn is found again by
+comparing the recording with the stored positions. So a file that is now read differently is
+detected, and not exported wrongly.
 """
 
 from __future__ import annotations
@@ -19,17 +19,18 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 SAME_PLACE = 5e-5
-"""Meters; a joint that the file's own offsets bring so near is where it was stored."""
+"""Meters: the largest distance between the positions by the file's own offsets and the stored
+ones."""
 SAME_READING = 1e-3
-"""Meters, of the first frame; more and the recording is not what was stored."""
+"""Meters: the largest distance, in the first frame, between the recording and what was stored."""
 UP_AXES = ("y", "z", "x", "-z", "-x", "-y")
 
 
 def animation_of_recording(recording: Recording, motion: Motion) -> Animation | None:
-    """The recording's rotations as the canonical motion that was made of it, or None.
+    """The rotations of a recording in the form of `motion`, which was made from it.
 
-    None where the recording has no rotations, or is not what `motion` was made of.
-    Positions of the result are those of `motion` (rounding apart).
+    The result is None if the recording has no rotations, or if `motion` was not made from it. Its
+    positions are those of `motion`, apart from rounding.
     """
     if recording.rotations is None or recording.skeleton.names != motion.names:
         return None
@@ -37,18 +38,18 @@ def animation_of_recording(recording: Recording, motion: Motion) -> Animation | 
     if turn is None or recording.rotations.shape[:2] != motion.positions.shape[:2]:
         return None
     local = recording.rotations.astype(np.float64)
-    local /= np.linalg.norm(local, axis=-1, keepdims=True)  # float32 is short of unit length
+    local /= np.linalg.norm(local, axis=-1, keepdims=True)  # float32 is not exactly unit length
     rotations = multiply(multiply(turn, local), conjugate(turn))
     skeleton = _turned(recording.skeleton, turn, motion.metres_per_unit)
-    as_told = _translations(recording, turn, motion)
-    reached = forward_kinematics(skeleton, rotations, as_told)
+    translations = _translations(recording, turn, motion)
+    reached = forward_kinematics(skeleton, rotations, translations)
     if np.abs(reached - motion.positions).max() <= SAME_PLACE:
-        return Animation(skeleton, rotations, as_told, motion.frame_rate)
+        return Animation(skeleton, rotations, translations, motion.frame_rate)
     return animation_of_rotations(skeleton, rotations, motion.positions, motion.frame_rate)
 
 
 def _turn_between(recording: Recording, motion: Motion) -> FloatArray | None:
-    """The quaternion (4,) that turned the recording's first frame to the stored one."""
+    """(4,) the quaternion that turns the recording's first frame to the stored one, or None."""
     if recording.positions.shape != motion.positions.shape:
         return None
     first = recording.positions[0].astype(np.float64) * motion.metres_per_unit

@@ -1,5 +1,8 @@
-"""Files that begin with a pose that is no part of the motion: CMU's have the T-pose of their
-skeleton as first frame, from which the body is thrown into the motion."""
+"""Files that begin with a pose that does not belong to the motion.
+
+The first frame of CMU's files is the T-pose of their skeleton. From it, the body jumps into the
+motion.
+"""
 
 from __future__ import annotations
 
@@ -10,15 +13,15 @@ import numpy as np
 from app.motion.motion import Motion
 
 THROWN = 2.0
-"""Times the longest step of a joint role between any other two frames. Of 42 real clips by CMU
-all but one begin with more, of 97 by Bandai-Namco none with more than 1.05."""
+"""The first step is a jump if it is longer than the longest other step by this factor. Of 42 real
+clips by CMU, all but one have a larger factor; of 97 by Bandai-Namco, none has more than 1.05."""
 
 MIN_FRAMES = 10
 """The fewest frames. With fewer, the first step cannot be compared with the others."""
 
 
 def without_posed_start(motion: Motion) -> Motion:
-    """The motion without its first frame where that is such a pose, else the same object."""
+    """The motion without its first frame if that is such a pose, else the same object."""
     if motion.frames < MIN_FRAMES:
         return motion
     roles = motion.role_positions().astype(np.float64)

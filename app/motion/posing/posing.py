@@ -1,8 +1,8 @@
-"""Bringing a skeleton into poses of which only the joint roles are known.
+"""Brings a skeleton into poses of which only the joint roles are known.
 
-Damped Gauss-Newton on the joints' turns (inverse kinematics), all frames at once: joints on
-the way to a role turn so that the roles come where they are wanted, and stay near the poses
-that they start from, which decide what the roles leave open (twists, fingers, toes).
+This is inverse kinematics by damped Gauss-Newton on the turns of joints, for all frames at once.
+Joints above a role turn so that the role comes to its target. They stay near the poses from which
+they start. These poses decide what the roles do not determine (twists, fingers, toes).
 """
 
 from __future__ import annotations
@@ -20,14 +20,16 @@ from app.numerics.arrays import FloatArray, IntArray
 
 ITERATIONS = 12
 DAMPING = 3e-3
-"""Square meters per square radian: of a step."""
+"""Square meters per square radian: the damping of a step."""
+
 STAYING = 1e-3
-"""Likewise: of leaving the pose that was started from."""
+"""Square meters per square radian: the cost of leaving the pose of the start."""
+
 MAX_STEP = 0.4
-"""Radians that a joint turns in one step."""
+"""Radians: the largest turn of a joint in one step."""
 
 MIN_STEP = 2e-3
-"""Radians and meters: below it all frames are there."""
+"""Radians and meters: if all steps are smaller, the iteration ends."""
 
 _WEIGHTS = {
     JointRole.HIPS: 2.0,
@@ -38,30 +40,34 @@ _WEIGHTS = {
     JointRole.LEFT_KNEE: 0.7,
     JointRole.RIGHT_KNEE: 0.7,
 }
-"""Of joint roles, 1 where not named: proportions differ, feet must stand, and the shoulders'
-line is the body's heading."""
+"""The weights of joint roles; other roles have weight 1. Feet must stand, the shoulders' line is
+the body's heading, and knees matter less, because proportions differ."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Body:
-    """Which joints may turn (t,), which are wanted somewhere (w,), their weights (w,), and
-    whether a turn moves a wanted joint (w, t)."""
+    """A skeleton prepared for inverse kinematics.
+
+    turning: (t,) the joints that may turn. targeted: (w,) the joints that have a target.
+    weights: (w,) theirs. moves: (w, t) whether a turn moves a targeted joint.
+    """
 
     turning: IntArray
-    wanted: IntArray
+    targeted: IntArray
     weights: FloatArray
     moves: FloatArray
 
 
-def pose_to(start: Animation, joints: dict[JointRole, int], wanted: FloatArray) -> Animation:
-    """The poses near `start` whose roles, at the indices `joints`, come nearest to `wanted`.
+def pose_to(start: Animation, joints: dict[JointRole, int], targets: FloatArray) -> Animation:
+    """The poses near `start` whose roles come nearest to their targets.
 
-    wanted: (frames, 13, 3) meters in SUN_ROLES order; roles that the skeleton lacks are not
-    looked at. Only the first root's place and turns change, of the hips and what is below.
+    joints: the joint of each role. targets: (frames, 13, 3) meters, in SUN_ROLES order; roles
+    that the skeleton does not have are ignored. Only the place of the first root changes, and
+    the turns of the hips and of the joints below them.
     """
     body = _body(start.skeleton, joints)
     columns = [SUN_ROLES.index(role) for role in SUN_ROLES if role in joints]
-    aim = np.asarray(wanted, dtype=np.float64)[:, columns]
+    aim = np.asarray(targets, dtype=np.float64)[:, columns]
     rotations = np.array(start.rotations, dtype=np.float64)
     translations = np.array(start.translations, dtype=np.float64)
     left = np.zeros((len(aim), 3 * len(body.turning)))
@@ -89,15 +95,15 @@ def ancestors(skeleton: Skeleton, joint: int) -> list[int]:
 
 def _body(skeleton: Skeleton, joints: dict[JointRole, int]) -> _Body:
     roles = [role for role in SUN_ROLES if role in joints]
-    wanted = np.array([joints[role] for role in roles])
+    targeted = np.array([joints[role] for role in roles])
     below = np.zeros((len(skeleton), len(roles)))
-    for column, joint in enumerate(wanted):
+    for column, joint in enumerate(targeted):
         below[ancestors(skeleton, joint), column] = 1.0
     # what is above the hips is no part of the body: it would turn the world
     below[ancestors(skeleton, joints[JointRole.HIPS])] = 0.0
     turning = np.flatnonzero(below.sum(axis=1))
     weights = np.array([_WEIGHTS.get(role, 1.0) for role in roles])
-    return _Body(turning, wanted, weights, below[turning].T)
+    return _Body(turning, targeted, weights, below[turning].T)
 
 
 def _world(
@@ -116,17 +122,17 @@ def _world(
 def _step(body: _Body, places: FloatArray, aim: FloatArray, left: FloatArray) -> FloatArray:
     """(frames, 3 + 3 t) a damped Gauss-Newton step: the root's way, then turns in the world."""
     frames, count = len(aim), len(body.turning)
-    off = (aim - places[:, body.wanted]) * body.weights[:, None]
-    arms = places[:, body.wanted][:, :, None] - places[:, body.turning][:, None]
+    off = (aim - places[:, body.targeted]) * body.weights[:, None]
+    arms = places[:, body.targeted][:, :, None] - places[:, body.turning][:, None]
     arms = arms * (body.moves * body.weights[:, None])[:, :, None]  # (frames, w, t, 3)
-    slope = np.zeros((frames, len(body.wanted), 3, 3 + 3 * count))
+    slope = np.zeros((frames, len(body.targeted), 3, 3 + 3 * count))
     slope[:, :, [0, 1, 2], [0, 1, 2]] = body.weights[:, None]
     # d place = turn x arm
-    crossed = np.zeros((frames, len(body.wanted), 3, count, 3))
+    crossed = np.zeros((frames, len(body.targeted), 3, count, 3))
     for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         crossed[:, :, a, :, b] = arms[..., c]
         crossed[:, :, a, :, c] = -arms[..., b]
-    slope[..., 3:] = crossed.reshape(frames, len(body.wanted), 3, 3 * count)
+    slope[..., 3:] = crossed.reshape(frames, len(body.targeted), 3, 3 * count)
     rows = slope.reshape(frames, -1, 3 + 3 * count)
     across = rows.transpose(0, 2, 1)
     normal = across @ rows

@@ -1,7 +1,7 @@
-"""A motion as rotations and translations of joints: what animation programs play.
+"""A motion as rotations and translations of joints, as animation programs use it.
 
-Solved from positions alone, or made of the rotations that a file had. Either way the
-translations are such that the joints stand where the positions say.
+It is solved from positions alone, or made from the rotations of a file. In both cases the
+translations are such that the joints have the given positions.
 """
 
 from __future__ import annotations
@@ -25,24 +25,23 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 STILL = 2e-6
-"""Meters: a joint that leaves its offset by no more is not said to move along its bone.
-Errors add up along a chain; thirty joints stay within 0.06 mm."""
+"""Meters. A joint that leaves its offset by no more does not count as moving. Errors add up along a
+chain; thirty joints stay within 0.06 mm."""
 FOLLOW_PARENT = 3e-7
-"""Weight of turning with the parent against the bones' directions: so little that it decides
-only what they leave open, such as the twist about a single one."""
+"""The weight of following the parent's turn, compared with the bones' directions. It is so small
+that it only decides what the directions do not determine, such as the twist about a single bone."""
 REVERSED = 1e-7
-"""Sine of half the angle that a bone is short of being reversed."""
+"""The length of the half-angle quaternion below which a bone counts as reversed."""
 BLOCK_FRAMES = 2048
-"""Frames that are solved at once, so that matrices stay small."""
+"""Frames that are solved at once. It bounds the memory."""
 
 
 @dataclass(frozen=True, slots=True)
 class Animation:
-    """Joints turning and moving in their parents' frames, meters, Y up.
+    """The rotations and translations of joints in the frames of their parents; meters, Y up.
 
-    skeleton: at rest; rotations: (frames, joints, 4) unit quaternions w x y z, local;
-    translations: (frames, joints, 3) local, which replace the skeleton's offsets;
-    frame_rate: Hz.
+    skeleton: the joints at rest. rotations: (frames, joints, 4) local unit quaternions w x y z.
+    translations: (frames, joints, 3) local; they replace the skeleton's offsets. frame_rate: Hz.
     """
 
     skeleton: Skeleton
@@ -51,16 +50,16 @@ class Animation:
     frame_rate: float
 
     def positions(self) -> FloatArray:
-        """(frames, joints, 3) world positions, meters."""
+        """(frames, joints, 3) the world positions, in meters."""
         return forward_kinematics(self.skeleton, self.rotations, self.translations)
 
     def moving_joints(self) -> BoolArray:
-        """(joints,): roots, and joints whose translation leaves their offset."""
+        """(joints,) whether a joint is a root or its translation differs from its offset."""
         away = np.abs(self.translations - self.skeleton.offsets).max(axis=(0, 2))
         return np.asarray((away > STILL) | (self.skeleton.parents < 0))
 
     def resampled(self, frame_rate: float) -> Animation:
-        """The same movement at another rate; rotations along the shorter way."""
+        """The same movement at `frame_rate` Hz; rotations are interpolated the shorter way."""
         if frame_rate == self.frame_rate:
             return self
         turns = resample(continuous(self.rotations), self.frame_rate, frame_rate)
@@ -74,7 +73,7 @@ class Animation:
 
 
 def continuous(rotations: FloatArray) -> FloatArray:
-    """The same rotations (frames, joints, 4), each quaternion on the side of the one before."""
+    """The same rotations (frames, joints, 4), with signs such that quaternions do not jump."""
     turned_over = np.sum(rotations[1:] * rotations[:-1], axis=-1) < 0
     flips = np.cumsum(turned_over, axis=0) % 2 == 1
     result = np.array(rotations)
@@ -85,8 +84,11 @@ def continuous(rotations: FloatArray) -> FloatArray:
 def animation_of_rotations(
     skeleton: Skeleton, rotations: FloatArray, positions: FloatArray, frame_rate: float
 ) -> Animation:
-    """Rotations (frames, joints, 4) with the translations that lead to positions
-    (frames, joints, 3); where the skeleton's offsets do so they stay exactly."""
+    """An animation with these rotations, whose joints have the given positions.
+
+    rotations: (frames, joints, 4) local. positions: (frames, joints, 3) in the world. frame_rate:
+    Hz. The translations follow from both.
+    """
     world = np.array(rotations, dtype=np.float64)
     translations = positions.astype(np.float64)
     for joints in joints_by_depth(skeleton.parents)[1:]:
@@ -101,10 +103,11 @@ def animation_of_rotations(
 def animation_of_positions(
     names: Sequence[str], parents: IntArray, positions: FloatArray, frame_rate: float
 ) -> Animation:
-    """Joints (frames, joints, 3) in meters, turned so that bones follow their directions.
+    """An animation whose joints turn so that the bones have the directions in the positions.
 
-    The rest pose is the first frame. A joint turns as its children do (least squares); one
-    without children turns with its parent; what bones leave open follows the parent.
+    names, parents: (joints,). positions: (frames, joints, 3) in the world, meters. frame_rate:
+    Hz. The rest pose is the first frame. A joint turns as its children do (least squares). A
+    joint without children follows its parent, as does everything that bones do not determine.
     """
     first = positions[0].astype(np.float64)
     offsets = first - np.where(parents[:, None] >= 0, first[parents], 0.0)
@@ -120,17 +123,17 @@ def animation_of_positions(
 
 
 def bone_lengths(parents: IntArray, positions: FloatArray) -> FloatArray:
-    """(joints,) median distance of each joint from its parent."""
+    """(joints,) the median distance of each joint from its parent, in the unit of positions."""
     above = positions[:, np.maximum(parents, 0)]
     return np.asarray(np.median(np.linalg.norm(positions - above, axis=-1), axis=0), np.float64)
 
 
 def solve_rotations(skeleton: Skeleton, bones: FloatArray) -> FloatArray:
-    """Local rotations (frames, joints, 4) that turn the skeleton's bones along `bones`.
+    """(frames, joints, 4) the local rotations that turn the skeleton's bones along `bones`.
 
-    bones: (frames, joints, 3) world vector from parent to joint; a zero vector says
-    nothing. Each joint solves Wahba's problem over its children by the SVD (Markley 1988),
-    long bones weighing more, with a light pull toward its parent's turn.
+    bones: (frames, joints, 3) the world vectors from parents to joints; zero vectors are ignored.
+    For each joint, Wahba's problem over its children is solved by the SVD (Markley 1988). Long
+    bones have a larger weight, and following the parent's turn has a small one.
     """
     blocks = range(0, len(bones), BLOCK_FRAMES)
     return np.concatenate(
@@ -158,10 +161,10 @@ def _solve_block(skeleton: Skeleton, bones: FloatArray) -> FloatArray:
 
 
 def _swing(seen: FloatArray, rest: FloatArray) -> FloatArray:
-    """(frames, 4): the shortest turns that bring rest (3,) along seen (frames, 3).
+    """(frames, 4) the shortest turns that bring `rest` (3,) to the directions `seen` (frames, 3).
 
-    What `_wahba` comes to for a single bone; no turn where either has no length, and half
-    a turn about some axis across where the bone is reversed.
+    For a single bone `_wahba` gives the same. If a vector has no length, there is no turn. If the
+    bone is reversed, it is half a turn about some orthogonal axis.
     """
     to, start = _unit(seen), _unit(rest)
     across = np.cross(start, np.eye(3)[np.argmin(np.abs(start))])
@@ -174,8 +177,8 @@ def _swing(seen: FloatArray, rest: FloatArray) -> FloatArray:
 
 
 def _wahba(seen: FloatArray, rest: FloatArray) -> FloatArray:
-    """(frames, 4): turns that bring rest (children, 3) nearest to seen (frames, children, 3),
-    near the identity where these leave it open."""
+    """(frames, 4) the turns that bring `rest` (children, 3) nearest to `seen`
+    (frames, children, 3), and are near the identity if these do not determine them."""
     weights = np.linalg.norm(rest, axis=-1) * np.linalg.norm(seen, axis=-1)
     directions = _unit(seen) * weights[..., None]
     pull = FOLLOW_PARENT * np.maximum(weights.sum(axis=-1), 1e-9)[:, None, None] * np.eye(3)

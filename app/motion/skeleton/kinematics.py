@@ -17,11 +17,10 @@ from app.numerics.arrays import FloatArray, IntArray
 def forward_kinematics(
     skeleton: Skeleton, rotations: FloatArray, translations: FloatArray
 ) -> FloatArray:
-    """World positions (frames, joints, 3), float64, in the unit of `translations`.
+    """(frames, joints, 3) the world positions, float64, in the unit of `translations`.
 
-    rotations: (frames, joints, 4) local unit quaternions w x y z;
-    translations: (frames, joints, 3) local translations (`local_translations` makes them
-    where only the root moves).
+    rotations: (frames, joints, 4) local unit quaternions w x y z. translations:
+    (frames, joints, 3) local (see `local_translations` if only the root moves).
     """
     positions = np.array(translations, dtype=np.float64)
     turned = np.array(rotations, dtype=np.float64)
@@ -35,9 +34,9 @@ def forward_kinematics(
 
 
 def local_translations(skeleton: Skeleton, root_positions: FloatArray) -> FloatArray:
-    """Local translations (frames, joints, 3): offsets, but `root_positions` (frames, 3).
+    """(frames, joints, 3) the local translations if only the root moves.
 
-    With several roots only the first one moves.
+    These are the skeleton's offsets, and `root_positions` (frames, 3) for the first root.
     """
     frames = root_positions.shape[0]
     result = np.broadcast_to(skeleton.offsets, (frames, len(skeleton), 3)).astype(np.float64)
@@ -46,7 +45,7 @@ def local_translations(skeleton: Skeleton, root_positions: FloatArray) -> FloatA
 
 
 def rest_positions(skeleton: Skeleton) -> FloatArray:
-    """(joints, 3): where the joints are with all rotations 0, roots at their offsets."""
+    """(joints, 3) the positions if all rotations are 0 and roots are at their offsets."""
     rest = np.array(skeleton.offsets, dtype=np.float64)
     for joints in joints_by_depth(skeleton.parents)[1:]:
         rest[joints] += rest[skeleton.parents[joints]]
@@ -54,7 +53,7 @@ def rest_positions(skeleton: Skeleton) -> FloatArray:
 
 
 def joints_by_depth(parents: IntArray) -> list[IntArray]:
-    """Joint indices by depth, roots first; parents stand before their children."""
+    """The joints of each depth, roots first; parents (joints,) come before their children."""
     depth = np.zeros(len(parents), dtype=np.int64)
     for joint, parent in enumerate(parents):
         if parent >= 0:
