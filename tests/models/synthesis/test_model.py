@@ -178,7 +178,7 @@ def test_too_few_labels_are_refused_with_what_is_needed(lacking: Synthesis) -> N
         fit_synthesis(shape, ["a", "b"], ["x", "y"])
     with pytest.raises(NotEnoughLabels, match="another task"):
         predict(lacking, {"t0": shape[0]}, "t0")
-    with pytest.raises(NotEnoughLabels, match="Nobody else"):
+    with pytest.raises(NotEnoughLabels, match="Another person must have a clip"):
         predict(lacking, lacking.tasks_of("p0"), "t0", but=("p1", "p2", "p3"))
 
 
