@@ -101,7 +101,7 @@ def test_an_offset_that_nobody_tells_is_estimated_and_said_to_be(
     assert found.source == "audio"
     assert np.median(np.abs(beats[:, None] - found.times).min(axis=1)) < 0.05
     assert codes(clip) == {"audio_offset_estimated"}
-    assert "but for whole beats of 0.60 s" in clip.warnings[0].detail
+    assert "wrong by whole beats of 0.60 s" in clip.warnings[0].detail
     assert clip.audio_offset is not None
     off = (clip.audio_offset + 1.3) / 0.6
     assert abs(off - round(off)) < 0.15  # right, but for whole beats
