@@ -99,12 +99,12 @@ def follow(lib: Library, job_id: str, doing: str) -> JobRecord:
 
 def fit_if_due(lib: Library) -> None:
     """Queue a fit if the library has changed enough, and wait for its end."""
-    from app.services.training import models
+    from app.services.training import models, refit
 
     waiting = _open_fit(lib)
     if waiting is None:
         with lib.store.read() as tx:
-            is_due = models.is_fit_due(tx, lib.settings.refit_growth)
+            is_due = refit.is_fit_due(tx, lib.settings.refit_growth)
         waiting = models.request_fit(lib) if is_due else None
     if waiting is not None:
         follow(lib, waiting.id, "fitting models")

@@ -22,7 +22,7 @@ from app.errors import LeaseLost, NotFound, StorageError
 from app.logs import job_id
 from app.services.clips import persons, reanalysis
 from app.services.library.library import Library
-from app.services.training import models
+from app.services.training import models, refit
 from app.store.clips import repository as clips
 from app.store.clips.record import ClipRecord
 from app.store.database.engine import Tx
@@ -241,7 +241,7 @@ class Worker:
             return
         self._last_fit_check = time.monotonic()
         with self.lib.store.read() as tx:
-            is_due = models.is_fit_due(tx, self.lib.settings.refit_growth)
+            is_due = refit.is_fit_due(tx, self.lib.settings.refit_growth)
         if is_due:
             with self.lib.store.write() as tx:
                 models.enqueue_fit(tx)

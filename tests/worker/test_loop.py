@@ -26,7 +26,7 @@ from app.services.clips import catalogue as clips
 from app.services.clips import jobs
 from app.services.imports import imports
 from app.services.library.library import Library
-from app.services.training import models
+from app.services.training import models, refit
 from app.store.clips.record import ClipRecord, ClipState
 from app.store.jobs.record import JobKind, JobRecord, JobState
 from app.worker.loop import Worker, run_worker
@@ -236,21 +236,21 @@ def test_a_library_that_has_grown_is_fitted_unasked_and_only_then(
         upload(lib, clip)
     work(lib.settings)
     with lib.store.read() as tx:
-        assert models.is_fit_due(tx, 0.1)
+        assert refit.is_fit_due(tx, 0.1)
     models.request_fit(lib)
     with lib.store.read() as tx:
-        assert not models.is_fit_due(tx, 0.1)
+        assert not refit.is_fit_due(tx, 0.1)
     work(lib.settings)
     with lib.store.read() as tx:
-        assert not models.is_fit_due(tx, 0.1)
+        assert not refit.is_fit_due(tx, 0.1)
     some = _all_clips(lib)
     clips.update_clip(lib, some[0].id, {"task": "another"})
     with lib.store.read() as tx:
-        assert models.is_fit_due(tx, 0.1)
-        assert not models.is_fit_due(tx, 0.2)
+        assert refit.is_fit_due(tx, 0.1)
+        assert not refit.is_fit_due(tx, 0.2)
     clips.delete_clip(lib, some[1].id)
     with lib.store.read() as tx:
-        assert models.is_fit_due(tx, 0.2)  # a clip that is gone counts too
+        assert refit.is_fit_due(tx, 0.2)  # a clip that is gone counts too
 
 
 def _until_settled(worker: Worker) -> None:

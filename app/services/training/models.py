@@ -1,4 +1,4 @@
-"""The fitted models of a library: the active ones, their settings, and when to fit again."""
+"""The fitted models of a library: the active ones and their settings. `refit` says when to fit again."""
 
 from __future__ import annotations
 
@@ -8,10 +8,6 @@ from app.services import fields
 from app.services.library.fitted_models import FALSE_ACCEPT_RATE, TELLING_UNKNOWN
 from app.services.library.library import Library
 from app.store import models as stored
-from app.store.clips import versions as library
-from app.store.clips.filter import ClipFilter
-from app.store.clips.listing import count_clips
-from app.store.clips.record import ClipState
 from app.store.database.engine import Tx
 from app.store.jobs import repository as jobs
 from app.store.jobs.record import JobKind, JobRecord, JobState, NewJob
@@ -19,10 +15,7 @@ from app.store.models import ModelRecord
 
 FIT_PRIORITY = 30
 """A fit runs after all ingest jobs."""
-MIN_CLIPS = 2
-"""Ready clips that an automatic fit needs: a model of one clip is useless."""
 FIT_KEY = "fit"
-_READY = ClipFilter(state=(ClipState.READY,))
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,36 +71,3 @@ def request_fit(lib: Library) -> JobRecord:
 def enqueue_fit(tx: Tx) -> JobRecord:
     """Queue a fit in the caller's transaction."""
     return jobs.enqueue(tx, NewJob(JobKind.FIT, priority=FIT_PRIORITY, dedupe_key=FIT_KEY))
-
-
-def is_fit_due(tx: Tx, growth: float) -> bool:
-    """Whether the share `growth` of the library has changed since the last fit.
-
-    Changes are clips that were added, analyzed again, labeled again or removed. A fit is never
-    due while a fit or an ingest is open, or with fewer than MIN_CLIPS ready clips.
-    """
-    ready = count_clips(tx, _READY)
-    if ready < MIN_CLIPS or _is_open(tx, JobKind.FIT) or _is_open(tx, JobKind.INGEST):
-        return False
-    last = _last_fit(tx)
-    if last is None:
-        return True
-    version, size = last
-    changes = library.changed_since(tx, version)
-    return len(changes.changed) + len(changes.removed) >= max(growth * size, 1)
-
-
-def _last_fit(tx: Tx) -> tuple[int, int] | None:
-    """Library version and size of the last fit, even if it could not fit any model."""
-    found = [(r.library_version, r.library_size) for r in stored.list_current(tx)]
-    for job in jobs.list_jobs(tx, kind=JobKind.FIT, state=JobState.SUCCEEDED, limit=1).items:
-        result = job.result or {}
-        found.append((int(result["library_version"]), int(result["library_size"])))
-    return max(found, default=None)
-
-
-def _is_open(tx: Tx, kind: JobKind) -> bool:
-    return any(
-        jobs.list_jobs(tx, kind=kind, state=state, limit=1).items
-        for state in (JobState.QUEUED, JobState.PROCESSING)
-    )
