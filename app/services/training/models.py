@@ -1,4 +1,4 @@
-"""The fitted models of a library: the active ones and their settings. `refit` says when to fit again."""
+"""The fitted models of a library: the active ones, their settings. `refit` decides on a new fit."""
 
 from __future__ import annotations
 

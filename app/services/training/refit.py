@@ -1,4 +1,4 @@
-"""Whether the models are to be fitted again: when the library has changed enough since the last fit."""
+"""Whether to fit the models again: when the library has changed enough since the last fit."""
 
 from __future__ import annotations
 
