@@ -28,7 +28,7 @@ class Outgoing(BaseModel):
     `validation_alias` reads the attribute of that name.
     """
 
-    model_config = ConfigDict(extra="forbid", from_attributes=True)
+    model_config = ConfigDict(extra="forbid", from_attributes=True, validate_by_name=True)
 
 
 def _as_list(value: Any) -> Any:

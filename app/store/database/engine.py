@@ -122,6 +122,15 @@ class Database:
                 connection.cursor().execute(f"PRAGMA busy_timeout = {round(1000 * BUSY_TIMEOUT_S)}")
                 connection.close()
 
+    def forget_damage(self) -> None:
+        """Says that the database is whole again, where a transaction met damage before.
+
+        Connections of the pool may have kept damaged pages in memory, so new ones are opened.
+        """
+        if self.damage is not None:
+            self.damage = None
+            self.engine.dispose()
+
     def find_damage(self, *, quick: bool = False) -> tuple[str, ...]:
         """What is wrong with an SQLite database (see `integrity`); () for any other.
 

@@ -132,7 +132,7 @@ class Health:
                 _log.error("the database is damaged", extra={"fields": {"damage": damage}})
             self._is_damaged = bool(damage)
             if not damage:
-                self._store.database.damage = None
+                self._store.database.forget_damage()
         self._checked_at = time.monotonic()
         self._check_took = self._checked_at - began
 

@@ -79,7 +79,7 @@ def test_a_person_whose_clips_are_deleted_can_be_forgotten(
     for label, clip_id in ids.items():
         if label.startswith(NAME):
             clips.delete_clip(lib, clip_id)
-    asked = RecognizeQuery(ids["bruno bow"])
+    asked = RecognizeQuery(QuerySource(ids["bruno bow"]))
     held = recognize.recognize(lib, asked)
     assert NAME in {candidate.label for candidate in held.person.candidates}
 
@@ -125,7 +125,7 @@ def test_a_fit_that_began_before_brings_nobody_back(
 
     monkeypatch.setattr(fitting, "read_training_set", read_then_forget)
     outcome = fit_library(lib.store)["models"]
-    assert outcome["recognizer"]["outcome"] == "skipped"
+    assert outcome["recogniser"]["outcome"] == "skipped"
     assert outcome["words"]["outcome"] == "fitted"
     assert {record.kind for record in models.list_models(lib)} == {"words", "metric-task"}
 
