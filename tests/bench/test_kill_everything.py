@@ -56,7 +56,7 @@ TIMES = 40
 """How long the clips are: a kill is to find an analysis in its middle."""
 EACH = 25
 """Clips that are uploaded, and clips that are imported."""
-VICTIM_S = 60.0
+VICTIM_S = 8.0
 """For a process to kill to be there; an idle service analyses nothing."""
 SETTLE_S = 600.0
 STUCK_S = 120.0
