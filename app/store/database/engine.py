@@ -123,13 +123,12 @@ class Database:
                 connection.close()
 
     def forget_damage(self) -> None:
-        """Says that the database is whole again, where a transaction met damage before.
+        """Says that the database, which was damaged, is whole again.
 
         Connections of the pool may have kept damaged pages in memory, so new ones are opened.
         """
-        if self.damage is not None:
-            self.damage = None
-            self.engine.dispose()
+        self.damage = None
+        self.engine.dispose()
 
     def find_damage(self, *, quick: bool = False) -> tuple[str, ...]:
         """What is wrong with an SQLite database (see `integrity`); () for any other.

@@ -130,8 +130,9 @@ class Health:
             damage = self._store.database.find_damage(quick=True)
             if damage:
                 _log.error("the database is damaged", extra={"fields": {"damage": damage}})
+            was_damaged = self._is_damaged or self._store.database.damage is not None
             self._is_damaged = bool(damage)
-            if not damage:
+            if was_damaged and not damage:
                 self._store.database.forget_damage()
         self._checked_at = time.monotonic()
         self._check_took = self._checked_at - began

@@ -106,9 +106,12 @@ def test_damage_is_found_in_the_background_and_its_end_too(
     try:
         wait_until(lambda: [p.location for p in watched.troubles()] == ["database"], 30.0)
         opened.database.engine.dispose()
+        pool = opened.database.engine.pool
         with path.open("r+b") as file:
             file.write(content)
         wait_until(lambda: watched.troubles() == (), 30.0)
+        # what the old connections keep in memory may be damaged
+        assert opened.database.engine.pool is not pool
     finally:
         watched.stop()
 
