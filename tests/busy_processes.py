@@ -10,6 +10,12 @@ from app.demo import DemoClip
 
 BUSY_S = 0.3
 """CPU time after which a child is in the middle of its analysis."""
+LONG, ENDLESS = 150, 400
+"""Repetitions of a demo clip whose analysis takes 3.5 and 14 s of CPU time.
+
+A test that must kill a child in the middle has so much time to find it. With 60 repetitions
+(1 s) the analysis could end first on a machine with many processes.
+"""
 
 
 def repeated(clip: DemoClip, times: int) -> bytes:

@@ -12,7 +12,7 @@ import pytest
 
 from app.demo import DemoClip
 from tests.api.conftest import assert_problem
-from tests.busy_processes import busy_children, children_of, repeated, server_of
+from tests.busy_processes import ENDLESS, LONG, busy_children, children_of, repeated, server_of
 from tests.live import Live, serve
 
 
@@ -60,7 +60,7 @@ def _ask(service: Live, url: str, content: bytes) -> httpx2.Response:
 
 def test_one_kill_costs_only_time(service: Live, api: psutil.Process, take: DemoClip) -> None:
     with _killing(lambda: busy_children(api), 1) as killed:
-        answer = _ask(service, "/v1/search/motion", repeated(take, 60))
+        answer = _ask(service, "/v1/search/motion", repeated(take, LONG))
     assert len(killed) == 1
     assert answer.status_code == 200, answer.text
 
@@ -70,7 +70,7 @@ def test_kill_after_kill_is_told_with_when_to_ask_again(
     service: Live, api: psutil.Process, take: DemoClip, url: str
 ) -> None:
     with _killing(lambda: busy_children(api), 1000) as killed:
-        answer = _ask(service, url, repeated(take, 60))
+        answer = _ask(service, url, repeated(take, ENDLESS))
     assert len(killed) >= 2
     assert_problem(answer, 503, "analysis_interrupted")
     assert answer.headers["retry-after"].isdigit()

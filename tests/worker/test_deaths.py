@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from datetime import timedelta
 from pathlib import Path
 
@@ -28,7 +29,14 @@ from app.store.database import ids
 from app.store.jobs import leases, outcomes
 from app.store.jobs.record import JobState
 from app.worker.loop import Worker, run_worker
-from tests.busy_processes import busy_children, children_of, repeated, server_of
+from tests.busy_processes import (
+    ENDLESS,
+    LONG,
+    busy_children,
+    children_of,
+    repeated,
+    server_of,
+)
 from tests.libraries import settings_for, upload
 from tests.live import wait_until
 
@@ -49,12 +57,14 @@ def kicks() -> list[DemoClip]:
 
 @pytest.fixture(scope="session")
 def long_clip(kicks: list[DemoClip]) -> DemoClip:
-    clip = kicks[0]
-    return DemoClip(**{**_fields(clip), "path": "long.bvh", "content": repeated(clip, 60)})
+    """A clip whose analysis takes seconds, for tests that see its end."""
+    return replace(kicks[0], path="long.bvh", content=repeated(kicks[0], LONG))
 
 
-def _fields(clip: DemoClip) -> dict[str, object]:
-    return {name: getattr(clip, name) for name in clip.__dataclass_fields__}
+@pytest.fixture(scope="session")
+def endless_clip(kicks: list[DemoClip]) -> DemoClip:
+    """A clip whose analysis no test waits for: it is killed before it ends, on any machine."""
+    return replace(kicks[0], path="endless.bvh", content=repeated(kicks[0], ENDLESS))
 
 
 @contextmanager
@@ -121,7 +131,7 @@ def test_more_kills_of_its_child_than_attempts_fail_no_clip(
 
 
 def test_after_many_kills_a_clip_is_tried_alone_and_then_given_up(
-    lib: Library, long_clip: DemoClip, monkeypatch: pytest.MonkeyPatch
+    lib: Library, endless_clip: DemoClip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(outcomes, "MOST_KILLS", 1)
     alone: list[bool] = []
@@ -132,7 +142,7 @@ def test_after_many_kills_a_clip_is_tried_alone_and_then_given_up(
         return submit(pool, order, is_alone=is_alone)  # type: ignore[arg-type]
 
     monkeypatch.setattr(analysis_pool.AnalysisPool, "submit", watched)
-    clip = upload(lib, long_clip).clip
+    clip = upload(lib, endless_clip).clip
     with _worker_thread(lib.settings):
         for _ in range(2):
             _kill_busy(psutil.Process())
@@ -145,10 +155,10 @@ def test_after_many_kills_a_clip_is_tried_alone_and_then_given_up(
 
 
 def test_a_child_that_dies_by_its_own_work_counts(
-    lib: Library, long_clip: DemoClip, monkeypatch: pytest.MonkeyPatch
+    lib: Library, endless_clip: DemoClip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("app.services.clips.ingest.RETRY_DELAY_S", 0.0)
-    clip = upload(lib, long_clip).clip
+    clip = upload(lib, endless_clip).clip
     with _worker_thread(lib.settings):
         for _ in range(lib.settings.job_max_attempts):
             (child, *_) = wait_until(lambda: busy_children(psutil.Process()), NET_S)

@@ -25,7 +25,7 @@ from app.errors import (
     Unreadable,
 )
 from app.services.library.analysis_pool import AnalysisPool, AnalysisRequest, Limits
-from tests.busy_processes import busy_children, children_of, repeated
+from tests.busy_processes import ENDLESS, LONG, busy_children, children_of, repeated
 from tests.live import wait_until
 
 ROOMY = Limits(seconds=60.0, memory_mb=2048, frames=100_000, joints=100)
@@ -81,7 +81,7 @@ def test_an_analysis_that_nobody_waits_for_is_stopped_and_the_next_one_done(
     some_demo_clips: list[DemoClip],
 ) -> None:
     pool = AnalysisPool(Limits(600.0, 2048, 10_000_000, 100))
-    content = repeated(some_demo_clips[0], 400)
+    content = repeated(some_demo_clips[0], ENDLESS)
     with within(Deadline(60.0)) as deadline:
         threading.Timer(0.3, deadline.abandon).start()
         with pytest.raises(ClientLeft):
@@ -95,7 +95,7 @@ def test_an_analysis_over_its_time_is_stopped_and_the_next_one_done(
 ) -> None:
     hasty = AnalysisPool(Limits(0.3, 2048, 10_000_000, 100))
     with pytest.raises(AnalysisTimedOut):
-        hasty.analyze(AnalysisRequest(content=repeated(some_demo_clips[0], 150)))
+        hasty.analyze(AnalysisRequest(content=repeated(some_demo_clips[0], LONG)))
     with pytest.raises(Unreadable):
         hasty.analyze(AnalysisRequest(content=b"HIERARCHY\n"))
     hasty.close()
@@ -104,14 +104,14 @@ def test_an_analysis_over_its_time_is_stopped_and_the_next_one_done(
 def test_an_analysis_over_its_memory_fails(some_demo_clips: list[DemoClip]) -> None:
     poor = AnalysisPool(Limits(60.0, 420, 10_000_000, 100))
     with pytest.raises(AnalysisCrashed, match=r"memory|died"):
-        poor.analyze(AnalysisRequest(content=repeated(some_demo_clips[0], 150)))
+        poor.analyze(AnalysisRequest(content=repeated(some_demo_clips[0], LONG)))
     poor.close()
 
 
 def test_a_killed_child_is_replaced(pool: AnalysisPool, some_demo_clips: list[DemoClip]) -> None:
     small, large = (
         AnalysisRequest(content=some_demo_clips[0].content),
-        repeated(some_demo_clips[0], 150),
+        repeated(some_demo_clips[0], LONG),
     )
     pool.analyze(small)
     _kill_children()
