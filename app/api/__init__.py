@@ -1,1 +1,1 @@
-"""The HTTP contract of DESIGN 8."""
+"""The HTTP API: the application, its routes, schemas, guards and answers to failures."""

@@ -14,7 +14,7 @@ from fastapi_offline import FastAPIOffline
 from app.api.docs import STATIC, install_docs
 from app.api.examples import example_ids
 from app.api.failures.handlers import install_handlers
-from app.api.guard.door import Door
+from app.api.guard.access_check import AccessCheck
 from app.api.guard.envelope import Envelope
 from app.api.guard.gates import Gates
 from app.api.guard.limits import BodyLimit
@@ -110,7 +110,7 @@ def create_app(settings: Settings) -> FastAPI:
     # The last one added is the outermost.
     app.add_middleware(BodyLimit, settings=settings)
     app.add_middleware(SlowBodies, settings=settings)
-    app.add_middleware(Door)
+    app.add_middleware(AccessCheck)
     install_metrics(app)
     app.add_middleware(KnownMethods)
     app.add_middleware(Envelope)

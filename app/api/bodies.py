@@ -21,33 +21,30 @@ from app.api.failures.problems import MalformedBody, UnsupportedMediaType
 from app.api.guard.media import FORM, is_json, media_type
 from app.errors import BadField, DiskFull, Place
 
-MOST_FIELDS = 32
-MOST_FILES = 4
-LONGEST_FIELD = 64 * 2**10
-"""Bytes of one text field; a role mapping of a hundred joints needs about four thousand."""
+MAX_FIELDS = 32
+MAX_FILES = 4
+MAX_FIELD_BYTES = 64 * 2**10
+"""A role mapping of a hundred joints needs about four thousand bytes."""
 
 Model = TypeVar("Model", bound=BaseModel)
 
 
 def require_json(request: Request) -> None:
-    """Refuse a body that does not say that it is JSON.
-
-    Raises UnsupportedMediaType.
-    """
+    """Check that the Content-Type of the body is JSON. Raises UnsupportedMediaType."""
     if not is_json(media_type(request.headers)):
         raise UnsupportedMediaType("This call takes application/json.")
 
 
 def require_json_if_any(request: Request) -> None:
-    """As require_json, of a call that may also come without a body."""
+    """Like require_json, but for a call that may also come without a body."""
     if media_type(request.headers) or request.headers.get("content-length", "0") != "0":
         require_json(request)
 
 
 def is_multipart(request: Request) -> bool:
-    """Whether the body is a form with files; JSON is the other thing that it may be.
+    """True if the body is a form with files, False if it is JSON.
 
-    Raises UnsupportedMediaType where it is neither.
+    Raises UnsupportedMediaType if it is neither.
     """
     kind = media_type(request.headers)
     if kind != FORM and not is_json(kind):
@@ -56,7 +53,7 @@ def is_multipart(request: Request) -> bool:
 
 
 async def read_json(request: Request, model: type[Model]) -> Model:
-    """The body as `model`. Raises MalformedBody and RequestValidationError."""
+    """Read the body as `model`. Raises MalformedBody and RequestValidationError."""
     try:
         content = json.loads(await request.body())
     except (ValueError, RecursionError) as error:
@@ -67,15 +64,16 @@ async def read_json(request: Request, model: type[Model]) -> Model:
 async def read_form(
     request: Request, model: type[Model], files: Iterable[str]
 ) -> tuple[Model, dict[str, UploadFile]]:
-    """A multipart body: its text fields as `model`, and the files among `files` that came.
+    """Read a multipart body: its text fields as `model`, and the files that were sent.
 
+    files: the names of the form fields that take a file.
     The files stay open until the request has been answered.
     Raises UnsupportedMediaType, MalformedBody, BadField, RequestValidationError, DiskFull.
     """
     if media_type(request.headers) != FORM:
         raise UnsupportedMediaType("This call takes multipart/form-data.")
     form = await _parse(request)
-    # FastAPI closes this stack after the answer; the files are temporary ones.
+    # FastAPI closes this stack after the answer. That deletes the temporary files.
     request.scope["fastapi_middleware_astack"].push_async_callback(form.close)
     texts, uploads = _sort(form, set(files))
     return check(model, texts), uploads
@@ -84,9 +82,10 @@ async def read_form(
 async def _parse(request: Request) -> FormData:
     try:
         return await request.form(
-            max_files=MOST_FILES, max_fields=MOST_FIELDS, max_part_size=LONGEST_FIELD
+            max_files=MAX_FILES, max_fields=MAX_FIELDS, max_part_size=MAX_FIELD_BYTES
         )
     except HTTPException as error:
+        # Only 400 comes from the form parser. 408, 413 and 503 come from our own middlewares.
         if error.status_code != 400:
             raise
         raise MalformedBody(f"The form cannot be read: {error.detail}") from error
@@ -95,6 +94,7 @@ async def _parse(request: Request) -> FormData:
             raise DiskFull from error
         raise
     except (ValueError, KeyError, AssertionError) as error:
+        # The parser raises these for some malformed forms, instead of an HTTPException.
         raise MalformedBody("The form cannot be read.") from error
 
 
@@ -106,7 +106,7 @@ def _sort(form: FormData, files: set[str]) -> tuple[dict[str, str], dict[str, Up
         if name in texts or name in uploads:
             wrong.append(Place(f"body.{name}", "This field was sent more than once."))
         elif isinstance(value, UploadFile) and not (value.filename or value.size):
-            continue  # What a browser sends for a file that was not chosen.
+            continue  # A browser sends this if the user chose no file.
         elif isinstance(value, UploadFile) and name in files:
             uploads[name] = value
         elif isinstance(value, UploadFile):
@@ -121,7 +121,7 @@ def _sort(form: FormData, files: set[str]) -> tuple[dict[str, str], dict[str, Up
 
 
 def check(model: type[Model], content: Any) -> Model:
-    """`content` as `model`. Raises RequestValidationError with locations under `body`."""
+    """Validate `content` as `model`. Raises RequestValidationError with locations in `body`."""
     try:
         return model.model_validate(content)
     except ValidationError as error:
@@ -132,7 +132,7 @@ def check(model: type[Model], content: Any) -> Model:
 
 
 def required(uploads: Mapping[str, UploadFile], name: str) -> UploadFile:
-    """The file of that name. Raises BadField where it was not sent."""
+    """Return the file with that name. Raises BadField if it was not sent."""
     if name not in uploads:
         raise BadField("A file is missing.", places=[Place(f"body.{name}", "Field required")])
     return uploads[name]

@@ -1,9 +1,9 @@
-"""What routes depend on: the library, and a key that allows the call (DESIGN 12).
+"""Dependencies of the routes: the library, and an API key that allows the call.
 
-Roles: `read` for everything that only reads (searches and recognition too), `write` for
-storing, changing and fitting, `admin` for all. While no key exists and the service listens
-on loopback only, every call is open. `/livez`, `/readyz`, `/docs` and `/openapi.json` never
-need a key, since they tell nothing of the library; `/metrics` needs `read`.
+Roles: `read` for calls that only read (searches and recognition too), `write` for calls that
+store, change or fit something, `admin` for all calls. Calls need no key while no key exists and
+the service listens on loopback only. `/livez`, `/readyz`, `/docs` and `/openapi.json` never need
+a key, because they show nothing of the library. `/metrics` needs `read`.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ _header = APIKeyHeader(name="X-API-Key", auto_error=False, description="The same
 
 
 async def get_library(request: Request) -> Library:
-    """The library that the application opened. Raises NotReadyYet before that.
+    """Return the open library. Raises NotReadyYet until the application has opened it.
 
-    Not waited for anywhere: async, so that no thread is taken for it.
+    The function is async although it awaits nothing: FastAPI would run it in a thread otherwise.
     """
     library: Library | None = getattr(request.app.state, "library", None)
     if library is None:
@@ -37,7 +37,7 @@ Lib = Annotated[Library, Depends(get_library)]
 
 
 class Allows:
-    """A dependency: the caller's key has at least this role."""
+    """A dependency: it checks that the caller's key has at least this role."""
 
     def __init__(self, role: KeyRole) -> None:
         self.role = role
@@ -45,11 +45,11 @@ class Allows:
     async def __call__(
         self,
         request: Request,
-        # `Door` has read these headers; here they are for the description of the API.
+        # `AccessCheck` reads these headers. They are here only for the OpenAPI description.
         _bearer: Annotated[HTTPAuthorizationCredentials | None, Depends(_bearer)],
         _header: Annotated[str | None, Depends(_header)],
     ) -> None:
-        """Raises Unauthorized without a valid key, Forbidden where its role is too low."""
+        """Raises Unauthorized without a valid key, Forbidden if the key's role is too low."""
         caller: Caller = request.state.caller
         caller.require(self.role)
 

@@ -1,4 +1,4 @@
-"""`/docs`: Swagger UI with no internet and no inline script but the one whose hash is told."""
+"""`/docs`: Swagger UI without internet. Its only inline script is allowed by its hash."""
 
 from __future__ import annotations
 

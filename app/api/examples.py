@@ -1,4 +1,4 @@
-"""Ids for the examples of `/docs`, so that a reader can run them as they stand."""
+"""Ids for the examples of `/docs`: with them, a reader can run the examples unchanged."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ _READY = ClipFilter(state=(ClipState.READY,))
 
 
 def example_ids(library: Library | None) -> dict[str, str]:
-    """The newest ready clip and the newest job, by placeholder.
+    """Return the ids of the newest ready clip and of the newest job, by placeholder.
 
-    Empty where a key is needed: the description is for everyone, ids are not.
+    The result is empty if calls need a key: everyone may read the description, but not the ids.
     """
     if library is None:
         return {}

@@ -1,4 +1,4 @@
-"""Loading the index while the service already answers."""
+"""Loads the index in the background while the service already answers calls."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ RETRY_SECONDS = 2.0
 
 
 class Loading:
-    """Loads a library's index in a thread; tries again when that fails."""
+    """A thread that loads the index of a library. After a failure it tries again."""
 
     def __init__(self, library: Library) -> None:
         self._library = library
@@ -22,11 +22,11 @@ class Loading:
         self._thread = threading.Thread(target=self._load, name="load-index", daemon=True)
 
     def start(self) -> None:
-        """Begin to load."""
+        """Start the thread."""
         self._thread.start()
 
     def stop(self) -> None:
-        """Try no more; returns when the thread has ended."""
+        """Stop trying. Returns when the thread has ended."""
         self._stop.set()
         self._thread.join()
 
@@ -36,6 +36,7 @@ class Loading:
                 import_libraries()
                 self._library.index.catch_up(self._library.store)
             except Exception:
+                # Any failure may be temporary (a locked database, a full disk): try again.
                 log.exception("the index could not be loaded; trying again")
                 self._stop.wait(RETRY_SECONDS)
             else:

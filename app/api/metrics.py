@@ -13,7 +13,8 @@ from app.api.openapi import refusals
 
 
 def install_metrics(app: FastAPI) -> None:
-    """Count and time every request; a registry of its own for each application."""
+    """Count and time every request. Each application has its own registry."""
+    # In the global registry, two applications of one process would share their counters.
     registry = CollectorRegistry()
     instrumentator = Instrumentator(
         registry=registry, excluded_handlers=["/metrics", "/livez", "/readyz"]

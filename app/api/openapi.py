@@ -1,4 +1,7 @@
-"""The OpenAPI description: problems, and bodies that routes read by themselves."""
+"""The parts of the OpenAPI description that FastAPI cannot derive from the routes.
+
+These are the problems (RFC 9457), and the bodies that routes read without FastAPI.
+"""
 
 from __future__ import annotations
 
@@ -19,39 +22,41 @@ _DESCRIPTIONS = {
     400: "The body cannot be read as what its Content-Type says",
     401: "An API key is needed",
     403: "This API key does not allow that",
-    404: "There is no such thing",
+    404: "The clip, job or other object does not exist",
     408: "The body came too slowly",
-    409: "The state of things does not allow this; with `Retry-After` where waiting helps",
+    409: "The current state does not allow this; with `Retry-After` if waiting helps",
     413: "The body is larger than the limit",
-    415: "Content or media type that is not known here",
-    422: "A field is wrong, or a file that cannot be used",
-    500: "Something went wrong; the log tells what",
+    415: "The content or its media type is not supported",
+    422: "A field is wrong, or the file cannot be used",
+    500: "Something went wrong; the log has the details",
     503: "The service is starting or too busy, or the call took longer than its time limit; with "
     "`Retry-After`",
-    507: "There is no space left; nothing was kept",
+    507: "The disk is full; nothing was stored",
 }
 _EVERYWHERE = (401, 403, 422, 500, 503)
 _WITH_A_BODY = (408, 413)
-"""Of every call that has a body; such a call names 413."""
+"""Statuses of every call that has a body. A route with a body lists 413."""
 _REQUEST_ID = {
     "name": "X-Request-Id",
     "in": "header",
     "required": False,
     "schema": {"type": "string", "maxLength": 64},
-    "description": "Your own id of this request: the answer and the log repeat it.",
+    "description": "Your own id of this request. The answer and the log repeat it.",
 }
 
 
-LONGEST_ID = 100
+MAX_ID_LENGTH = 100
 ClipId = Annotated[
-    str, Path(max_length=LONGEST_ID, openapi_examples={"a clip": {"value": "CLIP_ID"}})
+    str, Path(max_length=MAX_ID_LENGTH, openapi_examples={"a clip": {"value": "CLIP_ID"}})
 ]
-JobId = Annotated[str, Path(max_length=LONGEST_ID, openapi_examples={"a job": {"value": "JOB_ID"}})]
-PairId = Annotated[str, Path(max_length=LONGEST_ID)]
+JobId = Annotated[
+    str, Path(max_length=MAX_ID_LENGTH, openapi_examples={"a job": {"value": "JOB_ID"}})
+]
+PairId = Annotated[str, Path(max_length=MAX_ID_LENGTH)]
 
 
 def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """The `responses=` of a route: problems of these statuses and of those that any call has."""
+    """Return the `responses=` of a route: these statuses, and those that every call has."""
     schema = {"$ref": _REF.format(model="Problem")}
     with_a_body = _WITH_A_BODY if 413 in statuses else ()
     return {
@@ -71,12 +76,14 @@ def body(
     files: Mapping[str, str] | None = None,
     needed: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """The `openapi_extra=` of a route that reads JSON as `model` or a form as `form` and `files`.
+    """Return the `openapi_extra=` of a route that reads JSON as `model`, or a form.
 
-    files: what each file is, by field name; needed: the fields of the form that must come.
-    A call that takes both also describes its header X-Request-Id, which every call takes: of a
-    call with two bodies and no optional parameter, openapi-python-client 0.29 writes a module
-    that it cannot import (`NameError: Unset`).
+    form: the text fields of the form; files: a description of each file, by field name; needed:
+    the required fields of the form.
+
+    Every call takes the header X-Request-Id, but only a call with two kinds of body describes it
+    here. The reason is openapi-python-client 0.29: for a call with two kinds of body and no
+    optional parameter, it generates a module that cannot be imported (`NameError: Unset`).
     """
     content: dict[str, Any] = {}
     if model is not None:
@@ -96,7 +103,7 @@ def _form_schema(
     form: type[BaseModel], files: Mapping[str, str], needed: Sequence[str]
 ) -> dict[str, Any]:
     schema = form.model_json_schema(ref_template=_REF)
-    schema.pop("$defs", None)
+    schema.pop("$defs", None)  # the definitions are in the components of the description
     uploads = {
         name: {"type": "string", "format": "binary", "description": text}
         for name, text in files.items()
@@ -110,9 +117,10 @@ def _form_schema(
 def describe(
     app: FastAPI, bodies: Sequence[type[BaseModel]], ids: Callable[[], Mapping[str, str]]
 ) -> None:
-    """Make `app.openapi()` tell also the schemas of `bodies` and of problems; made once.
+    """Add the schemas of `bodies` and of problems to `app.openapi()`. It is built once.
 
-    ids: what CLIP_ID and JOB_ID in the examples are replaced by, so that they can be run.
+    ids: returns the ids that replace CLIP_ID and JOB_ID in the examples, by placeholder. With
+    real ids, the examples can be run.
     """
 
     def openapi() -> dict[str, Any]:
@@ -123,10 +131,10 @@ def describe(
     app.openapi = openapi  # type: ignore[method-assign]  # FastAPI's documented way
 
 
-def _filled(told: dict[str, Any], ids: Mapping[str, str]) -> dict[str, Any]:
+def _filled(description: dict[str, Any], ids: Mapping[str, str]) -> dict[str, Any]:
     if not ids:
-        return told
-    text = json.dumps(told)
+        return description
+    text = json.dumps(description)
     for placeholder, identity in ids.items():
         text = text.replace(json.dumps(placeholder), json.dumps(identity))
     filled: dict[str, Any] = json.loads(text)
@@ -134,7 +142,7 @@ def _filled(told: dict[str, Any], ids: Mapping[str, str]) -> dict[str, Any]:
 
 
 def _build(app: FastAPI, bodies: Sequence[type[BaseModel]]) -> dict[str, Any]:
-    told = get_openapi(
+    description = get_openapi(
         title=app.title,
         version=app.version,
         summary=app.summary,
@@ -143,8 +151,10 @@ def _build(app: FastAPI, bodies: Sequence[type[BaseModel]]) -> dict[str, Any]:
         tags=app.openapi_tags,
         license_info=app.license_info,
     )
-    told_too: list[type[BaseModel]] = [*bodies, Problem]
-    _, extra = models_json_schema([(model, "validation") for model in told_too], ref_template=_REF)
-    schemas = told.setdefault("components", {}).setdefault("schemas", {})
+    extra_models: list[type[BaseModel]] = [*bodies, Problem]
+    _, extra = models_json_schema(
+        [(model, "validation") for model in extra_models], ref_template=_REF
+    )
+    schemas = description.setdefault("components", {}).setdefault("schemas", {})
     schemas.update(extra.get("$defs", {}))
-    return told
+    return description

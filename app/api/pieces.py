@@ -1,8 +1,8 @@
-"""An answer that is made in pieces, while it is sent.
+"""An answer that is computed and sent in pieces.
 
-Making a piece is heavy work and needs a slot at the gate. Whoever reads slowly holds none:
-while a piece waits to be sent the slot is given back. A reader who takes less than LEAST_RATE
-is cut off, since each open answer holds its motion in memory.
+Computing a piece is heavy work and needs a slot at the gate. A slow reader holds no slot: while a
+piece waits to be sent, the answer gives its slot back. An answer whose client reads less than
+MIN_BYTES_PER_SECOND is cut off, because each open answer holds its motion in memory.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from app.errors import ClientLeft, KinedexError
 
 log = logging.getLogger(__name__)
 
-LEAST_RATE = 32 * 1024
-"""Bytes a second that a reader must take, on average over the whole answer."""
+MIN_BYTES_PER_SECOND = 32 * 1024
+"""Bytes per second that a client must read, on average over the whole answer."""
 GRACE_SECONDS = 20.0
-"""How far a reader may fall behind that: a page that is in the background, a poor connection."""
+"""How far a client may fall behind that rate: its page may be in the background, for example."""
 PATIENCE_SECONDS = 0.02
-"""How long a slot is held while a piece waits to be sent."""
+"""How long an answer holds its slot while a piece waits to be sent."""
 TURN_SECONDS = 0.25
-"""How long pieces are made before others that wait are let in first."""
-MOST_BYTES = 256 * 1024
-"""Sent at once: what is larger is cut, so that a slow reader is noticed."""
+"""How long an answer computes pieces before it lets a waiting call go first."""
+MAX_PART_BYTES = 256 * 1024
+"""Bytes sent at once. A larger piece is cut into parts, so that we notice a slow client."""
 
 
 class Pieces(Response):
-    """A streamed answer. It has failed as any other where the first piece fails."""
+    """A streamed answer. If its first piece fails, the client gets an ordinary problem."""
 
     def __init__(
         self,
@@ -54,7 +54,7 @@ class Pieces(Response):
         self.init_headers(headers)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Raises TooBusy, DeadlineExceeded, ClientLeft before the first piece, CutOff behind it."""
+        """Raises TooBusy, DeadlineExceeded, ClientLeft before the first piece, CutOff after it."""
         gates: Gates = scope["app"].state.gates
         deadline = Deadline(gates.seconds)
         async with gates.streams.one(), listening(receive, deadline) as left:
@@ -75,7 +75,7 @@ class Pieces(Response):
             while piece is not None:
                 for part in _parts(piece):
                     await sending.part(part)
-                    deadline.restart()  # how long the client reads is not our time
+                    deadline.restart()  # the time in which the client reads does not count
                     deadline.check()
                 if time.monotonic() > turn_ends:
                     await slot.share()
@@ -89,12 +89,13 @@ class Pieces(Response):
             raise CutOff(status_of(type(failure))) from failure
 
     async def _next(self) -> bytes | None:
+        # In a thread: computing a piece would block the event loop.
         piece = await run_in_threadpool(next, self._pieces, None)
         return piece.encode() if isinstance(piece, str) else piece
 
 
 class _Sending:
-    """Sends parts, and gives the slot back where the client does not take them at once."""
+    """Sends parts, and gives the slot back if the client does not read them at once."""
 
     def __init__(self, send: Send, slot: Slot) -> None:
         self._send = send
@@ -114,17 +115,18 @@ class _Sending:
 
     async def _message(self, message: Message) -> None:
         """Raises ReaderTooSlow."""
+        # A task, so that we can give the slot back while the message is still being sent.
         sending = asyncio.ensure_future(self._send(message))
         began = time.monotonic()
         try:
             await asyncio.wait({sending}, timeout=PATIENCE_SECONDS)
             if not sending.done():
                 self._slot.give_back()
-                left = GRACE_SECONDS + self._sent / LEAST_RATE - self._waited
+                left = GRACE_SECONDS + self._sent / MIN_BYTES_PER_SECOND - self._waited
                 await asyncio.wait({sending}, timeout=max(left, 0.0))
             if not sending.done():
                 raise ReaderTooSlow(
-                    f"The client read less than {LEAST_RATE // 1024} KiB a second of the answer."
+                    f"The client read the answer at less than {MIN_BYTES_PER_SECOND // 1024} KiB/s."
                 )
             sending.result()
         finally:
@@ -133,5 +135,5 @@ class _Sending:
 
 
 def _parts(piece: bytes) -> Iterator[bytes]:
-    for first in range(0, len(piece), MOST_BYTES):
-        yield piece[first : first + MOST_BYTES]
+    for first in range(0, len(piece), MAX_PART_BYTES):
+        yield piece[first : first + MAX_PART_BYTES]

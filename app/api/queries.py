@@ -18,7 +18,7 @@ QUERY_FILES = {
 
 
 def source_of(form: QueryForm, uploads: Mapping[str, UploadFile]) -> QuerySource:
-    """The query of a form and its files.
+    """Return the query of a form and its files.
 
     Raises BadField if both `clip_id` and `file` were sent, or neither.
     """
@@ -31,5 +31,5 @@ def source_of(form: QueryForm, uploads: Mapping[str, UploadFile]) -> QuerySource
 
 
 def file_of(uploads: Mapping[str, UploadFile], name: str) -> BinaryIO | None:
-    """The bytes of a form's file, None if it was not sent."""
+    """Return the file of a form as a stream of bytes, or None if it was not sent."""
     return uploads[name].file if name in uploads else None

@@ -1,4 +1,4 @@
-"""One API process: uvicorn around the application. `python -m app.api.server` runs it alone."""
+"""The API process: uvicorn runs the application. `python -m app.api.server` starts only this."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from app.services.exposure import CANNOT_START, HOPELESS, refuse_taken_address
 log = logging.getLogger(__name__)
 
 GRACE_SECONDS = 5
-"""How long requests that are being answered may go on after a stop; streams are cut then."""
+"""How long running requests may go on after a stop. Then they are cut off."""
 BACKLOG = 256
-"""Connections that the kernel holds until they are accepted."""
+"""Connections that the kernel queues until uvicorn accepts them."""
 
 
 class _Server(uvicorn.Server):
-    """Tells the application to end its streams, which would otherwise hold up the stop."""
+    """A uvicorn server that ends the application's streams first, so that it stops soon."""
 
     def __init__(self, config: uvicorn.Config, app: FastAPI) -> None:
         super().__init__(config)
@@ -41,17 +41,17 @@ class _Server(uvicorn.Server):
 
 
 def run(settings: Settings) -> None:
-    """Serve until SIGINT or SIGTERM. Raises what kept the library from being opened."""
+    """Serve until SIGINT or SIGTERM. Raises the KinedexError of a library that cannot be opened."""
     set_level(settings.log_level.upper())
     app = create_app(settings)
-    most = room_for_connections(settings.max_connections, BACKLOG)
-    connections = Connections(most, settings.max_connections_per_address)
+    limit = room_for_connections(settings.max_connections, BACKLOG)
+    connections = Connections(limit, settings.max_connections_per_address)
     protocol = partial(GuardedProtocol, connections=connections)
     config = uvicorn.Config(
         app,
-        # uvicorn calls it as it would call the class.
+        # uvicorn only calls this value, so a partial works like the class.
         http=cast(type[GuardedProtocol], protocol),
-        # No websocket may bypass the limits of our protocol.
+        # We have no websockets, and uvicorn's protocol for them has none of our limits.
         ws="none",
         backlog=BACKLOG,
         host=settings.host,
@@ -64,13 +64,17 @@ def run(settings: Settings) -> None:
     try:
         _Server(config, app).run()
     except SystemExit:
+        # uvicorn exits with a code only. The failure itself is what the caller needs.
         if app.state.start_failure is not None:
             raise app.state.start_failure from None
         raise
 
 
 def main() -> int:
-    """Serve until told to stop; CANNOT_START where settings, port or database do not allow it."""
+    """Serve until a stop signal and return 0.
+
+    Returns CANNOT_START if the settings, the port or the database do not allow a start.
+    """
     with json_stderr():
         try:
             settings = load_settings()

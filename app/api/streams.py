@@ -1,7 +1,7 @@
-"""A motion as an answer: JSON written piece by piece, or raw float32.
+"""A motion as an answer: JSON in pieces, or raw float32.
 
-A long clip has tens of millions of numbers, which as Python objects would take gigabytes;
-neither form ever holds more than a few frames of them.
+A long clip has tens of millions of numbers. As Python objects they would take gigabytes, so both
+forms convert only a few frames at a time.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from app.services.views.views import MotionView
 
 OCTETS = "application/octet-stream"
 NUMBERS_AT_ONCE = 50_000
-"""Of one piece: some 20 ms of work, during which Python's other threads wait."""
+"""Numbers in one piece: about 20 ms of work, during which Python's other threads wait."""
 DECIMALS = 6
-"""Of a metre: a micrometre."""
+"""Decimals of a coordinate in meters: micrometers."""
 
 
-def wants_octets(request: Request) -> bool:
-    """Whether the client would rather have octets than JSON, which is what it gets unasked."""
+def prefers_octets(request: Request) -> bool:
+    """Whether the client's Accept header prefers octets to JSON. JSON is the default."""
     weights = dict(_weights(request.headers.get("accept", "")))
     octets = weights.get(OCTETS, 0.0)
     anything = weights.get("*/*", 0.0)
@@ -36,7 +36,10 @@ def wants_octets(request: Request) -> bool:
 
 
 def as_octets(view: MotionView) -> Response:
-    """Little-endian float32 in C order; X-Shape tells frames, joints and 3."""
+    """Return the positions as little-endian float32 in C order, in meters, Y up.
+
+    The header X-Shape holds the shape: frames, joints, 3.
+    """
     content = np.ascontiguousarray(view.positions, dtype="<f4")
     headers = {
         "X-Shape": ",".join(str(size) for size in content.shape),
@@ -49,21 +52,22 @@ def as_octets(view: MotionView) -> Response:
 
 def as_json(
     view: MotionView,
-    more: Mapping[str, Any] | None = None,
+    members: Mapping[str, Any] | None = None,
     curves: Mapping[str, FloatArray] | None = None,
-    behind: Iterable[str] = (),
+    trailing: Iterable[str] = (),
 ) -> Response:
-    """The members of the schema `Motion`, and more: small ones, and arrays as long as it.
+    """Return the members of the schema `Motion` as JSON, and further members.
 
-    behind: JSON of other members, in pieces, each member with a comma before it.
+    members: further small members, by name; curves: further arrays with one row for each frame,
+    by name; trailing: JSON of further members, in pieces, with a comma before each member.
     """
     head = {
         "frame_rate": view.frame_rate,
         "joint_names": view.joint_names,
         "parents": view.parents,
-        **(more or {}),
+        **(members or {}),
     }
-    content = _json(head, {**(curves or {}), "positions": view.positions}, behind)
+    content = _json(head, {**(curves or {}), "positions": view.positions}, trailing)
     return Pieces(content, media_type="application/json", headers={"Vary": "Accept"})
 
 
@@ -74,18 +78,19 @@ def _octets(content: np.ndarray[tuple[int, ...], np.dtype[np.float32]]) -> Itera
 
 
 def _json(
-    head: Mapping[str, Any], arrays: Mapping[str, FloatArray], behind: Iterable[str]
+    head: Mapping[str, Any], arrays: Mapping[str, FloatArray], trailing: Iterable[str]
 ) -> Iterator[str]:
-    yield json.dumps(head, allow_nan=False)[:-1]
+    yield json.dumps(head, allow_nan=False)[:-1]  # without the closing brace
     for name, array in arrays.items():
         yield f', "{name}": ['
         frames = _frames_at_once(array)
         for start in range(0, len(array), frames):
+            # (frames of this piece, ...): float64, because a rounded float32 has up to 17 digits.
             part = array[start : start + frames].astype(np.float64)
             rows = json.dumps(np.round(part, DECIMALS).tolist(), separators=(",", ":"))
             yield ("," if start else "") + rows[1:-1]
         yield "]"
-    yield from behind
+    yield from trailing
     yield "}"
 
 

@@ -84,7 +84,7 @@ def test_a_large_piece_is_sent_in_parts() -> None:
         client, content = Client(one_slot()), bytes(range(256)) * 4096
         await client.read(iter([content]))
         assert client.body == content
-        assert max(len(m.get("body", b"")) for m in client.sent) == pieces.MOST_BYTES
+        assert max(len(m.get("body", b"")) for m in client.sent) == pieces.MAX_PART_BYTES
 
     run(test)
 

@@ -1,1 +1,1 @@
-"""How failures are answered: problems of RFC 9457."""
+"""Answers to failures: problems (RFC 9457)."""

@@ -37,35 +37,35 @@ from app.errors import (
 log = logging.getLogger(__name__)
 
 FIT_SECONDS = "5"
-"""A fit takes from a second to a minute."""
+"""Retry-After while a model is being fitted. A fit takes from a second to a minute."""
 
 
-_PASSING = (NotReadyYet, TooBusy, DeadlineExceeded, AnalysisInterrupted)
-"""Nothing is wrong inside: it may well be different the next time."""
+_TEMPORARY = (NotReadyYet, TooBusy, DeadlineExceeded, AnalysisInterrupted)
+"""Failures that are no defect: the same call may succeed a moment later."""
 
 
 def install_handlers(app: FastAPI) -> None:
-    """Answer our failures, the router's and validation's as problems."""
+    """Answer failures of Kinedex, of the router and of validation with problems."""
     app.add_exception_handler(KinedexError, answer_failure)
     app.add_exception_handler(RequestValidationError, _on_validation)
     app.add_exception_handler(HTTPException, _on_http)
 
 
 def answer_unexpected(error: Exception) -> Response:
-    """500 without the exception's text, which goes to the log; 507 where the disk is full."""
+    """Answer 507 if the disk is full, else 500. Only the log gets the exception's text."""
     if isinstance(error, OSError) and error.errno in {errno.ENOSPC, errno.EDQUOT}:
         log.error("disk full")
         return respond(problem_of(DiskFull()))
     log.error("unexpected exception", exc_info=error)
-    return respond(problem(500, "internal", "Something went wrong; the log tells what."))
+    return respond(problem(500, "internal", "Something went wrong; the log has the details."))
 
 
 async def answer_failure(request: Request, error: Exception) -> Response:
-    """A failure of ours as a problem; what went wrong inside is logged."""
+    """Answer a KinedexError with a problem. An internal failure is also logged."""
     failure = cast(KinedexError, error)
     if isinstance(failure, (BadField, NotFound, Conflict)):
         failure = _located(failure, request)
-    if status_of(type(failure)) >= 500 and not isinstance(failure, _PASSING):
+    if status_of(type(failure)) >= 500 and not isinstance(failure, _TEMPORARY):
         log.error("failure: %s", failure.detail, exc_info=failure)
     return respond(problem_of(failure), _headers(failure))
 
@@ -73,7 +73,7 @@ async def answer_failure(request: Request, error: Exception) -> Response:
 def _headers(failure: KinedexError) -> dict[str, str]:
     if isinstance(failure, Unauthorized):
         return {"WWW-Authenticate": "Bearer"}
-    if isinstance(failure, _PASSING):
+    if isinstance(failure, _TEMPORARY):
         return {"Retry-After": RETRY_AFTER_SECONDS}
     if isinstance(failure, ModelBeingFitted):
         return {"Retry-After": FIT_SECONDS}
@@ -81,7 +81,7 @@ def _headers(failure: KinedexError) -> dict[str, str]:
 
 
 def _located(failure: KinedexError, request: Request) -> KinedexError:
-    """The same failure with the part of the request before the fields that services name."""
+    """Put the part of the request (query, body or path) before the fields that services name."""
     return type(failure)(
         failure.detail,
         places=[

@@ -1,4 +1,4 @@
-"""Failures as problem+json (RFC 9457): the one place that knows HTTP statuses of failures.
+"""Failures as problem+json (RFC 9457). Only this module knows the HTTP statuses of failures.
 
 Members: `type title status detail code errors`; each of `errors` has `location`
 (as `body.limit`, `query.cursor`, `line 12`) and `message`.
@@ -18,8 +18,8 @@ from app.errors import KinedexError, Place
 MEDIA_TYPE = "application/problem+json"
 TYPE_PREFIX = "urn:kinedex:problem:"
 RETRY_AFTER_SECONDS = "1"
-MOST_PLACES = 100
-"""Places told in one problem; a form with a thousand wrong fields needs no longer answer."""
+MAX_ERRORS = 100
+"""Entries of `errors` in one problem: a client with a thousand wrong fields needs no more."""
 
 
 class NotReadyYet(KinedexError):
@@ -29,7 +29,7 @@ class NotReadyYet(KinedexError):
 
 
 class Unhealthy(NotReadyYet):
-    """The service cannot do its work: its store is out of order."""
+    """The service cannot work because its store is damaged or missing."""
 
     code = "unhealthy"
 
@@ -53,7 +53,7 @@ class RequestTimeout(KinedexError):
 
 
 class UnknownMethod(KinedexError):
-    """This HTTP method is not known here."""
+    """This HTTP method does not exist."""
 
     code = "unknown_method"
 
@@ -77,7 +77,7 @@ class UnsupportedMediaType(KinedexError):
 
 
 CLIENT_LEFT = 499
-"""Logged, in nginx's way, where the client left before it was answered; nobody gets it."""
+"""The log's status (as in nginx's logs) if the client left before the answer. It is never sent."""
 
 STATUSES: dict[type[KinedexError], int] = {
     MalformedBody: 400,
@@ -106,7 +106,8 @@ STATUSES: dict[type[KinedexError], int] = {
     errors.DeadlineExceeded: 503,
     errors.DiskFull: 507,
 }
-"""HTTP status by failure; a class that is not listed has its nearest ancestor's."""
+"""HTTP status by class of failure. A class that is not listed has the status of its nearest
+ancestor."""
 
 _ROUTER_CODES = {
     404: "not_found",
@@ -115,10 +116,11 @@ _ROUTER_CODES = {
     503: TooBusy.code,
 }
 _DETAIL_IS_SAFE = {501, 503, 507}
+"""Statuses of 500 and above whose detail holds nothing internal, so that clients may see it."""
 
 
 def status_of(kind: type[KinedexError]) -> int:
-    """The HTTP status of a class of failures."""
+    """Return the HTTP status of a class of failures."""
     return next(STATUSES[base] for base in kind.__mro__ if base in STATUSES)
 
 
@@ -130,19 +132,19 @@ def problem(
     title: str | None = None,
     places: Iterable[Mapping[str, str]] = (),
 ) -> dict[str, Any]:
-    """The members of a problem, in the order in which they are shown."""
+    """Return the members of a problem, in the order in which clients see them."""
     return {
         "type": TYPE_PREFIX + code,
         "title": title or HTTPStatus(status).phrase,
         "status": status,
         "detail": detail,
         "code": code,
-        "errors": list(places)[:MOST_PLACES],
+        "errors": list(places)[:MAX_ERRORS],
     }
 
 
 def problem_of(error: KinedexError) -> dict[str, Any]:
-    """A failure as a problem; what went wrong inside is told to the log only."""
+    """Return a failure as a problem. Details of an internal failure are hidden."""
     status = status_of(type(error))
     places = [{"location": p.location, "message": p.message} for p in error.places]
     hidden = status >= 500 and status not in _DETAIL_IS_SAFE
@@ -156,42 +158,42 @@ def problem_of(error: KinedexError) -> dict[str, Any]:
 
 
 def problem_of_http(status: int, detail: str) -> dict[str, Any]:
-    """What the router refused (no such path, method not allowed) as a problem."""
+    """Return an HTTPException of Starlette (no such path, method not allowed) as a problem."""
     code = _ROUTER_CODES.get(status) or HTTPStatus(status).name.lower()
     return problem(status, code, detail)
 
 
 def problem_of_validation(found: Iterable[ErrorDetails | Mapping[str, Any]]) -> dict[str, Any]:
-    """What request validation found, as a problem: 422, or 400 where JSON cannot be read."""
+    """Return the errors of request validation as a problem: 422, or 400 for unreadable JSON."""
     details = list(found)
     if any(_whole_body_is_not_json(detail) for detail in details):
         return problem_of(MalformedBody("The body is not valid JSON."))
-    # what our own validators say comes from pydantic with this before it
+    # pydantic puts this prefix before the messages of our own validators.
     places = [Place(location_of(d["loc"]), d["msg"].removeprefix("Value error, ")) for d in details]
     return problem_of(errors.BadField("The request has fields that are wrong.", places=places))
 
 
 def _whole_body_is_not_json(detail: ErrorDetails | Mapping[str, Any]) -> bool:
-    # FastAPI gives the offset, ("body", 17); a form's JSON field has a name there.
-    within = detail["loc"][1:]
-    return detail["type"] == "json_invalid" and all(isinstance(step, int) for step in within)
+    # Of a whole body FastAPI gives the offset, ("body", 17); of a form's JSON field the name.
+    location = detail["loc"][1:]
+    return detail["type"] == "json_invalid" and all(isinstance(step, int) for step in location)
 
 
 def location_of(path: Iterable[int | str]) -> str:
-    """A path of names and positions as `body.words.3`."""
+    """Join a path of names and indices, as in `body.words.3`."""
     return ".".join(str(step) for step in path)
 
 
-def stored_problem(told: Mapping[str, Any]) -> dict[str, Any]:
-    """A failure that a clip or job keeps (`KinedexError.as_problem`), as a whole problem."""
-    code = str(told.get("code", KinedexError.code))
+def stored_problem(stored: Mapping[str, Any]) -> dict[str, Any]:
+    """Complete a failure that a clip or job stores (`KinedexError.as_problem`) to a problem."""
+    code = str(stored.get("code", KinedexError.code))
     status = _status_by_code().get(code, 500)
     return problem(
         status,
         code,
-        str(told.get("detail", "")),
-        title=told.get("title"),
-        places=told.get("errors", ()),
+        str(stored.get("detail", "")),
+        title=stored.get("title"),
+        places=stored.get("errors", ()),
     )
 
 

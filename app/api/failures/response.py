@@ -11,7 +11,7 @@ from app.api.failures.problems import MEDIA_TYPE
 
 
 def respond(problem: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> JSONResponse:
-    """The members of a problem as the answer to a request."""
+    """Return the answer whose body is the members of a problem."""
     return JSONResponse(
         problem, status_code=problem["status"], media_type=MEDIA_TYPE, headers=dict(headers or {})
     )

@@ -1,1 +1,1 @@
-"""What a request passes before its route: connections, hosts, keys, body limits, admission."""
+"""Checks and limits before a route: connections, hosts, API keys, bodies, queues of calls."""

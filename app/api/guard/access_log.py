@@ -1,4 +1,4 @@
-"""The log line of a request, and the id that it carries."""
+"""The log line of a request, and the request's id."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ log = logging.getLogger("app.api.access")
 
 _ACCEPTABLE_ID = re.compile(r"[A-Za-z0-9._-]{1,64}", re.ASCII)
 _MAYBE_SECRET = re.compile(r"(?i)k[._-]?x[._-]|[a-z0-9_-]{43}")
-"""Any trace of an API key, or its secret part alone, which is so long."""
+"""A trace of an API key, or a text as long as the secret part of one (43 characters)."""
 _HEXADECIMAL = re.compile(r"[0-9A-Fa-f.-]+")
-"""Ids of traces may be longer than a secret part, and are never one."""
+"""A trace id may be longer than the secret part, but is hexadecimal: it is never a key."""
 _PERSON = re.compile(r"(/persons/).+", re.DOTALL)
-LONGEST_PATH = 300
-"""Characters of a path that are logged."""
+MAX_PATH_LENGTH = 300
+"""Logged characters of a path."""
 
 
 def identity_of(scope: Scope) -> str:
-    """The client's X-Request-Id, or a new one where that cannot be used, or may hold a key."""
+    """Return the client's X-Request-Id, or a new id if that one is malformed or may hold a key."""
     given = Headers(scope=scope).get("x-request-id", "")
     if not _ACCEPTABLE_ID.fullmatch(given):
         return uuid.uuid4().hex
@@ -35,7 +35,7 @@ def identity_of(scope: Scope) -> str:
 
 
 def log_request(scope: Scope, status: int, seconds: float) -> None:
-    """One line. The query string is left out: a person's name may stand in it, and a key too."""
+    """Log one line, without the query string: it may hold a person's name or a key."""
     fields = {
         "method": scope["method"] if scope["method"] in METHODS else "other",
         "path": _shown(scope["path"]),
@@ -46,5 +46,5 @@ def log_request(scope: Scope, status: int, seconds: float) -> None:
 
 
 def _shown(path: str) -> str:
-    # A person's name is not to be kept, least of all of one who is forgotten.
-    return without_keys(_PERSON.sub(r"\1{name}", path))[:LONGEST_PATH]
+    # The log outlives DELETE /v1/persons/{name}, so it must not hold the name.
+    return without_keys(_PERSON.sub(r"\1{name}", path))[:MAX_PATH_LENGTH]

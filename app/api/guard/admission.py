@@ -1,13 +1,13 @@
-"""The kind of each call, named at its route: `dependencies=[reads, heavy]`.
+"""The kind of each call. A route names it: `dependencies=[reads, heavy]`.
 
-It decides which gate (`app.api.guard.gates`) the call passes before its thread starts. It comes
-last among a route's dependencies: a key is checked, and a body received, before a slot is
-taken. The slot is given back before the answer is sent, so that nobody who reads slowly holds
-one; answers in pieces take it again (`app.api.pieces`).
+The kind decides at which gate (`app.api.guard.gates`) the call waits before its thread starts.
+It is the last dependency of a route: the key is checked and the body is received before the call
+takes a slot. The call gives the slot back before its answer is sent, so that slow clients hold no
+slots. Answers in pieces take a slot again (`app.api.pieces`).
 
-heavy: may compute for over 50 ms on a long clip (measured on one of ten minutes at 120 Hz).
-quick: reads a few rows. changes: writes, or keeps what was uploaded. follow: is answered for
-as long as a job lasts. at_once: takes no thread, or one that is kept for it.
+heavy: may compute for over 50 ms on a long clip (measured on a clip of ten minutes at 120 Hz).
+quick: reads a few rows. changes: writes to the store. follow: sends events until a job ends.
+at_once: needs no thread, or has its own threads.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from fastapi import Depends, Request
 
 from app.api.guard.gates import Gates
 
-_Found = TypeVar("_Found")
+_Result = TypeVar("_Result")
 
 
 class Kind(StrEnum):
-    """What a call does to the service."""
+    """How much of the service a call uses, and for how long."""
 
     HEAVY = "heavy"
     QUICK = "quick"
@@ -35,7 +35,7 @@ class Kind(StrEnum):
 
 
 class Admission:
-    """A dependency: the call is of this kind, and let in as such."""
+    """A dependency: it holds a slot of the gate for calls of this kind."""
 
     def __init__(self, kind: Kind) -> None:
         self.kind = kind
@@ -62,14 +62,14 @@ at_once = Depends(Admission(Kind.AT_ONCE), scope="function")
 
 
 class OwnThreads:
-    """A few threads that no other call can take."""
+    """A few threads that no other call can use."""
 
     def __init__(self, count: int) -> None:
         self._count = count
         self._limiter: anyio.CapacityLimiter | None = None
 
-    async def run(self, work: Callable[[], _Found]) -> _Found:
-        """What `work` returns, from one of them."""
-        if self._limiter is None:  # it belongs to the event loop, which runs only now
+    async def run(self, work: Callable[[], _Result]) -> _Result:
+        """Run `work` in one of the threads and return its result."""
+        if self._limiter is None:  # a limiter needs the event loop, which runs only now
             self._limiter = anyio.CapacityLimiter(self._count)
         return await anyio.to_thread.run_sync(work, limiter=self._limiter)

@@ -3,12 +3,12 @@
 Only the time in which we wait for the client counts. Three rules:
 
 - a client may pause for PAUSE_SECONDS at most;
-- its body must come with LEAST_RATE, and may fall behind that by GRACE_SECONDS;
-- while others wait for a place, one that falls behind BRISK_RATE by FAIR_SECONDS may have to
-  leave.
+- its body must come with MIN_BYTES_PER_SECOND, and may fall behind that by GRACE_SECONDS;
+- while others wait for a slot, a body that is FAIR_SECONDS behind FAIR_BYTES_PER_SECOND may lose
+  its slot.
 
-Nobody gets ahead of a rate: a client that has sent much in a moment must go on at that rate too.
-Else it could hold its place for hours with what it sent at first.
+A client cannot get ahead of a rate: if it sends much in a moment, it must go on at that rate too.
+Otherwise it could send much at first, and then hold its slot for hours.
 """
 
 from __future__ import annotations
@@ -20,29 +20,29 @@ from starlette.types import Message, Receive
 
 PAUSE_SECONDS = 20.0
 GRACE_SECONDS = 20.0
-LEAST_RATE = 10_000.0
+MIN_BYTES_PER_SECOND = 10_000.0
 """Bytes a second."""
 FAIR_SECONDS = 2.0
-BRISK_RATE = 100_000.0
+FAIR_BYTES_PER_SECOND = 100_000.0
 """Bytes a second."""
 
 
 class TooSlow(Exception):
-    """The body came too slowly, or had to make room."""
+    """The body came too slowly, or lost its slot to another body."""
 
 
 class Arrival:
-    """One body on its way; `next` gives its next piece."""
+    """The arrival of one body. `next` returns the next piece of the body."""
 
     def __init__(self) -> None:
-        # Seconds behind each rate.
+        # Seconds behind MIN_BYTES_PER_SECOND and behind FAIR_BYTES_PER_SECOND.
         self._late = self._unfair = 0.0
         self._began: float | None = None
         self._limit: asyncio.Timeout | None = None
         self._is_over = False
 
     async def next(self, receive: Receive) -> Message:
-        """The next piece of the body. Raises TooSlow."""
+        """Return the next piece of the body. Raises TooSlow."""
         if self._is_over:
             raise TooSlow
         self._began = time.monotonic()
@@ -60,20 +60,20 @@ class Arrival:
         return message
 
     def came(self, count: int) -> None:
-        """So many bytes have come."""
-        self._late = max(0.0, self._late - count / LEAST_RATE)
-        self._unfair = max(0.0, self._unfair - count / BRISK_RATE)
+        """Count bytes that have come: they reduce the time behind each rate, but not below 0."""
+        self._late = max(0.0, self._late - count / MIN_BYTES_PER_SECOND)
+        self._unfair = max(0.0, self._unfair - count / FAIR_BYTES_PER_SECOND)
 
     def behind(self) -> float:
-        """Seconds that it is behind BRISK_RATE now."""
+        """Return the seconds that the body is behind FAIR_BYTES_PER_SECOND now."""
         return self._unfair + self._waits()
 
     def is_slow(self) -> bool:
-        """Whether it may be asked to leave for another body."""
+        """Whether the body may lose its slot to another body."""
         return self.behind() >= FAIR_SECONDS
 
     def give_up(self) -> None:
-        """Make `next` raise TooSlow, now or when it is called."""
+        """Take the slot away: `next` raises TooSlow, now or at its next call."""
         self._is_over = True
         if self._limit is not None and not self._limit.expired():
             self._limit.reschedule(asyncio.get_running_loop().time())

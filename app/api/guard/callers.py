@@ -1,4 +1,4 @@
-"""Who calls: the holder of an API key, or anyone where no key is asked for (DESIGN 12)."""
+"""The caller of a request: the holder of an API key, or anyone if keys are not required."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ from app.store.key_role import KeyRole
 
 @dataclass(frozen=True, slots=True)
 class Caller:
-    """role: of the valid key that was sent; has_key: whether any key was sent.
+    """The caller of one request.
 
-    is_free: no key is asked for here, so everything is allowed.
+    role: the role of the valid key that was sent, None without a valid key; has_key: whether any
+    key was sent; is_free: keys are not required, so everything is allowed.
     """
 
     role: KeyRole | None
@@ -26,21 +27,22 @@ class Caller:
     is_free: bool
 
     def require_key(self) -> None:
-        """Raises Unauthorized without a valid key, where one is asked for."""
+        """Raises Unauthorized if a key is required and the request has no valid key."""
+        # A client that sends a key believes that the calls are protected: say that they are not.
         if self.is_free and self.has_key:
             raise Unauthorized("This key is not valid: there are no API keys here. Send none.")
         if not self.is_free and self.role is None:
             raise Unauthorized("This key is not valid." if self.has_key else None)
 
     def require(self, role: KeyRole) -> None:
-        """Raises Unauthorized without a valid key, Forbidden where its role is too low."""
+        """Raises Unauthorized without a valid key, Forbidden if the key's role is too low."""
         self.require_key()
         if self.role is not None and not self.role.allows(role):
             raise Forbidden(f"This needs a key with the role {role.value}.")
 
 
-def who_calls(lib: Library, headers: Headers) -> Caller:
-    """The caller by the key in the headers of a request. Raises StorageError."""
+def find_caller(lib: Library, headers: Headers) -> Caller:
+    """Find the caller by the key in the headers of a request. Raises StorageError."""
     given = _given_key(headers)
     with lib.store.read() as tx:
         if is_open(lib, tx):
@@ -50,8 +52,8 @@ def who_calls(lib: Library, headers: Headers) -> Caller:
 
 
 def is_open(lib: Library, tx: Tx) -> bool:
-    """Whether no key is asked for: none was ever made, and only this machine can call."""
-    # A revoked key counts too: revoking the last one must not open the door.
+    """Whether calls need no key: no key was ever created, and only this machine can call."""
+    # A revoked key counts too: revoking the last key must not make the API open.
     settings = lib.settings
     local = settings.listens_on_loopback and not settings.require_keys
     return local and not keys.is_any(tx)

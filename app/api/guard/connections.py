@@ -1,9 +1,9 @@
-"""How many connections are open, in all and from one client address; and who makes room.
+"""Limits on the open connections, in all and from one client address.
 
 A connection waits while the client has not sent a whole request: its headers are incomplete, or
-it is idle between two requests. Where a limit is reached, the connection that has waited longest
-is given up for the new one. So a client that opens connections and sends nothing, or half of a
-request, shuts nobody out, not even its own address.
+it is idle between two requests. If a limit is reached, the connection that has waited longest is
+closed for the new one. So a client cannot lock others out by opening connections on which it sends
+nothing or half a request. Others at the same address are not locked out either.
 
 Used by one event loop only, so there is no lock.
 """
@@ -20,15 +20,15 @@ from typing import Protocol
 log = logging.getLogger(__name__)
 
 IPV6_NETWORK_BITS = 64
-"""One customer gets at least so large a network of IPv6 addresses: it counts as one address."""
+"""A provider gives each customer at least a network of this size, so it counts as one address."""
 FILES_FOR_OTHERS = 256
-"""File descriptors kept free for the database, uploaded files and child processes."""
+"""File descriptors reserved for the database, uploaded files and child processes."""
 QUIET_SECONDS = 10.0
-"""Between two log lines about a limit that is reached."""
+"""Least time between two log lines about a reached limit."""
 
 
 class Connection(Protocol):
-    """What is counted here."""
+    """A connection that can be counted and closed."""
 
     def give_up(self) -> None:
         """Close at once."""
@@ -37,24 +37,24 @@ class Connection(Protocol):
 class Connections:
     """The open connections of one server."""
 
-    def __init__(self, most: int, most_per_address: int) -> None:
-        self.most, self.most_per_address = most, most_per_address
+    def __init__(self, limit: int, limit_per_address: int) -> None:
+        self._limit, self._limit_per_address = limit, limit_per_address
         self._addresses: dict[Connection, str] = {}
         self._counts: dict[str, int] = {}
-        # In order of the time since when they wait, the longest first.
+        # Ordered by waiting time, the longest first.
         self._waiting: OrderedDict[Connection, None] = OrderedDict()
         self._waiting_of: dict[str, OrderedDict[Connection, None]] = {}
-        self._told_at = float("-inf")
+        self._warned_at = float("-inf")
 
     def enter(self, connection: Connection, address: str) -> bool:
-        """Count a new connection, which waits; False where there is no room for it."""
+        """Count a new connection as waiting. Returns False if there is no room for it."""
         group = _group(address)
-        if self._counts.get(group, 0) >= self.most_per_address:
-            self._tell("client address", address)
+        if self._counts.get(group, 0) >= self._limit_per_address:
+            self._warn("client address", address)
             if not self._make_room(self._waiting_of.get(group)):
                 return False
-        if len(self._addresses) >= self.most:
-            self._tell("server", address)
+        if len(self._addresses) >= self._limit:
+            self._warn("server", address)
             if not self._make_room(self._waiting):
                 return False
         self._addresses[connection] = group
@@ -63,20 +63,20 @@ class Connections:
         return True
 
     def waits(self, connection: Connection) -> None:
-        """The connection waits from now on for its client's next request."""
+        """Note that the connection waits for its client's next request from now on."""
         group = self._addresses.get(connection)
         if group is not None:
             self._waiting[connection] = None
             self._waiting_of.setdefault(group, OrderedDict())[connection] = None
 
     def works(self, connection: Connection) -> None:
-        """The connection has a request to answer: it is not given up."""
+        """Note that the connection has a request to answer: it is not closed for another one."""
         group = self._addresses.get(connection)
         if group is not None:
             self._forget_waiting(connection, group)
 
     def leave(self, connection: Connection) -> None:
-        """The connection is closed."""
+        """Stop counting a closed connection."""
         group = self._addresses.pop(connection, None)
         if group is None:
             return
@@ -104,16 +104,16 @@ class Connections:
             if not waiting:
                 del self._waiting_of[group]
 
-    def _tell(self, limit: str, address: str) -> None:
+    def _warn(self, limit: str, address: str) -> None:
         now = time.monotonic()
-        if now - self._told_at >= QUIET_SECONDS:
-            self._told_at = now
+        if now - self._warned_at >= QUIET_SECONDS:
+            self._warned_at = now
             log.warning("the %s has as many connections as the limit allows", limit)
             log.info("last connection came from %s", address)
 
 
 def _group(address: str) -> str:
-    """What counts as one address: an IPv4 address, or a network of IPv6 addresses."""
+    """The IPv4 address, or the network of the IPv6 address: both count as one address."""
     try:
         found = ipaddress.ip_address(address.partition("%")[0])
     except ValueError:
@@ -125,18 +125,19 @@ def _group(address: str) -> str:
     return str(ipaddress.ip_network((found, IPV6_NETWORK_BITS), strict=False))
 
 
-def room_for_connections(wanted: int, backlog: int) -> int:
-    """How many connections this process can hold, at most `wanted`; raises its limit of files.
+def room_for_connections(requested: int, backlog: int) -> int:
+    """Return how many connections this process can hold, at most `requested`.
 
-    backlog: connections that are accepted at once, before any of them is counted.
+    Raises the process's limit of open files as far as needed and allowed.
+    backlog: connections that can be accepted at once, before any of them is counted.
     """
     others = backlog + FILES_FOR_OTHERS
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    # Some systems name no limit, and yet refuse to set none.
-    files = wanted + others if hard == resource.RLIM_INFINITY else hard
+    # Some systems report no limit but refuse to set RLIM_INFINITY, so set a number.
+    files = requested + others if hard == resource.RLIM_INFINITY else hard
     if soft != resource.RLIM_INFINITY and soft < files:
         resource.setrlimit(resource.RLIMIT_NOFILE, (files, hard))
-    room = max(1, min(wanted, files - others))
-    if room < wanted:
+    room = max(1, min(requested, files - others))
+    if room < requested:
         log.warning("%d connections at most: this process may open only %d files", room, files)
     return room

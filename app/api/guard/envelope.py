@@ -1,4 +1,4 @@
-"""Around every request: its id, its log line, security headers, and the last net for failures."""
+"""The outermost middleware: request ids, log lines, security headers, unexpected exceptions."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ SECURITY_HEADERS = {
     "Cross-Origin-Resource-Policy": "same-origin",
     "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'; base-uri 'none'",
 }
-"""Sent with every answer; an answer that needs another policy sets its own."""
+"""Headers of every answer. An answer that needs another policy sets its own."""
 
 
 class CutOff(Exception):
-    """An answer ended before it was whole; status: what is logged. The connection is closed."""
+    """An answer ends early, and its connection is closed. status: the status for the log."""
 
     def __init__(self, status: int) -> None:
         self.status = status
 
 
 class Envelope:
-    """ASGI middleware, the outermost one of ours."""
+    """ASGI middleware. It wraps all other middlewares of Kinedex."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Give the request an id, log it when it has been answered."""
+        """Give the request an id, and log the request when it has been answered."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -66,9 +66,9 @@ class Envelope:
         except CutOff as cut:
             # The server closes the connection, so that the client sees an unfinished answer.
             status = cut.status
-        except Exception as error:  # noqa: BLE001 - the last net: nothing may pass it
+        except Exception as error:  # noqa: BLE001 - every other exception becomes a 500
             response = answer_unexpected(error)
-            if not status:
+            if not status:  # else the answer has begun, and a second one cannot be sent
                 await response(scope, receive, send_with_headers)
         finally:
             log_request(scope, status, time.perf_counter() - started)

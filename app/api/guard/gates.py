@@ -1,11 +1,11 @@
-"""Gates: how many calls of a kind work at once, how many wait, and for how long.
+"""Gates: limits on how many calls of a kind work at once, how many wait, and for how long.
 
-A call of a gate's kind takes a slot before its thread starts and gives it back when it is
-done. Who finds the waiting room full is refused at once (TooBusy). So calls that take long
-never hold the threads that quick ones need, and a queue never grows without bound.
+A call takes a slot of the gate for its kind before its thread starts, and gives the slot back
+when it is done. If the queue of the gate is full, the call is refused at once (TooBusy). So long
+calls never use the threads that quick calls need, and no queue grows without bound.
 
-While a call waits and works, its deadline runs (`app.deadline`), and we listen for the
-client: when it leaves, the call loses its place in the queue, or its work is told to stop.
+While a call waits and works, its deadline runs (`app.deadline`), and we listen for the client.
+If the client leaves, the call is removed from the queue, or its deadline stops its work.
 
 The gates of an application are used by its one event loop only, so there are no locks.
 """
@@ -27,26 +27,26 @@ from app.api.failures.problems import TooBusy
 from app.deadline import Deadline, within
 from app.errors import ClientLeft, DeadlineExceeded
 
-MOST_HEAVY = 16
-"""Heavy calls at once, however many cores there are: Python runs them one after the other."""
-FEWEST_HEAVY = 2
-"""So that one that waits for a child process, or for the disk, does not stop all others."""
-WAITING_PER_HEAVY = 16
-"""Heavy calls that wait for each one that works."""
-QUICK, CHANGES = 16, 8
+MAX_HEAVY = 16
+"""Heavy calls at once, even with more cores: threads of Python compute one after the other."""
+MIN_HEAVY = 2
+"""Heavy calls at once, even with one core: one may only wait for a child process or the disk."""
+MAX_WAITING_PER_HEAVY = 16
+"""Length of the queue of heavy calls, for each slot."""
+MAX_QUICK, MAX_CHANGES = 16, 8
 """Quick calls, and calls that write, at once."""
-WAITING = 256
-"""Quick calls that wait, and as many that write."""
-MOST_STREAMS = 32
-"""Answers in pieces that are open at once: each holds its motion in memory."""
-MOST_FOLLOWERS = 256
-"""Jobs that are followed at once."""
+MAX_WAITING = 256
+"""Length of the queue of quick calls, and of the queue of calls that write."""
+MAX_STREAMS = 32
+"""Answers in pieces at once: each holds its motion in memory."""
+MAX_FOLLOWERS = 256
+"""Clients that follow a job (`GET /v1/jobs/{id}/events`) at once."""
 SPARE_THREADS = 16
-"""For what is done before a gate and behind it: keys are checked, pieces of files are sent."""
+"""Threads for work outside the gates: checks of keys, pieces of files."""
 
 
 class Slot:
-    """A place at a gate, for one call; it may be given back and taken again meanwhile."""
+    """The slot of one call at a gate. The call may give it back and take it again."""
 
     def __init__(self, gate: Gate, deadline: Deadline, left: asyncio.Future[None]) -> None:
         self._gate = gate
@@ -55,7 +55,7 @@ class Slot:
         self._is_held = False
 
     async def take(self, *, again: bool = False) -> None:
-        """Wait for a place. `again`: the call has begun, and cannot be refused any more.
+        """Wait for a slot. `again`: the call has begun, so a full queue does not refuse it.
 
         Raises TooBusy, DeadlineExceeded, ClientLeft.
         """
@@ -64,20 +64,23 @@ class Slot:
             self._is_held = True
 
     async def share(self) -> None:
-        """Let one that waits go first. Raises as `take`."""
+        """Let a waiting call go first, if there is one. Raises what `take` raises."""
         if self._gate.waiting:
             self.give_back()
             await self.take(again=True)
 
     def give_back(self) -> None:
-        """Let the next one in; nothing where no place is held."""
+        """Give the slot to the next call. Does nothing if the slot is not held."""
         if self._is_held:
             self._is_held = False
             self._gate.leave()
 
 
 class Gate:
-    """So many calls work at once, and so many wait for their turn, in the order they came."""
+    """A queue before a fixed number of slots.
+
+    slots: calls that work at once; waiting: calls that may wait, in the order in which they came.
+    """
 
     def __init__(self, name: str, slots: int, waiting: int) -> None:
         self.name = name
@@ -88,13 +91,13 @@ class Gate:
 
     @property
     def waiting(self) -> int:
-        """Calls that wait."""
+        """Number of calls that wait."""
         return len(self._turns)
 
     async def enter(
         self, deadline: Deadline, left: asyncio.Future[None], *, again: bool = False
     ) -> None:
-        """Take a slot, after those that came before. left: is done when the client leaves.
+        """Take a slot after the calls that came before. left: done when the client has left.
 
         Raises TooBusy, DeadlineExceeded, ClientLeft.
         """
@@ -108,27 +111,29 @@ class Gate:
         try:
             await _first_of(turn, left, deadline.remaining())
         except BaseException:
+            # Also asyncio.CancelledError: a slot that nobody uses would be lost for good.
             self._forgo(turn)
             raise
 
     def leave(self) -> None:
-        """Give a slot to the one that waits longest, or back."""
+        """Give the slot to the call that waits longest, or free it if no call waits."""
         if self._turns:
             self._turns.popleft().set_result(None)
         else:
             self._free += 1
 
     def _forgo(self, turn: asyncio.Future[None]) -> None:
-        if turn.done():
+        if turn.done():  # the slot was given to this call before it gave up
             self.leave()
         else:
             self._turns.remove(turn)
 
     @asynccontextmanager
     async def admitted(self, receive: Receive, seconds: float) -> AsyncIterator[None]:
-        """Hold a slot for the block, whose work has a deadline and ends when the client leaves.
+        """Hold a slot for the block. Its work ends at the deadline, or when the client leaves.
 
-        receive: of a request whose body was read. Raises TooBusy, DeadlineExceeded, ClientLeft.
+        receive: that of a request whose body was read; seconds: the time limit.
+        Raises TooBusy, DeadlineExceeded, ClientLeft.
         """
         deadline = Deadline(seconds)
         async with listening(receive, deadline) as left:
@@ -138,21 +143,21 @@ class Gate:
                 with within(deadline):
                     yield
             finally:
-                # What still works in a thread now, because this task was cancelled, is to stop.
+                # If this task was cancelled, its work may still run in a thread: stop it.
                 deadline.abandon()
                 slot.give_back()
 
 
 class Counter:
-    """So many at once, and no more."""
+    """A limit without a queue: at most `limit` blocks run at once."""
 
-    def __init__(self, name: str, most: int) -> None:
+    def __init__(self, name: str, limit: int) -> None:
         self._name = name
-        self._free = most
+        self._free = limit
 
     @asynccontextmanager
     async def one(self) -> AsyncIterator[None]:
-        """Count as one for the block. Raises TooBusy."""
+        """Count the block as one. Raises TooBusy if the limit is reached."""
         if not self._free:
             raise TooBusy(f"Too many {self._name}; try again shortly.")
         self._free -= 1
@@ -164,11 +169,11 @@ class Counter:
 
 @dataclass(frozen=True)
 class Gates:
-    """What stands before the calls of an application; seconds: a call's time limit.
+    """The gates and limits of an application.
 
-    heavy: what computes for long, searches before all; quick: what reads a few rows; changes:
-    what writes, and may wait for other writers; streams: answers that are sent in pieces;
-    followers: of jobs.
+    heavy: calls that compute for long, mainly searches; quick: calls that read a few rows;
+    changes: calls that write, and may wait for other writers; streams: answers in pieces;
+    followers: clients that follow a job; seconds: the time limit of a call.
     """
 
     heavy: Gate
@@ -180,27 +185,27 @@ class Gates:
 
     @classmethod
     def of(cls, seconds: float) -> Gates:
-        """The gates for this machine's cores."""
+        """Make the gates for the number of cores of this machine."""
         cores = len(os.sched_getaffinity(0))
-        heavy = min(max(cores, FEWEST_HEAVY), MOST_HEAVY)
+        heavy = min(max(cores, MIN_HEAVY), MAX_HEAVY)
         return cls(
-            heavy=Gate("heavy", heavy, WAITING_PER_HEAVY * heavy),
-            quick=Gate("quick", QUICK, WAITING),
-            changes=Gate("changing", CHANGES, WAITING),
-            streams=Counter("answers are being read", MOST_STREAMS),
-            followers=Counter("jobs are being followed", MOST_FOLLOWERS),
+            heavy=Gate("heavy", heavy, MAX_WAITING_PER_HEAVY * heavy),
+            quick=Gate("quick", MAX_QUICK, MAX_WAITING),
+            changes=Gate("changing", MAX_CHANGES, MAX_WAITING),
+            streams=Counter("answers are being read", MAX_STREAMS),
+            followers=Counter("jobs are being followed", MAX_FOLLOWERS),
             seconds=seconds,
         )
 
     @property
     def threads(self) -> int:
-        """Threads that are enough for all who are let in, and some more."""
+        """Number of threads: enough for all slots and for the work outside the gates."""
         return self.heavy.slots + self.quick.slots + self.changes.slots + SPARE_THREADS
 
 
 @asynccontextmanager
 async def listening(receive: Receive, deadline: Deadline) -> AsyncIterator[asyncio.Future[None]]:
-    """Abandon the work of a deadline as soon as the client leaves; then what is given is done."""
+    """Abandon the work of a deadline when the client leaves. Then the yielded future is done."""
     left = asyncio.ensure_future(_until_left(receive, deadline))
     try:
         yield left
@@ -209,7 +214,7 @@ async def listening(receive: Receive, deadline: Deadline) -> AsyncIterator[async
 
 
 async def _until_left(receive: Receive, deadline: Deadline) -> None:
-    # A body that nobody asked for and that is too large ends the listening, not the call.
+    # If the call does not read its body, a too large body ends the listening, not the call.
     with suppress(HTTPException):
         while (await receive())["type"] != "http.disconnect":
             pass
@@ -227,5 +232,5 @@ async def _first_of(turn: asyncio.Future[None], left: asyncio.Future[None], seco
     if left.done():
         raise ClientLeft
     raise DeadlineExceeded(
-        "The call waited in vain for its turn: the service is too busy; try again shortly."
+        "The call waited too long for its turn: the service is too busy; try again shortly."
     )

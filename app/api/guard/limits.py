@@ -1,4 +1,7 @@
-"""A limit on the size of a request's body, held by Content-Length and while streaming."""
+"""A limit on the size of a request's body.
+
+It checks the Content-Length first, and counts the bytes that arrive.
+"""
 
 from __future__ import annotations
 
@@ -13,34 +16,35 @@ from app.api.guard.paths import path_of
 from app.config import Settings
 from app.errors import TooLarge
 
-FORM_BYTES = 2**20
-"""What a form may hold beside its file."""
-JSON_BYTES = 2**20
-"""The largest body that is no form with files: while JSON is parsed, nothing else is answered."""
-MOST_DRAINED = 16 * 2**20
-"""Bytes read and dropped after a refusal: many clients send all before they listen."""
+MAX_FORM_TEXT_BYTES = 2**20
+"""Bytes of a form besides its file."""
+MAX_JSON_BYTES = 2**20
+"""Bytes of a JSON body: while JSON is parsed, the process answers nothing else."""
+MAX_DRAINED_BYTES = 16 * 2**20
+"""Bytes read and dropped after a refusal: many clients read the answer only after they have sent
+their whole body."""
 
 
 class BodyLimit:
-    """ASGI middleware: bodies over the limit of their path are refused with 413."""
+    """ASGI middleware: it refuses a body over the limit of its path with 413."""
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
         self.app = app
         self._limits = {
-            "/v1/imports": settings.max_archive_bytes + FORM_BYTES,
-            "/v1/clips": settings.max_upload_bytes + FORM_BYTES,
-            "/v1/search/motion": settings.max_upload_bytes + FORM_BYTES,
-            "/v1/recognize": settings.max_upload_bytes + FORM_BYTES,
+            "/v1/imports": settings.max_archive_bytes + MAX_FORM_TEXT_BYTES,
+            "/v1/clips": settings.max_upload_bytes + MAX_FORM_TEXT_BYTES,
+            "/v1/search/motion": settings.max_upload_bytes + MAX_FORM_TEXT_BYTES,
+            "/v1/recognize": settings.max_upload_bytes + MAX_FORM_TEXT_BYTES,
         }
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer 413 at once where Content-Length is over the limit, else count what comes."""
+        """Answer 413 at once if Content-Length is over the limit, else count the bytes."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
         path = path_of(scope)
         is_form = media_type(Headers(scope=scope)) == FORM
-        limit = self._limits.get(path, JSON_BYTES) if is_form else JSON_BYTES
+        limit = self._limits.get(path, MAX_JSON_BYTES) if is_form else MAX_JSON_BYTES
         if _declares_more_than(limit, scope):
             await _refuse(limit, scope, receive, send)
         else:
@@ -49,10 +53,12 @@ class BodyLimit:
 
 def _declares_more_than(limit: int, scope: Scope) -> bool:
     declared = Headers(scope=scope).get("content-length", "0")
+    # 20 digits are enough for any limit. int() raises ValueError for thousands of digits.
     return not declared.isdecimal() or int(declared[:20]) > limit
 
 
 async def _refuse(limit: int, scope: Scope, receive: Receive, send: Send) -> None:
+    # This client sends its body only after we ask for it, so there is nothing to drain.
     waits = Headers(scope=scope).get("expect", "").lower() == "100-continue"
 
     async def send_then_drain(message: Message) -> None:
@@ -89,7 +95,7 @@ def _too_large(limit: int) -> TooLarge:
 
 async def _drain(receive: Receive) -> None:
     dropped, more = 0, True
-    while more and dropped < MOST_DRAINED:
+    while more and dropped < MAX_DRAINED_BYTES:
         message = await receive()
         more = message["type"] == "http.request" and message.get("more_body", False)
         dropped += len(message.get("body", b""))

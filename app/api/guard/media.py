@@ -8,7 +8,7 @@ FORM = "multipart/form-data"
 
 
 def media_type(headers: Mapping[str, str]) -> str:
-    """The body's media type in lower case without parameters; empty where there is none."""
+    """Return the body's media type in lower case without parameters, "" if there is none."""
     return headers.get("content-type", "").partition(";")[0].strip().lower()
 
 

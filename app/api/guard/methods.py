@@ -1,7 +1,7 @@
-"""HTTP methods that no route has are refused before they are counted.
+"""Refuses unknown HTTP methods before the metrics count the request.
 
-Any word may stand where the method stands: as a label of the metrics, each would add lines to
-them for good.
+A client may send any word as its method. Each word would become a label of the metrics and stay
+there.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ from app.api.failures.response import respond
 METHODS = frozenset(
     {"CONNECT", "DELETE", "GET", "HEAD", "OPTIONS", "PATCH", "POST", "PUT", "TRACE"}
 )
-"""Those of RFC 9110 and RFC 5789."""
+"""The methods of RFC 9110 and RFC 5789."""
 
 
 class KnownMethods:
-    """ASGI middleware: answers 501 to a method that is none of METHODS."""
+    """ASGI middleware: it answers 501 to a method that is not in METHODS."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on what has a known method."""
+        """Call the application if the method is known."""
         if scope["type"] != "http" or scope["method"] in METHODS:
             await self.app(scope, receive, send)
             return

@@ -1,14 +1,14 @@
 """Without API keys, only this machine's own pages and programs may call.
 
-A page of another site, opened in the user's browser, can send requests to 127.0.0.1 too. What
-tells it apart:
+A page of another site, opened in the user's browser, can send requests to 127.0.0.1 too. Three
+headers show this:
 
-- `Host`: a name of the other site can be made to point at this machine (DNS rebinding), and then
-  the browser believes that the answers are that site's. So only loopback's names are taken, each
-  exactly as it is written, with any port, since ports are forwarded.
-- `Origin`: where a browser sends it, it must be the address that was called.
-- `Sec-Fetch-Site`: a browser says whether the request comes from another site. Then only a page
-  may be opened, as one follows a link.
+- `Host`: another site can make its name point at this machine (DNS rebinding). Then the browser
+  treats our answers as answers of that site. So we accept only the exact names of loopback, with
+  any port, because a port may be forwarded.
+- `Origin`: if the browser sends it, it must be the called address.
+- `Sec-Fetch-Site`: the browser says whether the request comes from another site. From another
+  site, a user may only open a page by a link.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ from app.errors import Forbidden
 _HOST = re.compile(
     r"(?:localhost|127\.0\.0\.1|\[::1\])(?::(?P<port>[0-9]{1,5}))?", re.ASCII | re.IGNORECASE
 )
-LARGEST_PORT = 65_535
+MAX_PORT = 65_535
 OWN_SITES = frozenset({"same-origin", "none"})
-"""`none` is the user's own doing: an address that was typed, a bookmark."""
+"""The value is `none` if the user typed the address or opened a bookmark."""
 PAGES = frozenset({"", "/docs"})
-"""What a link on another site may open."""
+"""Paths that a link on another site may open."""
 
 
 def refuse_other_sites(scope: Scope) -> None:
-    """Raises Forbidden where a request may come from a page of another site."""
+    """Raises Forbidden if a request may come from a page of another site."""
     headers = Headers(scope=scope)
     host = _own_host(headers)
     own = f"{scope['scheme']}://{host}"
@@ -46,7 +46,7 @@ def refuse_other_sites(scope: Scope) -> None:
 def _own_host(headers: Headers) -> str:
     hosts = headers.getlist("host")
     found = _HOST.fullmatch(hosts[0]) if len(hosts) == 1 else None
-    if found is None or not 1 <= int(found["port"] or 1) <= LARGEST_PORT:
+    if found is None or not 1 <= int(found["port"] or 1) <= MAX_PORT:
         raise Forbidden(
             "Without API keys, only this machine's own addresses are answered:"
             " localhost, 127.0.0.1 and [::1]."

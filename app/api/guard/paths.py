@@ -1,4 +1,4 @@
-"""The path of a request as routes know it."""
+"""The path of a request as the routes define it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,6 @@ from starlette.types import Scope
 
 
 def path_of(scope: Scope) -> str:
-    """Without the prefix that a proxy puts before it, and without a closing slash; "/" is ""."""
+    """Return the path without a proxy's prefix and without a trailing slash; "/" becomes ""."""
     path: str = scope["path"]
     return path.removeprefix(scope.get("root_path", "")).rstrip("/")

@@ -1,8 +1,8 @@
-"""HTTP/1.1 on a connection whose client may be slow, or send what is no HTTP.
+"""HTTP/1.1 with limits for clients that are slow, or do not send HTTP.
 
-uvicorn bounds the size of a request's headers, but not the time that they take, nor the number
-of connections, nor the time in which an answer is read. This adds all three, and answers what is
-wrong with a problem (RFC 9457).
+uvicorn limits the size of a request's headers. It does not limit the time in which they arrive,
+the number of connections, or the time in which a client reads an answer. This module adds these
+three limits. It answers a broken request with a problem (RFC 9457).
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ from app.api.guard.envelope import SECURITY_HEADERS
 from app.api.guard.reader import Reader
 
 HEADER_SECONDS = 10.0
-"""For a request's headers to arrive, from the connection's start or the request's first byte."""
+"""Time for the headers of a request, from the start of the connection or the first byte."""
 LINGER_SECONDS = 5.0
-"""For the last bytes of an answer to be taken, after the connection was closed on our side."""
+"""Time in which a client can read the end of an answer after we closed the connection."""
 
 
 class GuardedProtocol(H11Protocol):
-    """uvicorn's protocol with a time limit for headers, and counted among `connections`."""
+    """uvicorn's protocol with a time limit for headers. `connections` counts each instance."""
 
     def __init__(self, *args: Any, connections: Connections, **named: Any) -> None:
         super().__init__(*args, **named)
@@ -43,10 +43,10 @@ class GuardedProtocol(H11Protocol):
         self._has_begun = False
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Count the connection and wait for its first request, or refuse it."""
+        """Count the connection and wait for its first request, or refuse the connection."""
         super().connection_made(transport)
         self._reader = Reader(
-            transport, stalls=self._stalls, resumes=self._resumes, is_gone=self.give_up
+            transport, on_stall=self._stalls, on_resume=self._resumes, on_gone=self.give_up
         )
         address = self.client[0] if self.client else ""
         if not self._counted.enter(self, address):
@@ -55,31 +55,31 @@ class GuardedProtocol(H11Protocol):
         self._time_headers()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Count the connection no more."""
+        """Stop counting the connection."""
         self._counted.leave(self)
         self._stop_timer()
         self._reader.stop()
         super().connection_lost(exc)
 
     def pause_writing(self) -> None:
-        """More waits than the client takes: see whether it takes anything."""
+        """The client reads slower than we send: watch whether it reads anything."""
         super().pause_writing()
         self._reader.watch()
 
     def resume_writing(self) -> None:
-        """The client has taken most of what waited."""
+        """The client has read most of the waiting bytes."""
         self._reader.moves()
         super().resume_writing()
 
     def data_received(self, data: bytes) -> None:
-        """The first byte of a request starts the time for its headers."""
+        """Start the time for the headers at the first byte of a request."""
         self._has_begun = True
         if self._waits and self._header_timer is None:
             self._time_headers()
         super().data_received(data)
 
     def handle_events(self) -> None:
-        """Headers that are complete stop the time."""
+        """Stop the time for the headers when they are complete."""
         super().handle_events()
         if self._waits and self.cycle is not None and not self.cycle.response_complete:
             self._waits = False
@@ -94,7 +94,7 @@ class GuardedProtocol(H11Protocol):
         super().on_response_complete()
 
     def timeout_keep_alive_handler(self) -> None:
-        """Close an idle connection; one whose client still reads is not idle."""
+        """Close an idle connection. It is not idle while the client still reads an answer."""
         if self._reader.has_all:
             super().timeout_keep_alive_handler()
             self._close()
@@ -104,11 +104,12 @@ class GuardedProtocol(H11Protocol):
             )
 
     def give_up(self) -> None:
-        """Close at once: another client needs the place."""
+        """Close at once: the client is gone, or another client needs the connection."""
         self.transport.abort()
 
     def send_400_response(self, msg: str) -> None:
-        """Answer what is no HTTP; nothing more is read from this client."""
+        """Answer bytes that are not HTTP. Nothing more is read from this client."""
+        # A call that is being answered sees that its client has left.
         if self.cycle is not None and not self.cycle.response_complete:
             self.cycle.disconnected = True
             self.cycle.message_event.set()
@@ -135,10 +136,12 @@ class GuardedProtocol(H11Protocol):
         else:
             self._close()
 
-    def _answer(self, told: dict[str, Any], headers: dict[str, str] | None = None) -> None:
-        """Send a problem and close; only close where an answer has begun already."""
+    def _answer(self, members: dict[str, Any], headers: dict[str, str] | None = None) -> None:
+        """Send a problem and close. If an answer has begun already, only close."""
         if self.conn.our_state in (h11.IDLE, h11.SEND_RESPONSE):
-            answer = respond(told, {**SECURITY_HEADERS, "Connection": "close", **(headers or {})})
+            answer = respond(
+                members, {**SECURITY_HEADERS, "Connection": "close", **(headers or {})}
+            )
             start = h11.Response(
                 status_code=answer.status_code,
                 reason=HTTPStatus(answer.status_code).phrase.encode(),

@@ -1,8 +1,8 @@
-"""Whether a client takes what is sent to it.
+"""Watches whether a client reads its answer.
 
-What an answer holds waits in the connection's buffer until the client has room for it. A client
-that takes nothing would hold its connection for good. So while anything waits, we look at the
-buffer again and again, and tell when it has not moved for some time.
+The bytes of an answer wait in the connection's buffer until the client reads them. A client that
+reads nothing would hold its connection forever. So while bytes wait, we look at the buffer
+regularly, and report when it has not become smaller for some time.
 """
 
 from __future__ import annotations
@@ -12,29 +12,30 @@ import time
 from collections.abc import Callable
 
 LOOK_SECONDS = 2.0
+"""Between two looks at the buffer."""
 STALLED_SECONDS = 10.0
-"""Without progress, after which the connection may be given up for another client."""
+"""Time without progress after which the connection may be closed for another client."""
 GONE_SECONDS = 60.0
-"""Without progress, after which the connection is given up in any case."""
+"""Time without progress after which the connection is closed in any case."""
 
 
 class Reader:
-    """The client of one connection, as it reads.
+    """Watches the client of one connection.
 
-    stalls: called at every look while it has stalled; resumes: once, when it goes on; is_gone:
-    called once.
+    on_stall: called once when the client has read nothing for STALLED_SECONDS; on_resume: called
+    once when it reads again; on_gone: called once after GONE_SECONDS.
     """
 
     def __init__(
         self,
         transport: asyncio.Transport,
         *,
-        stalls: Callable[[], None],
-        resumes: Callable[[], None],
-        is_gone: Callable[[], None],
+        on_stall: Callable[[], None],
+        on_resume: Callable[[], None],
+        on_gone: Callable[[], None],
     ) -> None:
         self._transport = transport
-        self._stalls, self._resumes, self._is_gone = stalls, resumes, is_gone
+        self._on_stall, self._on_resume, self._on_gone = on_stall, on_resume, on_gone
         self._timer: asyncio.TimerHandle | None = None
         self._left = 0
         self._moved_at = 0.0
@@ -42,25 +43,25 @@ class Reader:
 
     @property
     def has_all(self) -> bool:
-        """Whether nothing waits to be taken."""
+        """Whether the client has read everything."""
         return self._transport.get_write_buffer_size() == 0
 
     def watch(self) -> None:
-        """Look at the buffer from now on, until it is empty."""
+        """Look at the buffer regularly until it is empty."""
         if self._timer is None and not self.has_all:
             self._left = self._transport.get_write_buffer_size()
             self._moved_at = time.monotonic()
             self._look_later()
 
     def moves(self) -> None:
-        """The client has taken much of what waited."""
+        """Note that the client has read some of the waiting bytes."""
         self._moved_at = time.monotonic()
         if self._has_stalled:
             self._has_stalled = False
-            self._resumes()
+            self._on_resume()
 
     def stop(self) -> None:
-        """The connection is closed."""
+        """Stop watching: the connection is closed."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
@@ -78,9 +79,9 @@ class Reader:
         if not left:
             return
         if still >= GONE_SECONDS:
-            self._is_gone()
+            self._on_gone()
             return
         if still >= STALLED_SECONDS and not self._has_stalled:
             self._has_stalled = True
-            self._stalls()
+            self._on_stall()
         self._look_later()

@@ -1,7 +1,7 @@
-"""How many bodies may be received at once, so that their files do not fill the disk.
+"""A limit on the bodies that are received at once, so that their files do not fill the disk.
 
-Where no slot is free, the slowest body leaves for a new one, if it is slow (see `arrival`): slow
-clients hold no slot for longer than a moment while others want one.
+If no slot is free, the slowest body loses its slot to the new body, if it is slow (see
+`arrival`). So slow clients do not block the slots while other clients wait.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from app.api.guard.arrival import Arrival
 
 
 class Slots:
-    """Slots for bodies of one kind; used by one event loop only, so there is no lock."""
+    """Slots for bodies of one kind. Only one event loop uses them, so there is no lock."""
 
-    def __init__(self, most: int) -> None:
-        self._most = most
+    def __init__(self, limit: int) -> None:
+        self._limit = limit
         self._held: set[Arrival] = set()
 
     @contextmanager
     def one(self, arrival: Arrival) -> Iterator[None]:
-        """Hold a slot for the block. Raises TooBusy where none is free and no body is slow."""
-        if len(self._held) >= self._most:
+        """Hold a slot for the block. Raises TooBusy if no slot is free and no body is slow."""
+        if len(self._held) >= self._limit:
             self._free_one()
         self._held.add(arrival)
         try:

@@ -1,10 +1,10 @@
-"""Bodies must arrive at a least pace, and only so many are received at once.
+"""A minimum rate for bodies, and a limit on the bodies that are received at once.
 
-There are slots of three kinds, so that one kind never waits for another: forms that are stored
-(clips, imports), forms that are asked about (searches, recognition), and all other bodies, which
-are small. A body that has arrived whole when it is asked for needs no slot.
+There are three kinds of slots, so that no kind waits for another: forms to be stored (clips,
+imports), forms with a query (searches, recognition), and all other bodies, which are small. A body
+that has arrived completely when the call reads it needs no slot.
 
-What is refused here is an HTTPException, since FastAPI passes only those through its reader.
+A refusal is an HTTPException, because FastAPI's reader of bodies passes only those on.
 """
 
 from __future__ import annotations
@@ -23,25 +23,25 @@ from app.api.guard.paths import path_of
 from app.api.guard.slots import Slots
 from app.config import Settings
 
-STORED = frozenset({"/v1/clips", "/v1/imports"})
-"""The calls whose forms are stored; the forms of all others are only asked about."""
-SMALL_BODIES = 64
+STORED_FORMS = frozenset({"/v1/clips", "/v1/imports"})
+"""The calls whose forms are stored. The forms of all other calls are queries."""
+MAX_SMALL_BODIES = 64
 """JSON bodies received at once."""
 MOMENT_SECONDS = 0.5
-"""A body that arrives whole within this time needs no slot."""
+"""A body that arrives completely within this time needs no slot."""
 
 
 class SlowBodies:
-    """ASGI middleware: answers 408 to a slow body, 503 where too many are being received."""
+    """ASGI middleware: it answers 408 to a slow body, 503 if too many bodies are received."""
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
         self.app = app
         self._stored = Slots(settings.max_concurrent_uploads)
-        self._asked = Slots(settings.max_concurrent_uploads)
-        self._small = Slots(SMALL_BODIES)
+        self._queries = Slots(settings.max_concurrent_uploads)
+        self._small = Slots(MAX_SMALL_BODIES)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Watch the body of a request until it has come."""
+        """Watch the body of a request until it has arrived."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -53,11 +53,11 @@ class SlowBodies:
         if media_type(Headers(scope=scope)) != FORM:
             return self._small
         path = path_of(scope)
-        return self._stored if path in STORED else self._asked
+        return self._stored if path in STORED_FORMS else self._queries
 
 
 class _Body:
-    """One request's body, and whether its answer has begun."""
+    """The body of one request. It also notes whether the answer has begun."""
 
     def __init__(self, receive: Receive, send: Send, slots: Slots, slot: ExitStack) -> None:
         self._receive, self._send = receive, send
@@ -75,6 +75,7 @@ class _Body:
         try:
             message = await self._next()
         except TooSlow:
+            # The answer has begun, so a problem cannot be sent any more.
             if self._is_answered:
                 return {"type": "http.disconnect"}
             raise HTTPException(408, "The body came too slowly.", {"Connection": "close"}) from None
@@ -96,7 +97,7 @@ class _Body:
         return message
 
     async def _at_once(self) -> Message | None:
-        """The first piece, None where it has not come within a moment."""
+        """Return the first piece, or None if it does not come within MOMENT_SECONDS."""
         try:
             async with asyncio.timeout(MOMENT_SECONDS):
                 return await self._receive()

@@ -1,1 +1,1 @@
-"""One module a noun: the calls of DESIGN 8, each a thin line from HTTP to a service."""
+"""The routes, one module for each kind of object. Each route calls one function of a service."""

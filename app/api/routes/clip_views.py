@@ -1,4 +1,4 @@
-"""Looking at a clip: its motion, descriptor and picture."""
+"""Views of a clip: its motion, descriptor and picture."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from app.api.deps import Lib, reads
 from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.views import Descriptor, Motion, MotionQueryParameters
-from app.api.streams import OCTETS, as_json, as_octets, wants_octets
+from app.api.streams import OCTETS, as_json, as_octets, prefers_octets
 from app.services.views import views
 
 router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
@@ -34,16 +34,16 @@ OCTET_ANSWER = {"content": {OCTETS: _OCTETS}, "headers": {"X-Shape": _SHAPE}}
     },
 )
 def get_motion(
-    lib: Lib, request: Request, clip_id: ClipId, wanted: Annotated[MotionQueryParameters, Query()]
+    lib: Lib, request: Request, clip_id: ClipId, query: Annotated[MotionQueryParameters, Query()]
 ) -> Response:
     """Joint positions: JSON, or little-endian float32 for `Accept: application/octet-stream`."""
-    view = views.motion(lib, clip_id, wanted.fps, wanted.joints)
-    return as_octets(view) if wants_octets(request) else as_json(view)
+    view = views.motion(lib, clip_id, query.fps, query.joints)
+    return as_octets(view) if prefers_octets(request) else as_json(view)
 
 
 @router.get("/descriptor", dependencies=[heavy], responses=refusals(404, 409))
 def get_descriptor(lib: Lib, clip_id: ClipId) -> Descriptor:
-    """What the clip is compared by."""
+    """The arrays by which the clip is compared with others."""
     return Descriptor.of(views.descriptor(lib, clip_id))
 
 

@@ -37,7 +37,7 @@ async def _form(request: Request) -> tuple[ClipForm, dict[str, UploadFile]]:
 @router.post(
     "",
     status_code=202,
-    dependencies=[writes, Depends(_form), changes],  # let in when the form has come
+    dependencies=[writes, Depends(_form), changes],  # takes a slot after the form has arrived
     responses={
         200: {"model": ClipCreated, "description": "The same bytes were stored before."},
         **refusals(400, 413, 415, 503, 507),
@@ -49,7 +49,7 @@ def create_clip(
     sent: Annotated[tuple[ClipForm, dict[str, UploadFile]], Depends(_form)],
     response: Response,
 ) -> ClipCreated:
-    """Store a clip; a worker makes it `ready`, or `failed` with its reason."""
+    """Store a clip. A worker analyzes it: then it is `ready`, or `failed` with an `error`."""
     form, uploads = sent
     upload = required(uploads, "file")
     created = clips.create_clip(
@@ -72,7 +72,7 @@ def _recording(uploads: dict[str, UploadFile]) -> NewRecording | None:
 
 @router.get("", dependencies=[reads, quick], responses=refusals())
 def list_clips(lib: Lib, query: Annotated[ClipQuery, Query()]) -> ClipList:
-    """The clips that pass every filter; repeat a label parameter to mean any of its values."""
+    """List the clips that pass every filter. Repeat a label parameter to accept several values."""
     page = clips.list_clips(lib, query.as_filter(), query.sort, query.limit, query.cursor)
     return ClipList.model_validate(page)
 
@@ -89,7 +89,7 @@ def get_clip(lib: Lib, clip_id: ClipId) -> Clip:
     responses=refusals(400, 404, 409, 413, 415),
 )
 def update_clip(lib: Lib, clip_id: ClipId, patch: ClipPatch) -> Clip:
-    """Correct what is said of a clip."""
+    """Correct the labels or hints of a clip."""
     changed = clips.update_clip(lib, clip_id, patch.model_dump(exclude_unset=True))
     return Clip.model_validate(changed)
 
@@ -98,7 +98,7 @@ def update_clip(lib: Lib, clip_id: ClipId, patch: ClipPatch) -> Clip:
     "/{clip_id}", status_code=204, dependencies=[writes, changes], responses=refusals(404)
 )
 def delete_clip(lib: Lib, clip_id: ClipId) -> None:
-    """Forget a clip, its file and all that was computed from it."""
+    """Delete a clip, its file and everything that was computed from it."""
     clips.delete_clip(lib, clip_id)
 
 
@@ -112,7 +112,7 @@ def delete_clip(lib: Lib, clip_id: ClipId) -> None:
     },
 )
 def get_file(lib: Lib, clip_id: ClipId) -> FileResponse:
-    """The original file, as an attachment: it is foreign content and never shown as a page."""
+    """The original file, as an attachment: a browser must not show foreign content as a page."""
     return _attachment(clips.open_file(lib, clip_id), clip_id)
 
 
@@ -132,21 +132,21 @@ def get_audio(lib: Lib, clip_id: ClipId) -> FileResponse:
 
 @router.delete("/{clip_id}/audio", dependencies=[writes, changes], responses=refusals(404))
 def delete_audio(lib: Lib, clip_id: ClipId) -> Clip:
-    """Forget the recording that goes with a clip; the clip is analyzed again."""
+    """Delete the recording that goes with a clip. The clip is analyzed again."""
     return Clip.model_validate(clips.remove_recording(lib, clip_id))
 
 
 def _attachment(file: StoredFile, clip_id: str) -> FileResponse:
     try:
-        held = file.path.open("rb")
+        content = file.path.open("rb")
     except FileNotFoundError as error:
         raise ClipNotFound(f"The clip {clip_id} was deleted.") from error
-    # By its descriptor, so that it is sent whole though the clip be deleted meanwhile.
+    # We send the open descriptor: the file stays complete even if the clip is deleted meanwhile.
     return FileResponse(
-        f"/dev/fd/{held.fileno()}",
-        stat_result=os.fstat(held.fileno()),
+        f"/dev/fd/{content.fileno()}",
+        stat_result=os.fstat(content.fileno()),
         media_type="application/octet-stream",
         filename=file.name,
         content_disposition_type="attachment",
-        background=BackgroundTask(held.close),
+        background=BackgroundTask(content.close),
     )

@@ -1,4 +1,4 @@
-"""Whether the service lives and is ready; `/` leads to the documentation."""
+"""Health of the service: alive, ready. `/` redirects to the documentation."""
 
 from __future__ import annotations
 
@@ -19,22 +19,23 @@ _threads = OwnThreads(2)
 
 @router.get("/", include_in_schema=False, dependencies=[at_once])
 async def root(request: Request) -> RedirectResponse:
-    """To the documentation, until there are pages."""
+    """Redirect to the documentation."""
     return RedirectResponse(str(request.scope.get("root_path", "")).rstrip("/") + "/docs")
 
 
 @router.get("/livez", dependencies=[at_once])
 async def livez() -> Alive:
-    """The process answers, however busy its threads are. Needs no key."""
+    """Answer, even if all threads are busy. Needs no key."""
     return Alive()
 
 
 @router.get("/readyz", dependencies=[at_once], responses={503: refusals(503)[503]})
 async def readyz(lib: Lib) -> Ready:
-    """200 while every call can be answered. Needs no key.
+    """Answer 200 while every call can be answered. Needs no key.
 
-    503 before the index is loaded, and while the database is damaged, deleted or replaced, the
-    folder of files is missing or another one, or nothing can be written; `errors` names each.
+    The answer is 503 before the index is loaded, and while the database is damaged, deleted or
+    replaced, the folder of files is missing or replaced, or nothing can be written. `errors` names
+    every problem.
     """
     return await _threads.run(lambda: _look(lib))
 

@@ -35,7 +35,7 @@ async def _form(request: Request) -> UploadFile:
 def start_import(lib: Lib, archive: Annotated[UploadFile, Depends(_form)]) -> JobStarted:
     """Store every motion file of a ZIP.
 
-    `job.result` counts what came of them, `GET /v1/jobs/{id}/files` tells it of each.
+    `job.result` counts the outcomes. `GET /v1/jobs/{id}/files` lists the outcome of each file.
     """
     job = imports.start_import(lib, archive.file, archive.filename or "archive.zip")
     return JobStarted(job=Job.model_validate(job))

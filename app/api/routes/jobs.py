@@ -22,7 +22,7 @@ from app.store.jobs.record import JobRecord
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
 POLL_SECONDS = 0.25
-"""Between two looks at a job that is being followed."""
+"""Time between two reads of a job for a client that follows it."""
 
 
 @router.get("", dependencies=[reads, quick], responses=refusals())
@@ -40,10 +40,10 @@ def get_job(lib: Lib, job_id: JobId) -> Job:
 
 @router.get("/{job_id}/files", dependencies=[reads, quick], responses=refusals(404))
 def list_files(lib: Lib, job_id: JobId, query: Annotated[JobFileQuery, Query()]) -> JobFileList:
-    """What became of each file of an import, by path.
+    """The outcome of each file of an import, by path.
 
-    Of the paths that a manifest names and that are not there, the first 100 are listed; the
-    job's result counts them all. Other jobs have no files.
+    If a manifest names missing files, only the first 100 of them are listed. The job's result
+    counts all of them. Other jobs have no files.
     """
     page = jobs.list_files(lib, job_id, query.outcome, query.limit, query.cursor)
     return JobFileList.model_validate(page)
@@ -56,22 +56,22 @@ def list_files(lib: Lib, job_id: JobId, query: Annotated[JobFileQuery, Query()])
     response_model=Job,
     responses={
         **refusals(404, 409),
-        202: {"description": "The job was open: it is canceled, or stops soon."},
+        202: {"description": "The job had not ended: it is canceled, or stops soon."},
         204: {"description": "The job had ended: it is deleted, with the list of its files."},
     },
 )
 def cancel_or_delete_job(lib: Lib, job_id: JobId) -> Job | Response:
-    """Ask an open job to stop; delete one that has ended. No clip is deleted.
+    """Cancel an open job, or delete a job that has ended. No clip is deleted.
 
-    The newest fit stays (409), because it says what the models know. Ended jobs are also deleted
-    by themselves after some time (`KINEDEX_JOB_RETENTION_DAYS`).
+    The newest fit cannot be deleted (409), because it says what the models have learned. Kinedex
+    also deletes ended jobs after `KINEDEX_JOB_RETENTION_DAYS` days.
     """
     canceled = jobs.cancel_or_remove(lib, job_id)
     return Response(status_code=204) if canceled is None else Job.model_validate(canceled)
 
 
 def _existing(lib: Lib, job_id: JobId) -> JobRecord:
-    # Before the stream begins, while a 404 can still be answered.
+    # A dependency runs before the stream begins, when we can still answer 404.
     return jobs.get_job(lib, job_id)
 
 
@@ -84,26 +84,26 @@ def _existing(lib: Lib, job_id: JobId) -> JobRecord:
 async def follow_job(
     request: Request, lib: Lib, job: Annotated[JobRecord, Depends(_existing)]
 ) -> AsyncIterator[ServerSentEvent]:
-    """Follow a job: an event `progress` for each change, and `done` when it has ended.
+    """Follow a job: an event `progress` for each change, and `done` when the job has ended.
 
-    Every event's data is the Job. The stream ends after `done`; one that ends without it was
-    cut off by a restart and can be opened again.
+    The data of every event is the Job. The stream ends after `done`. If it ends without `done`,
+    the service was restarted, and the client can open the stream again.
     """
-    seen: JobRecord | None = None
-    now: JobRecord | None = job
-    while now is not None and now.is_open:
-        if now != seen:
-            yield ServerSentEvent(event="progress", data=Job.model_validate(now))
-        seen = now
+    sent: JobRecord | None = None
+    current: JobRecord | None = job
+    while current is not None and current.is_open:
+        if current != sent:
+            yield ServerSentEvent(event="progress", data=Job.model_validate(current))
+        sent = current
         await anyio.sleep(POLL_SECONDS)
         if request.app.state.stopping:
             return
-        now = await run_in_threadpool(_look, lib, job.id)
-    yield ServerSentEvent(event="done", data=Job.model_validate(now or job))
+        current = await run_in_threadpool(_job_if_any, lib, job.id)
+    yield ServerSentEvent(event="done", data=Job.model_validate(current or job))
 
 
-def _look(lib: Library, job_id: str) -> JobRecord | None:
+def _job_if_any(lib: Library, job_id: str) -> JobRecord | None:
     try:
         return jobs.get_job(lib, job_id)
-    except JobNotFound:
+    except JobNotFound:  # deleted meanwhile: it had ended
         return None

@@ -1,4 +1,4 @@
-"""A clip's keyposes: found, and named by people."""
+"""The keyposes of a clip: those that Kinedex finds, and those that a person names."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ from app.services.views import keyposes
 router = APIRouter(prefix="/v1/clips/{clip_id}/keyposes", tags=["clips"])
 
 _FOUND = """\
-Beats, keyposes and energy curves (Perera 2009, section 3), beside what a person named.
+Beats, keyposes and energy curves (Perera 2009, section 3), and the keyposes that a person named.
 
-Around each known beat the energy's minimum is a keypose if it is below `t1`, or more than
-`t2` below the maxima beside it; in the global energy first, else in the local one. Without
-known beats every rest of the body is looked at in that way. `t1` and `t2` are shares of the
-median local maximum of each curve, so that they fit calm and wild motions alike; where they
-are not given, those learned from the annotated clips of this library count, else usual ones.
-A motion that goes on without rest has its keyposes where it is slowest as seen from the waist:
-a walker's steps.
+Near each known beat (given, from a tempo or from a recording), the minimum of the energy is a
+keypose if it is below `t1`, or more than `t2` below the maxima on its two sides. The global energy
+is tried first, then the local energy. Without known beats, every rest of the body is tested in this
+way. `t1` and `t2` are shares of the median local maximum of each curve, so that they fit calm and
+wild motions. Without them, the thresholds are those learned from the annotated clips of this
+library, or else the defaults. A motion without rests has its keyposes where it is slowest relative
+to the waist, as in the steps of a walk.
 """
 _NAMED = """\
-Say where the clip's keyposes are. They are then what its segments, its low-dimensional motions
-and the next fit's thresholds are made of; `GET` shows them beside the found ones.
+Name the times of the clip's keyposes. Its segments, its low-dimensional motions and the thresholds
+of the next fit then use these keyposes. `GET` shows them beside the keyposes that Kinedex finds.
 """
 
 
 @router.get("", dependencies=[reads, heavy], responses=refusals(404, 409), description=_FOUND)
-def get_keyposes(lib: Lib, clip_id: ClipId, wanted: Annotated[KeyposeQuery, Query()]) -> Keyposes:
+def get_keyposes(lib: Lib, clip_id: ClipId, query: Annotated[KeyposeQuery, Query()]) -> Keyposes:
     """A clip's keyposes."""
     return Keyposes.of(
-        keyposes.view(lib, clip_id, wanted.method, wanted.t1, wanted.t2, weights=wanted.weights)
+        keyposes.view(lib, clip_id, query.method, query.t1, query.t2, weights=query.weights)
     )
 
 
@@ -53,5 +53,5 @@ def name_keyposes(lib: Lib, clip_id: ClipId, named: NamedKeyposes) -> KeyposesNa
 
 @router.delete("", status_code=204, dependencies=[writes, heavy], responses=refusals(404))
 def forget_named_keyposes(lib: Lib, clip_id: ClipId) -> None:
-    """Take away what was named: the found keyposes count again."""
+    """Delete the named keyposes. Then the keyposes that Kinedex finds are used again."""
     keyposes.name_keyposes(lib, clip_id, ())

@@ -10,20 +10,21 @@ from starlette.convertors import PathConvertor, register_url_convertor
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, quick
 from app.api.openapi import refusals
-from app.api.schemas.labels import LabelPage, NamedCounts, WordBeginning
+from app.api.schemas.labels import LabelPage, NamedCounts, WordListQuery
 from app.services.clips import labels, persons
 from app.services.recognition import suggestions
 from app.store.clips.labels import LabelKind
 
-MOST_WORDS, MOST_COMPLETIONS = 1000, 10
-"""Where a client does not say how many."""
+DEFAULT_WORDS, DEFAULT_COMPLETIONS = 1000, 10
+"""Limits if the client sends none."""
 
 
 class LabelConvertor(PathConvertor):
-    """The rest of a path, whatever it holds: labels may hold slashes, also at their end.
+    """The rest of a path as one label. A label may hold slashes, also at its end.
 
-    Unlike Starlette's `path` it takes line ends, to be refused as part of a label, and not
-    nothing at all, which is the list's address.
+    Starlette's `path` refuses line ends and accepts an empty rest. Here, a line end is part of the
+    label, so that the check of labels can refuse it. An empty rest is refused, because it is the
+    path of the list.
     """
 
     regex = "(?s:.+)"
@@ -35,7 +36,7 @@ router = APIRouter(prefix="/v1", tags=["labels"], dependencies=[reads], response
 
 @router.get("/persons", dependencies=[quick])
 def list_persons(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
-    """Persons and how many clips each has."""
+    """Persons, with the number of clips of each."""
     page = labels.page(lib, LabelKind.PERSON, query.limit, query.cursor)
     return NamedCounts.model_validate(page)
 
@@ -47,25 +48,27 @@ def list_persons(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
     responses=refusals(404),
 )
 def forget_person(lib: Lib, name: Annotated[str, Path(max_length=300)]) -> None:
-    """Take a person's label from all clips, and remove every model that holds them at once;
-    they are fitted anew in the background, and until then recognition, synthesis and
-    `metric-person` answer 409 `model_not_fitted` with `Retry-After`. The clips stay, and so do
-    names of files."""
+    """Remove a person's label from all clips, and delete every model that holds the person.
+
+    The models are fitted again in the background. Until then recognition, synthesis and
+    `metric-person` answer 409 `model_not_fitted` with `Retry-After`. The clips and the names of
+    their files stay.
+    """
     persons.forget_person(lib, name)
 
 
 @router.get("/tasks", dependencies=[quick])
 def list_tasks(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
-    """Tasks and how many clips each has."""
+    """Tasks, with the number of clips of each."""
     page = labels.page(lib, LabelKind.TASK, query.limit, query.cursor)
     return NamedCounts.model_validate(page)
 
 
 @router.get("/words", dependencies=[quick])
-def list_words(lib: Lib, query: Annotated[WordBeginning, Query()]) -> NamedCounts:
-    """Words and how many clips carry each, by name; completions of `q`, the likeliest first."""
+def list_words(lib: Lib, query: Annotated[WordListQuery, Query()]) -> NamedCounts:
+    """Words by name, with numbers of clips; or completions of `q`, the likeliest first."""
     if query.q is None:
-        page = labels.page(lib, LabelKind.WORD, query.limit or MOST_WORDS, query.cursor)
+        page = labels.page(lib, LabelKind.WORD, query.limit or DEFAULT_WORDS, query.cursor)
         return NamedCounts.model_validate(page)
-    found = suggestions.complete(lib, query.q, query.limit or MOST_COMPLETIONS)
+    found = suggestions.complete(lib, query.q, query.limit or DEFAULT_COMPLETIONS)
     return NamedCounts.model_validate({"items": found})

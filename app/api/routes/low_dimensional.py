@@ -1,4 +1,4 @@
-"""Clips drawn from few dimensions, and clips as pictures that move."""
+"""Low-dimensional motions of clips, and animated pictures of clips."""
 
 from __future__ import annotations
 
@@ -16,30 +16,31 @@ from app.api.schemas.low_dimensional import (
     LowDimensionalFigures,
     LowDimensionalQuery,
 )
-from app.api.streams import as_json, as_octets, wants_octets
+from app.api.streams import as_json, as_octets, prefers_octets
 from app.services.views import low_dimensional
 from app.services.views.animations import animation_svg
 
 router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
 
 DESCRIPTION = """\
-The motion projected onto the first K' principal axes of a few poses and drawn again (Perera
-2009, equations 4 to 11), beside what that keeps and costs. The poses are the keyposes of the
-clip, or of `model_clips`; or, with `basis=uniform`, as many at equal times.
+The motion is projected onto the first K' principal axes of a few poses and then reconstructed
+(Perera 2009, equations 4 to 11). The answer also has the errors of this reconstruction. The poses
+are the keyposes of the clip, or of `model_clips`. With `basis=uniform` they are the same number of
+poses at equal intervals.
 
-`variance_kept` is the share of the variance of the model's own poses. It is no measure of the
-motion: keyposes differ in fewer ways than other poses, so they keep more of it, and may still
-draw the motion worse. `error` says how far off the motion is.
+`variance_kept` is the share of the variance of the model's own poses. It does not measure the
+motion: keyposes vary less than other poses, so the axes keep a larger share of their variance, but
+they may reconstruct the motion worse. `error` is the distance from the original motion.
 
-`implausible` counts poses that no body takes, for the motion and for the original: a knee or
-elbow folded beyond 160 degrees (`folded`), a knee bent forward by 10 or an elbow backward by
-25 (`bent_backward`), a head 70 degrees out of the trunk's line (`turned_away`), a hand within
-0.07 body lengths of the line from hips to neck (`in_trunk`).
+`implausible` counts poses that no body can take, for the motion and for the original: a knee or
+elbow folded by more than 160 degrees (`folded`), a knee bent forward by 10 or an elbow backward by
+25 degrees (`bent_backward`), a head turned 70 degrees away from the line of the trunk
+(`turned_away`), a hand within 0.07 body lengths of the line from hips to neck (`in_trunk`).
 
-`Accept: application/octet-stream` gives the positions alone, as `/motion` does.
+`Accept: application/octet-stream` returns only the positions, as `/motion` does.
 """
 SVG_ANSWER = {
-    "description": "A picture that moves by itself (SMIL, no script).",
+    "description": "An animated picture (SMIL, no script).",
     "content": {"image/svg+xml": {"schema": {"type": "string"}}},
 }
 
@@ -52,14 +53,14 @@ SVG_ANSWER = {
     responses={200: OCTET_ANSWER, **refusals(404, 409)},
 )
 def get_low_dimensional(
-    lib: Lib, request: Request, clip_id: ClipId, wanted: Annotated[LowDimensionalQuery, Query()]
+    lib: Lib, request: Request, clip_id: ClipId, query: Annotated[LowDimensionalQuery, Query()]
 ) -> Response:
-    """The clip drawn from few dimensions."""
-    view = low_dimensional.view(lib, clip_id, wanted.as_reduction(), wanted.fps)
-    if wants_octets(request):
+    """The low-dimensional motion of a clip."""
+    view = low_dimensional.view(lib, clip_id, query.as_reduction(), query.fps)
+    if prefers_octets(request):
         return as_octets(view.motion)
-    told = LowDimensionalFigures.of(view).members()
-    return as_json(view.motion, told, {"eigen_motion": view.eigen_motion})
+    figures = LowDimensionalFigures.of(view).model_dump(mode="json")
+    return as_json(view.motion, figures, {"eigen_motion": view.eigen_motion})
 
 
 @router.get(
@@ -68,10 +69,10 @@ def get_low_dimensional(
     response_class=Response,
     responses={200: SVG_ANSWER, **refusals(404, 409)},
 )
-def get_animation(
-    lib: Lib, clip_id: ClipId, wanted: Annotated[AnimationQuery, Query()]
-) -> Response:
-    """The clip as a stick figure that moves; drawn from few dimensions where `dimensions` is
-    given. Left limbs are orange, right ones blue; marks on the floor are half a metre apart."""
-    picture = animation_svg(lib, clip_id, wanted.reduction_if_any(), wanted.start, wanted.end)
+def get_animation(lib: Lib, clip_id: ClipId, query: Annotated[AnimationQuery, Query()]) -> Response:
+    """The clip as a moving stick figure. With `dimensions`, it shows the low-dimensional motion.
+
+    Left limbs are orange, right limbs are blue. Marks on the floor are half a meter apart.
+    """
+    picture = animation_svg(lib, clip_id, query.reduction_if_any(), query.start, query.end)
     return Response(picture, media_type="image/svg+xml")

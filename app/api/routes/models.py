@@ -35,12 +35,12 @@ def list_models(lib: Lib) -> ModelList:
 def update_model(
     lib: Lib, model_id: Annotated[str, Path(max_length=64)], patch: ModelPatch
 ) -> Model:
-    """Set a recognizer's false-accept rate; it takes effect at once and outlives fits."""
+    """Set the false-accept rate of a recognizer. It applies at once, and also after later fits."""
     record = models.set_false_accept_rate(lib, model_id, patch.false_accept_rate)
     return Model.of(record, active_errors(lib, record))
 
 
 @router.post("/fit", status_code=202, dependencies=[writes, changes], responses=refusals(409))
 def request_fit(lib: Lib) -> JobStarted:
-    """Fit all models again in the background; searches go on with the old ones meanwhile."""
+    """Fit all models again in the background. Until then, searches use the old models."""
     return JobStarted(job=Job.model_validate(models.request_fit(lib)))

@@ -33,11 +33,10 @@ async def _query(request: Request) -> RecognizeQuery:
 
 @router.post(
     "",
-    dependencies=[reads, Depends(_query), heavy],  # admitted after the form has arrived
+    dependencies=[reads, Depends(_query), heavy],  # takes a slot after the form has arrived
     responses=refusals(400, 404, 409, 413, 415, 503, 507),
     openapi_extra=body(model=Recognize, examples=_EXAMPLES, form=RecognizeForm, files=QUERY_FILES),
 )
 def recognize(lib: Lib, query: Annotated[RecognizeQuery, Depends(_query)]) -> Recognition:
-    """Say who it is, what they do and in which words; `label` is null if it is unknown."""
-    found = recognize_motion(lib, query)
-    return Recognition.of(found)
+    """Recognize person, task and words of a motion. `label` is null if it is unknown."""
+    return Recognition.of(recognize_motion(lib, query))

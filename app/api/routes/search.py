@@ -46,7 +46,7 @@ async def _motion_query(request: Request) -> MotionQuery:
 
 @router.post(
     "/motion",
-    dependencies=[reads, Depends(_motion_query), heavy],  # admitted after the form has arrived
+    dependencies=[reads, Depends(_motion_query), heavy],  # takes a slot after the form has arrived
     responses=refusals(400, 404, 409, 413, 415, 503, 507),
     openapi_extra=body(
         model=MotionSearch,
@@ -70,7 +70,7 @@ def search_motion(lib: Lib, query: Annotated[MotionQuery, Depends(_motion_query)
     responses=refusals(400, 409, 413, 415),
 )
 def search_words(lib: Lib, sent: WordSearch) -> WordHits:
-    """Find motions for words, phrases or sentences, the most probable to carry them all first.
+    """Find motions for words, phrases or sentences. The most probable motion comes first.
 
     The `score` of a hit is a probability, in both modes.
     """

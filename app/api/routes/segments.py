@@ -1,4 +1,4 @@
-"""A clip's segments, from keypose to keypose."""
+"""The segments of a clip: each is the motion from one keypose to the next."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[r
 
 @router.get("/segments", dependencies=[heavy], responses=refusals(404, 409))
 def get_segments(lib: Lib, clip_id: ClipId) -> SegmentList:
-    """What is danced from each keypose to the next, and the sequences that repeat themselves.
+    """The motions from each keypose to the next, and the sequences of them that repeat.
 
-    Keyposes that a person named come before those that were found. Search with
+    If a person named keyposes, they replace the keyposes that Kinedex finds. Search segments with
     `POST /v1/search/motion` and `"scope": "segments"`, with `segment` or any part of a clip.
     """
     return SegmentList.model_validate(list_segments(lib, clip_id))

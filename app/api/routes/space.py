@@ -17,7 +17,7 @@ router = APIRouter(prefix="/v1/space", tags=["search"], dependencies=[reads])
 
 @router.get("", dependencies=[heavy], responses=refusals(409))
 def get_space(lib: Lib, query: Annotated[SpaceQuery, Query()]) -> SpaceMap:
-    """Every ready clip as a point of the plane or of space, near to what it is like."""
+    """Every ready clip as a point in two or three dimensions. Similar clips are close together."""
     dimensions = int(query.dimensions)
     found = space.draw_map(lib, query.space, dimensions, query.as_filter(), query.limit)
     return SpaceMap.of(query, found)

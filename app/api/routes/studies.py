@@ -25,7 +25,7 @@ from app.api.schemas.studies import (
     Vote,
 )
 from app.api.schemas.views import Motion
-from app.api.streams import as_json, as_octets, wants_octets
+from app.api.streams import as_json, as_octets, prefers_octets
 from app.services.views import studies
 from app.services.views.studies import Side
 
@@ -41,8 +41,12 @@ _BODY_REFUSALS = refusals(400, 404, 409, 413, 415)
     responses=_BODY_REFUSALS,
 )
 def draw_pair(lib: Lib, new: NewPair) -> Pair:
-    """Draw a pair to be compared: the clip drawn from as many dimensions of its keyposes and of
-    uniform poses, sides by lot. Draw one for each voter, so that sides even out."""
+    """Make a pair to compare: two low-dimensional motions of a clip.
+
+    One is made from the clip's keyposes, the other from uniform poses, with the same number of
+    dimensions. Which one is on the left is random. Make a new pair for each voter, so that the
+    sides balance out.
+    """
     return Pair.of(studies.draw_pair(lib, new.clip_id, new.dimensions, new.model_clips))
 
 
@@ -63,7 +67,7 @@ def get_pair(lib: Lib, pair_id: PairId) -> Pair:
     PAIRS + "/{pair_id}", status_code=204, dependencies=[writes, changes], responses=refusals(404)
 )
 def delete_pair(lib: Lib, pair_id: PairId) -> None:
-    """Forget a pair and the votes on it."""
+    """Delete a pair and the votes on it."""
     studies.delete_pair(lib, pair_id)
 
 
@@ -74,7 +78,7 @@ def delete_pair(lib: Lib, pair_id: PairId) -> None:
     responses={200: SVG_ANSWER, **refusals(404, 409)},
 )
 def get_pair_animation(lib: Lib, pair_id: PairId) -> Response:
-    """The three motions side by side in one time, the original in the middle (fig. 12)."""
+    """The three motions side by side and synchronous, with the original in the middle (fig. 12)."""
     return Response(studies.animation(lib, pair_id), media_type="image/svg+xml")
 
 
@@ -85,11 +89,11 @@ def get_pair_animation(lib: Lib, pair_id: PairId) -> Response:
     responses={200: OCTET_ANSWER, **refusals(404, 409)},
 )
 def get_pair_motion(
-    lib: Lib, request: Request, pair_id: PairId, side: Side, wanted: Annotated[SideQuery, Query()]
+    lib: Lib, request: Request, pair_id: PairId, side: Side, query: Annotated[SideQuery, Query()]
 ) -> Response:
-    """The motion on a side, as `/motion` gives it: JSON, or octets. Nothing tells what it is."""
-    view = studies.motion(lib, pair_id, side, wanted.fps)
-    return as_octets(view) if wants_octets(request) else as_json(view)
+    """The motion on a side, as JSON or octets like `/motion`. It does not show which one it is."""
+    view = studies.motion(lib, pair_id, side, query.fps)
+    return as_octets(view) if prefers_octets(request) else as_json(view)
 
 
 @router.post(
@@ -108,5 +112,5 @@ def vote(lib: Lib, pair_id: PairId, new: NewVote) -> Vote:
     "/v1/studies/low-dimensional/tally", dependencies=[reads, quick], responses=refusals(404)
 )
 def get_tally(lib: Lib, query: Annotated[TallyQuery, Query()]) -> StudyTally:
-    """The votes as in Table 2: how many found the keyposes' motion nearer to the original."""
+    """The votes as in Table 2: how many voters chose the motion from keyposes."""
     return StudyTally.of(studies.tally(lib, query.clip_id))

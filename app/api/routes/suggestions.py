@@ -18,16 +18,19 @@ router = APIRouter(prefix="/v1/clips/{clip_id}/word-suggestions", tags=["clips"]
 
 Mode = Annotated[
     Literal["default", "cca"],
-    Query(description="As of a search by words: kernel regression, or Takano's correlated space."),
+    Query(
+        description="As in a search by words: kernel regression (default) or correlated "
+        "space (cca)."
+    ),
 ]
-Most = Annotated[int, Query(ge=1, le=suggestions.MAX_SUGGESTED)]
+SuggestionLimit = Annotated[int, Query(ge=1, le=suggestions.MAX_SUGGESTED)]
 
 
 @router.get("", dependencies=[reads, heavy], responses=refusals(404, 409))
 def suggest_words(
-    lib: Lib, clip_id: ClipId, limit: Most = 10, mode: Mode = "default"
+    lib: Lib, clip_id: ClipId, limit: SuggestionLimit = 10, mode: Mode = "default"
 ) -> WordSuggestions:
-    """Words that the clip does not carry and that the word model would give it."""
+    """Words that the word model suggests for the clip and that the clip does not have yet."""
     return WordSuggestions.of(suggestions.suggest(lib, clip_id, limit, mode))
 
 
@@ -37,9 +40,9 @@ def suggest_words(
     responses=refusals(400, 404, 409, 413, 415),
 )
 def accept_words(lib: Lib, clip_id: ClipId, accepted: AcceptedWords | None = None) -> Clip:
-    """Give the clip suggested words, those named or all likely ones; the next fit learns them.
+    """Add suggested words to the clip. The next fit learns from them.
 
-    Without a body, all likely ones.
+    The body names the words. Without a body, all words that are likelier than not are added.
     """
     words = None if accepted is None else accepted.words
     return Clip.model_validate(suggestions.accept(lib, clip_id, words))

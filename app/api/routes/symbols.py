@@ -1,4 +1,4 @@
-"""Motion symbols: what they generate."""
+"""The motions that motion symbols generate."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.schemas.symbols import SymbolMotion, channels_json
-from app.api.streams import as_json, as_octets, wants_octets
+from app.api.streams import as_json, as_octets, prefers_octets
 from app.services.views import symbol_motion
 
 router = APIRouter(tags=["clips"], dependencies=[reads])
@@ -22,9 +22,12 @@ router = APIRouter(tags=["clips"], dependencies=[reads])
     responses={200: OCTET_ANSWER, **refusals(404, 409)},
 )
 def get_symbol_motion(lib: Lib, request: Request, clip_id: ClipId) -> Response:
-    """The mean trajectory of the clip's motion symbol, as channels with their spread and as a
-    motion of the 13 joint roles; only the motion for `Accept: application/octet-stream`."""
+    """The mean trajectory of the clip's motion symbol.
+
+    It is shown as channels with their standard deviations, and as a motion of the 13 joint roles.
+    `Accept: application/octet-stream` returns only the motion.
+    """
     view = symbol_motion.symbol_motion(lib, clip_id)
-    if wants_octets(request):
+    if prefers_octets(request):
         return as_octets(view.motion)
-    return as_json(view.motion, {"states": view.states}, behind=channels_json(view))
+    return as_json(view.motion, {"states": view.states}, trailing=channels_json(view))

@@ -1,4 +1,4 @@
-"""Synthesis: a person's motion for a task that they never recorded."""
+"""Synthesis: the motion of a person for a task that was never recorded of this person."""
 
 from __future__ import annotations
 
@@ -10,23 +10,24 @@ from app.api.guard.admission import heavy
 from app.api.openapi import refusals
 from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.schemas.synthesis import Synthesis, Synthesize
-from app.api.streams import as_octets, wants_octets
+from app.api.streams import as_octets, prefers_octets
 from app.services.synthesis.synthesize import SynthesisQuery
 from app.services.synthesis.synthesize import synthesize as synthesize_motion
 
 router = APIRouter(prefix="/v1/synthesize", tags=["recognition"])
 
 DESCRIPTION = """\
-Make a motion that nobody recorded (Vasilescu 2002, section 4): a known person's for a task that
-they never did, of what others did (`person`), or any task by someone of whom there are some
-clips (`clip_ids`). It moves the skeleton of one of their files.
+Make a motion that nobody recorded (Vasilescu 2002, section 4). With `person`, it is the motion of
+a person of the library for a task that only others did. With `clip_ids`, it is the motion of
+somebody of whom there are some clips. The motion uses the skeleton of one of the person's files.
 
-`quality` says honestly what to expect: the real clip that the motion is most like, and how often
-motions of this kind, made of as little, were taken for the right person and task when the model
-was fitted. The more persons did the task, and the more tasks the person did, the better.
+`quality` says what to expect. It names the real clip that is most similar to the motion. It also
+says how often such motions, made from equally little data, were recognized as the right person and
+task when the model was fitted. The quality is better if more persons did the task, and if the
+person did more tasks.
 
-With `store` it becomes a clip like any other (201), marked by the source `synthesized`; no model
-learns from it. `Accept: application/octet-stream` gives the positions alone.
+With `store`, the motion becomes a clip (201) with the source `synthesized`. No model learns from
+it. `Accept: application/octet-stream` returns only the positions.
 """
 
 
@@ -42,23 +43,23 @@ learns from it. `Accept: application/octet-stream` gives the positions alone.
     },
 )
 def synthesize(
-    lib: Lib, request: Request, response: Response, asked: Synthesize
+    lib: Lib, request: Request, response: Response, sent: Synthesize
 ) -> Response | Synthesis:
     """A motion that nobody recorded."""
     made = synthesize_motion(
         lib,
         SynthesisQuery(
-            task=asked.task,
-            person=asked.person,
-            clip_ids=None if asked.clip_ids is None else tuple(asked.clip_ids),
-            seconds=asked.seconds,
-            store=asked.store,
+            task=sent.task,
+            person=sent.person,
+            clip_ids=None if sent.clip_ids is None else tuple(sent.clip_ids),
+            seconds=sent.seconds,
+            store=sent.store,
         ),
     )
     status = 201 if made.clip is not None and made.is_new else 200
-    if wants_octets(request):
+    if prefers_octets(request):
         answer = as_octets(made.view)
         answer.status_code = status
         return answer
     response.status_code = status
-    return Synthesis.of(made, with_bvh=asked.bvh)
+    return Synthesis.of(made, with_bvh=sent.bvh)

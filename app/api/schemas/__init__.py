@@ -1,1 +1,1 @@
-"""What goes over the wire, field by field; never a row by reflection."""
+"""The schemas of requests and answers. Each names its fields; none copies a row of the database."""

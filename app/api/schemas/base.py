@@ -1,4 +1,4 @@
-"""What all schemas share: strictness of what comes in, the list shape of what goes out."""
+"""Base classes of all schemas, and the types of fields that several schemas share."""
 
 from __future__ import annotations
 
@@ -46,17 +46,17 @@ def _without_control(value: str) -> str:
 
 
 PartOfName = Annotated[str, Field(max_length=300), AfterValidator(_without_control)]
-"""What was typed of a name; SQLite's LIKE would end at a NUL, and so find everything."""
+"""Part of a name, without control characters: SQLite's LIKE ends at a NUL and would match all."""
 
 _Filtered = Annotated[str, Field(min_length=1, max_length=MAX_LABEL_LENGTH)]
 _SomeFiltered = Annotated[list[_Filtered], Field(min_length=1, max_length=MAX_LABELS)]
 AnyOf = Annotated[
     _SomeFiltered, BeforeValidator(_as_list, json_schema_input_type=_Filtered | _SomeFiltered)
 ]
-"""A label, or several of which any will do."""
+"""A label, or a list of accepted labels."""
 
 Label = Annotated[str, Field(max_length=fields.MAX_TEXT)]
-"""A name or label of a clip; its other rules are the service's."""
+"""A name or label of a clip. The service checks further rules (`app.services.fields`)."""
 
 Words = Annotated[list[Label], Field(max_length=fields.MAX_WORDS)]
 """The words of one clip."""
@@ -65,17 +65,17 @@ _JoinedWords = Annotated[str, Field(max_length=fields.MAX_WORDS * (fields.MAX_TE
 FormWords = Annotated[Words, BeforeValidator(_as_words, json_schema_input_type=_JoinedWords)]
 """Words of a form, separated by spaces; a phrase is joined by underscores."""
 
-Limit = Annotated[int, Field(ge=1, le=1000, description="Most items in one answer.")]
+Limit = Annotated[int, Field(ge=1, le=1000, description="Maximum number of items in one answer.")]
 
 Cursor = Annotated[
     str,
     Field(
         max_length=MAX_CURSOR_LENGTH,
-        description="`next` of the answer before; from there on.",
+        description="`next` of the previous answer. The answer starts there.",
     ),
 ]
 Id = Annotated[str, Field(min_length=1, max_length=100)]
-"""The id of a clip or the like."""
+"""The id of a clip or another object."""
 Roles = Annotated[
     dict[
         Annotated[str, Field(max_length=30)],
@@ -87,4 +87,4 @@ Roles = Annotated[
 Seconds = Annotated[float, Field(ge=0, le=1e6)]
 
 Fps = Annotated[float, Field(ge=MIN_FPS, le=MAX_FPS)]
-"""Frames a second that a motion is resampled to."""
+"""Frames per second of a resampled motion."""

@@ -1,4 +1,4 @@
-"""Clips: what clients send with a clip, and what the API shows of it."""
+"""Clips: the fields that clients send with a clip, and those that the API shows."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from app.api.schemas.base import (
 )
 from app.api.schemas.filters import Filter
 from app.api.schemas.jobs import Job
-from app.api.schemas.problem import KeptProblem
+from app.api.schemas.problem import StoredProblem
 from app.motion.skeleton.recording import FRAME_RATES
 from app.search.index.filters import parse_filter
 from app.services.fields import MAX_KEYPOSES, MAX_OFFSET, TEMPI
@@ -45,17 +45,30 @@ Stack = Annotated[
     str,
     Field(
         max_length=300,
-        description="Of an FBX file with several animations, the name of the stack to read;"
-        " default: the longest. The clip's warning `stack_chosen` lists them.",
+        description="The name of the animation stack to read, if an FBX file has several; default:"
+        " the longest. The clip's warning `stack_chosen` lists them.",
     ),
 ]
 FrameRate = Annotated[
-    float, Field(ge=FRAME_RATES[0], le=FRAME_RATES[1], description="Frames a second.")
+    float, Field(ge=FRAME_RATES[0], le=FRAME_RATES[1], description="Frames per second.")
+]
+FileFrameRate = Annotated[
+    FrameRate | None, Field(description="It replaces the frame rate that the file declares.")
+]
+Unit = Annotated[
+    str | None,
+    Field(
+        max_length=30,
+        description="m, dm, cm, mm, in, ft, cmu (unit of the CMU files), or meters per unit.",
+    ),
+]
+FormRoles = Annotated[
+    Json[Roles] | None, Field(description='JSON: joint name by role, as in {"hips": "Pelvis"}.')
 ]
 
 Offset = Annotated[float, Field(ge=-MAX_OFFSET, le=MAX_OFFSET)]
 Tempo = Annotated[float, Field(ge=TEMPI[0], le=TEMPI[1])]
-_OFFSET = "Seconds of the motion at which the recording begins, negative if before it."
+_OFFSET = "Time in the motion at which the recording begins, seconds; may be negative."
 
 
 def _split(value: Any) -> Any:
@@ -63,11 +76,11 @@ def _split(value: Any) -> Any:
 
 
 class ClipWarning(Outgoing):
-    """A doubt that does not stop a clip."""
+    """A possible error in a clip that can still be used."""
 
     code: str
     detail: str
-    likely: float | None = Field(None, description="The value that is thought right, if any.")
+    likely: float | None = Field(None, description="The value that is probably right, if any.")
 
 
 class Clip(Outgoing):
@@ -84,31 +97,31 @@ class Clip(Outgoing):
     license: str | None
     source: str | None
     frames: int | None
-    frame_rate: float | None = Field(description="Frames a second, as used.")
-    declared_frame_rate: float | None = Field(description="Frames a second, as the file says.")
+    frame_rate: float | None = Field(description="Frames per second, as used.")
+    declared_frame_rate: float | None = Field(description="Frames per second, as the file says.")
     duration: float | None = Field(description="Seconds.")
     joints: int | None = Field(description="Number of joints.")
     roles: dict[str, str] = Field(description="Joint name by joint role.")
     missing_roles: list[str]
     warnings: list[ClipWarning]
     created_at: datetime
-    has_audio: bool = Field(description="Whether a recording goes with it: GET .../audio.")
+    has_audio: bool = Field(description="Whether the clip has a recording: GET .../audio.")
     audio_offset: float | None = Field(
         validation_alias="audio_begins_at",
-        description="Seconds of the motion at which the recording begins, as given or estimated."
-        " An estimate may be wrong by whole beats: the warning `audio_offset_estimated` says how"
-        " long a beat is, and with what probability the estimate is right.",
+        description="Time in the motion at which the recording begins, seconds, as given or"
+        " estimated. An estimate may be wrong by whole beats: the warning `audio_offset_estimated`"
+        " gives the length of a beat, and the probability that the estimate is right.",
     )
-    error: KeptProblem = Field(description="Why the clip is `failed`, else null.")
+    error: StoredProblem = Field(description="The reason why the clip is `failed`, else null.")
     reanalysis: Reanalysis | None = Field(
-        description="Where another analysis of a ready clip stands, after a change of the clip or"
-        " of Kinedex: null once it is done. Until then the clip is searched by its earlier"
-        " analysis. After `failed` it keeps that, and a warning says why."
+        description="State of a new analysis of a ready clip, after a change of the clip or of"
+        " Kinedex. It is null when the new analysis is done. Until then, searches use the earlier"
+        " analysis. After `failed` they still use it, and a warning gives the reason."
     )
 
 
 class ClipCreated(Outgoing):
-    """A clip that has been stored, and the job that will make it ready."""
+    """A stored clip, and the job that will make it ready."""
 
     clip: Clip
     job: Job | None
@@ -128,33 +141,29 @@ class ClipForm(Incoming):
     person: Label | None = Field(None, examples=["anna"])
     task: Label | None = Field(None, examples=["walk"])
     words: FormWords | None = Field(
-        None, description="Separated by spaces, a phrase with underscores.", examples=["walk slow"]
+        None,
+        description="Separated by spaces. In a phrase, underscores replace spaces.",
+        examples=["walk slow"],
     )
     license: Label | None = Field(None, examples=["CC-BY-4.0"])
     source: Label | None = None
-    frame_rate: FrameRate | None = Field(None, description="Overrides what the file declares.")
-    unit: str | None = Field(
-        None,
-        max_length=30,
-        description="m, dm, cm, mm, in, ft, cmu (of CMU's files), or metres per unit.",
-    )
-    roles: Json[Roles] | None = Field(
-        None, description='JSON: joint name by role, as {"hips": "Pelvis"}.'
-    )
+    frame_rate: FileFrameRate = None
+    unit: Unit = None
+    roles: FormRoles = None
     stack: Stack | None = None
     audio_offset: Offset | None = Field(None, description=f"{_OFFSET} Default: estimated.")
-    tempo: Tempo | None = Field(None, description="Beats a minute, where it is known.")
+    tempo: Tempo | None = Field(None, description="Beats per minute, if known.")
     beats: Annotated[list[Seconds], BeforeValidator(_split), Field(max_length=MAX_KEYPOSES)] | (
         None
     ) = Field(
         None,
-        description="Seconds, separated by spaces; they replace all other beats.",
+        description="Seconds, separated by spaces. They replace all other beats.",
         examples=["0.5 1.1"],
     )
 
 
 class ClipPatch(Incoming):
-    """Corrections: only fields that are sent change; null forgets one (`name` has none)."""
+    """Corrections. Only the sent fields change. null deletes a value (not for `name`)."""
 
     name: Label | None = None
     person: Label | None = None
@@ -163,24 +172,24 @@ class ClipPatch(Incoming):
     license: Label | None = None
     source: Label | None = None
     frame_rate: FrameRate | None = Field(
-        None, description="The clip is analyzed again; null returns to the declared one."
+        None, description="The clip is analyzed again. null restores the declared frame rate."
     )
     stack: Label | None = Field(
         None,
-        description="Of an FBX file, the animation stack: the clip is analyzed again; null"
-        " returns to the longest.",
+        description="The animation stack of an FBX file. The clip is analyzed again. null"
+        " restores the longest stack.",
     )
     audio_offset: Offset | None = Field(
-        None, description=f"{_OFFSET} The clip is analyzed again; null has it estimated."
+        None, description=f"{_OFFSET} The clip is analyzed again. With null, it is estimated."
     )
     tempo: Tempo | None = Field(
-        None, description="Beats a minute: the clip is analyzed again; null forgets it."
+        None, description="Beats per minute. The clip is analyzed again. null deletes the tempo."
     )
     beats: list[Seconds] | None = Field(
         None,
         max_length=MAX_KEYPOSES,
-        description="Seconds; they replace all other beats: the clip is analyzed again; null or"
-        " none forgets them.",
+        description="Seconds. They replace all other beats. The clip is analyzed again. null or"
+        " an empty list deletes them.",
     )
 
     model_config = ConfigDict(
@@ -189,15 +198,15 @@ class ClipPatch(Incoming):
 
 
 class ClipQuery(Filter):
-    """Filters of a list of clips, those of searches among them; all that are given must hold."""
+    """Filters of a list of clips, as in a search. A clip must pass all given filters."""
 
     state: ClipState | None = None
     q: PartOfName | None = Field(None, description="Part of the name.")
-    sort: Sort = Field("-created_at", description="A leading - reverses the order.")
+    sort: Sort = Field("-created_at", description="A minus sign at the start reverses the order.")
     limit: Limit = 10
     cursor: Cursor | None = None
 
     def as_filter(self) -> ClipFilter:
-        """The conditions as the store takes them."""
+        """The filter of the store."""
         states = () if self.state is None else (self.state,)
         return replace(parse_filter(self.given()), state=states, q=self.q)

@@ -10,13 +10,16 @@ from app.services.views.export_format import ExportFormat, ExportSkeleton
 
 
 class ExportQuery(ReductionFields):
-    """Format, frame rate and body of an exported clip, and from how many dimensions it is drawn."""
+    """Format, frame rate, skeleton and number of dimensions of an exported clip."""
 
     format: ExportFormat = Field(
-        description="BVH (centimetres), GLB (glTF 2.0), NPZ (NumPy) or CSV; metres but for BVH."
+        description="BVH (centimeters), or GLB (glTF 2.0), NPZ (NumPy), CSV (all in meters)."
     )
-    fps: Fps | None = Field(None, description="Resampled by time; default: the clip's own rate.")
+    fps: Fps | None = Field(
+        None, description="The motion is resampled to this rate. Default: the clip's own rate."
+    )
     skeleton: ExportSkeleton = Field(
         ExportSkeleton.OWN,
-        description="The clip's own joints, or one body of 18 joints that all clips play on.",
+        description="own: the joints of the clip. canonical: one skeleton of 18 joints for "
+        "all clips.",
     )

@@ -1,4 +1,4 @@
-"""Whether the service lives and is ready."""
+"""Health of the service: alive, ready."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Alive(Outgoing):
 
 
 class Ready(Outgoing):
-    """The index is loaded; searches are answered."""
+    """The index is loaded, and searches are answered."""
 
     status: Literal["ready"] = "ready"
     library_version: int

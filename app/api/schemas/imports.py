@@ -6,4 +6,4 @@ from app.api.schemas.base import Incoming
 
 
 class ImportForm(Incoming):
-    """The text fields that come with an archive: none; labels stand in its manifest."""
+    """The text fields that come with an archive: none. The labels are in the archive's manifest."""

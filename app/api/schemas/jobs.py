@@ -9,54 +9,54 @@ from pydantic import BeforeValidator, Field
 
 from app.api.failures.problems import stored_problem
 from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing
-from app.api.schemas.problem import KeptProblem
+from app.api.schemas.problem import StoredProblem
 from app.store.jobs.import_files import FileOutcome
 from app.store.jobs.record import JobKind, JobState
 
 
-def _result(kept: dict[str, Any] | None) -> dict[str, Any] | None:
-    """The result, with the failure of each file completed to a whole problem."""
-    if kept is None or "files" not in kept:
-        return kept
-    files = [{**line, "error": _problem(line["error"])} for line in kept["files"]]
-    return {**kept, "files": files}
+def _result(stored: dict[str, Any] | None) -> dict[str, Any] | None:
+    """Complete the failure of each file in a result to a problem."""
+    if stored is None or "files" not in stored:
+        return stored
+    files = [{**line, "error": _problem(line["error"])} for line in stored["files"]]
+    return {**stored, "files": files}
 
 
-def _problem(kept: dict[str, Any] | None) -> dict[str, Any] | None:
-    return None if kept is None else stored_problem(kept)
+def _problem(stored: dict[str, Any] | None) -> dict[str, Any] | None:
+    return None if stored is None else stored_problem(stored)
 
 
 class Job(Outgoing):
-    """Work that is done in the background."""
+    """Work in the background."""
 
     id: str
     kind: JobKind
     state: JobState
     progress: float = Field(ge=0, le=1)
-    detail: str | None = Field(description="What is being done, for people.")
+    detail: str | None = Field(description="The current step, as a text for people.")
     created_at: datetime
     started_at: datetime | None
     finished_at: datetime | None
     result: Annotated[dict[str, Any] | None, BeforeValidator(_result)] = Field(
-        description="What came of it; its members by `kind`. Of an import: how many files came to"
-        " what (`total`, `ready`, `exists`, `failed`, `deleted`, `absent`), its first 100 `files`"
-        " (failed ones before others), and how many there are beside them (`files_left_out`);"
-        " `GET .../files` has them all. Lists of jobs leave `files` out."
+        description="The result. Its members depend on `kind`. An import has the number of files by"
+        " outcome (`total`, `ready`, `exists`, `failed`, `deleted`, `absent`), its first 100"
+        " `files` (failed files first), and the number of the other files (`files_left_out`)."
+        " `GET .../files` lists all files. Lists of jobs leave `files` out."
     )
-    error: KeptProblem
+    error: StoredProblem
 
 
 class JobFile(Outgoing):
     """A file of an import."""
 
-    path: str = Field(description="Where it is in the archive or folder.")
+    path: str = Field(description="Path in the archive or folder.")
     outcome: FileOutcome = Field(
-        description="queued, processing or ready: the clip's state; failed: no clip, or one that"
-        " cannot be analyzed; exists: the library held the content before; deleted: the clip was"
-        " deleted since; absent: a manifest names it, and it is not there."
+        description="queued, processing or ready: the state of the clip. failed: there is no clip,"
+        " or the clip cannot be analyzed. exists: the library already had the content. deleted: the"
+        " clip was deleted later. absent: a manifest names the file, but the file is missing."
     )
     clip_id: str | None
-    error: KeptProblem = Field(description="Why it failed.")
+    error: StoredProblem = Field(description="The reason why it failed, else null.")
 
 
 class JobFileList(Outgoing):
@@ -67,7 +67,7 @@ class JobFileList(Outgoing):
 
 
 class JobFileQuery(Incoming):
-    """Which files of an import are listed, and which page of them."""
+    """A filter of an import's files, and a page of them."""
 
     outcome: FileOutcome | None = None
     limit: Limit = 100
@@ -88,7 +88,7 @@ class JobStarted(Outgoing):
 
 
 class JobQuery(Incoming):
-    """Filters of the list of jobs, and which page of it."""
+    """Filters of the list of jobs, and a page of it."""
 
     kind: JobKind | None = None
     state: JobState | None = None

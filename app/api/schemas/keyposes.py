@@ -1,4 +1,4 @@
-"""Keyposes: found, with what they were found from, and named by people."""
+"""Keyposes that Kinedex finds, with beats and energies, and keyposes that a person names."""
 
 from __future__ import annotations
 
@@ -16,19 +16,26 @@ Source = Literal["given", "learned", "default"]
 
 
 class KeyposeQuery(Incoming):
-    """How keyposes are found."""
+    """The method and thresholds that find keyposes."""
 
     method: Literal["rms", "printed"] = Field(
         "rms", description="RMS of joint speeds, or equations 1 and 2 as printed."
     )
     weights: Literal["uniform", "mass"] = Field(
-        "uniform", description="Joints count alike, or by the mass that moves with them (fig. 6)."
+        "uniform",
+        description="Weights of the joints: all equal, or the mass that moves with each (fig. 6).",
     )
     t1: float | None = Field(
-        None, gt=0, le=100, description="Of the median local maximum; below it a minimum is small."
+        None,
+        gt=0,
+        le=100,
+        description="A minimum below this share of the median local maximum is a rest.",
     )
     t2: float | None = Field(
-        None, gt=0, le=100, description="Of the median local maximum; a drop beyond it is deep."
+        None,
+        gt=0,
+        le=100,
+        description="A drop by more than this share of the median local maximum is a rest.",
     )
 
 
@@ -40,9 +47,9 @@ class Energy(Outgoing):
 
 
 class EnergyNoise(Outgoing):
-    """The energy that shaking markers have at rest, in body lengths per second.
+    """Energy that the noise of markers causes at rest, in body lengths per second.
 
-    It has been subtracted from both curves.
+    It is already subtracted from both curves.
     """
 
     global_: float = Field(alias="global")
@@ -50,42 +57,46 @@ class EnergyNoise(Outgoing):
 
 
 class ThresholdSources(Outgoing):
-    """Where T1 and T2 come from."""
+    """The sources of T1 and T2."""
 
     t1: Source
     t2: Source
-    model_version: int | None = Field(description="Of the learned thresholds, where they count.")
+    model_version: int | None = Field(
+        description="Version of the model with the learned thresholds, if they are used."
+    )
 
 
 class Keyposes(Outgoing):
-    """Poses at which a motion comes to rest, on its beats where it has any."""
+    """Poses at which a motion comes to rest, near its beats if it has beats."""
 
     method: str
     weights: str
     t1: float
     t2: float
     thresholds: ThresholdSources
-    frame_rate: float = Field(description="Of `frames` and of the energy curves.")
-    tempo: float | None = Field(description="Beats a minute; null where no beat was found.")
+    frame_rate: float = Field(description="Frames per second of `frames` and of the energy curves.")
+    tempo: float | None = Field(description="Beats per minute; null if no beat was found.")
     beats: list[float] = Field(description="Seconds.")
     beats_source: Literal["given", "tempo", "audio", "motion", "none"] = Field(
-        description="Where the beats come from. Keyposes are sought only on beats that are "
-        "`given`, or from `tempo` or `audio`; beats from `motion` only select a moment within a "
-        "rest."
+        description="The source of the beats. Keyposes are searched only near beats from `given`, "
+        "`tempo` or `audio`. Beats from `motion` only select a moment within a rest."
     )
-    beats_confidence: float = Field(description="0 to 1: how surely they are no accident.")
+    beats_confidence: float = Field(
+        description="Confidence that the beats are not accidental, 0 to 1."
+    )
     frames: list[int]
     times: list[float] = Field(description="Seconds.")
     chosen_by: list[Literal["global", "local"]] = Field(
-        description="Which energy chose each: seen from the floor, or from the waist."
+        description="The energy that chose each keypose: relative to the floor (global) or "
+        "to the waist."
     )
     roles: list[str] = Field(description="Order of the joints in `poses`.")
-    poses: list[list[Point]] = Field(description="(keyposes, 13, 3), metres, Y up.")
+    poses: list[list[Point]] = Field(description="(keyposes, 13, 3), meters, Y up.")
     energy: Energy
     energy_unit: str = "body lengths per second"
     noise: EnergyNoise
     annotated: list[float] | None = Field(
-        description="Seconds: the keyposes that a person named; null where nobody did."
+        description="Times of the keyposes that a person named, seconds; null if there are none."
     )
 
     @classmethod
@@ -120,16 +131,16 @@ class Keyposes(Outgoing):
 
 
 class NamedKeyposes(Incoming):
-    """Keyposes that a person names; none of them take away what was named before."""
+    """Keyposes that a person names. They replace earlier ones; an empty list deletes them."""
 
     times: list[Seconds] = Field(
         max_length=MAX_KEYPOSES,
-        description="Seconds from the clip's beginning, in any order.",
+        description="Seconds from the start of the clip, in any order.",
         examples=[[0.8, 1.4, 2.1]],
     )
 
 
 class KeyposesNamed(Outgoing):
-    """What is stored."""
+    """The stored keyposes."""
 
-    times: list[float] = Field(description="Seconds, rising.")
+    times: list[float] = Field(description="Seconds, in rising order.")

@@ -8,12 +8,12 @@ from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, PartOfName, 
 
 
 class NamedCount(Outgoing):
-    """A label and how many clips carry it, whatever their state."""
+    """A label, and the number of clips in any state that carry it."""
 
     name: str
-    count: int = Field(ge=0, validation_alias="recordings", description="Clips of what people did.")
+    count: int = Field(ge=0, validation_alias="recordings", description="Recorded clips.")
     synthesized: int = Field(
-        ge=0, description="Clips besides that were made by POST /v1/synthesize and kept."
+        ge=0, description="Stored clips from POST /v1/synthesize. `count` does not include them."
     )
 
 
@@ -24,29 +24,30 @@ class NamedCounts(Outgoing):
     next: str | None = None
 
 
-class WordBeginning(Incoming):
-    """What was typed of a word."""
+class WordListQuery(Incoming):
+    """The beginning of a word to complete, or a page of all words."""
 
     q: PartOfName | None = Field(
         None,
-        description="Only words that begin with this, or hold it, else those that it is a form of.",
+        description="Only words that begin with this or hold it, or else words of which it "
+        "is a form.",
     )
     limit: Limit | None = Field(
-        None, description="Default: 10 completions of `q`, or 1,000 words where it is not sent."
+        None, description="Default: 10 completions of `q`, or 1,000 words without `q`."
     )
-    cursor: Cursor | None = Field(None, description="`next` of the answer before, without `q`.")
+    cursor: Cursor | None = Field(None, description="`next` of the previous answer. Not with `q`.")
 
 
 class LabelPage(Incoming):
-    """Which page of the labels."""
+    """A page of the labels."""
 
     limit: Limit = 1000
     cursor: Cursor | None = None
 
 
 WORD_SCORE = (
-    "Probability that a clip of such a motion carries the word, learned on clips that were held "
-    "out: comparable between clips and between words."
+    "Probability that a clip with this motion carries the word. It is calibrated on held-out "
+    "clips, so that scores of different clips and words can be compared."
 )
 
 
@@ -65,14 +66,15 @@ class WordSuggestions(Outgoing):
 
     @classmethod
     def of(cls, found: tuple[tuple[str, float], ...]) -> WordSuggestions:
-        """Suggestions as they go over the wire."""
+        """The suggestions as the API shows them."""
         return cls(items=[WordSuggestion(word=word, score=score) for word, score in found])
 
 
 class AcceptedWords(Incoming):
-    """Which suggestions are right."""
+    """The suggestions that a user accepts."""
 
     words: Words | None = Field(
         None,
-        description="Words to add to the clip's; by default all suggestions likelier than not.",
+        description="Words to add to the clip. Default: all suggestions that are likelier "
+        "than not.",
     )

@@ -1,8 +1,6 @@
-"""Motions drawn from few dimensions."""
+"""Low-dimensional motions (Perera 2009)."""
 
 from __future__ import annotations
-
-from typing import Any
 
 from pydantic import Field
 
@@ -21,39 +19,42 @@ from app.services.views.low_dimensional import (
     Reduction,
 )
 
-MOST_FAULTS = 1000
+MAX_FAULTS = 1000
 
 
 class ReductionFields(Incoming):
-    """From how many dimensions a motion is drawn, and what spans them."""
+    """Number of dimensions of a low-dimensional motion, and the poses that span them."""
 
     dimensions: int | None = Field(
-        None, ge=1, le=10**6, description="K', from 1 to as many as the model has poses."
+        None, ge=1, le=10**6, description="K', from 1 to the number of poses of the model."
     )
     basis: Basis = Field(
-        Basis.KEYPOSE, description="The model's poses: keyposes, or as many at equal times."
+        Basis.KEYPOSE,
+        description="Poses of the model: keyposes, or the same number at equal intervals.",
     )
     model_clips: str | None = Field(
         None,
         max_length=5000,
-        description="Ids of the clips whose poses make the model, separated by commas, at most "
-        f"{MAX_MODEL_CLIPS}; default: the clip itself.",
+        description="Ids of the clips with the poses of the model, separated by commas, at most "
+        f"{MAX_MODEL_CLIPS}. Default: the clip itself.",
     )
     poses: int | None = Field(
         None,
         ge=1,
         le=MAX_POSES,
-        description="Of each clip, with `basis=uniform`; default: as many as it has keyposes.",
+        description="Poses per clip with `basis=uniform`. Default: the number of its keyposes.",
     )
 
     def as_reduction(self) -> Reduction:
-        """What the service is asked for."""
+        """Return the reduction for the service."""
         ids = [part.strip() for part in (self.model_clips or "").split(",")]
         return Reduction(self.dimensions, self.basis, [one for one in ids if one], self.poses)
 
     def reduction_if_any(self) -> Reduction | None:
-        """The same, or nothing where no dimensions are given. Raises BadField where only
-        what goes with them is."""
+        """Return the reduction, or None without `dimensions`.
+
+        Raises BadField if another field of it was sent without `dimensions`.
+        """
         if self.dimensions is not None:
             return self.as_reduction()
         if {"basis", "model_clips", "poses"} & self.model_fields_set:
@@ -63,32 +64,34 @@ class ReductionFields(Incoming):
 
 
 class LowDimensionalQuery(ReductionFields):
-    """How a low-dimensional motion is returned."""
+    """Reduction and frame rate of a low-dimensional motion."""
 
     dimensions: int | None = Field(
         None,
         ge=1,
         le=10**6,
-        description="K', from 1 to as many as the model has poses; default: 3.",
+        description="K', from 1 to the number of poses of the model. Default: 3.",
     )
     fps: Fps | None = Field(
-        None, description="Resampled by time; default: 30, at which it is made."
+        None, description="The motion is resampled to this rate. Default: 30, its own rate."
     )
 
 
 class AnimationQuery(ReductionFields):
-    """What of a clip is shown."""
+    """The part of a clip that is shown, and its reduction."""
 
-    start: Seconds | None = Field(None, description="Seconds: where the part begins.")
-    end: Seconds | None = Field(None, description="Seconds: where it ends.")
+    start: Seconds | None = Field(None, description="Start of the part, seconds.")
+    end: Seconds | None = Field(None, description="End of the part, seconds.")
 
 
 class EigenPose(Outgoing):
-    """A pose that the model was made of."""
+    """A pose of the model."""
 
     clip_id: str
-    time: float = Field(description="Seconds from the clip's beginning.")
-    point: Point = Field(description="Along the first three axes, body lengths (figs 7, 8).")
+    time: float = Field(description="Seconds from the start of the clip.")
+    point: Point = Field(
+        description="Coordinates on the first three axes, body lengths (figs. 7, 8)."
+    )
 
     @classmethod
     def of(cls, pose: ModelPose, point: list[float]) -> EigenPose:
@@ -97,14 +100,16 @@ class EigenPose(Outgoing):
 
 
 class PoseFault(Outgoing):
-    """A stretch of time in which a joint does what no joint can do."""
+    """A span of time in which the pose of a joint is implausible."""
 
     fault: Fault
     joint: JointRole
     start: float = Field(description="Seconds.")
     end: float
-    worst: float = Field(description="Seconds: when it is worst.")
-    beyond: float = Field(description="Then beyond the limit: degrees, body lengths for in_trunk.")
+    worst: float = Field(description="Time of the largest excess, seconds.")
+    beyond: float = Field(
+        description="Largest excess over the limit: degrees, or body lengths for in_trunk."
+    )
 
     @classmethod
     def of(cls, fault: Implausible) -> PoseFault:
@@ -120,13 +125,15 @@ class PoseFault(Outgoing):
 
 
 class ImplausiblePoses(Outgoing):
-    """Poses that no body takes (figs 13, 14), of the frames at 30 Hz."""
+    """Poses that no body can take (figs. 13, 14), counted in frames at 30 Hz."""
 
-    frames: int = Field(description="Frames with a fault.")
+    frames: int = Field(description="Number of frames with a fault.")
     share: float = Field(ge=0, le=1)
-    original_frames: int = Field(description="The same of the original motion.")
+    original_frames: int = Field(description="The same number for the original motion.")
     original_share: float = Field(ge=0, le=1)
-    faults: list[PoseFault] = Field(description=f"By time; the first {MOST_FAULTS:,}.")
+    faults: list[PoseFault] = Field(
+        description=f"The first {MAX_FAULTS:,} faults, in the order of time."
+    )
 
     @classmethod
     def of(cls, reduced: Plausibility, original: Plausibility) -> ImplausiblePoses:
@@ -137,22 +144,22 @@ class ImplausiblePoses(Outgoing):
             share=reduced.count / frames,
             original_frames=original.count,
             original_share=original.count / frames,
-            faults=[PoseFault.of(fault) for fault in reduced.faults[:MOST_FAULTS]],
+            faults=[PoseFault.of(fault) for fault in reduced.faults[:MAX_FAULTS]],
         )
 
 
 class LowDimensionalFigures(Outgoing):
-    """What few dimensions leave of a motion."""
+    """Errors and figures of a low-dimensional motion."""
 
     basis: Basis
     dimensions: int
-    poses: int = Field(description="K: poses of the model.")
+    poses: int = Field(description="K, the number of poses of the model.")
     variance_kept: list[float] = Field(
-        description="At K' = 1..K, of the model's own poses (eq. 9); says nothing of the motion."
+        description="For K' = 1..K: share of the variance of the model's own poses (eq. 9)."
     )
     error: list[float] = Field(
-        description="At K' = 1..K, metres: root mean square distance of the joints from the "
-        "original's, over all frames and the 13 joints."
+        description="For K' = 1..K, meters: root mean square distance of the joints from the "
+        "original joints, over all frames and the 13 joints."
     )
     eigen_poses: list[EigenPose]
     implausible: ImplausiblePoses
@@ -174,15 +181,13 @@ class LowDimensionalFigures(Outgoing):
             implausible=ImplausiblePoses.of(view.plausibility, view.original_plausibility),
         )
 
-    def members(self) -> dict[str, Any]:
-        """As JSON takes them."""
-        return self.model_dump(mode="json")
-
 
 class LowDimensional(LowDimensionalFigures, Motion):
-    """A motion drawn from few dimensions: 13 joint roles in the original's place, heading and
-    size."""
+    """A low-dimensional motion of the 13 joint roles.
+
+    Its position, heading and size are those of the original motion.
+    """
 
     eigen_motion: list[Point] = Field(
-        description="(frames, 3): the motion's curve along the first three axes (fig. 9)."
+        description="(frames, 3): coordinates of each frame on the first three axes (fig. 9)."
     )

@@ -1,4 +1,4 @@
-"""What is fitted on the library."""
+"""Models that are fitted on the library."""
 
 from __future__ import annotations
 
@@ -15,45 +15,51 @@ from app.store.models import ModelRecord
 
 
 class ErrorsInForce(Outgoing):
-    """How often a recognizer errs on what is new, at the active threshold: shares of clips that
-    were held out at the fit. The threshold was chosen on these clips: for others the errors may be
-    a little higher."""
+    """Error rates of a recognizer for new persons or tasks at the active threshold.
 
-    threshold: float = Field(description="Novelty above which something is called new.")
-    false_acceptance: float = Field(ge=0, le=1, description="Of what is new, called known.")
+    They are shares of the clips that were held out at the fit. The threshold was chosen on the same
+    clips, so the errors on other clips may be a little higher.
+    """
+
+    threshold: float = Field(description="A person or task with a higher novelty is called new.")
+    false_acceptance: float = Field(
+        ge=0, le=1, description="Share of new ones that are called known."
+    )
     false_rejection: float = Field(
         ge=0,
         le=1,
-        description="Of what is known, called new; where takes were hardly repeated, of further"
-        " takes as the recognizer imagines them.",
+        description="Share of known ones that are called new. If there are too few repeated takes,"
+        " it is estimated on further takes that the recognizer simulates.",
     )
 
 
 class Model(Outgoing):
-    """A fitted model that is in use."""
+    """The fitted model of a kind that is in use."""
 
     id: str
     kind: str
     version: int
     library_version: int = Field(description="The library's version at the fit.")
-    library_size: int = Field(description="Ready clips at the fit, without synthesized ones.")
+    library_size: int = Field(
+        description="Number of ready clips at the fit, without synthesized clips."
+    )
     figures: dict[str, Any] = Field(
-        description="Held-out figures, by name; of a recognizer those of the usual threshold."
-        " Those of `multilinear` stand beside the recognizer's."
+        description="Held-out figures, by name. For a recognizer, they are measured at the default"
+        " threshold. The recognizer's figures also include those of `multilinear`."
     )
     false_accept_rate: float | None = Field(
-        description="How often this recognizer may call something new known, if that was set."
+        description="The allowed share of new persons or tasks that are called known, if set."
     )
     errors_in_force: dict[str, ErrorsInForce] | None = Field(
-        description="Of a recognizer that calls something unknown: its errors by `person` and"
-        " `task` at the threshold in force, which is that of `false_accept_rate` where it is set;"
-        " a factor is missing where too few labels could be held out. null of other models."
+        description="Errors by `person` and `task`, for a recognizer that can answer unknown. They"
+        " are measured at the active threshold, which `false_accept_rate` sets. `person` or `task`"
+        " is missing if too few labels could be held out. null for other models."
     )
     created_at: datetime
 
     @classmethod
     def of(cls, record: ModelRecord, errors: Mapping[str, Errors] | None) -> Model:
-        """The model as the API shows it; errors: at the active threshold, by factor."""
+        """The model as the API shows it. errors: those at the active threshold, by factor."""
         shown = (
             None
             if errors is None
@@ -73,31 +79,34 @@ class Model(Outgoing):
 
 
 class ModelPatch(Incoming):
-    """What can be set of a model."""
+    """The settings of a model."""
 
     false_accept_rate: float | None = Field(
         gt=0,
         lt=1,
-        description="Of the models recognizer and perera: how often they may call something new "
-        "known; see `curve` in their figures. null: where both errors weigh alike. What comes of "
-        "it stands in `errors_in_force`; `figures` stay those of the usual threshold. With enough "
-        "clips, a known task counts there only as done by a person who did it before (a "
-        "stranger's is called unknown more often).",
+        description="For the models recognizer and perera: the allowed share of new persons or "
+        "tasks that are called known (see `curve` in their figures). null: the threshold at which "
+        "both errors have equal weight. `errors_in_force` shows the resulting errors; `figures` "
+        "keep those of the default threshold. With enough clips, `errors_in_force` counts a known "
+        "task only if a person does it who did it before. For a new person, a known task is called "
+        "unknown more often.",
         examples=[0.05],
     )
 
 
 class UnfittedModel(Outgoing):
-    """A kind of model that the last fit could not fit; an older one may still be in use."""
+    """A kind of model that the last fit could not fit. An older model may still be in use."""
 
     kind: str
-    outcome: str = Field(description="skipped, or failed by a defect.")
-    reason: str = Field(description="As: too few clips carry a label.")
+    outcome: str = Field(description="skipped, or failed because of a defect.")
+    reason: str = Field(description="For example: too few clips carry a label.")
 
 
 class ModelList(Outgoing):
     """The current model of each kind; `next` is always null."""
 
     items: list[Model]
-    unfitted: list[UnfittedModel] = Field(description="What the last fit left out, and why.")
+    unfitted: list[UnfittedModel] = Field(
+        description="Kinds of models that the last fit could not fit."
+    )
     next: str | None = None

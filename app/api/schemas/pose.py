@@ -42,7 +42,7 @@ A_POSE: Any = [
 
 
 class PoseSearch(QueryFields):
-    """Find a pose: that of a stored clip at a time, or one of 13 positions."""
+    """Find a pose: the pose of a stored clip at a time, or 13 positions."""
 
     clip_id: ClipId | None = None
     time: Seconds | None = Field(None, description="Seconds from the start of the clip.")

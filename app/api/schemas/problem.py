@@ -12,20 +12,20 @@ from app.api.schemas.base import Outgoing
 
 
 class ProblemPlace(Outgoing):
-    """One place where something is wrong."""
+    """One error, with its location."""
 
     location: str = Field(description="Line, joint, frame or field: `line 12`, `body.limit`.")
     message: str
 
 
 class Problem(Outgoing):
-    """What went wrong (RFC 9457, application/problem+json)."""
+    """A failure (RFC 9457, application/problem+json)."""
 
     type: str
     title: str
     status: int
     detail: str
-    code: str = Field(description="For machines; stable.")
+    code: str = Field(description="Stable name of the failure for programs.")
     errors: list[ProblemPlace]
 
     model_config = ConfigDict(
@@ -44,9 +44,9 @@ class Problem(Outgoing):
     )
 
 
-def _whole(kept: Mapping[str, Any] | None) -> dict[str, Any] | None:
-    return None if kept is None else stored_problem(kept)
+def _complete(stored: Mapping[str, Any] | None) -> dict[str, Any] | None:
+    return None if stored is None else stored_problem(stored)
 
 
-KeptProblem = Annotated[Problem | None, BeforeValidator(_whole)]
-"""The failure that a clip, job or import entry keeps, completed to a whole problem."""
+StoredProblem = Annotated[Problem | None, BeforeValidator(_complete)]
+"""The stored failure of a clip, a job or a file of an import, completed to a problem."""

@@ -1,13 +1,11 @@
-"""The fields that name the motion of a query."""
+"""The fields that define the motion of a query."""
 
 from __future__ import annotations
 
 from dataclasses import fields as fields_of
 
-from pydantic import Field, Json
-
-from app.api.schemas.base import Id, Incoming, Roles
-from app.api.schemas.clips import FrameRate, Stack
+from app.api.schemas.base import Id, Incoming
+from app.api.schemas.clips import FileFrameRate, FormRoles, Stack, Unit
 from app.services.find.query_source import QuerySource
 from app.store.files.files import Readable
 
@@ -17,27 +15,21 @@ _NAMES = {field.name for field in fields_of(QuerySource)}
 
 
 class QueryFields(Incoming):
-    """A body with a motion as its query: the fields that a `QuerySource` also has."""
+    """A body with a motion as its query. A `QuerySource` has fields with the same names."""
 
     def source(
         self, content: Readable | None = None, skeleton: Readable | None = None
     ) -> QuerySource:
-        """The motion of the query; content, skeleton: the files that were sent with the body."""
+        """Return the motion of the query. content, skeleton: the files that came with the body."""
         sent = {name: getattr(self, name) for name in _NAMES & type(self).model_fields.keys()}
         return QuerySource(**sent, content=content, skeleton=skeleton)
 
 
 class QueryForm(QueryFields):
-    """A form with a stored clip or an uploaded file, and what a client may say of the file."""
+    """A form with a stored clip or an uploaded file, and hints about the file."""
 
     clip_id: ClipId | None = None
-    unit: str | None = Field(
-        None,
-        max_length=30,
-        description="m, dm, cm, mm, in, ft, cmu (of CMU's files), or meters per unit.",
-    )
-    frame_rate: FrameRate | None = Field(None, description="Overrides what the file declares.")
-    roles: Json[Roles] | None = Field(
-        None, description='JSON: joint name by role, as {"hips": "Pelvis"}.'
-    )
+    unit: Unit = None
+    frame_rate: FileFrameRate = None
+    roles: FormRoles = None
     stack: Stack | None = None

@@ -1,4 +1,4 @@
-"""Who it is, what they do, and in which words."""
+"""Recognition of person, task and words."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from app.services.recognition.recognize import Recognized, RecognizeQuery
 _NEW = "If the library does not know it, it counts as new, and its label in the answer is null."
 
 
-class _Known(QueryFields):
+class _RecognitionOptions(QueryFields):
     method: Literal["default", "multilinear", "signatures", "perera"] = Field(
         "default",
         description="The recognizer. signatures: Vasilescu 2002, on joint angles. multilinear: the "
@@ -39,7 +39,7 @@ class _Known(QueryFields):
         )
 
 
-class Recognize(_Known):
+class Recognize(_RecognitionOptions):
     """Recognize a stored clip."""
 
     clip_id: ClipId
@@ -47,7 +47,7 @@ class Recognize(_Known):
     model_config = ConfigDict(json_schema_extra={"examples": [{"clip_id": "CLIP_ID"}]})
 
 
-class RecognizeForm(_Known, QueryForm):
+class RecognizeForm(_RecognitionOptions, QueryForm):
     """Recognize an uploaded motion (never stored), or a stored clip."""
 
 

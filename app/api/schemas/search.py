@@ -37,7 +37,7 @@ class _MotionOptions(QueryFields):
     cursor: Cursor | None = None
 
     def query(self, source: QuerySource, segment: int | None = None) -> MotionQuery:
-        """The search for a motion; segment: as in `MotionSearch`."""
+        """The search for a motion. segment: as in `MotionSearch`."""
         return MotionQuery(
             source=source,
             method=self.method,
@@ -175,10 +175,10 @@ class WordHit(Hit):
         ge=0,
         le=1,
         description=(
-            "Probability that the clip carries all words that were asked for. It is calibrated on "
+            "Probability that the clip carries all requested words. It is calibrated on "
             "held-out clips, so that scores of different queries can be compared. If a word is "
             "replaced by others because no clip carries it, the most probable of them counts, "
-            "less the farther its meaning is from the word's."
+            "reduced by the distance between the two meanings."
         ),
     )
     distance: float = Field(
@@ -195,11 +195,13 @@ class WordHits(Outgoing):
     items: list[WordHit]
     next: str | None
     unknown_words: list[str] = Field(description="Words that no clip carries.")
-    expanded: dict[str, list[str]] = Field(description="The words that were used instead of each.")
+    expanded: dict[str, list[str]] = Field(
+        description="For each unknown word, the words that were used instead."
+    )
 
     @classmethod
     def of(cls, hits: services.Hits) -> WordHits:
-        """A page as the API shows it, with the words that were not known."""
+        """A page as the API shows it, with the unknown words."""
         return cls(
             method=hits.method,
             took_ms=hits.took_ms,
@@ -207,5 +209,5 @@ class WordHits(Outgoing):
             items=[WordHit(**dict(Hit.of(hit))) for hit in hits.items],
             next=hits.next,
             unknown_words=list(hits.unknown_words),
-            expanded={word: list(known) for word, known in (hits.expanded or {}).items()},
+            expanded={word: list(used) for word, used in (hits.expanded or {}).items()},
         )

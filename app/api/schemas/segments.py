@@ -1,4 +1,4 @@
-"""Segments between keyposes, and the cycles that they form."""
+"""Segments between keyposes, and cycles of segments."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from app.api.schemas.base import Outgoing
 
 
 class Segment(Outgoing):
-    """What is danced from one keypose to the next."""
+    """The motion from one keypose to the next."""
 
-    index: int = Field(ge=0, description="From 0; names it in a search.")
+    index: int = Field(ge=0, description="From 0. A search names the segment by it.")
     start: float = Field(description="Seconds.")
     end: float
     duration: float
-    cycle: int | None = Field(description="Index of the cycle that it belongs to.")
+    cycle: int | None = Field(description="Index of the cycle of this segment.")
 
 
 class Cycle(Outgoing):
-    """One time through a sequence of segments that is danced again and again."""
+    """One repetition of a repeated sequence of segments."""
 
     index: int = Field(ge=0)
-    run: int = Field(ge=0, description="Cycles of one run are repetitions of each other.")
-    first: int = Field(ge=0, description="Index of its first segment.")
-    segments: int = Field(ge=1, validation_alias="count", description="How many it has.")
+    run: int = Field(ge=0, description="Cycles with the same run repeat the same sequence.")
+    first: int = Field(ge=0, description="Index of the first segment.")
+    segments: int = Field(ge=1, validation_alias="count", description="Number of segments.")
     start: float = Field(description="Seconds.")
     end: float
     duration: float

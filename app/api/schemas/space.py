@@ -14,18 +14,22 @@ from app.store.clips.filter import ClipFilter
 
 
 class SpaceQuery(Filter):
-    """Which map, and of which clips: those that pass every filter."""
+    """The kind of map, and filters of its clips. A clip must pass all given filters."""
 
     space: SpaceName = Field(
-        "symbols", description="The motion symbol space, which is fitted, or motion vectors."
+        "symbols",
+        description="symbols: the motion symbol space (fitted). vectors: the motion vectors.",
     )
     dimensions: Literal["2", "3"] = "2"
     limit: int = Field(
-        10_000, ge=1, le=MAX_POINTS, description="Most points; of more clips, evenly picked ones."
+        10_000,
+        ge=1,
+        le=MAX_POINTS,
+        description="Maximum number of points. Of more clips, an even selection is shown.",
     )
 
     def as_filter(self) -> ClipFilter:
-        """The conditions as the store takes them."""
+        """The filter of the store."""
         return parse_filter(self.given())
 
 
@@ -45,10 +49,14 @@ class SpaceMap(Outgoing):
 
     space: str
     dimensions: int
-    variance_kept: float = Field(ge=0, le=1, description="Share of the space that the map shows.")
-    total: int = Field(description="Clips that pass the filter; more than there are items?")
+    variance_kept: float = Field(
+        ge=0, le=1, description="Share of the variance of the space that the map shows."
+    )
+    total: int = Field(
+        description="Number of clips that pass the filter; may be more than `items`."
+    )
     library_version: int
-    model: str | None = Field(description="Id of the model that placed the symbols.")
+    model: str | None = Field(description="Id of the model of the symbol space, else null.")
     items: list[MapPoint]
     next: str | None = None
 

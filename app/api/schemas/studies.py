@@ -17,16 +17,19 @@ PAIRS = "/v1/studies/low-dimensional/pairs"
 
 
 class NewPair(Incoming):
-    """What shall be compared."""
+    """The clip to compare, and its number of dimensions."""
 
     clip_id: Id
     dimensions: int = Field(
-        SHOWN, ge=1, le=10**6, description="Of both versions; up to the poses of the model."
+        SHOWN,
+        ge=1,
+        le=10**6,
+        description="Dimensions of both versions, up to the number of poses of the model.",
     )
     model_clips: list[Id] = Field(
         default_factory=list,
         max_length=MAX_MODEL_CLIPS,
-        description="Clips whose poses make the models; default: the clip itself.",
+        description="Clips with the poses of the models. Default: the clip itself.",
     )
 
     model_config = ConfigDict(
@@ -35,8 +38,10 @@ class NewPair(Incoming):
 
 
 class Pair(Outgoing):
-    """Two versions of a clip: one drawn from keyposes, one from uniform poses. The
-    answer does not say which side is which."""
+    """Two low-dimensional versions of a clip, one from keyposes and one from uniform poses.
+
+    The answer does not say which version is on which side.
+    """
 
     id: str
     clip_id: str
@@ -44,8 +49,8 @@ class Pair(Outgoing):
     left: str = Field(description="Path of the motion on the left.")
     original: str = Field(description="Path of the original, on the same joints.")
     right: str = Field(description="Path of the motion on the right.")
-    animation: str = Field(description="Path of a picture of the three that moves.")
-    votes: str = Field(description="Path to which votes are posted.")
+    animation: str = Field(description="Path of an animated picture of all three motions.")
+    votes: str = Field(description="Path for POST of a vote.")
     created_at: datetime
 
     @classmethod
@@ -73,30 +78,30 @@ class PairList(Outgoing):
 
 
 class PairsQuery(Incoming):
-    """Which page of the pairs."""
+    """A page of the pairs."""
 
     limit: Limit = 50
     cursor: Cursor | None = None
 
 
 class SideQuery(Incoming):
-    """How a motion of a pair is returned."""
+    """Frame rate of a motion of a pair."""
 
     fps: Fps | None = Field(
-        None, description="Resampled by time; default: 30, at which it is made."
+        None, description="The motion is resampled to this rate. Default: 30, its own rate."
     )
 
 
 class NewVote(Incoming):
-    """Which version is nearer to the original."""
+    """A vote: the version that is nearer to the original."""
 
     choice: Choice
     voter: str | None = Field(
         None,
         min_length=1,
         max_length=MAX_VOTER,
-        description="Anything that identifies a voter, such as a random number that the page "
-        "keeps; one vote each on a sequence. Kept as a hash only.",
+        description="A text that identifies the voter, for example a random number. Each voter has "
+        "one vote on a sequence. Only a hash of it is stored.",
     )
 
     model_config = ConfigDict(
@@ -105,8 +110,10 @@ class NewVote(Incoming):
 
 
 class Vote(Outgoing):
-    """A vote that was kept. The answer does not say which basis it was for: the voter may see
-    more pairs."""
+    """A stored vote.
+
+    The answer does not say which basis was chosen, because the voter may see more pairs.
+    """
 
     id: str
     pair_id: str
@@ -114,35 +121,35 @@ class Vote(Outgoing):
 
 
 class TallyQuery(Incoming):
-    """Whose votes."""
+    """A filter of the votes."""
 
     clip_id: str | None = Field(
-        None, min_length=1, max_length=100, description="Of this clip's pairs only."
+        None, min_length=1, max_length=100, description="Only votes on pairs of this clip."
     )
 
 
 class Tally(Outgoing):
     """Votes as in Perera's Table 2."""
 
-    keypose: int = Field(description="How often the version drawn from keyposes was chosen.")
+    keypose: int = Field(description="Number of votes for the version from keyposes.")
     uniform: int
-    same: int = Field(description="How often the two looked the same.")
+    same: int = Field(description="Number of votes that both look the same.")
     share: float | None = Field(
-        ge=0, le=1, description="keypose / (keypose + uniform); null without such votes."
+        ge=0, le=1, description="keypose / (keypose + uniform); null without any of these votes."
     )
     interval: list[float] = Field(
-        min_length=2, max_length=2, description="Of the share, 95 % (Wilson)."
+        min_length=2, max_length=2, description="95 % confidence interval of `share` (Wilson)."
     )
     chance: float = Field(
         ge=0,
         le=1,
-        description="Probability of a share as far from one half if nobody could see a difference "
-        "(exact binomial test, which assumes independent votes).",
+        description="Probability of a share at least this far from one half if nobody saw a "
+        "difference (exact binomial test, which assumes independent votes).",
     )
 
 
 class SequenceTally(Tally):
-    """The votes on one clip with one model and so many dimensions."""
+    """The votes on one clip with one model and one number of dimensions."""
 
     clip_id: str
     name: str
@@ -163,12 +170,12 @@ class StudyTally(Outgoing):
     """Table 2 of this library."""
 
     sequences: list[SequenceTally] = Field(
-        description=f"The first {MAX_SEQUENCES} by name; ask by `clip_id` for others. The other"
-        " figures are of all."
+        description=f"The first {MAX_SEQUENCES} by name. Use `clip_id` for others. `total` and"
+        " `left_share` count all sequences."
     )
     total: Tally
     left_share: float | None = Field(
-        ge=0, le=1, description="How often the left side was chosen; one half is fair."
+        ge=0, le=1, description="Share of votes for the left side; about one half is expected."
     )
 
     @classmethod

@@ -1,4 +1,4 @@
-"""What a motion symbol generates."""
+"""The motion that a motion symbol generates."""
 
 from __future__ import annotations
 
@@ -17,20 +17,23 @@ class Channel(Outgoing):
 
     name: str = Field(examples=["left_knee_flexion"])
     mean: list[float] = Field(
-        description="A value a frame: cosine, body lengths, body lengths / s or radians / s."
+        description="One value per frame: cosine, body lengths, body lengths / s or radians / s."
     )
-    spread: list[float] = Field(description="Standard deviation at each frame, the same unit.")
+    spread: list[float] = Field(description="Standard deviation at each frame, in the same unit.")
 
 
 class SymbolMotion(Motion):
-    """The motion that a clip's symbol stands for (Takano, fig. 6)."""
+    """The motion that the symbol of a clip generates (Takano, fig. 6)."""
 
-    states: int = Field(description="States of the hidden Markov model.")
+    states: int = Field(description="Number of states of the hidden Markov model.")
     channels: list[Channel]
 
 
 def channels_json(view: SymbolMotionView) -> Iterator[str]:
-    """The member `channels` as JSON, a channel at a time: a long clip has a million numbers."""
+    """Yield the member `channels` as JSON, one channel at a time.
+
+    A long clip has a million numbers, so the list is never built as a whole.
+    """
     found = view.generated
     yield ', "channels": ['
     for number, (name, mean, spread) in enumerate(

@@ -1,4 +1,4 @@
-"""Motions that nobody recorded: the request for one, and the answer."""
+"""Synthesis of motions that nobody recorded: request and answer."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from app.services.synthesis.synthesize import MAX_CLIPS, SECONDS, Synthesized
 
 
 class Synthesize(Incoming):
-    """Exactly one of `person`, whom the library knows, and `clip_ids`, of one person."""
+    """The requested motion. Exactly one of `person` and `clip_ids` is needed."""
 
-    task: Annotated[Label, Field(min_length=1, description="What they are to do.")]
+    task: Annotated[Label, Field(min_length=1, description="The task of the motion.")]
     person: Label | None = Field(None, description="A person of the library.")
     clip_ids: Annotated[list[ClipId], Field(min_length=1, max_length=MAX_CLIPS)] | None = Field(
         None,
-        description="Clips of one person, known or not, labelled with what is done in them; the"
-        " motion is made as though the library held no others of that person.",
+        description="Clips of one person, labeled with their tasks. The library may know the person"
+        " or not: the motion is made as if it had no other clips of that person.",
     )
     seconds: float | None = Field(
         None,
         ge=SECONDS[0],
         le=SECONDS[1],
-        description="How long: a gait is repeated to about that, anything else is stretched to"
-        " it. Default: some cycles, or as long as the task takes.",
+        description="Duration, seconds. A gait is repeated to about this duration; any other motion"
+        " is stretched to it. Default: a few cycles, or the usual duration of the task.",
     )
-    store: bool = Field(False, description="Keep the motion as a clip.")
+    store: bool = Field(False, description="Store the motion as a clip.")
     bvh: bool = Field(False, description="Include the BVH file in the answer.")
 
     model_config = ConfigDict(
@@ -53,14 +53,16 @@ class Synthesize(Incoming):
 
 
 class SynthesizedClip(Outgoing):
-    """The clip that the motion is; without an id where it was not stored."""
+    """A synthesized motion as a clip. It has no id if it was not stored."""
 
     id: str | None
     name: str
     person: str | None
     task: str
     source: str = Field(description="`synthesized`.")
-    license: str | None = Field(description="That of all clips it is made of, null if they differ.")
+    license: str | None = Field(
+        description="License of all clips that were used; null if they differ."
+    )
     format: str
     frames: int
     frame_rate: float
@@ -70,69 +72,75 @@ class SynthesizedClip(Outgoing):
 
 
 class Quality(Outgoing):
-    """How far the motion can be trusted."""
+    """How similar the motion is to real clips, and how similar such motions usually are."""
 
     kind: SynthesisKind = Field(
-        description="`new_task` of a known person; `new_person` of some clips; `seen`: the person"
-        " did record this task, and the motion is the mean of their takes, or one of them where"
-        " these do not agree."
+        description="new_task: a known person in a new task. new_person: a person known only by"
+        " `clip_ids`. seen: the person recorded this task, and the motion is the mean of these"
+        " takes, or one of them if they differ too much."
     )
-    given_persons: list[str] = Field(description="Who did the task.")
-    given_tasks: list[str] = Field(description="What the asked person did.")
+    given_persons: list[str] = Field(description="Persons who recorded the task.")
+    given_tasks: list[str] = Field(description="Tasks that the requested person recorded.")
     follows: str | None = Field(
-        description="The person whose take the motion follows, in the asked person's bearing, where"
-        " the takes of the task do not agree on what it is (dances); else null, and the motion is"
-        " made of all of them."
+        description="If the takes of a task differ too much (dances), the motion follows "
+        "the take of"
+        " this person, with the style of the requested person. If null, the motion uses all takes."
     )
     agreement: float | None = Field(
         le=1,
-        description="Share of their movement that those takes have in common, persons' means side"
-        " by side, or of `seen` the takes; about 0, or a little less, of unlike motions. Null where"
-        " there is but one.",
+        description="Share of the movement that is common to the persons' mean takes of "
+        "the task (for"
+        " `seen`: to the takes of the person). It is about 0 or slightly negative for dissimilar"
+        " motions. Null if there is only one.",
     )
     nearest_clip: Clip | None = Field(
         validation_alias="nearest",
-        description="The real clip most like the motion, analyzed like any other.",
+        description="The real clip that is most similar to the motion.",
     )
     nearest_person: str
     nearest_task: str
-    distance: float = Field(ge=0, description="From it, in body lengths over 32 moments.")
-    person_is_right: bool | None = Field(
-        description="Whether that clip is of the person asked for; null where they have no name."
-        " Where they never did the task it can hardly be both they and the task."
+    distance: float = Field(
+        ge=0, description="Distance from that clip, in body lengths over 32 moments."
     )
-    task_is_right: bool = Field(description="Whether it is of the task asked for.")
+    person_is_right: bool | None = Field(
+        description="Whether that clip shows the requested person; null if the person has no name."
+        " If the person never recorded the task, the clip can hardly show both person and task."
+    )
+    task_is_right: bool = Field(description="Whether that clip shows the requested task.")
     expected_hit: float | None = Field(
         ge=0,
         le=1,
-        description="Measured when the model was fitted: combinations of person and task were"
-        " left out and made; this share of the motions had a take of just that combination as"
-        " the nearest real clip. Of motions that followed one take as this one does, or did not as"
-        " this one does not. Null for `seen`.",
+        description="Measured when the model was fitted: combinations of person and task were left"
+        " out and synthesized. For this share of the motions, the nearest real clip was a take of"
+        " the same combination. Only motions of the same kind count: those that follow one take, or"
+        " those that do not. Null for `seen`.",
     )
     expected_given: int | None = Field(
-        description="From so many persons' takes (new_task) or tasks (new_person)."
+        description="Number of persons (new_task) or tasks (new_person) from which these were made."
     )
-    expected_trials: int | None = Field(description="Combinations left out.")
+    expected_trials: int | None = Field(description="Number of combinations that were left out.")
     real_hit: float | None = Field(
         ge=0,
         le=1,
-        description="That share of their real takes, each beside all others: no motion can be"
-        " expected to do better. Null where there are no two takes.",
+        description="The same share for the real takes of these combinations, each "
+        "compared with all"
+        " others: an upper bound for `expected_hit`. Null if no combination has two takes.",
     )
-    skate: float = Field(ge=0, description="Mean horizontal speed of low feet, m/s.")
-    real_skate: float | None = Field(description="The same of real takes of the task.")
+    skate: float = Field(
+        ge=0, description="Foot skate: mean horizontal speed of feet near the floor, m/s."
+    )
+    real_skate: float | None = Field(description="The same speed in real takes of the task.")
 
 
 class Synthesis(Outgoing):
     """A motion that nobody recorded."""
 
-    clip: SynthesizedClip | Clip = Field(description="As stored, or without an id.")
-    job: Job | None = Field(description="That makes the stored clip ready, else null.")
-    cycles: int = Field(ge=0, description="How often it goes round, 0 where it does not.")
+    clip: SynthesizedClip | Clip = Field(description="The stored clip, or a clip without an id.")
+    job: Job | None = Field(description="The job that makes the stored clip ready, else null.")
+    cycles: int = Field(ge=0, description="Number of cycles of a gait, 0 for other motions.")
     quality: Quality
     motion: Motion
-    bvh: str | None = Field(description="The BVH file where it was asked for: centimetres, Y up.")
+    bvh: str | None = Field(description="The BVH file if `bvh` was requested: centimeters, Y up.")
 
     @classmethod
     def of(cls, made: Synthesized, *, with_bvh: bool) -> Synthesis:

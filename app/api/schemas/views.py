@@ -1,4 +1,4 @@
-"""What can be seen of a clip: its motion and descriptor."""
+"""Views of a clip: its motion and descriptor."""
 
 from __future__ import annotations
 
@@ -16,11 +16,13 @@ Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 
 
 class MotionQueryParameters(Incoming):
-    """How a clip's motion is returned."""
+    """Frame rate and joints of a returned motion."""
 
-    fps: Fps | None = Field(None, description="Resampled by time; default: the clip's own rate.")
+    fps: Fps | None = Field(
+        None, description="The motion is resampled to this rate. Default: the clip's own rate."
+    )
     joints: Literal["all", "roles"] = Field(
-        "all", description="All joints, or the 13 of Sun's figure 2 in its order."
+        "all", description="All joints, or the 13 joints of figure 2 in Sun 2011, in its order."
     )
 
 
@@ -30,21 +32,23 @@ class Motion(Outgoing):
     frame_rate: float
     joint_names: list[str]
     parents: list[int] = Field(description="Index of each joint's parent, -1 for a root.")
-    positions: list[list[Point]] = Field(description="(frames, joints, 3), metres, Y up.")
+    positions: list[list[Point]] = Field(description="(frames, joints, 3), meters, Y up.")
 
 
 class Convergence(Outgoing):
-    """How the factors were found: by alternating least squares until lambda hardly changes."""
+    """Course of the alternating least squares, which stop when lambda hardly changes."""
 
     errors: list[float] = Field(
-        description="Share of the volume that the factors leave unexplained, by iteration."
+        description="Share of the volume that the factors do not explain, by iteration."
     )
     changes: list[float] = Field(description="Relative change of lambda, by iteration.")
-    converged: bool = Field(description="False when the iterations were used up before.")
+    converged: bool = Field(
+        description="False if the maximum number of iterations was reached first."
+    )
 
     @classmethod
     def of(cls, steps: NDArray[Any]) -> Convergence:
-        """From (iterations, 2) errors and changes."""
+        """Make it from errors and changes, (iterations, 2)."""
         errors, changes = plain(steps.T)
         return cls(errors=errors, changes=changes, converged=len(errors) < MAX_ITERATIONS)
 
@@ -56,7 +60,7 @@ class VolumeFactors(Outgoing):
     rho: list[float] = Field(description="Primary vector, (13,).")
     epsilon: list[float] = Field(description="Secondary vector, (frames,) at 30 Hz.")
     convergence: Convergence | None = Field(
-        description="null for a clip whose analysis is of a version that did not keep this."
+        description="null if the clip was analyzed by an older version that did not store this."
     )
 
 
@@ -69,13 +73,13 @@ class SymbolSummary(Outgoing):
 
 
 class Versions(Outgoing):
-    """What computed it."""
+    """The version that computed the descriptor."""
 
     analysis: int
 
 
 class Descriptor(Outgoing):
-    """What a clip is compared by."""
+    """The arrays by which a clip is compared with others."""
 
     msv: VolumeFactors
     motion_vector: list[float] = Field(description="(128,).")
@@ -105,5 +109,5 @@ class Descriptor(Outgoing):
 
 
 def plain(values: NDArray[Any]) -> Any:
-    """Numbers as nested lists, exactly."""
+    """Return an array as nested lists of float64, without rounding."""
     return values.astype(np.float64).tolist()

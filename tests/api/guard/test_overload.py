@@ -13,7 +13,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.api.guard.gates import MOST_STREAMS, Gates
+from app.api.guard.gates import MAX_STREAMS, Gates
 from app.api.streams import OCTETS
 from tests.api.conftest import assert_problem
 from tests.bench.processes import processes_over
@@ -138,9 +138,9 @@ def test_who_reads_nothing_holds_up_nobody(
     clip_id = library[1][0]
     path = f"/v1/clips/{clip_id}/motion"
     with ExitStack() as stack:
-        readers = [stack.enter_context(_asked(live, "GET", path)) for _ in range(MOST_STREAMS + 8)]
+        readers = [stack.enter_context(_asked(live, "GET", path)) for _ in range(MAX_STREAMS + 8)]
         statuses = [_status(reader) for reader in readers]
-        assert statuses.count(200) == MOST_STREAMS
+        assert statuses.count(200) == MAX_STREAMS
         assert statuses.count(503) == 8
         assert _answers(client, clip_id) == [200] * 6
         plain = {"clip_id": clip_id, "method": "vector"}

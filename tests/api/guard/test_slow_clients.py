@@ -287,7 +287,7 @@ def _arrive(pieces: list[tuple[float, int]]) -> arrival.Arrival:
 def test_a_body_must_arrive_at_a_least_rate(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(arrival, "GRACE_SECONDS", 0.2)
     monkeypatch.setattr(arrival, "PAUSE_SECONDS", 10.0)
-    monkeypatch.setattr(arrival, "LEAST_RATE", 1_000.0)
+    monkeypatch.setattr(arrival, "MIN_BYTES_PER_SECOND", 1_000.0)
     _arrive([(0.05, 10_000)] * 10)
     with pytest.raises(arrival.TooSlow):
         _arrive([(0.05, 1)] * 10)

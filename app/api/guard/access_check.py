@@ -1,8 +1,8 @@
-"""Before anything else is done for a request: may this caller call at all?
+"""The first check of a request: may this caller call at all?
 
-Where no key is asked for, other sites are refused on every path (see `own_address`). Where keys
-are asked for, a call that changes something, or that has a body, needs a valid one before any of
-its body is read; which role it needs is up to the route (`deps`).
+If no key is required, calls from other sites are refused on every path (see `own_address`). If
+keys are required, a call that changes something or has a body needs a valid key before its body is
+read. The route decides which role the key needs (`deps`).
 """
 
 from __future__ import annotations
@@ -14,28 +14,29 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.api.failures.handlers import answer_failure
 from app.api.failures.problems import NotReadyYet
-from app.api.guard.callers import Caller, who_calls
+from app.api.guard.callers import Caller, find_caller
 from app.api.guard.own_address import refuse_other_sites
 from app.api.guard.paths import path_of
 from app.errors import KinedexError
 from app.services.library.library import Library
 
 PROBES = frozenset({"/livez", "/readyz"})
-"""Whoever runs the service asks these, by any name; they hold nothing of the library."""
+"""Monitoring calls these paths under any host name. They show nothing of the library."""
 WITHOUT_BODY = frozenset({"GET", "HEAD", "OPTIONS"})
+"""Methods that have no body and change nothing."""
 THREADS = 8
-"""For looking keys up, so that calls that take long do not hold this up."""
+"""Threads only for looking up keys, so that long calls do not delay this check."""
 
 
-class Door:
-    """ASGI middleware; `request.state.caller` is the Caller afterwards."""
+class AccessCheck:
+    """ASGI middleware. It puts the Caller into `request.state.caller`."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
         self._threads = CapacityLimiter(THREADS)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer 401, 403 or 503 at once, or pass the request on."""
+        """Answer 401, 403 or 503 at once, or call the application."""
         if scope["type"] != "http" or path_of(scope) in PROBES:
             await self.app(scope, receive, send)
             return
@@ -53,7 +54,7 @@ class Door:
         if library is None:
             raise NotReadyYet
         headers = Headers(scope=scope)
-        caller = await to_thread.run_sync(who_calls, library, headers, limiter=self._threads)
+        caller = await to_thread.run_sync(find_caller, library, headers, limiter=self._threads)
         if caller.is_free:
             refuse_other_sites(scope)
         if scope["method"] not in WITHOUT_BODY:
