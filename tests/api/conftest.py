@@ -1,4 +1,4 @@
-"""What the tests of the HTTP contract share."""
+"""Fixtures that the tests of the HTTP API share."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.live import Live
 
 @pytest.fixture(scope="session")
 def take() -> DemoClip:
-    """A clip that the demo service does not hold."""
+    """A clip that the demo service does not have."""
     return next(demo_clips(["chika"], ["walk"], takes=1))
 
 
@@ -38,12 +38,12 @@ def walk(demo: httpx2.Client) -> dict[str, Any]:
 
 
 def assert_problem(answer: httpx2.Response, status: int, code: str, *locations: str) -> None:
-    """An RFC 9457 problem with that status and code, which names those places among others."""
+    """Check an RFC 9457 problem: its status, its code, and locations that it must name."""
     assert answer.status_code == status, answer.text
     assert answer.headers["content-type"] == "application/problem+json"
-    told = answer.json()
-    assert list(told) == ["type", "title", "status", "detail", "code", "errors"]
-    assert (told["status"], told["code"]) == (status, code)
-    assert told["type"] == f"urn:kinedex:problem:{code}"
-    assert set(locations) <= {place["location"] for place in told["errors"]}
-    assert all(set(place) == {"location", "message"} for place in told["errors"])
+    problem = answer.json()
+    assert list(problem) == ["type", "title", "status", "detail", "code", "errors"]
+    assert (problem["status"], problem["code"]) == (status, code)
+    assert problem["type"] == f"urn:kinedex:problem:{code}"
+    assert set(locations) <= {place["location"] for place in problem["errors"]}
+    assert all(set(place) == {"location", "message"} for place in problem["errors"])

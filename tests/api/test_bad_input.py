@@ -1,4 +1,4 @@
-"""Bad input of every kind: answered at once with a problem that names the place; never a 500."""
+"""Bad input of every kind: a problem names its location at once, and never a 500."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SEARCH, WORDS, RECOGNIZE = "/v1/search/motion", "/v1/search/words", "/v1/recogni
     ids=["empty", "text", "binary", "program"],
 )
 @pytest.mark.parametrize("path", ["/v1/clips", SEARCH, RECOGNIZE])
-def test_content_that_cannot_be_a_clip(
+def test_content_that_is_no_motion_is_refused(
     idle: httpx2.Client, path: str, content: bytes, status: int, code: str
 ) -> None:
     assert_problem(idle.post(path, files={"file": ("a.bvh", content)}), status, code)
@@ -63,7 +63,7 @@ def test_fields_of_an_upload(idle: httpx2.Client, data: dict[str, str], location
 
 
 @pytest.mark.parametrize("rate", [0.01, 0.999, 2000.1])
-def test_the_same_frame_rates_are_refused_wherever_they_are_said(
+def test_uploads_patches_and_manifests_refuse_the_same_frame_rates(
     idle: httpx2.Client, rate: float
 ) -> None:
     files, said = {"file": ("a.bvh", b"HIERARCHY\nROOT Hips\n{")}, {"frame_rate": str(rate)}
@@ -165,7 +165,7 @@ def test_a_media_type_that_is_not_taken(idle: httpx2.Client, path: str) -> None:
 def test_fields_of_a_query(
     idle: httpx2.Client, path: str, body: dict[str, Any], location: str
 ) -> None:
-    # json.dumps writes NaN and Infinity, which strict clients' libraries refuse to send.
+    # json.dumps writes NaN and Infinity. The JSON encoders of strict clients refuse them.
     headers = {"Content-Type": "application/json"}
     answer = idle.post(path, content=json.dumps(body), headers=headers)
     assert_problem(answer, 422, "bad_field", location)
@@ -173,7 +173,7 @@ def test_fields_of_a_query(
 
 @pytest.mark.parametrize("typed", ["\0", "a\0b", "a\nb"])
 @pytest.mark.parametrize("path", ["/v1/clips", "/v1/words"])
-def test_what_is_typed_holds_no_control_character(
+def test_control_characters_in_a_search_text_are_refused(
     idle: httpx2.Client, path: str, typed: str
 ) -> None:
     # SQLite's LIKE ends at a NUL: it would find every clip
@@ -241,7 +241,7 @@ def test_ids_and_paths_that_do_not_exist(
     assert_problem(idle.request(method, path), 404, code)
 
 
-def test_unknown_clips_are_told_where_they_were_named(idle: httpx2.Client) -> None:
+def test_the_problem_names_the_field_of_an_unknown_clip(idle: httpx2.Client) -> None:
     for path in (SEARCH, RECOGNIZE):
         for sent in ({"json": {"clip_id": "nope"}}, {"files": {"clip_id": (None, "nope")}}):
             answer = idle.post(path, **sent)
@@ -251,7 +251,7 @@ def test_unknown_clips_are_told_where_they_were_named(idle: httpx2.Client) -> No
     assert_problem(idle.get("/v1/clips/nope/motion"), 404, "clip_not_found", "path.clip_id")
 
 
-def test_a_clip_that_is_not_ready_is_told_where_it_was_named(idle: httpx2.Client) -> None:
+def test_the_problem_names_the_field_of_a_clip_that_is_not_ready(idle: httpx2.Client) -> None:
     files = {"file": ("a.bvh", b"HIERARCHY never analysed")}
     clip = idle.post("/v1/clips", files=files).json()["clip"]["id"]
     answer = idle.post(SEARCH, json={"clip_id": clip})
@@ -260,7 +260,7 @@ def test_a_clip_that_is_not_ready_is_told_where_it_was_named(idle: httpx2.Client
     assert_problem(answer, 409, "clip_not_ready", "path.clip_id")
 
 
-def test_a_method_that_is_not_there(idle: httpx2.Client) -> None:
+def test_a_method_without_a_route_is_refused(idle: httpx2.Client) -> None:
     answer = idle.put("/v1/clips/x", json={})
     assert_problem(answer, 405, "method_not_allowed")
     assert "GET" in answer.headers["allow"]
@@ -273,7 +273,7 @@ def test_no_model_yet(idle: httpx2.Client) -> None:
     assert "POST /v1/models/fit" in answer.json()["detail"]
 
 
-def test_a_model_that_is_being_fitted_is_worth_waiting_for(idle: httpx2.Client) -> None:
+def test_a_model_that_is_being_fitted_has_a_retry_after(idle: httpx2.Client) -> None:
     job = idle.post("/v1/models/fit").json()["job"]["id"]
     try:
         answer = idle.post(WORDS, json={"words": ["walk"]})
@@ -312,7 +312,7 @@ def test_a_body_over_the_limit_is_refused_while_it_streams(idle_service: Live) -
     assert _temporary_files(idle_service.data_dir) == []
 
 
-def test_who_waits_for_a_go_ahead_need_not_send_the_body(idle_service: Live) -> None:
+def test_a_client_with_expect_100_continue_need_not_send_the_body(idle_service: Live) -> None:
     address = urlsplit(idle_service.url)
     with socket.create_connection((address.hostname or "", address.port or 0), timeout=10) as line:
         line.sendall(

@@ -33,16 +33,16 @@ def _post(client: httpx2.Client, content: bytes, name: str = "a.bvh", **data: st
 def test_an_upload_is_acknowledged_then_ready(demo_service: Live, take: DemoClip) -> None:
     answer = demo_service.upload(take, license="CC0-1.0", source="test")
     assert answer.status_code == 202
-    told = answer.json()
-    assert set(told) == {"clip", "job"}
-    assert set(told["clip"]) == CLIP_FIELDS
-    assert set(told["job"]) == JOB_FIELDS
-    assert told["clip"]["state"] == "queued"
-    assert told["clip"]["sha256"] == hashlib.sha256(take.content).hexdigest()
-    job = demo_service.wait_for_job(told["job"]["id"])
+    reply = answer.json()
+    assert set(reply) == {"clip", "job"}
+    assert set(reply["clip"]) == CLIP_FIELDS
+    assert set(reply["job"]) == JOB_FIELDS
+    assert reply["clip"]["state"] == "queued"
+    assert reply["clip"]["sha256"] == hashlib.sha256(take.content).hexdigest()
+    job = demo_service.wait_for_job(reply["job"]["id"])
     assert (job["state"], job["progress"]) == ("succeeded", 1.0)
     with demo_service.client() as client:
-        clip = client.get(f"/v1/clips/{told['clip']['id']}").json()
+        clip = client.get(f"/v1/clips/{reply['clip']['id']}").json()
         assert clip["state"] == "ready"
         assert clip["person"] == "chika"
         assert clip["words"] == list(take.words)
@@ -97,8 +97,8 @@ def test_lists_are_filtered_by_where_clips_come_from(idle: httpx2.Client) -> Non
     ours = _post(idle, _tiny(61), source=" Studio 4 ").json()["clip"]["id"]
     theirs = _post(idle, _tiny(62), source="a friend").json()["clip"]["id"]
 
-    def found(**wanted: Any) -> set[str]:
-        items = idle.get("/v1/clips", params=wanted | {"limit": 1000}).json()["items"]
+    def found(**filters: Any) -> set[str]:
+        items = idle.get("/v1/clips", params=filters | {"limit": 1000}).json()["items"]
         return {clip["id"] for clip in items} & {ours, theirs}
 
     assert found(source="Studio 4") == {ours}
@@ -108,11 +108,11 @@ def test_lists_are_filtered_by_where_clips_come_from(idle: httpx2.Client) -> Non
 
 
 def test_lists_and_maps_take_every_filter_of_a_search(idle: httpx2.Client) -> None:
-    told = idle.get("/openapi.json").json()
-    of_search = set(told["components"]["schemas"]["Filter"]["properties"])
+    reply = idle.get("/openapi.json").json()
+    of_search = set(reply["components"]["schemas"]["Filter"]["properties"])
     assert {"source", "not_source", "license", "max_duration"} <= of_search
     for path in ("/v1/clips", "/v1/space"):
-        taken = {one["name"] for one in told["paths"][path]["get"]["parameters"]}
+        taken = {one["name"] for one in reply["paths"][path]["get"]["parameters"]}
         assert of_search <= taken
         assert idle.get(path, params={"studio": "4"}).status_code == 422
 
@@ -135,13 +135,13 @@ def test_the_file_comes_back_as_an_attachment(demo: httpx2.Client, walk: dict[st
     assert answer.headers["x-content-type-options"] == "nosniff"
 
 
-def test_a_part_of_the_file_can_be_had(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+def test_a_range_of_the_file_can_be_requested(demo: httpx2.Client, walk: dict[str, Any]) -> None:
     path = f"/v1/clips/{walk['id']}/file"
     answer = demo.get(path, headers={"Range": "bytes=4-12"})
     assert (answer.status_code, answer.content) == (206, demo.get(path).content[4:13])
 
 
-def test_a_file_that_is_deleted_while_it_is_asked_for(idle: httpx2.Client) -> None:
+def test_a_file_that_is_deleted_during_downloads(idle: httpx2.Client) -> None:
     content = _tiny(99) + b"\n" * 2**18
     answers: set[int] = set()
 
@@ -176,11 +176,11 @@ def test_file_names_of_others_do_no_harm(idle: httpx2.Client, name: str) -> None
 
 def test_motion_as_json_and_as_octets_agree(demo: httpx2.Client, walk: dict[str, Any]) -> None:
     path = f"/v1/clips/{walk['id']}/motion"
-    told = demo.get(path).json()
-    assert set(told) == {"frame_rate", "joint_names", "parents", "positions"}
-    positions = np.array(told["positions"])
+    reply = demo.get(path).json()
+    assert set(reply) == {"frame_rate", "joint_names", "parents", "positions"}
+    positions = np.array(reply["positions"])
     assert positions.shape == (walk["frames"], walk["joints"], 3)
-    assert len(told["joint_names"]) == len(told["parents"]) == walk["joints"]
+    assert len(reply["joint_names"]) == len(reply["parents"]) == walk["joints"]
     octets = demo.get(path, headers={"Accept": "application/octet-stream"})
     shape = tuple(int(size) for size in octets.headers["x-shape"].split(","))
     raw = np.frombuffer(octets.content, dtype="<f4").reshape(shape)
@@ -190,32 +190,32 @@ def test_motion_as_json_and_as_octets_agree(demo: httpx2.Client, walk: dict[str,
 def test_motion_is_resampled_and_reduced_to_roles(
     demo: httpx2.Client, walk: dict[str, Any]
 ) -> None:
-    told = demo.get(f"/v1/clips/{walk['id']}/motion", params={"fps": 10, "joints": "roles"}).json()
-    assert told["frame_rate"] == 10
-    assert len(told["joint_names"]) == 13
-    assert len(told["positions"]) == pytest.approx(walk["duration"] * 10, abs=1)
+    reply = demo.get(f"/v1/clips/{walk['id']}/motion", params={"fps": 10, "joints": "roles"}).json()
+    assert reply["frame_rate"] == 10
+    assert len(reply["joint_names"]) == 13
+    assert len(reply["positions"]) == pytest.approx(walk["duration"] * 10, abs=1)
 
 
-def test_keyposes_tell_curves_and_poses(demo: httpx2.Client, walk: dict[str, Any]) -> None:
-    told = demo.get(f"/v1/clips/{walk['id']}/keyposes", params={"method": "printed"}).json()
-    assert told["method"] == "printed"
-    assert len(told["frames"]) == len(told["times"]) == len(told["poses"])
-    assert len(told["energy"]["global"]) == len(told["energy"]["local"])
-    assert np.array(told["poses"]).reshape(-1, 13, 3).shape[0] == len(told["frames"])
+def test_keyposes_have_curves_and_poses(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    reply = demo.get(f"/v1/clips/{walk['id']}/keyposes", params={"method": "printed"}).json()
+    assert reply["method"] == "printed"
+    assert len(reply["frames"]) == len(reply["times"]) == len(reply["poses"])
+    assert len(reply["energy"]["global"]) == len(reply["energy"]["local"])
+    assert np.array(reply["poses"]).reshape(-1, 13, 3).shape[0] == len(reply["frames"])
 
 
-def test_descriptor_tells_what_is_compared(demo: httpx2.Client, walk: dict[str, Any]) -> None:
-    told = demo.get(f"/v1/clips/{walk['id']}/descriptor").json()
-    assert len(told["motion_vector"]) == 128
-    assert len(told["msv"]["rho"]) == 13
-    assert told["msv"]["lambda"] > 0
-    convergence = told["msv"]["convergence"]
+def test_a_descriptor_has_the_compared_arrays(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    reply = demo.get(f"/v1/clips/{walk['id']}/descriptor").json()
+    assert len(reply["motion_vector"]) == 128
+    assert len(reply["msv"]["rho"]) == 13
+    assert reply["msv"]["lambda"] > 0
+    convergence = reply["msv"]["convergence"]
     assert convergence["converged"] is True
     assert len(convergence["errors"]) == len(convergence["changes"]) > 3
     assert 0 < convergence["errors"][-1] <= convergence["errors"][0] < 1
     assert convergence["changes"][-1] < 1e-10 < convergence["changes"][0]
-    assert told["symbol"]["states"] == len(told["symbol"]["means"])
-    assert told["versions"]["analysis"] >= 1
+    assert reply["symbol"]["states"] == len(reply["symbol"]["means"])
+    assert reply["versions"]["analysis"] >= 1
 
 
 def test_thumbnail_is_a_picture(demo: httpx2.Client, walk: dict[str, Any]) -> None:
@@ -230,7 +230,7 @@ def test_a_clip_that_is_not_ready_says_so(idle: httpx2.Client) -> None:
         assert_problem(idle.get(f"/v1/clips/{clip['id']}/{view}"), 409, "clip_not_ready")
 
 
-def test_bad_content_fails_with_its_place(demo_service: Live) -> None:
+def test_bad_content_fails_with_its_location(demo_service: Live) -> None:
     bad = next(demo_clips(["dele"], ["walk"], takes=1)).content
     lines = bad.split(b"\n")
     lines[-3] = b"one two three"
@@ -249,7 +249,7 @@ def test_bad_content_fails_with_its_place(demo_service: Live) -> None:
 
 
 def _tiny(salt: int) -> bytes:
-    """A small BVH, no two alike; nobody analyses it."""
+    """A small BVH, different for each salt. Nobody analyzes it."""
     return (
         "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition "
         "Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n"
@@ -257,13 +257,13 @@ def _tiny(salt: int) -> bytes:
     ).encode()
 
 
-def test_a_symbol_is_played(demo: httpx2.Client, walk: dict[str, Any]) -> None:
-    told = demo.get(f"/v1/clips/{walk['id']}/symbol/motion").json()
-    assert told["states"] >= 1
-    assert len(told["channels"]) == 26
-    frames = len(told["positions"])
-    assert frames / told["frame_rate"] == pytest.approx(walk["duration"], rel=0.1)
-    for channel in told["channels"]:
+def test_a_symbol_generates_a_motion(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    reply = demo.get(f"/v1/clips/{walk['id']}/symbol/motion").json()
+    assert reply["states"] >= 1
+    assert len(reply["channels"]) == 26
+    frames = len(reply["positions"])
+    assert frames / reply["frame_rate"] == pytest.approx(walk["duration"], rel=0.1)
+    for channel in reply["channels"]:
         assert len(channel["mean"]) == len(channel["spread"]) == frames
     raw = demo.get(
         f"/v1/clips/{walk['id']}/symbol/motion", headers={"Accept": "application/octet-stream"}

@@ -1,4 +1,4 @@
-"""Exports over HTTP: attachments with safe names, problems for what is wrong."""
+"""Exports over HTTP: attachments with safe names, problems for wrong fields."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_each_format_is_an_attachment(
         assert answer.text.count("\n") == walk["frames"] + 1
 
 
-def test_what_comes_out_goes_in_again(
+def test_an_exported_file_can_be_uploaded(
     demo: httpx2.Client, demo_service: Live, walk: dict[str, Any]
 ) -> None:
     params = {"format": "npz", "skeleton": "canonical", "fps": 25}
@@ -89,7 +89,7 @@ def test_wrong_fields_are_named(
     assert_problem(answer, 422, "bad_field", location)
 
 
-def test_clips_that_are_not_there_or_not_ready(idle: httpx2.Client) -> None:
+def test_unknown_clips_and_clips_that_are_not_ready_are_refused(idle: httpx2.Client) -> None:
     content = b"HIERARCHY\nROOT a\n{\nexported too early\n"
     clip = idle.post("/v1/clips", files={"file": ("a.bvh", content)}).json()["clip"]
     params = {"format": "bvh"}

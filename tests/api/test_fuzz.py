@@ -1,4 +1,4 @@
-"""Calls that schemathesis makes up from the description: answered as described, never a 5xx."""
+"""Calls that schemathesis generates from the description: answers are as described, no 5xx."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`/readyz` tells what is wrong with the store, of a running service, and when it is over."""
+"""`/readyz` of a running service reports damage of the store, and its end."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_a_deleted_database(service: Live, take: DemoClip) -> None:
         path.rename(away)
         try:
             assert_unhealthy(client, "database")
-            # What was acknowledged now would be lost with the process.
+            # A clip that is acknowledged now would be lost with the process.
             assert_problem(service.upload(take), 500, "database_gone")
             assert not path.exists()
         finally:
@@ -123,8 +123,8 @@ def test_a_damaged_file_is_never_sent(service: Live, take: DemoClip) -> None:
         assert client.delete(f"/v1/clips/{clip}").status_code == 204
 
 
-def test_the_data_directory_is_its_makers_own(tmp_path: Path) -> None:
-    """`serve` makes it, so that the service does not."""
+def test_only_its_owner_can_read_the_data_directory(tmp_path: Path) -> None:
+    """`serve` creates the directory, so that the service does not."""
     made = tmp_path / "open"
     with serve(made) as live:
         made.chmod(0o755)

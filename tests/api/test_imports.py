@@ -92,7 +92,7 @@ def test_the_files_of_a_large_import_are_paged(demo_service: Live) -> None:
     assert (len(absent["items"]), absent["next"]) == (100, None)
 
 
-def test_a_zip_of_npy_clips_is_imported_and_is_no_clip(demo_service: Live) -> None:
+def test_a_zip_of_npy_clips_is_an_archive_and_not_a_clip(demo_service: Live) -> None:
     array = npy(person(CONVENTIONS["Kinect"], frames=20).positions)
     content = _zip({"walk_01.npy": array, "walk_02.npy": array[:200]})
     with demo_service.client() as client:
@@ -100,17 +100,17 @@ def test_a_zip_of_npy_clips_is_imported_and_is_no_clip(demo_service: Live) -> No
         assert answer.status_code == 202
         result = demo_service.wait_for_job(answer.json()["job"]["id"])["result"]
         assert {line["path"] for line in result["files"]} == {"walk_01.npy", "walk_02.npy"}
-        told = client.post("/v1/clips", files={"file": ("a.zip", content)}).json()
-        demo_service.wait_for_job(told["job"]["id"])
-        found = [*(line["clip_id"] for line in result["files"]), told["clip"]["id"]]
-        clip = client.get(f"/v1/clips/{told['clip']['id']}").json()
+        reply = client.post("/v1/clips", files={"file": ("a.zip", content)}).json()
+        demo_service.wait_for_job(reply["job"]["id"])
+        found = [*(line["clip_id"] for line in result["files"]), reply["clip"]["id"]]
+        clip = client.get(f"/v1/clips/{reply['clip']['id']}").json()
         for clip_id in filter(None, found):
             client.delete(f"/v1/clips/{clip_id}")
     assert (clip["state"], clip["error"]["code"]) == ("failed", "format_not_supported")
     assert "Import it" in clip["error"]["detail"]
 
 
-def test_an_archive_that_is_none(idle: httpx2.Client) -> None:
+def test_a_file_that_is_no_archive_is_refused(idle: httpx2.Client) -> None:
     answer = idle.post("/v1/imports", files={"archive": ("a.zip", b"")})
     assert_problem(answer, 422, "empty_file")
     answer = idle.post("/v1/imports", files={"archive": ("a.zip", b"no archive at all")})

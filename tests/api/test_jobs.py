@@ -94,7 +94,7 @@ def test_jobs_without_files_have_none_and_unknown_ones_are_not_found(demo: httpx
 
 
 @pytest.mark.slow
-def test_open_streams_do_not_hold_up_a_stop(tmp_path: Path) -> None:
+def test_open_streams_do_not_delay_a_stop(tmp_path: Path) -> None:
     clip = next(demo_clips(["elin"], ["bow"], takes=1))
     with ExitStack() as client_side:  # closed after the server, so that the stream is open
         with serve(tmp_path / "data") as live:

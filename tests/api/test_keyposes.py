@@ -1,4 +1,4 @@
-"""Keyposes over HTTP: what is found, whence, and what people name."""
+"""Keyposes over HTTP: those that are found, with their sources, and those that people name."""
 
 from __future__ import annotations
 
@@ -10,29 +10,31 @@ import pytest
 from tests.api.conftest import assert_problem
 
 
-def test_keyposes_are_told_with_all_that_they_were_found_from(
+def test_keyposes_come_with_energies_thresholds_and_beats(
     demo: httpx2.Client, walk: dict[str, Any]
 ) -> None:
-    told = demo.get(f"/v1/clips/{walk['id']}/keyposes").json()
-    frames = len(told["energy"]["global"])
-    assert frames == len(told["energy"]["local"]) == pytest.approx(30 * walk["duration"], abs=2)
-    assert (told["method"], told["weights"]) == ("rms", "uniform")
-    assert told["energy_unit"] == "body lengths per second"
-    assert told["thresholds"] == {"t1": "default", "t2": "default", "model_version": None}
-    assert told["beats_source"] in ("motion", "none")
-    assert 0 <= told["beats_confidence"] <= 1
-    assert set(told["noise"]) == {"global", "local"}
-    assert told["annotated"] is None
-    count = len(told["frames"])
-    assert count == len(told["times"]) == len(told["chosen_by"]) == len(told["poses"]) > 2
-    assert told["times"] == pytest.approx([frame / told["frame_rate"] for frame in told["frames"]])
-    assert set(told["chosen_by"]) <= {"global", "local"}
+    reply = demo.get(f"/v1/clips/{walk['id']}/keyposes").json()
+    frames = len(reply["energy"]["global"])
+    assert frames == len(reply["energy"]["local"]) == pytest.approx(30 * walk["duration"], abs=2)
+    assert (reply["method"], reply["weights"]) == ("rms", "uniform")
+    assert reply["energy_unit"] == "body lengths per second"
+    assert reply["thresholds"] == {"t1": "default", "t2": "default", "model_version": None}
+    assert reply["beats_source"] in ("motion", "none")
+    assert 0 <= reply["beats_confidence"] <= 1
+    assert set(reply["noise"]) == {"global", "local"}
+    assert reply["annotated"] is None
+    count = len(reply["frames"])
+    assert count == len(reply["times"]) == len(reply["chosen_by"]) == len(reply["poses"]) > 2
+    assert reply["times"] == pytest.approx(
+        [frame / reply["frame_rate"] for frame in reply["frames"]]
+    )
+    assert set(reply["chosen_by"]) <= {"global", "local"}
 
 
 def test_weights_and_method_change_the_curves(demo: httpx2.Client, walk: dict[str, Any]) -> None:
-    def curve(**wanted: str) -> list[float]:
-        answer = demo.get(f"/v1/clips/{walk['id']}/keyposes", params=wanted).json()
-        assert {name: answer[name] for name in wanted} == wanted
+    def curve(**params: str) -> list[float]:
+        answer = demo.get(f"/v1/clips/{walk['id']}/keyposes", params=params).json()
+        assert {name: answer[name] for name in params} == params
         found: list[float] = answer["energy"]["global"]
         return found
 
@@ -44,7 +46,7 @@ def test_weights_and_method_change_the_curves(demo: httpx2.Client, walk: dict[st
     assert len({tuple(values) for values in curves}) == 4
 
 
-def test_what_a_person_names_is_kept_shown_and_taken_away(
+def test_named_keyposes_are_stored_shown_and_deleted(
     demo: httpx2.Client, walk: dict[str, Any]
 ) -> None:
     address = f"/v1/clips/{walk['id']}/keyposes"
@@ -87,6 +89,6 @@ def test_unknown_clips_and_forms_are_refused(demo: httpx2.Client, walk: dict[str
         assert_problem(answer, 404, "clip_not_found")
     answer = demo.put(f"/v1/clips/{walk['id']}/keyposes", content="times=1")
     assert_problem(answer, 415, "unsupported_media_type")
-    for wanted in ({"weights": "most"}, {"t1": "0"}, {"method": "x"}):
-        answer = demo.get(f"/v1/clips/{walk['id']}/keyposes", params=wanted)
-        assert_problem(answer, 422, "bad_field", f"query.{next(iter(wanted))}")
+    for params in ({"weights": "most"}, {"t1": "0"}, {"method": "x"}):
+        answer = demo.get(f"/v1/clips/{walk['id']}/keyposes", params=params)
+        assert_problem(answer, 422, "bad_field", f"query.{next(iter(params))}")

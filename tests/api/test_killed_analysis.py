@@ -1,4 +1,4 @@
-"""An uploaded query whose analysis process is killed: tried again, then 503, never 500."""
+"""An uploaded query whose analysis process is killed is tried again, then 503, never 500."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
 
 @pytest.fixture
 def api(service: Live) -> psutil.Process:
-    """The process that answers."""
+    """The process of the API."""
     for child in psutil.Process().children():
-        told = child.environ().get("KINEDEX_DATA_DIR")
-        if told == str(service.data_dir) and "app.api.server" in child.cmdline():
+        folder = child.environ().get("KINEDEX_DATA_DIR")
+        if folder == str(service.data_dir) and "app.api.server" in child.cmdline():
             return child
     raise LookupError
 
 
 @contextmanager
 def _killing(find: Callable[[], list[psutil.Process]], times: int) -> Iterator[list[int]]:
-    """Kills what `find` finds, so many processes; tells which."""
+    """Kill up to `times` processes that `find` returns. Yields the ids of the killed processes."""
     stop, killed = threading.Event(), list[int]()
 
     def hunt() -> None:
@@ -58,7 +58,9 @@ def _ask(service: Live, url: str, content: bytes) -> httpx2.Response:
         return client.post(url, files={"file": ("long.bvh", content)})
 
 
-def test_one_kill_costs_only_time(service: Live, api: psutil.Process, take: DemoClip) -> None:
+def test_a_search_succeeds_after_one_kill(
+    service: Live, api: psutil.Process, take: DemoClip
+) -> None:
     with _killing(lambda: busy_children(api), 1) as killed:
         answer = _ask(service, "/v1/search/motion", repeated(take, LONG))
     assert len(killed) == 1
@@ -66,7 +68,7 @@ def test_one_kill_costs_only_time(service: Live, api: psutil.Process, take: Demo
 
 
 @pytest.mark.parametrize("url", ["/v1/search/motion", "/v1/recognize"])
-def test_kill_after_kill_is_told_with_when_to_ask_again(
+def test_repeated_kills_are_a_503_with_retry_after(
     service: Live, api: psutil.Process, take: DemoClip, url: str
 ) -> None:
     with _killing(lambda: busy_children(api), 1000) as killed:
@@ -77,7 +79,7 @@ def test_kill_after_kill_is_told_with_when_to_ask_again(
     assert _ask(service, "/v1/search/motion", take.content).status_code == 200
 
 
-def test_a_killed_server_of_children_ends_no_request(
+def test_a_killed_fork_server_ends_no_request(
     service: Live, api: psutil.Process, take: DemoClip
 ) -> None:
     assert _ask(service, "/v1/search/motion", take.content).status_code == 200

@@ -1,4 +1,4 @@
-"""Every text and list that a client sends has a bound, in the schema and in fact."""
+"""Every text and list that a client sends has a bound, in the schema and in the service."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from tests.live import Live
 
 LONG = "x" * 60_000
 BOUNDED_TEXT = {"maxLength", "enum", "const", "format", "contentSchema"}
-"""Members of a schema that bound a text; contentSchema is of JSON in a form's field, which has
-at most 64 KiB."""
+"""Members of a schema that bound a text. contentSchema: JSON in a field of a form, which has at
+most 64 KiB."""
 
 
-def _unbounded(schema: dict[str, Any], told: dict[str, Any], where: str) -> Iterator[str]:
-    """The places in a schema that take a text, a list or a mapping of any length."""
+def _unbounded(schema: dict[str, Any], description: dict[str, Any], where: str) -> Iterator[str]:
+    """Locations in a schema that take a text, a list or a mapping of any length."""
     if "$ref" in schema:
-        schema = told["components"]["schemas"][schema["$ref"].rpartition("/")[2]]
+        schema = description["components"]["schemas"][schema["$ref"].rpartition("/")[2]]
     if "enum" in schema or "const" in schema:
         return
     kind = schema.get("type")
@@ -39,21 +39,21 @@ def _unbounded(schema: dict[str, Any], told: dict[str, Any], where: str) -> Iter
     if isinstance(schema.get("additionalProperties"), dict):
         inner.append(schema["additionalProperties"])
     for part in inner:
-        yield from _unbounded(part, told, where)
+        yield from _unbounded(part, description, where)
     for name, part in schema.get("properties", {}).items():
-        yield from _unbounded(part, told, f"{where}.{name}")
+        yield from _unbounded(part, description, f"{where}.{name}")
 
 
 def test_every_text_and_list_of_a_request_has_a_bound_in_its_schema(idle: httpx2.Client) -> None:
-    told = idle.get("/openapi.json").json()
+    description = idle.get("/openapi.json").json()
     found: list[str] = []
-    for path, calls in told["paths"].items():
+    for path, calls in description["paths"].items():
         for verb, call in calls.items():
             for parameter in call.get("parameters", ()):
                 where = f"{verb} {path} {parameter['name']}"
-                found += _unbounded(parameter["schema"], told, where)
+                found += _unbounded(parameter["schema"], description, where)
             for content in call.get("requestBody", {}).get("content", {}).values():
-                found += _unbounded(content["schema"], told, f"{verb} {path}")
+                found += _unbounded(content["schema"], description, f"{verb} {path}")
     assert found == []
 
 
@@ -88,7 +88,7 @@ def test_every_text_and_list_of_a_request_has_a_bound_in_its_schema(idle: httpx2
         ("DELETE", f"/v1/persons/{'x' * 301}", None, "path.name"),
     ],
 )
-def test_what_is_too_long_is_refused_in_few_words(
+def test_too_long_values_are_refused_with_a_short_answer(
     demo: httpx2.Client, verb: str, path: str, body: dict[str, Any] | None, location: str
 ) -> None:
     answer = demo.request(verb, path, json=body)
@@ -107,12 +107,12 @@ def test_roles_of_an_upload_are_bounded(idle: httpx2.Client, roles: dict[str, st
     assert len(answer.content) < 10_000
 
 
-def test_a_failure_that_quotes_much_is_cut() -> None:
+def test_a_failure_with_a_long_quote_is_shortened() -> None:
     places = [Place(LONG, LONG) for _ in range(1000)]
-    told = KinedexError(LONG, places=places).as_problem()
-    assert len(told["detail"]) == MAX_DETAIL
-    assert len(told["errors"]) == MOST_KEPT_PLACES
-    assert len(json.dumps(told)) < 50_000
+    problem = KinedexError(LONG, places=places).as_problem()
+    assert len(problem["detail"]) == MAX_DETAIL
+    assert len(problem["errors"]) == MOST_KEPT_PLACES
+    assert len(json.dumps(problem)) < 50_000
 
 
 def test_labels_are_paged(demo: httpx2.Client) -> None:

@@ -1,4 +1,4 @@
-"""Low-dimensional motions and pictures that move, over HTTP and in a browser."""
+"""Low-dimensional motions and animated pictures, over HTTP and in a browser."""
 
 from __future__ import annotations
 
@@ -27,40 +27,40 @@ def wave(demo: httpx2.Client) -> dict[str, Any]:
     return clip
 
 
-def test_the_answer_tells_motion_model_and_cost(demo: httpx2.Client, wave: dict[str, Any]) -> None:
+def test_the_answer_has_motion_model_and_errors(demo: httpx2.Client, wave: dict[str, Any]) -> None:
     path = f"/v1/clips/{wave['id']}/low-dimensional"
-    told = demo.get(path, params={"dimensions": 2}).json()
-    frames = len(told["positions"])
-    assert (told["basis"], told["dimensions"], told["frame_rate"]) == ("keypose", 2, 30)
-    assert np.array(told["positions"]).shape == (frames, 13, 3)
-    assert np.array(told["eigen_motion"]).shape == (frames, 3)
-    assert len(told["variance_kept"]) == len(told["error"]) == told["poses"]
-    assert told["variance_kept"][-1] == pytest.approx(1)
-    assert [set(pose) for pose in told["eigen_poses"]] == [{"clip_id", "time", "point"}] * told[
+    reply = demo.get(path, params={"dimensions": 2}).json()
+    frames = len(reply["positions"])
+    assert (reply["basis"], reply["dimensions"], reply["frame_rate"]) == ("keypose", 2, 30)
+    assert np.array(reply["positions"]).shape == (frames, 13, 3)
+    assert np.array(reply["eigen_motion"]).shape == (frames, 3)
+    assert len(reply["variance_kept"]) == len(reply["error"]) == reply["poses"]
+    assert reply["variance_kept"][-1] == pytest.approx(1)
+    assert [set(pose) for pose in reply["eigen_poses"]] == [{"clip_id", "time", "point"}] * reply[
         "poses"
     ]
-    at = round(told["eigen_poses"][0]["time"] * 30)
-    assert told["eigen_motion"][at] == pytest.approx(told["eigen_poses"][0]["point"], abs=1e-5)
-    assert told["implausible"]["frames"] >= len(told["implausible"]["faults"])
+    at = round(reply["eigen_poses"][0]["time"] * 30)
+    assert reply["eigen_motion"][at] == pytest.approx(reply["eigen_poses"][0]["point"], abs=1e-5)
+    assert reply["implausible"]["frames"] >= len(reply["implausible"]["faults"])
 
 
 def test_octets_hold_the_same_positions(demo: httpx2.Client, wave: dict[str, Any]) -> None:
     path = f"/v1/clips/{wave['id']}/low-dimensional"
     params = {"basis": "uniform", "poses": "6", "fps": "20"}
-    told = demo.get(path, params=params).json()
+    reply = demo.get(path, params=params).json()
     answer = demo.get(path, params=params, headers={"Accept": "application/octet-stream"})
     shape = [int(size) for size in answer.headers["x-shape"].split(",")]
     assert answer.headers["x-frame-rate"] == "20"
     octets = np.frombuffer(answer.content, "<f4").reshape(shape)
-    assert np.abs(octets - np.array(told["positions"])).max() < 1e-5
+    assert np.abs(octets - np.array(reply["positions"])).max() < 1e-5
 
 
 def test_models_of_other_clips(demo: httpx2.Client, wave: dict[str, Any]) -> None:
     waves = demo.get("/v1/clips", params={"task": "wave"}).json()["items"]
     ids = ",".join(clip["id"] for clip in waves)
     path = f"/v1/clips/{wave['id']}/low-dimensional"
-    told = demo.get(path, params={"model_clips": ids, "dimensions": 9}).json()
-    assert {pose["clip_id"] for pose in told["eigen_poses"]} == {clip["id"] for clip in waves}
+    reply = demo.get(path, params={"model_clips": ids, "dimensions": 9}).json()
+    assert {pose["clip_id"] for pose in reply["eigen_poses"]} == {clip["id"] for clip in waves}
 
 
 @pytest.mark.parametrize(
@@ -74,14 +74,14 @@ def test_models_of_other_clips(demo: httpx2.Client, wave: dict[str, Any]) -> Non
         ({"tea": "1"}, "query.tea"),
     ],
 )
-def test_what_is_wrong_is_named(
+def test_wrong_fields_are_named(
     demo: httpx2.Client, wave: dict[str, Any], params: dict[str, str], location: str
 ) -> None:
     answer = demo.get(f"/v1/clips/{wave['id']}/low-dimensional", params=params)
     assert_problem(answer, 422, "bad_field", location)
 
 
-def test_who_never_moves_has_too_few_keyposes(demo: httpx2.Client, demo_service: Live) -> None:
+def test_a_still_clip_has_too_few_keyposes(demo: httpx2.Client, demo_service: Live) -> None:
     file = npz(
         positions=standing(60), frame_rate=30.0, unit="m", joint_names=NAMES, parents=PARENTS
     )
@@ -94,9 +94,9 @@ def test_who_never_moves_has_too_few_keyposes(demo: httpx2.Client, demo_service:
             assert_problem(refused, 409, "not_enough_keyposes", "query.model_clips")
             assert "at least 2 poses; found 0" in refused.json()["detail"]
         params = {"basis": "uniform", "poses": 5}
-        told = demo.get(f"{path}/low-dimensional", params=params).json()
-        assert told["variance_kept"] == [1.0] * 5
-        assert max(told["error"]) < 1e-5
+        reply = demo.get(f"{path}/low-dimensional", params=params).json()
+        assert reply["variance_kept"] == [1.0] * 5
+        assert max(reply["error"]) < 1e-5
     finally:
         demo.delete(path)
 
@@ -110,7 +110,7 @@ def test_unknown_clips_are_not_found(demo: httpx2.Client, wave: dict[str, Any]) 
 
 
 @pytest.mark.parametrize("path", ["animation.svg", "export?format=csv"])
-def test_what_goes_with_dimensions_needs_them(
+def test_other_reduction_fields_need_dimensions(
     demo: httpx2.Client, wave: dict[str, Any], path: str
 ) -> None:
     sign = "&" if "?" in path else "?"
@@ -143,11 +143,11 @@ def test_the_picture_moves_in_a_browser_under_our_policy(
     assert seen[0] != seen[1]
     still = f"{demo_service.url}/v1/clips/{wave['id']}/animation.svg?start=1&end=1.03"
     shots = [_shot(browser, still, ms, tmp_path / f"still{ms}.png") for ms in (700, 1700)]
-    assert shots[0] == shots[1], "what has one frame stands still"
+    assert shots[0] == shots[1], "a picture of one frame does not move"
 
 
 def _shot(browser: str, url: str, milliseconds: int, target: Path) -> bytes:
-    """What a browser shows so long after it opened a page, in its own time."""
+    """A screenshot of a browser, in its virtual time after it opened the page."""
     subprocess.run(
         [
             browser, "--headless", "--no-sandbox", "--no-proxy-server", "--disable-gpu",

@@ -1,11 +1,11 @@
-"""Models over HTTP: their held-out figures, and the false-accept rate that can be set."""
+"""Models over HTTP: held-out figures, and the false-accept rate."""
 
 from __future__ import annotations
 
 import httpx2
 
 
-def test_the_false_accept_rate_is_set_and_told(demo: httpx2.Client) -> None:
+def test_the_false_accept_rate_is_set_and_shown(demo: httpx2.Client) -> None:
     of_kind = {model["kind"]: model for model in demo.get("/v1/models").json()["items"]}
     recognizer = of_kind["recogniser"]
     assert of_kind["words"]["errors_in_force"] is None

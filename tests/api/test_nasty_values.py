@@ -1,7 +1,7 @@
-"""Values that break careless programs, in every place of every call: never a 5xx.
+"""Values that break careless programs, in every field of every call: the answer is never a 5xx.
 
-Schemathesis (`test_fuzz`) draws from what the description allows and a little beyond; here each
-value is nasty, and the library has clips and models, so that calls get far.
+Schemathesis (`test_fuzz`) mostly sends values that the description allows. Here every value is
+unusual, and the library has clips and models, so that calls run deep into the code.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ VALUES = NUMBERS + TEXTS
 JSON_VALUES = [*(10**400, -1, 0, 1e300, 1e-300, 2**63, True, None), [], {}, [[]], [None], [10**400]]
 JSON_VALUES += ["", "\0", "\ud800", "x" * 999, ["\ud800"], [""] * 3, {"a": {}}, [1e300] * 3]
 LEFT_OUT = {"fps"}
-"""Its bounds are tested where they are set."""
+"""Parameters that other tests cover."""
 SPEC: dict[str, Any] = create_app(Settings()).openapi()
 
 
@@ -42,7 +42,7 @@ def operations(*methods: str) -> list[tuple[str, str]]:
 
 @pytest.fixture(scope="module")
 def ids(demo_service: Live) -> dict[str, str]:
-    """What stands in the place of path parameters."""
+    """Values of the path parameters."""
     with demo_service.client() as client:
         clip = client.get("/v1/clips", params={"limit": 1}).json()["items"][0]["id"]
         job = client.get("/v1/jobs", params={"limit": 1}).json()["items"][0]["id"]
@@ -119,19 +119,19 @@ SEARCHES: list[tuple[str, dict[str, Any]]] = [
 def test_forged_cursors(
     demo: httpx2.Client, ids: dict[str, str], path: str, asked: dict[str, Any]
 ) -> None:
-    question = {**asked, "limit": 1}
+    body = {**asked, "limit": 1}
     if "words" not in path:
-        question["clip_id"] = ids["clip_id"]
-    answer = demo.post(path, json=question)
+        body["clip_id"] = ids["clip_id"]
+    answer = demo.post(path, json=body)
     if answer.status_code != 200 or answer.json()["next"] is None:
         return
     given = answer.json()["next"]
-    held = json.loads(base64.urlsafe_b64decode(given + "=" * (-len(given) % 4)))
-    for place in range(len(held)):
+    decoded = json.loads(base64.urlsafe_b64decode(given + "=" * (-len(given) % 4)))
+    for index in range(len(decoded)):
         for value in [*JSON_VALUES, -1e308, 1e308, 10**9]:
-            forged = [*held[:place], value, *held[place + 1 :]]
+            forged = [*decoded[:index], value, *decoded[index + 1 :]]
             cursor = base64.urlsafe_b64encode(json.dumps(forged).encode()).decode().rstrip("=")
-            check(demo.post(path, json={**question, "cursor": cursor}), forged)
+            check(demo.post(path, json={**body, "cursor": cursor}), forged)
 
 
 def test_lists_survive_forged_cursors(demo: httpx2.Client) -> None:

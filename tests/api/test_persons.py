@@ -1,4 +1,4 @@
-"""Forgetting a person over HTTP, whatever their name holds."""
+"""Forgetting a person over HTTP, with any characters in the name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FILE = b"HIERARCHY\nROOT Hips\n{"
 
 
 def forget(client: httpx2.Client, name: str) -> httpx2.Response:
-    # quote() keeps full stops, which clients take for a way up
+    # quote() keeps full stops, but a client would resolve them as a relative path
     return client.delete("/v1/persons/" + quote(name, safe="").replace(".", "%2E"))
 
 
@@ -42,20 +42,21 @@ def test_a_person_of_any_name_is_forgotten(idle: httpx2.Client, name: str) -> No
         idle.delete(path)
 
 
-def test_the_log_does_not_keep_who_was_to_be_forgotten(idle_service: Live) -> None:
+def test_the_log_has_no_name_of_a_forgotten_person(idle_service: Live) -> None:
     with idle_service.client() as client:
-        for name, kept in (("Unheard Of", "one.forgotten"), ("un/heard of/", "two.forgotten")):
+        names = {"Unheard Of": "one.forgotten", "un/heard of/": "two.forgotten"}
+        for name, request_id in names.items():
             url = "/v1/persons/" + quote(name, safe="")
-            answer = client.delete(url, headers={"X-Request-Id": kept})
+            answer = client.delete(url, headers={"X-Request-Id": request_id})
             assert answer.status_code == 404
     text = idle_service.log.read_text()
     lines = [json.loads(line) for line in text.splitlines()]
-    told = {line["path"] for line in lines if line.get("request_id", "").endswith(".forgotten")}
-    assert told == {"/v1/persons/{name}"}
+    paths = {line["path"] for line in lines if line.get("request_id", "").endswith(".forgotten")}
+    assert paths == {"/v1/persons/{name}"}
     assert "heard" not in text.lower()
 
 
-def test_nobody_is_forgotten_by_a_name_that_cannot_be(idle: httpx2.Client) -> None:
+def test_an_impossible_name_of_a_person_is_refused(idle: httpx2.Client) -> None:
     for name in ("a\0b", "a\nb", "a/\nb", "x" * 301):
         assert_problem(forget(idle, name), 422, "bad_field", "path.name")
     assert_problem(forget(idle, "nobody/at/all"), 404, "not_found", "path.name")
@@ -63,7 +64,7 @@ def test_nobody_is_forgotten_by_a_name_that_cannot_be(idle: httpx2.Client) -> No
     assert idle.get("/v1/persons/", follow_redirects=True).status_code == 200
 
 
-def test_the_address_is_described_as_before(idle: httpx2.Client) -> None:
+def test_the_description_has_a_plain_path_for_persons(idle: httpx2.Client) -> None:
     paths = idle.get("/openapi.json").json()["paths"]
     (parameter,) = paths["/v1/persons/{name}"]["delete"]["parameters"]
     assert (parameter["name"], parameter["in"]) == ("name", "path")

@@ -1,4 +1,4 @@
-"""Answers in pieces: slots are given back while a client reads, and slow ones are cut off."""
+"""Answers in pieces: they give slots back while a client reads, and cut slow clients off."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def one_slot(seconds: float = 60.0, streams: int = 4) -> Gates:
 
 
 class Client:
-    """Takes what is sent, all at once or `takes` messages until it may go on."""
+    """A client that reads everything, or `takes` messages until `may_send` is set."""
 
     def __init__(self, gates: Gates, takes: int | None = None) -> None:
         self.gates = gates
@@ -89,7 +89,7 @@ def test_a_large_piece_is_sent_in_parts() -> None:
     run(test)
 
 
-def test_who_reads_nothing_holds_no_slot() -> None:
+def test_a_client_that_reads_nothing_holds_no_slot() -> None:
     async def test() -> None:
         client = Client(one_slot(), takes=3)
         reading = asyncio.create_task(client.read(iter([b"x"] * 50)))
@@ -103,7 +103,7 @@ def test_who_reads_nothing_holds_no_slot() -> None:
     run(test)
 
 
-def test_who_reads_too_slowly_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_client_that_reads_too_slowly_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pieces, "GRACE_SECONDS", 0.1)
 
     async def test() -> None:
@@ -117,7 +117,7 @@ def test_who_reads_too_slowly_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> Non
     run(test)
 
 
-def test_how_long_a_client_reads_is_not_counted_as_work() -> None:
+def test_the_time_in_which_a_client_reads_does_not_count() -> None:
     async def test() -> None:
         client = Client(one_slot(seconds=0.1), takes=3)
         reading = asyncio.create_task(client.read(iter([b"x"] * 50)))
@@ -130,7 +130,7 @@ def test_how_long_a_client_reads_is_not_counted_as_work() -> None:
     run(test)
 
 
-def test_an_answer_ends_when_its_client_leaves_and_its_pieces_hear_of_it() -> None:
+def test_an_answer_and_its_pieces_end_when_the_client_leaves() -> None:
     async def test() -> None:
         client = Client(one_slot())
         made: list[int] = []
@@ -152,7 +152,7 @@ def test_an_answer_ends_when_its_client_leaves_and_its_pieces_hear_of_it() -> No
     run(test)
 
 
-def test_what_fails_before_the_first_piece_can_still_be_told() -> None:
+def test_a_failure_before_the_first_piece_can_be_answered() -> None:
     async def test() -> None:
         def failing() -> Iterator[bytes]:
             raise BadField("too much")
@@ -166,7 +166,7 @@ def test_what_fails_before_the_first_piece_can_still_be_told() -> None:
     run(test)
 
 
-def test_an_answer_beside_too_many_others_is_refused() -> None:
+def test_too_many_answers_at_once_are_refused() -> None:
     async def test() -> None:
         gates = one_slot(streams=1)
         first, second = Client(gates, takes=2), Client(gates)

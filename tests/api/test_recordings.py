@@ -1,4 +1,4 @@
-"""Recordings over HTTP: sent with a clip, told of, handed back, taken away, refused by name."""
+"""Recordings over HTTP: uploaded with a clip, described, returned, deleted, refused."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ def _post(client: httpx2.Client, clip: DemoClip, audio: bytes, **said: str) -> h
 
 @pytest.fixture(scope="module")
 def begun(danced: DemoClip) -> DemoClip:
-    """Small enough for the idle service, which only looks at how files begin."""
+    """A dance that is small enough for the idle service, which only reads the start of files."""
     return replace(danced, content=danced.content[:50_000], audio=danced.audio[:50_000])
 
 
-def _ready(service: Live, client: httpx2.Client, told: dict[str, Any]) -> dict[str, Any]:
-    service.wait_for_job(told["job"]["id"])
-    clip: dict[str, Any] = client.get(f"/v1/clips/{told['clip']['id']}").json()
+def _ready(service: Live, client: httpx2.Client, reply: dict[str, Any]) -> dict[str, Any]:
+    service.wait_for_job(reply["job"]["id"])
+    clip: dict[str, Any] = client.get(f"/v1/clips/{reply['clip']['id']}").json()
     assert clip["state"] == "ready", clip["error"]
     return clip
 
 
-def test_a_recording_is_heard_and_handed_back(
+def test_a_recording_gives_beats_and_is_returned(
     demo_service: Live, demo: httpx2.Client, danced: DemoClip
 ) -> None:
     answer = _post(demo, danced, danced.audio, audio_offset="-0.8")
@@ -69,13 +69,13 @@ def test_bad_fields_of_a_form_are_named(
     assert answer.json()["errors"][0]["location"].startswith(f"body.{field}")
 
 
-def test_what_is_no_recording_is_refused(idle: httpx2.Client, begun: DemoClip) -> None:
+def test_a_file_that_is_no_recording_is_refused(idle: httpx2.Client, begun: DemoClip) -> None:
     assert_problem(_post(idle, begun, b"a song"), 422, "bad_field", "body.audio")
 
 
-def test_a_patch_tells_of_the_rhythm(idle: httpx2.Client, begun: DemoClip) -> None:
+def test_a_patch_changes_offset_tempo_and_beats(idle: httpx2.Client, begun: DemoClip) -> None:
     clip = _post(idle, begun, begun.audio, beats="0.5 1.1 1.7").json()["clip"]
-    told = {"audio_offset": 0.25, "tempo": 90, "beats": [2.0, 1.0]}
-    assert idle.patch(f"/v1/clips/{clip['id']}", json=told).json()["audio_offset"] == 0.25
+    rhythm = {"audio_offset": 0.25, "tempo": 90, "beats": [2.0, 1.0]}
+    assert idle.patch(f"/v1/clips/{clip['id']}", json=rhythm).json()["audio_offset"] == 0.25
     bad = idle.patch(f"/v1/clips/{clip['id']}", json={"beats": [-1]})
     assert bad.status_code == 422

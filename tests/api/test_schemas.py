@@ -1,4 +1,4 @@
-"""Answers are built from values of other layers, and show only the fields that they name."""
+"""Answers are built from values of other layers, and show only the fields of their schema."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ JOB = JobRecord(
 )
 
 
-def test_a_clip_shows_the_fields_that_its_schema_names_and_no_column_else() -> None:
+def test_a_clip_shows_only_the_fields_of_its_schema() -> None:
     shown = Clip.model_validate(CLIP).model_dump(mode="json")
     assert set(shown) == CLIP_FIELDS
     assert "secret" not in str(shown)
@@ -76,14 +76,14 @@ def test_a_clip_shows_the_fields_that_its_schema_names_and_no_column_else() -> N
     assert (shown["error"]["code"], shown["error"]["detail"]) == ("unreadable", "Bad.")
 
 
-def test_an_estimated_offset_is_shown_where_none_was_said() -> None:
+def test_an_estimated_offset_is_shown_if_none_was_given() -> None:
     estimated = dataclasses.replace(CLIP, hints=AnalysisHints())
     assert Clip.model_validate(estimated).audio_offset == 0.5
     silent = Clip.model_validate(dataclasses.replace(CLIP, audio=None))
     assert (silent.has_audio, silent.audio_offset) == (False, None)
 
 
-def test_an_attribute_that_no_schema_names_is_not_shown() -> None:
+def test_an_attribute_that_is_not_in_the_schema_is_not_shown() -> None:
     named: dict[str, Any] = {
         field.name: getattr(JOB, field.name) for field in dataclasses.fields(JOB)
     }

@@ -19,33 +19,33 @@ METHODS = ["fused", "vector", "dtw", "msv-dtw", "msv-xcorr", *LEARNED]
 def _search(client: httpx2.Client, **body: Any) -> dict[str, Any]:
     answer = client.post("/v1/search/motion", json=body)
     assert answer.status_code == 200, answer.text
-    told: dict[str, Any] = answer.json()
-    return told
+    reply: dict[str, Any] = answer.json()
+    return reply
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_hits_have_their_shape(demo: httpx2.Client, walk: dict[str, Any], method: str) -> None:
-    told = _search(demo, clip_id=walk["id"], method=method, limit=5)
-    assert set(told) == {"method", "took_ms", "library_version", "items", "next"}
-    assert told["method"] == method
-    assert [hit["rank"] for hit in told["items"]] == [1, 2, 3, 4, 5]
-    for hit in told["items"]:
+    reply = _search(demo, clip_id=walk["id"], method=method, limit=5)
+    assert set(reply) == {"method", "took_ms", "library_version", "items", "next"}
+    assert reply["method"] == method
+    assert [hit["rank"] for hit in reply["items"]] == [1, 2, 3, 4, 5]
+    for hit in reply["items"]:
         assert set(hit) == {"rank", "score", "distance", "start", "end", "clip"}
         assert set(hit["clip"]) == CLIP_FIELDS
         assert 0 <= hit["score"] <= 1
         assert hit["clip"]["id"] != walk["id"]
-    distances = [hit["distance"] for hit in told["items"]]
+    distances = [hit["distance"] for hit in reply["items"]]
     assert distances == sorted(distances)
 
 
-def test_the_nearest_do_the_same(demo: httpx2.Client, walk: dict[str, Any]) -> None:
-    told = _search(demo, clip_id=walk["id"], limit=1)
-    assert told["items"][0]["clip"]["task"] == "walk"
+def test_the_nearest_clip_has_the_same_task(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    reply = _search(demo, clip_id=walk["id"], limit=1)
+    assert reply["items"][0]["clip"]["task"] == "walk"
 
 
-def test_the_query_itself_when_asked_for(demo: httpx2.Client, walk: dict[str, Any]) -> None:
-    told = _search(demo, clip_id=walk["id"], limit=1, include_self=True)
-    assert told["items"][0]["clip"]["id"] == walk["id"]
+def test_the_query_is_a_hit_if_requested(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    reply = _search(demo, clip_id=walk["id"], limit=1, include_self=True)
+    assert reply["items"][0]["clip"]["id"] == walk["id"]
 
 
 def test_pages_go_through_the_whole_ranking(demo: httpx2.Client, walk: dict[str, Any]) -> None:
@@ -53,25 +53,25 @@ def test_pages_go_through_the_whole_ranking(demo: httpx2.Client, walk: dict[str,
     seen: list[str] = []
     cursor: dict[str, str] = {}
     while True:
-        told = _search(demo, clip_id=walk["id"], limit=4, **cursor)
-        seen += [hit["clip"]["id"] for hit in told["items"]]
-        if told["next"] is None:
+        reply = _search(demo, clip_id=walk["id"], limit=4, **cursor)
+        seen += [hit["clip"]["id"] for hit in reply["items"]]
+        if reply["next"] is None:
             break
-        cursor = {"cursor": told["next"]}
+        cursor = {"cursor": reply["next"]}
     assert seen == whole
 
 
 def test_filters_narrow(demo: httpx2.Client, walk: dict[str, Any]) -> None:
     for given in ({"task": "kick"}, {"task": ["kick"], "person": ["ada", "bruno"]}):
-        told = _search(demo, clip_id=walk["id"], filter=given, limit=100)
-        assert {hit["clip"]["task"] for hit in told["items"]} == {"kick"}
+        reply = _search(demo, clip_id=walk["id"], filter=given, limit=100)
+        assert {hit["clip"]["task"] for hit in reply["items"]} == {"kick"}
 
 
 def test_the_same_person_in_another_task(demo: httpx2.Client, walk: dict[str, Any]) -> None:
-    wanted = {"not_task": "walk"}
-    told = _search(demo, clip_id=walk["id"], method="metric-person", filter=wanted, limit=2)
-    assert {hit["clip"]["person"] for hit in told["items"]} == {walk["person"]}
-    assert "walk" not in {hit["clip"]["task"] for hit in told["items"]}
+    others = {"not_task": "walk"}
+    reply = _search(demo, clip_id=walk["id"], method="metric-person", filter=others, limit=2)
+    assert {hit["clip"]["person"] for hit in reply["items"]} == {walk["person"]}
+    assert "walk" not in {hit["clip"]["task"] for hit in reply["items"]}
 
 
 @pytest.mark.parametrize("method", LEARNED)
@@ -94,7 +94,7 @@ def test_a_metric_that_is_not_learned_yet(idle: httpx2.Client, take: DemoClip, m
     assert_problem(answer, 409, "model_not_fitted")
 
 
-def test_an_upload_searches_as_a_stored_clip_does(demo: httpx2.Client, take: DemoClip) -> None:
+def test_an_upload_is_searched_like_a_stored_clip(demo: httpx2.Client, take: DemoClip) -> None:
     before = demo.get("/v1/clips", params={"limit": 1000}).json()["items"]
     answer = demo.post(
         "/v1/search/motion",
@@ -102,14 +102,14 @@ def test_an_upload_searches_as_a_stored_clip_does(demo: httpx2.Client, take: Dem
         data={"limit": "3", "filter": json.dumps({"person": "ada"}), "method": "vector"},
     )
     assert answer.status_code == 200, answer.text
-    told = answer.json()
-    assert len(told["items"]) == 3
-    assert told["items"][0]["clip"]["task"] == "walk"
-    assert {hit["clip"]["person"] for hit in told["items"]} == {"ada"}
+    reply = answer.json()
+    assert len(reply["items"]) == 3
+    assert reply["items"][0]["clip"]["task"] == "walk"
+    assert {hit["clip"]["person"] for hit in reply["items"]} == {"ada"}
     assert demo.get("/v1/clips", params={"limit": 1000}).json()["items"] == before
 
 
-def test_an_upload_that_cannot_be_used_names_its_place(demo: httpx2.Client, take: DemoClip) -> None:
+def test_an_unusable_upload_names_the_location(demo: httpx2.Client, take: DemoClip) -> None:
     broken = take.content[: len(take.content) // 2]
     answer = demo.post("/v1/search/motion", files={"file": ("query.bvh", broken)})
     assert answer.status_code == 422
@@ -118,15 +118,15 @@ def test_an_upload_that_cannot_be_used_names_its_place(demo: httpx2.Client, take
 
 def test_parts_of_clips_by_a_part_of_one(demo: httpx2.Client, walk: dict[str, Any]) -> None:
     asked = {"clip_id": walk["id"], "start": 0.5, "end": 1.7, "scope": "windows"}
-    told = _search(demo, **asked, limit=20)
-    assert set(told) == {"method", "took_ms", "library_version", "items", "next"}
-    assert told["items"][0]["clip"]["task"] == "walk"
-    for hit in told["items"]:
+    reply = _search(demo, **asked, limit=20)
+    assert set(reply) == {"method", "took_ms", "library_version", "items", "next"}
+    assert reply["items"][0]["clip"]["task"] == "walk"
+    for hit in reply["items"]:
         assert set(hit) == {"rank", "score", "distance", "start", "end", "clip"}
         assert 0 <= hit["start"] < hit["end"] <= hit["clip"]["duration"]
         own = hit["clip"]["id"] == walk["id"]
         assert not (own and hit["start"] < 1.6 and hit["end"] > 0.6)
-    following = _search(demo, **asked, limit=20, cursor=told["next"])
+    following = _search(demo, **asked, limit=20, cursor=reply["next"])
     assert [hit["rank"] for hit in following["items"][:2]] == [21, 22]
     itself = _search(demo, **asked, limit=1, include_self=True)["items"][0]
     assert [itself["start"], itself["end"]] == pytest.approx([0.5, 1.7], abs=0.1)
@@ -140,10 +140,10 @@ def test_parts_of_clips_by_a_part_of_an_upload(
     form["filter"] = json.dumps({"person": "ada"})
     answer = demo.post("/v1/search/motion", files={"file": ("query.bvh", take.content)}, data=form)
     assert answer.status_code == 200, answer.text
-    told = answer.json()
-    assert told["next"] is None
-    assert told["items"][0]["clip"]["task"] == "walk"
-    assert {hit["clip"]["person"] for hit in told["items"]} == {"ada"}
+    reply = answer.json()
+    assert reply["next"] is None
+    assert reply["items"][0]["clip"]["task"] == "walk"
+    assert {hit["clip"]["person"] for hit in reply["items"]} == {"ada"}
 
 
 def test_methods_that_find_no_parts_of_clips(demo: httpx2.Client, walk: dict[str, Any]) -> None:
@@ -168,23 +168,23 @@ def test_a_cursor_of_another_question(demo: httpx2.Client, walk: dict[str, Any])
 @pytest.mark.parametrize("mode", ["default", "cca"])
 def test_words_find_motions(demo: httpx2.Client, mode: str) -> None:
     body = {"words": ["walk", "zzyzx"], "mode": mode, "limit": 3}
-    told = demo.post("/v1/search/words", json=body).json()
-    assert set(told) >= {"items", "unknown_words", "expanded", "method", "next", "took_ms"}
-    assert told["unknown_words"] == ["zzyzx"]
-    assert told["items"][0]["clip"]["task"] == "walk"
+    reply = demo.post("/v1/search/words", json=body).json()
+    assert set(reply) >= {"items", "unknown_words", "expanded", "method", "next", "took_ms"}
+    assert reply["unknown_words"] == ["zzyzx"]
+    assert reply["items"][0]["clip"]["task"] == "walk"
 
 
 @pytest.mark.parametrize("method", ["default", "multilinear", "signatures", "perera"])
 def test_recognition_of_a_stored_clip(
     demo: httpx2.Client, walk: dict[str, Any], method: str
 ) -> None:
-    told = demo.post("/v1/recognize", json={"clip_id": walk["id"], "method": method}).json()
-    assert set(told) == {"person", "task", "words"}
+    reply = demo.post("/v1/recognize", json={"clip_id": walk["id"], "method": method}).json()
+    assert set(reply) == {"person", "task", "words"}
     for factor in ("person", "task"):
-        assert set(told[factor]) == {"label", "known", "score", "candidates"}
-    assert told["task"]["candidates"][0]["label"] == "walk"
-    assert told["person"]["candidates"][0]["label"] == walk["person"]
-    assert all(set(word) == {"word", "score"} for word in told["words"])
+        assert set(reply[factor]) == {"label", "known", "score", "candidates"}
+    assert reply["task"]["candidates"][0]["label"] == "walk"
+    assert reply["person"]["candidates"][0]["label"] == walk["person"]
+    assert all(set(word) == {"word", "score"} for word in reply["words"])
 
 
 def test_recognition_of_an_upload(demo: httpx2.Client, take: DemoClip) -> None:
@@ -192,27 +192,27 @@ def test_recognition_of_an_upload(demo: httpx2.Client, take: DemoClip) -> None:
         "/v1/recognize", files={"file": ("a", take.content)}, data={"known_task": "walk"}
     )
     assert answer.status_code == 200, answer.text
-    told = answer.json()["task"]
-    assert (told["label"], told["known"]) == ("walk", True)
+    reply = answer.json()["task"]
+    assert (reply["label"], reply["known"]) == ("walk", True)
 
 
 def test_labels_are_counted(demo: httpx2.Client) -> None:
     for path, name in (("persons", "ada"), ("tasks", "walk"), ("words", "walk")):
-        told = demo.get(f"/v1/{path}").json()
-        assert told["next"] is None
-        assert {item["name"]: item["count"] for item in told["items"]}[name] > 0
+        reply = demo.get(f"/v1/{path}").json()
+        assert reply["next"] is None
+        assert {item["name"]: item["count"] for item in reply["items"]}[name] > 0
 
 
-def test_models_tell_what_they_were_fitted_on(demo: httpx2.Client) -> None:
+def test_models_show_the_library_at_their_fit(demo: httpx2.Client) -> None:
     answer = demo.get("/v1/models").json()
     # nobody has named keyposes of the demo's clips
     assert [one["kind"] for one in answer["unfitted"] if one["reason"]] == ["keyposes"]
-    told = answer["items"]
-    assert told
-    for model in told:
+    reply = answer["items"]
+    assert reply
+    for model in reply:
         assert set(model) >= {"id", "kind", "version", "library_version", "library_size", "figures"}
         assert model["library_size"] >= 12
-    figures = {model["kind"]: model["figures"] for model in told}
+    figures = {model["kind"]: model["figures"] for model in reply}
     for kind in LEARNED:
         held_out = figures[kind]["clips_held_out"]
         assert 0 <= held_out["mean_average_precision"] <= 1

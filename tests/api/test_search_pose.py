@@ -15,29 +15,29 @@ from tests.api.test_clips import CLIP_FIELDS
 def _search(client: httpx2.Client, **body: Any) -> dict[str, Any]:
     answer = client.post("/v1/search/pose", json=body)
     assert answer.status_code == 200, answer.text
-    told: dict[str, Any] = answer.json()
-    return told
+    reply: dict[str, Any] = answer.json()
+    return reply
 
 
 def test_hits_have_their_shape_and_a_time(demo: httpx2.Client, walk: dict[str, Any]) -> None:
-    told = _search(demo, clip_id=walk["id"], time=0.5, limit=5)
-    assert set(told) == {"method", "took_ms", "library_version", "items", "next"}
-    assert told["method"] == "pose"
-    assert [hit["rank"] for hit in told["items"]] == [1, 2, 3, 4, 5]
-    for hit in told["items"]:
+    reply = _search(demo, clip_id=walk["id"], time=0.5, limit=5)
+    assert set(reply) == {"method", "took_ms", "library_version", "items", "next"}
+    assert reply["method"] == "pose"
+    assert [hit["rank"] for hit in reply["items"]] == [1, 2, 3, 4, 5]
+    for hit in reply["items"]:
         assert set(hit) == {"rank", "score", "distance", "start", "end", "time", "clip"}
         assert set(hit["clip"]) == CLIP_FIELDS
         assert 0 <= hit["start"] <= hit["time"] < hit["end"] <= hit["clip"]["duration"]
         assert hit["clip"]["id"] != walk["id"]
-    assert told["items"][0]["clip"]["task"] == "walk"
+    assert reply["items"][0]["clip"]["task"] == "walk"
 
 
 def test_thirteen_positions(demo: httpx2.Client) -> None:
-    told = _search(demo, positions=A_POSE, filter={"task": "wave"}, limit=3)
-    assert {hit["clip"]["task"] for hit in told["items"]} == {"wave"}
+    reply = _search(demo, positions=A_POSE, filter={"task": "wave"}, limit=3)
+    assert {hit["clip"]["task"] for hit in reply["items"]} == {"wave"}
 
 
-def test_all_places_page_by_page(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+def test_all_times_of_a_pose_come_page_by_page(demo: httpx2.Client, walk: dict[str, Any]) -> None:
     asked = {"clip_id": walk["id"], "time": 0.5, "places": "all", "include_self": True}
     whole = _search(demo, **asked, limit=1000)
     ids = [hit["clip"]["id"] for hit in whole["items"]]
@@ -66,7 +66,7 @@ def test_all_places_page_by_page(demo: httpx2.Client, walk: dict[str, Any]) -> N
         ({"positions": A_POSE, "pose": 1}, "body.pose"),
     ],
 )
-def test_what_cannot_be_asked_is_named(
+def test_wrong_fields_are_named(
     demo: httpx2.Client, walk: dict[str, Any], body: dict[str, Any], location: str
 ) -> None:
     asked = body | ({"clip_id": walk["id"]} if "clip_id" in body else {})
@@ -83,6 +83,6 @@ def test_a_number_that_json_does_not_have(demo: httpx2.Client) -> None:
     assert "left_knee" in answer.json()["errors"][0]["message"]
 
 
-def test_a_clip_that_is_not_there(demo: httpx2.Client) -> None:
+def test_an_unknown_clip_is_not_found(demo: httpx2.Client) -> None:
     answer = demo.post("/v1/search/pose", json={"clip_id": "nobody", "time": 0})
     assert_problem(answer, 404, "clip_not_found")

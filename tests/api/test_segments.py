@@ -17,14 +17,14 @@ def wave(demo: httpx2.Client) -> dict[str, Any]:
 
 
 def test_segments_are_listed_with_cycles(demo: httpx2.Client, wave: dict[str, Any]) -> None:
-    told = demo.get(f"/v1/clips/{wave['id']}/segments").json()
-    assert told["next"] is None
-    assert [one["index"] for one in told["items"]] == list(range(len(told["items"])))
-    for one in told["items"]:
+    reply = demo.get(f"/v1/clips/{wave['id']}/segments").json()
+    assert reply["next"] is None
+    assert [one["index"] for one in reply["items"]] == list(range(len(reply["items"])))
+    for one in reply["items"]:
         assert one["duration"] == pytest.approx(one["end"] - one["start"])
-    assert len(told["cycles"]) >= 2, "waving repeats itself"
-    for cycle in told["cycles"]:
-        own = [one for one in told["items"] if one["cycle"] == cycle["index"]]
+    assert len(reply["cycles"]) >= 2, "waving repeats itself"
+    for cycle in reply["cycles"]:
+        own = [one for one in reply["items"] if one["cycle"] == cycle["index"]]
         assert len(own) == cycle["segments"]
         assert own[0]["index"] == cycle["first"]
 
@@ -53,7 +53,7 @@ def test_a_segment_finds_others(demo: httpx2.Client, wave: dict[str, Any]) -> No
         ({"scope": "steps"}, "body.scope"),
     ],
 )
-def test_what_is_wrong_is_named(
+def test_wrong_fields_are_named(
     demo: httpx2.Client, wave: dict[str, Any], asked: dict[str, Any], location: str
 ) -> None:
     answer = demo.post("/v1/search/motion", json={"clip_id": wave["id"], **asked})

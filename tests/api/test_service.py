@@ -1,4 +1,4 @@
-"""The service around the calls: docs, health, headers, keys, logs, the description."""
+"""The service apart from its calls: docs, health, headers, keys, logs, description."""
 
 from __future__ import annotations
 
@@ -59,10 +59,10 @@ def test_headers_of_every_answer(idle: httpx2.Client, path: str) -> None:
     assert "server" not in headers
 
 
-def test_request_ids_are_kept_and_logged(idle_service: Live) -> None:
+def test_request_ids_are_repeated_and_logged(idle_service: Live) -> None:
     with idle_service.client() as client:
-        kept = client.get("/v1/clips?q=secret-name", headers={"X-Request-Id": "my-id.1"})
-        assert kept.headers["x-request-id"] == "my-id.1"
+        answer = client.get("/v1/clips?q=secret-name", headers={"X-Request-Id": "my-id.1"})
+        assert answer.headers["x-request-id"] == "my-id.1"
         forged = client.get("/livez", headers={"X-Request-Id": 'a"b c'})
         assert forged.headers["x-request-id"] != 'a"b c'
     text = idle_service.log.read_text()
@@ -72,11 +72,11 @@ def test_request_ids_are_kept_and_logged(idle_service: Live) -> None:
     assert "secret-name" not in text
 
 
-def test_the_description_is_whole(idle: httpx2.Client) -> None:
-    told = idle.get("/openapi.json").json()
+def test_the_description_is_complete(idle: httpx2.Client) -> None:
+    description = idle.get("/openapi.json").json()
     operations = [
         (path, method, operation)
-        for path, item in told["paths"].items()
+        for path, item in description["paths"].items()
         for method, operation in item.items()
         if method in METHODS
     ]
@@ -86,12 +86,12 @@ def test_the_description_is_whole(idle: httpx2.Client) -> None:
             assert operation["description"], (method, path)
             problem = operation["responses"]["422"]["content"]["application/problem+json"]
             assert problem["schema"]["$ref"].endswith("/Problem")
-    for reference in _references(told):
-        assert reference.rsplit("/", 1)[1] in told["components"]["schemas"]
+    for reference in _references(description):
+        assert reference.rsplit("/", 1)[1] in description["components"]["schemas"]
 
 
 def test_a_call_with_two_bodies_has_an_optional_parameter(idle: httpx2.Client) -> None:
-    """openapi-python-client 0.29.1 imports `Unset` into a call's module only then.
+    """Otherwise openapi-python-client 0.29.1 does not import `Unset` into the call's module.
 
     It cannot be a dependency of the tests: it needs an older typer than ours.
     """
@@ -107,45 +107,45 @@ def test_a_call_with_two_bodies_has_an_optional_parameter(idle: httpx2.Client) -
 
 
 def test_the_examples_fit_their_schemas(idle: httpx2.Client) -> None:
-    told = idle.get("/openapi.json").json()
+    description = idle.get("/openapi.json").json()
     checked = 0
-    for schema, example in _examples(told):
-        whole = {**schema, "components": told["components"]}
+    for schema, example in _examples(description):
+        whole = {**schema, "components": description["components"]}
         jsonschema.Draft202012Validator(whole).validate(example)
         checked += 1
     assert checked >= 8
 
 
 def test_the_examples_can_be_run(demo: httpx2.Client) -> None:
-    told = demo.get("/openapi.json").json()
+    description = demo.get("/openapi.json").json()
     for path in ("/v1/search/motion", "/v1/search/words", "/v1/recognize"):
-        content = told["paths"][path]["post"]["requestBody"]["content"]["application/json"]
+        content = description["paths"][path]["post"]["requestBody"]["content"]["application/json"]
         bodies = [e["value"] for e in content.get("examples", {}).values()]
         reference = content["schema"]["$ref"].rsplit("/", 1)[1]
-        bodies += told["components"]["schemas"][reference].get("examples", [])
+        bodies += description["components"]["schemas"][reference].get("examples", [])
         assert bodies
         for body in bodies:
             answer = demo.post(path, json=body)
             assert answer.status_code == 200, (path, body, answer.text)
 
 
-def _references(told: Any) -> Iterator[str]:
-    if isinstance(told, dict):
-        if isinstance(told.get("$ref"), str):
-            yield told["$ref"]
-        for value in told.values():
+def _references(description: Any) -> Iterator[str]:
+    if isinstance(description, dict):
+        if isinstance(description.get("$ref"), str):
+            yield description["$ref"]
+        for value in description.values():
             yield from _references(value)
-    elif isinstance(told, list):
-        for value in told:
+    elif isinstance(description, list):
+        for value in description:
             yield from _references(value)
 
 
-def _examples(told: dict[str, Any]) -> Iterator[tuple[dict[str, Any], Any]]:
-    for schema in told["components"]["schemas"].values():
+def _examples(description: dict[str, Any]) -> Iterator[tuple[dict[str, Any], Any]]:
+    for schema in description["components"]["schemas"].values():
         for owner in (schema, *schema.get("properties", {}).values()):
             for example in owner.get("examples", []):
                 yield owner, example
-    for item in told["paths"].values():
+    for item in description["paths"].values():
         for operation in item.values():
             for content in operation.get("requestBody", {}).get("content", {}).values():
                 for example in content.get("examples", {}).values():
@@ -168,7 +168,7 @@ def _make_keys(data_dir: Path) -> dict[KeyRole, str]:
     return made
 
 
-def test_with_keys_every_call_needs_one(locked: tuple[Live, dict[KeyRole, str]]) -> None:
+def test_if_keys_exist_every_call_needs_one(locked: tuple[Live, dict[KeyRole, str]]) -> None:
     live, secrets = locked
     with live.client() as client:
         for path in ("/livez", "/readyz", "/docs", "/openapi.json"):
@@ -196,7 +196,7 @@ def test_roles_allow_what_they_say(locked: tuple[Live, dict[KeyRole, str]]) -> N
                 assert_problem(answer, *expected)
 
 
-def test_the_key_is_asked_for_before_the_body_is_read(
+def test_the_key_is_checked_before_the_body_is_read(
     locked: tuple[Live, dict[KeyRole, str]],
 ) -> None:
     live, _ = locked
@@ -205,7 +205,7 @@ def test_the_key_is_asked_for_before_the_body_is_read(
         assert_problem(answer, 401, "unauthorized")
 
 
-def test_a_name_made_to_point_at_this_machine_is_refused(idle: httpx2.Client) -> None:
+def test_a_foreign_host_name_is_refused(idle: httpx2.Client) -> None:
     refused = idle.get("/v1/clips", headers={"Host": "rebound.example"})
     assert refused.status_code == 403
     assert idle.get("/v1/clips", headers={"Host": "localhost:1234"}).status_code == 200

@@ -19,9 +19,9 @@ def test_a_pair_is_one_clip_and_one_query(demo_service: Live) -> None:
     with demo_service.client() as client:
         answer = client.post("/v1/clips", files=pair())
         assert answer.status_code == 202, answer.text
-        told = answer.json()
-        demo_service.wait_for_job(told["job"]["id"])
-        clip = client.get(f"/v1/clips/{told['clip']['id']}").json()
+        reply = answer.json()
+        demo_service.wait_for_job(reply["job"]["id"])
+        clip = client.get(f"/v1/clips/{reply['clip']['id']}").json()
         assert (clip["state"], clip["format"], clip["frame_rate"]) == ("ready", "amc", 120)
         assert clip["declared_frame_rate"] is None
         assert client.post("/v1/clips", files=pair()).status_code == 200
@@ -32,11 +32,11 @@ def test_a_pair_is_one_clip_and_one_query(demo_service: Live) -> None:
         assert client.delete(f"/v1/clips/{clip['id']}").status_code == 204
 
 
-def test_a_skeleton_where_none_belongs(idle: httpx2.Client) -> None:
+def test_a_skeleton_with_another_format_is_refused(idle: httpx2.Client) -> None:
     files = {"file": ("a.bvh", bvh()), "skeleton": ("07.asf", ASF)}
     assert_problem(idle.post("/v1/clips", files=files), 422, "bad_field", "body.skeleton")
 
 
-def test_a_query_without_its_skeleton_says_what_is_wanted(demo: httpx2.Client) -> None:
+def test_a_query_without_its_skeleton_names_the_missing_field(demo: httpx2.Client) -> None:
     answer = demo.post("/v1/search/motion", files={"file": ("07_01.amc", AMC)})
     assert_problem(answer, 422, "skeleton_needed", "skeleton")

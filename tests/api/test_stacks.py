@@ -19,11 +19,11 @@ def _sent(stack: str) -> dict[str, Any]:
     return {"files": {"file": ("takes.fbx", TAKES)}, "data": {"stack": stack}}
 
 
-def test_a_stack_is_picked_at_upload_afterwards_and_for_a_query(demo_service: Live) -> None:
+def test_a_stack_can_be_chosen_at_upload_later_and_for_a_query(demo_service: Live) -> None:
     with demo_service.client() as client:
-        told = client.post("/v1/clips", **_sent("run")).json()
-        demo_service.wait_for_job(told["job"]["id"])
-        path = f"/v1/clips/{told['clip']['id']}"
+        reply = client.post("/v1/clips", **_sent("run")).json()
+        demo_service.wait_for_job(reply["job"]["id"])
+        path = f"/v1/clips/{reply['clip']['id']}"
         failed = client.get(path).json()
         assert (failed["state"], failed["error"]["code"]) == ("failed", "bad_field")
         assert "bow, sway" in failed["error"]["errors"][0]["message"]
@@ -40,7 +40,7 @@ def test_a_stack_is_picked_at_upload_afterwards_and_for_a_query(demo_service: Li
         assert client.delete(path).status_code == 204
 
 
-def test_a_stack_where_none_belongs(idle: httpx2.Client) -> None:
+def test_a_stack_with_another_format_is_refused(idle: httpx2.Client) -> None:
     files = {"file": ("a.bvh", bvh())}
     answer = idle.post("/v1/clips", files=files, data={"stack": "bow"})
     assert_problem(answer, 422, "bad_field", "body.stack")

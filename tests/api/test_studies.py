@@ -1,4 +1,4 @@
-"""The study over HTTP: a page can run it, and nothing that it gets tells the sides."""
+"""The study over HTTP: a page can run it, and no answer reveals the sides."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ def test_a_page_can_run_it(demo: httpx2.Client, pair: dict[str, Any]) -> None:
     vote = demo.post(pair["votes"], json={"choice": "left", "voter": "x1"})
     assert vote.status_code == 201
     assert vote.json() == {"id": vote.json()["id"], "pair_id": pair["id"], "choice": "left"}
-    told = demo.get(TALLY).json()
-    assert told["total"]["keypose"] + told["total"]["uniform"] == 1
-    assert [row["clip_id"] for row in told["sequences"]] == [pair["clip_id"]]
-    assert told["left_share"] == 1.0
-    assert demo.get(TALLY, params={"clip_id": pair["clip_id"]}).json() == told
+    reply = demo.get(TALLY).json()
+    assert reply["total"]["keypose"] + reply["total"]["uniform"] == 1
+    assert [row["clip_id"] for row in reply["sequences"]] == [pair["clip_id"]]
+    assert reply["left_share"] == 1.0
+    assert demo.get(TALLY, params={"clip_id": pair["clip_id"]}).json() == reply
 
 
-def test_nothing_tells_the_sides(demo: httpx2.Client, pair: dict[str, Any]) -> None:
+def test_no_answer_reveals_the_sides(demo: httpx2.Client, pair: dict[str, Any]) -> None:
     answers = [demo.get(pair[side]) for side in ("left", "original", "right")]
     assert len({tuple(answer.json()) for answer in answers}) == 1
     stable = [
@@ -56,9 +56,9 @@ def test_nothing_tells_the_sides(demo: httpx2.Client, pair: dict[str, Any]) -> N
     ]
     for name in ("x-shape", "x-frame-rate", "content-length"):
         assert octets[0][name] == octets[1][name]
-    told = demo.get(f"{PAIRS}/{pair['id']}").text + demo.get(PAIRS).text
-    assert "keypose" not in told
-    assert "uniform" not in told
+    shown = demo.get(f"{PAIRS}/{pair['id']}").text + demo.get(PAIRS).text
+    assert "keypose" not in shown
+    assert "uniform" not in shown
 
 
 def test_motions_come_at_any_rate(demo: httpx2.Client, pair: dict[str, Any]) -> None:

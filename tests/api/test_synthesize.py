@@ -13,25 +13,25 @@ from tests.api.conftest import assert_problem
 CALL = "/v1/synthesize"
 
 
-def test_a_motion_comes_with_what_to_expect_and_is_not_stored(
+def test_a_motion_comes_with_its_quality_and_is_not_stored(
     demo: httpx2.Client, walk: dict[str, Any]
 ) -> None:
     before = demo.get("/v1/persons").json()
     answer = demo.post(CALL, json={"clip_ids": [walk["id"]], "task": "wave", "bvh": True})
     assert answer.status_code == 200, answer.text
-    told = answer.json()
-    assert list(told) == ["clip", "job", "cycles", "quality", "motion", "bvh"]
-    assert told["clip"]["id"] is None
-    assert told["job"] is None
-    assert (told["clip"]["task"], told["clip"]["source"]) == ("wave", "synthesized")
-    assert told["clip"]["person"] == walk["person"]
-    assert told["quality"]["kind"] == "new_person"
-    assert told["quality"]["given_tasks"] == ["walk"]
-    assert told["quality"]["nearest_clip"]["task"] == told["quality"]["nearest_task"]
-    positions = np.array(told["motion"]["positions"])
-    shape = (told["clip"]["frames"], told["clip"]["joints"], 3)
+    reply = answer.json()
+    assert list(reply) == ["clip", "job", "cycles", "quality", "motion", "bvh"]
+    assert reply["clip"]["id"] is None
+    assert reply["job"] is None
+    assert (reply["clip"]["task"], reply["clip"]["source"]) == ("wave", "synthesized")
+    assert reply["clip"]["person"] == walk["person"]
+    assert reply["quality"]["kind"] == "new_person"
+    assert reply["quality"]["given_tasks"] == ["walk"]
+    assert reply["quality"]["nearest_clip"]["task"] == reply["quality"]["nearest_task"]
+    positions = np.array(reply["motion"]["positions"])
+    shape = (reply["clip"]["frames"], reply["clip"]["joints"], 3)
     assert positions.shape == shape
-    recording = read_recording(told["bvh"].encode())
+    recording = read_recording(reply["bvh"].encode())
     np.testing.assert_allclose(recording.positions / 100, positions, atol=2e-3)
     assert demo.get("/v1/persons").json() == before
 
@@ -40,15 +40,17 @@ def test_octets_are_the_positions_alone(demo: httpx2.Client) -> None:
     asked = {"person": "ada", "task": "walk", "seconds": 2}
     octets = demo.post(CALL, json=asked, headers={"Accept": "application/octet-stream"})
     assert octets.status_code == 200
-    told = demo.post(CALL, json=asked).json()
-    assert told["bvh"] is None
-    assert told["quality"]["kind"] == "seen"
+    reply = demo.post(CALL, json=asked).json()
+    assert reply["bvh"] is None
+    assert reply["quality"]["kind"] == "seen"
     shape = tuple(int(size) for size in octets.headers["x-shape"].split(","))
     sent = np.frombuffer(octets.content, dtype="<f4").reshape(shape)
-    np.testing.assert_allclose(sent, told["motion"]["positions"], atol=1e-5)
+    np.testing.assert_allclose(sent, reply["motion"]["positions"], atol=1e-5)
 
 
-def test_a_stored_one_answers_201_and_then_200(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+def test_a_stored_motion_is_answered_201_and_then_200(
+    demo: httpx2.Client, walk: dict[str, Any]
+) -> None:
     asked = {"clip_ids": [walk["id"]], "task": "kick", "store": True}
     before = {path: _counts(demo, path) for path in ("persons", "tasks", "words")}
     first = demo.post(CALL, json=asked)
@@ -70,7 +72,9 @@ def _counts(demo: httpx2.Client, path: str) -> dict[str, dict[str, Any]]:
     return {one["name"]: one for one in demo.get(f"/v1/{path}").json()["items"]}
 
 
-def test_what_cannot_be_made_is_a_problem(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+def test_a_motion_that_cannot_be_made_is_a_problem(
+    demo: httpx2.Client, walk: dict[str, Any]
+) -> None:
     unknown = demo.post(CALL, json={"person": "nobody", "task": "walk"})
     assert_problem(unknown, 404, "not_found", "body.person")
     task = demo.post(CALL, json={"person": "ada", "task": "fly"})

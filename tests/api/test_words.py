@@ -9,20 +9,20 @@ import pytest
 
 
 def test_a_sentence_is_understood(demo: httpx2.Client) -> None:
-    told = demo.post(
+    reply = demo.post(
         "/v1/search/words", json={"words": ["somebody is strolling", "-kicking", "zebra"]}
     ).json()
-    assert told["unknown_words"] == ["zebra"]
-    assert told["items"][0]["clip"]["task"] == "walk"
-    assert "kick" not in {hit["clip"]["task"] for hit in told["items"]}
+    assert reply["unknown_words"] == ["zebra"]
+    assert reply["items"][0]["clip"]["task"] == "walk"
+    assert "kick" not in {hit["clip"]["task"] for hit in reply["items"]}
 
 
-def test_words_may_only_be_left_out(demo: httpx2.Client) -> None:
+def test_a_search_may_only_exclude_words(demo: httpx2.Client) -> None:
     for mode in ("default", "cca"):
-        told = demo.post("/v1/search/words", json={"words": ["-walking"], "mode": mode}).json()
-        assert told["items"]
-        assert "walk" not in {hit["clip"]["task"] for hit in told["items"]}
-        scores = [hit["score"] for hit in told["items"]]
+        reply = demo.post("/v1/search/words", json={"words": ["-walking"], "mode": mode}).json()
+        assert reply["items"]
+        assert "walk" not in {hit["clip"]["task"] for hit in reply["items"]}
+        scores = [hit["score"] for hit in reply["items"]]
         assert scores == sorted(scores, reverse=True)
         assert scores[0] > 0.9
     nothing = demo.post("/v1/search/words", json={"words": ["-zebra"]}).json()
@@ -57,16 +57,16 @@ def test_words_are_suggested_and_accepted(demo: httpx2.Client, walk: dict[str, A
 
 @pytest.mark.parametrize("space", ["symbols", "vectors"])
 def test_the_map_names_every_clip(demo: httpx2.Client, space: str) -> None:
-    told = demo.get("/v1/space", params={"space": space, "dimensions": 3}).json()
-    assert told["dimensions"] == 3
-    assert len(told["items"]) == told["total"] > 0
-    assert all(len(item["point"]) == 3 for item in told["items"])
+    reply = demo.get("/v1/space", params={"space": space, "dimensions": 3}).json()
+    assert reply["dimensions"] == 3
+    assert len(reply["items"]) == reply["total"] > 0
+    assert all(len(item["point"]) == 3 for item in reply["items"])
     only = demo.get("/v1/space", params={"space": space, "task": "walk"}).json()
     assert {item["task"] for item in only["items"]} == {"walk"}
     assert demo.get("/v1/space", params={"dimensions": 4}).status_code == 422
 
 
-def test_forgetting_nobody_is_told(demo: httpx2.Client) -> None:
+def test_forgetting_an_unknown_person_is_not_found(demo: httpx2.Client) -> None:
     answer = demo.delete("/v1/persons/nobody at all")
     assert answer.status_code == 404
     assert answer.headers["content-type"].startswith("application/problem+json")

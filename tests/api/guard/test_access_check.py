@@ -1,4 +1,4 @@
-"""Who may call: other sites, wrong keys and made-up methods are refused on every path."""
+"""Other sites, wrong keys and unknown methods are refused on every path."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ FETCHED = ("Sec-Fetch-Site", "Sec-Fetch-Mode", "Sec-Fetch-Dest")
 
 
 def status_of(live: Live, path: str, head: str, method: str = "GET", version: str = "1.1") -> int:
-    """The status of a request whose headers are written out, Host among them."""
+    """Send a request with exactly these headers, also Host, and return the status."""
     address = urlsplit(live.url)
     with socket.create_connection((address.hostname, address.port), timeout=30) as line:
         request = f"{method} {path} HTTP/{version}\r\n{head}Connection: close\r\n\r\n"
@@ -41,7 +41,7 @@ def status_of(live: Live, path: str, head: str, method: str = "GET", version: st
 
 
 @pytest.mark.parametrize("path", PATHS)
-def test_only_loopbacks_own_names_are_answered(idle_service: Live, path: str) -> None:
+def test_only_the_names_of_loopback_are_answered(idle_service: Live, path: str) -> None:
     for host in [*OWN_NAMES, *(f"{name}:1234" for name in OWN_NAMES)]:
         assert status_of(idle_service, path, f"Host: {host}\r\n") in {200, 307, 404}, host
     for host in STRANGE_HOSTS:
@@ -52,16 +52,14 @@ def test_only_loopbacks_own_names_are_answered(idle_service: Live, path: str) ->
 
 
 @pytest.mark.parametrize("path", ["/livez", "/readyz"])
-def test_probes_may_call_by_any_name(idle_service: Live, path: str) -> None:
+def test_health_checks_may_use_any_host_name(idle_service: Live, path: str) -> None:
     head = "Host: kinedex.cluster\r\nSec-Fetch-Site: cross-site\r\n"
     assert status_of(idle_service, path, head) == 200
 
 
 @pytest.mark.parametrize("path", PATHS)
 @pytest.mark.parametrize("method", ["GET", "POST", "OPTIONS"])
-def test_an_origin_is_the_address_that_was_called(
-    idle_service: Live, path: str, method: str
-) -> None:
+def test_an_origin_must_be_the_called_address(idle_service: Live, path: str, method: str) -> None:
     host = urlsplit(idle_service.url).netloc
     port = host.partition(":")[2]
     strange = ["http://[", "null", "", "http://evil.example", f"https://{host}", f"ftp://{host}"]
@@ -105,14 +103,14 @@ def test_another_site_may_only_link_to_a_page(
 
 @settings(max_examples=300, deadline=None, derandomize=True, database=None)
 @given(host=st.text(st.sampled_from("[]:@.#/?%localhst1270 ,\tx")), origin=st.text())
-def test_no_host_and_no_origin_breaks_the_check(host: str, origin: str) -> None:
+def test_any_host_and_origin_is_checked_without_an_error(host: str, origin: str) -> None:
     sent = [(b"host", host.encode()), (b"origin", origin.encode("utf-8", "surrogatepass"))]
     scope: Scope = {"type": "http", "method": "GET", "path": "/v1/clips", "scheme": "http"}
     with pytest.raises(Forbidden):
         refuse_other_sites(scope | {"headers": sent})
 
 
-def test_a_wrong_key_is_refused_where_none_is_asked_for(idle: httpx2.Client) -> None:
+def test_a_wrong_key_is_refused_even_if_no_key_is_required(idle: httpx2.Client) -> None:
     for headers in ({"X-API-Key": "kx_a_b"}, {"Authorization": "Bearer wrong"}):
         for path in ("/v1/clips", "/metrics"):
             answer = idle.get(path, headers=headers)
@@ -131,7 +129,9 @@ def locked(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Live, dic
         yield live, _make_keys(live.data_dir)
 
 
-def test_with_keys_any_name_and_site_is_answered(locked: tuple[Live, dict[KeyRole, str]]) -> None:
+def test_with_keys_any_host_name_and_site_is_answered(
+    locked: tuple[Live, dict[KeyRole, str]],
+) -> None:
     live, secrets = locked
     headers = {"Host": "kinedex.example", "Origin": "http://[", "Sec-Fetch-Site": "cross-site"}
     with live.client(headers=headers) as client:
@@ -159,12 +159,12 @@ def test_with_keys_any_name_and_site_is_answered(locked: tuple[Live, dict[KeyRol
 def test_without_a_key_no_body_is_read(
     locked: tuple[Live, dict[KeyRole, str]], method: str, path: str, kind: str
 ) -> None:
-    # The body never comes: who waited for it would not answer, and would hold the only slot.
+    # The body never comes: a service that waits for it would not answer, and would use its slot.
     head = f"Host: x\r\nContent-Type: {kind}\r\nContent-Length: 1000\r\n"
     assert status_of(locked[0], path, head, method) == 401
 
 
-def test_made_up_methods_leave_the_metrics_as_they_are(idle_service: Live) -> None:
+def test_unknown_methods_add_nothing_to_the_metrics(idle_service: Live) -> None:
     with idle_service.client() as client:
         client.get("/metrics")
         before = client.get("/metrics").text
@@ -176,7 +176,7 @@ def test_made_up_methods_leave_the_metrics_as_they_are(idle_service: Live) -> No
     assert "MADE" not in after + idle_service.log.read_text()
 
 
-def test_made_up_paths_are_one_label(idle: httpx2.Client) -> None:
+def test_unknown_paths_share_one_label_of_the_metrics(idle: httpx2.Client) -> None:
     idle.get("/made/up/0")
     lines = len(idle.get("/metrics").text.splitlines())
     for number in range(1, 50):

@@ -1,4 +1,4 @@
-"""Every call has a kind, by which it is let in after all else was checked."""
+"""Every call has a kind. It decides where the call waits after all other checks."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ HEAVY = {
     "/v1/clips/{clip_id}/segments",
     "/v1/studies/low-dimensional/pairs/{pair_id}/{side}",
 }
-"""Those that take longest on a long clip."""
+"""The calls that take longest on a long clip."""
 GATED = {Kind.HEAVY, Kind.QUICK, Kind.CHANGES}
 
 
@@ -46,11 +46,11 @@ def _kinds(route: APIRoute) -> list[Kind]:
     return [call.kind for call in calls if isinstance(call, Admission)]
 
 
-def _told(app: FastAPI, route: APIRoute) -> dict[str, Any]:
-    """Of the OpenAPI description."""
+def _description(app: FastAPI, route: APIRoute) -> dict[str, Any]:
+    """The call in the OpenAPI description."""
     (method,) = route.methods
-    told: dict[str, Any] = app.openapi()["paths"][route.path_format][method.lower()]
-    return told
+    description: dict[str, Any] = app.openapi()["paths"][route.path_format][method.lower()]
+    return description
 
 
 def test_every_call_has_one_kind(routes: list[APIRoute]) -> None:
@@ -59,48 +59,49 @@ def test_every_call_has_one_kind(routes: list[APIRoute]) -> None:
     }
 
 
-def test_no_call_of_the_description_is_left_out(app: FastAPI, routes: list[APIRoute]) -> None:
+def test_every_described_call_is_a_checked_route(app: FastAPI, routes: list[APIRoute]) -> None:
     described = {
-        (method.upper(), path) for path, told in app.openapi()["paths"].items() for method in told
+        (method.upper(), path)
+        for path, description in app.openapi()["paths"].items()
+        for method in description
     }
     assert described <= {
         (method, route.path_format) for route in routes for method in route.methods
     }
 
 
-def test_a_call_is_let_in_when_its_key_was_checked_and_its_form_has_come(
+def test_a_call_takes_a_slot_after_its_key_was_checked_and_its_form_arrived(
     routes: list[APIRoute],
 ) -> None:
     for route in routes:
         calls = [dependant.call for dependant in route.dependant.dependencies]
-        place = next(i for i, call in enumerate(calls) if isinstance(call, Admission))
-        solved = {*calls[:place], get_library}  # what comes again was kept; that takes no time
-        assert set(calls[place + 1 :]) <= solved, route.path
+        index = next(i for i, call in enumerate(calls) if isinstance(call, Admission))
+        # FastAPI caches the value of a repeated dependency, so it takes no time.
+        solved = {*calls[:index], get_library}
+        assert set(calls[index + 1 :]) <= solved, route.path
 
 
-def test_what_takes_long_is_heavy(routes: list[APIRoute]) -> None:
+def test_long_calls_are_heavy(routes: list[APIRoute]) -> None:
     kinds = {route.path: _kinds(route)[0] for route in routes if route.path in HEAVY}
     assert kinds == dict.fromkeys(HEAVY, Kind.HEAVY)
 
 
-def test_whether_it_lives_and_is_ready_is_told_without_a_gate(routes: list[APIRoute]) -> None:
+def test_health_checks_pass_no_gate(routes: list[APIRoute]) -> None:
     kinds = {route.path: _kinds(route)[0] for route in routes}
     assert kinds["/livez"] is kinds["/readyz"] is Kind.AT_ONCE
 
 
-def test_who_may_be_refused_says_so(app: FastAPI, routes: list[APIRoute]) -> None:
+def test_calls_that_may_be_refused_describe_503(app: FastAPI, routes: list[APIRoute]) -> None:
     for route in routes:
         if route.include_in_schema and _kinds(route)[0] in GATED:
-            assert "503" in _told(app, route)["responses"], route.path
+            assert "503" in _description(app, route)["responses"], route.path
 
 
-def test_every_frame_rate_that_can_be_asked_for_has_the_same_bounds(
-    app: FastAPI, routes: list[APIRoute]
-) -> None:
+def test_every_fps_parameter_has_the_same_bounds(app: FastAPI, routes: list[APIRoute]) -> None:
     bounds = {}
     for route in routes:
-        told = _told(app, route) if route.include_in_schema else {}
-        for parameter in told.get("parameters", []):
+        description = _description(app, route) if route.include_in_schema else {}
+        for parameter in description.get("parameters", []):
             if parameter["name"] == "fps":
                 number = next(s for s in parameter["schema"]["anyOf"] if s["type"] == "number")
                 bounds[route.path] = number["minimum"], number["maximum"]

@@ -1,4 +1,4 @@
-"""Which connection makes room, against a slow and obvious count."""
+"""The connection that is closed for a new one, compared with a slow and simple count."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
 from app.api.guard.connections import Connections, room_for_connections
 
-MOST, MOST_OF_ONE = 5, 3
+MAX_OPEN, MAX_PER_ADDRESS = 5, 3
 ADDRESSES = ["10.0.0.1", "10.0.0.2", "10.0.0.3"]
 
 
 class Line:
-    """A connection that only remembers whether it was given up."""
+    """A connection that only records whether it was closed."""
 
     def __init__(self, address: str) -> None:
         self.address = address
@@ -28,11 +28,11 @@ class Line:
 
 
 class Twin(RuleBasedStateMachine):
-    """All that may happen to connections, in any order; `waiting` has the longest first."""
+    """All events of connections, in any order. `waiting`: the longest waiting one first."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.counted = Connections(MOST, MOST_OF_ONE)
+        self.counted = Connections(MAX_OPEN, MAX_PER_ADDRESS)
         self.waiting: list[Line] = []
         self.working: list[Line] = []
 
@@ -40,9 +40,9 @@ class Twin(RuleBasedStateMachine):
     def enter(self, address: str) -> None:
         line = Line(address)
         open_now = self.waiting + self.working
-        full_of_one = sum(one.address == address for one in open_now) >= MOST_OF_ONE
+        full_of_one = sum(one.address == address for one in open_now) >= MAX_PER_ADDRESS
         victims = [one for one in self.waiting if not full_of_one or one.address == address]
-        must_evict = full_of_one or len(open_now) >= MOST
+        must_evict = full_of_one or len(open_now) >= MAX_OPEN
         entered = self.counted.enter(line, address)
         assert entered == (not must_evict or bool(victims))
         if entered and must_evict:
@@ -51,25 +51,25 @@ class Twin(RuleBasedStateMachine):
         if entered:
             self.waiting.append(line)
 
-    @rule(place=st.integers(0, MOST))
-    def work(self, place: int) -> None:
+    @rule(index=st.integers(0, MAX_OPEN))
+    def work(self, index: int) -> None:
         if self.waiting:
-            line = self.waiting.pop(place % len(self.waiting))
+            line = self.waiting.pop(index % len(self.waiting))
             self.working.append(line)
             self.counted.works(line)
 
-    @rule(place=st.integers(0, MOST))
-    def wait(self, place: int) -> None:
+    @rule(index=st.integers(0, MAX_OPEN))
+    def wait(self, index: int) -> None:
         if self.working:
-            line = self.working.pop(place % len(self.working))
+            line = self.working.pop(index % len(self.working))
             self.waiting.append(line)
             self.counted.waits(line)
 
-    @rule(place=st.integers(0, MOST))
-    def leave(self, place: int) -> None:
+    @rule(index=st.integers(0, MAX_OPEN))
+    def leave(self, index: int) -> None:
         open_now = self.waiting + self.working
         if open_now:
-            line = open_now[place % len(open_now)]
+            line = open_now[index % len(open_now)]
             (self.waiting if line in self.waiting else self.working).remove(line)
             self.counted.leave(line)
             self.counted.leave(line)
@@ -77,8 +77,10 @@ class Twin(RuleBasedStateMachine):
     @invariant()
     def holds(self) -> None:
         open_now = self.waiting + self.working
-        assert len(self.counted) == len(open_now) <= MOST
-        assert max(Counter(line.address for line in open_now).values(), default=0) <= MOST_OF_ONE
+        assert len(self.counted) == len(open_now) <= MAX_OPEN
+        assert (
+            max(Counter(line.address for line in open_now).values(), default=0) <= MAX_PER_ADDRESS
+        )
         assert not any(line.is_given_up for line in open_now)
 
 

@@ -1,4 +1,4 @@
-"""The last net: what nobody foresaw is logged with its request, and told to nobody."""
+"""Unexpected exceptions are logged with their request, and no client sees their text."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from app.logs import JsonFormatter, request_id
 
 
 def _call(error: Exception) -> tuple[list[Message], list[str]]:
-    """What is sent, and logged as JSON, when the application raises `error`."""
+    """The sent messages and the JSON log lines when the application raises `error`."""
     sent: list[Message] = []
     lines: list[str] = []
 
@@ -46,8 +46,8 @@ def _call(error: Exception) -> tuple[list[Message], list[str]]:
 
 
 def _problem(sent: list[Message]) -> dict[str, Any]:
-    told: dict[str, Any] = json.loads(sent[1]["body"])
-    return told
+    problem: dict[str, Any] = json.loads(sent[1]["body"])
+    return problem
 
 
 def test_an_unexpected_exception_is_a_500_without_its_text() -> None:
@@ -55,7 +55,7 @@ def test_an_unexpected_exception_is_a_500_without_its_text() -> None:
     assert sent[0]["status"] == 500
     assert _problem(sent)["code"] == "internal"
     assert "secret" not in str(sent)
-    (line,) = [told for told in map(json.loads, lines) if "exception" in told]
+    (line,) = [problem for problem in map(json.loads, lines) if "exception" in problem]
     assert "the secret of /etc" in line["exception"]
     assert line["request_id"] == "r1"
     assert request_id.get() is None
@@ -66,13 +66,13 @@ def test_a_full_disk_is_a_507() -> None:
     assert (sent[0]["status"], _problem(sent)["code"]) == (507, "disk_full")
 
 
-def test_who_leaves_is_no_error() -> None:
+def test_a_client_that_leaves_is_not_logged_as_an_error() -> None:
     sent, lines = _call(ClientDisconnect())
     assert sent == []
     assert [json.loads(line)["level"] for line in lines] == ["info"] * len(lines)
 
 
-def test_bodies_at_once_are_counted() -> None:
+def test_slots_limit_the_bodies_at_once() -> None:
     slots = Slots(1)
     with slots.one(Arrival()), pytest.raises(TooBusy), slots.one(Arrival()):
         pass

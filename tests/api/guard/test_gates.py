@@ -1,4 +1,4 @@
-"""Gates: who is let in, who waits, who is refused, and who gives up."""
+"""Gates: calls that work, wait, are refused, or end early."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def run(test: Callable[[], Coroutine[Any, Any, None]]) -> None:
 
 
 async def stays() -> dict[str, Any]:
-    """What a client receives that waits for its answer."""
+    """The `receive` of a client that waits for its answer."""
     await asyncio.sleep(3600)
     return {"type": "http.disconnect"}
 
@@ -35,7 +35,7 @@ def leaves(when: asyncio.Event) -> Receive:
 
 
 class Calls:
-    """Calls that work until they are told to end."""
+    """Calls that work until their event in `ends` is set."""
 
     def __init__(self, gate: Gate, seconds: float = 60.0) -> None:
         self.gate = gate
@@ -59,7 +59,7 @@ async def settle() -> None:
         await asyncio.sleep(0)
 
 
-def test_so_many_work_and_the_others_follow_in_the_order_they_came() -> None:
+def test_waiting_calls_follow_in_the_order_in_which_they_came() -> None:
     async def test() -> None:
         calls = Calls(Gate("heavy", slots=2, waiting=5))
         tasks = {name: calls.begin(name) for name in "abcd"}
@@ -77,7 +77,7 @@ def test_so_many_work_and_the_others_follow_in_the_order_they_came() -> None:
     run(test)
 
 
-def test_who_finds_no_room_to_wait_is_refused_at_once() -> None:
+def test_a_call_is_refused_at_once_if_the_queue_is_full() -> None:
     async def test() -> None:
         calls = Calls(Gate("heavy", slots=1, waiting=1))
         begun = [calls.begin("a"), calls.begin("b")]
@@ -90,7 +90,7 @@ def test_who_finds_no_room_to_wait_is_refused_at_once() -> None:
     run(test)
 
 
-def test_who_leaves_the_queue_makes_room_and_never_works() -> None:
+def test_a_call_whose_client_leaves_the_queue_never_works() -> None:
     async def test() -> None:
         calls, gone = Calls(Gate("heavy", slots=1, waiting=1)), asyncio.Event()
         calls.begin("a")
@@ -108,7 +108,7 @@ def test_who_leaves_the_queue_makes_room_and_never_works() -> None:
     run(test)
 
 
-def test_who_waits_too_long_is_told_so() -> None:
+def test_a_call_that_waits_too_long_exceeds_its_deadline() -> None:
     async def test() -> None:
         calls = Calls(Gate("heavy", slots=1, waiting=1), seconds=0.05)
         calls.begin("a")
@@ -120,7 +120,7 @@ def test_who_waits_too_long_is_told_so() -> None:
     run(test)
 
 
-def test_a_call_that_is_cancelled_passes_its_turn_on() -> None:
+def test_a_cancelled_call_passes_its_turn_to_the_next() -> None:
     async def test() -> None:
         calls = Calls(Gate("heavy", slots=1, waiting=2))
         first, second = calls.begin("a"), calls.begin("b")
@@ -135,7 +135,7 @@ def test_a_call_that_is_cancelled_passes_its_turn_on() -> None:
     run(test)
 
 
-def test_work_knows_its_deadline_and_hears_that_the_client_left() -> None:
+def test_work_has_a_deadline_and_ends_when_the_client_leaves() -> None:
     async def test() -> None:
         gate, gone = Gate("heavy", slots=1, waiting=1), asyncio.Event()
 
@@ -155,7 +155,7 @@ def test_work_knows_its_deadline_and_hears_that_the_client_left() -> None:
     run(test)
 
 
-def test_the_work_of_a_call_that_is_cancelled_is_told_to_stop() -> None:
+def test_the_work_of_a_cancelled_call_is_stopped() -> None:
     async def test() -> None:
         seen: list[Deadline] = []
 
@@ -202,7 +202,7 @@ def test_a_call_that_has_begun_shares_its_slot_and_is_never_refused() -> None:
     run(test)
 
 
-def test_counted_ones_are_refused_beyond_their_number() -> None:
+def test_a_counter_refuses_more_than_its_limit() -> None:
     async def test() -> None:
         counter = Counter("answers", 1)
         async with counter.one():
@@ -215,7 +215,7 @@ def test_counted_ones_are_refused_beyond_their_number() -> None:
     run(test)
 
 
-def test_the_threads_are_enough_for_all_who_are_let_in() -> None:
+def test_there_are_enough_threads_for_all_slots() -> None:
     gates = Gates.of(30.0)
     assert gates.threads > gates.heavy.slots + gates.quick.slots + gates.changes.slots
     assert 2 <= gates.heavy.slots <= 16

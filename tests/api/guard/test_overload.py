@@ -1,4 +1,4 @@
-"""Nobody freezes the service: not with long searches, nor by reading slowly, nor by leaving."""
+"""Long searches, slow readers and clients that leave do not block the service."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from tests.live import Live, serve, wait_until
 from tests.long_clips import FRAMES, long_library
 
 PATIENCE_SECONDS = 60.0
-"""A net, no promise: the machine may be busy."""
+"""A generous limit, because the machine may be busy."""
 IDLE_CPU_SECONDS = 0.1
-"""What an idle process takes between two looks, at most; one that works takes all of them."""
+"""CPU time of an idle process between two looks, at most. A working one uses the whole time."""
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str]]:
 
 @pytest.fixture(scope="module")
 def live(library: tuple[Path, list[str]]) -> Iterator[Live]:
-    """Calls may take ten minutes: what ends before has ended for another reason."""
+    """A service whose time limit is so long that no call ends because of it."""
     with serve(library[0], request_timeout_s=600) as running:
         yield running
 
@@ -65,7 +65,7 @@ def _asked(live: Live, method: str, path: str, body: Any = None) -> Iterator[soc
 
 
 def _status(connection: socket.socket, seconds: float = PATIENCE_SECONDS) -> int | None:
-    """The status that was answered; None where there is no answer yet."""
+    """The status of the answer, or None if there is no answer yet."""
     connection.settimeout(seconds)
     try:
         return int(connection.recv(12).split()[1])
@@ -90,7 +90,7 @@ def _wait_until_idle(live: Live) -> None:
 
 
 def _answers(client: httpx2.Client, clip_id: str) -> list[int]:
-    """Whether it lives, whether it is ready, what there is."""
+    """The statuses of calls that must always work: health, lists, metrics."""
     paths = ("/livez", "/readyz", "/v1/clips", f"/v1/clips/{clip_id}", "/v1/jobs", "/metrics")
     return [client.get(path).status_code for path in paths]
 
@@ -132,7 +132,7 @@ def _ok(answer: httpx2.Response) -> httpx2.Response | None:
     return answer if answer.status_code == 200 else None
 
 
-def test_who_reads_nothing_holds_up_nobody(
+def test_clients_that_read_nothing_block_nobody(
     live: Live, client: httpx2.Client, library: tuple[Path, list[str]]
 ) -> None:
     clip_id = library[1][0]
@@ -152,7 +152,7 @@ def test_who_reads_nothing_holds_up_nobody(
 
 
 @pytest.mark.parametrize("fps", ["0.01", "0.0001", "0.999", "1e-131", "1e-300", "5e-324", "1001"])
-def test_no_frame_rate_makes_work_without_bound(
+def test_a_frame_rate_outside_the_limits_is_refused(
     client: httpx2.Client, library: tuple[Path, list[str]], fps: str
 ) -> None:
     clip = f"/v1/clips/{library[1][0]}"
@@ -170,7 +170,7 @@ def test_more_frames_than_a_call_may_make_are_refused(
     assert "more than 500000 frames" in answer.json()["detail"]
 
 
-def test_a_json_body_is_never_as_large_as_a_file(client: httpx2.Client) -> None:
+def test_a_json_body_has_a_smaller_limit_than_a_file(client: httpx2.Client) -> None:
     for path in ("/v1/search/motion", "/v1/recognize"):
         answer = client.post(path, json={"clip_id": "x" * 2_000_000})
         assert_problem(answer, 413, "too_large")

@@ -1,4 +1,4 @@
-"""Clients that take an answer slowly, or not at all: they keep nobody out, and lose nothing."""
+"""Clients that read an answer slowly or not at all: they block nobody, and lose no bytes."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from app.api.guard.protocol import GuardedProtocol
 from tests.live import Live, serve, wait_until
 
 BODY = b"x" * 20_000_000
-"""More than the buffers of a connection hold."""
+"""More bytes than the buffers of a connection can hold."""
 KEEP, CLOSE = (
     b"GET / HTTP/1.1\r\nHost: x\r\n%s\r\n" % more for more in (b"", b"Connection: close\r\n")
 )
 NET_SECONDS = 30.0
-"""Never reached when all goes well."""
+"""Time limit of a test. It is reached only if the test fails."""
 
 Stream = tuple[asyncio.StreamReader, asyncio.StreamWriter]
 Connect = Callable[[], Awaitable[Stream]]
@@ -83,7 +83,7 @@ def _short(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("application", [_whole, _in_pieces])
-def test_who_reads_nothing_makes_room_for_another(
+def test_a_client_that_reads_nothing_is_closed_for_another(
     monkeypatch: pytest.MonkeyPatch, application: Callable[..., Awaitable[None]]
 ) -> None:
     monkeypatch.setattr(reader, "STALLED_SECONDS", 0.1)
@@ -104,7 +104,7 @@ def test_who_reads_nothing_makes_room_for_another(
 
 @pytest.mark.parametrize("application", [_whole, _in_pieces])
 @pytest.mark.parametrize("request_", [KEEP, CLOSE])
-def test_who_reads_nothing_is_cut_off(
+def test_a_client_that_reads_nothing_is_cut_off(
     monkeypatch: pytest.MonkeyPatch,
     application: Callable[..., Awaitable[None]],
     request_: bytes,
@@ -123,7 +123,7 @@ def test_who_reads_nothing_is_cut_off(
 
 
 @pytest.mark.parametrize("application", [_whole, _in_pieces])
-def test_who_reads_slowly_gets_all(application: Callable[..., Awaitable[None]]) -> None:
+def test_a_slow_client_gets_the_whole_answer(application: Callable[..., Awaitable[None]]) -> None:
     async def talk(connect: Connect, connections: Connections) -> None:
         read, write = await connect()
         write.write(KEEP)
@@ -137,7 +137,7 @@ def test_who_reads_slowly_gets_all(application: Callable[..., Awaitable[None]]) 
 
 
 @pytest.mark.slow
-def test_files_that_nobody_reads_shut_nobody_out(tmp_path: Path) -> None:
+def test_clients_that_do_not_read_files_block_nobody(tmp_path: Path) -> None:
     with serve(tmp_path / "data", max_connections_per_address=8) as live, ExitStack() as held:
         with live.client() as client:
             files = {"file": ("large.bvh", b"HIERARCHY\n" + BODY)}

@@ -1,4 +1,4 @@
-"""Clients that send slowly, or only half: they keep nobody else out."""
+"""Clients that send slowly, or only a part of a request: they block nobody else."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_half_sent_headers_make_room_for_others(small: Live) -> None:
 
 @pytest.mark.slow
 def test_a_thousand_half_sent_headers_from_one_address(tmp_path: Path) -> None:
-    # With so many files the process of before could accept no connection more.
+    # Without our limits, the process would use up its file descriptors here.
     with (
         _soft_limit_of_files(1024),
         serve(tmp_path / "data") as live,
@@ -111,7 +111,7 @@ def _soft_limit_of_files(count: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
 
 
-def test_connections_that_all_have_work_are_not_given_up(small: Live, take: Any) -> None:
+def test_connections_with_a_running_call_are_not_closed(small: Live, take: Any) -> None:
     job = small.upload(take).json()["job"]["id"]
     host = urlsplit(small.url).netloc
     with lines_to(small, 20) as lines:
@@ -119,9 +119,9 @@ def test_connections_that_all_have_work_are_not_given_up(small: Live, take: Any)
             line.sendall(f"GET /v1/jobs/{job}/events HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())
             assert line.recv(15).startswith(b"HTTP/1.1 200")
         with lines_to(small, 1) as (refused,):
-            told = b"".join(iter(lambda: refused.recv(65536), b""))
-        assert told.startswith(b"HTTP/1.1 503")
-        assert b"too_many_connections" in told
+            answer = b"".join(iter(lambda: refused.recv(65536), b""))
+        assert answer.startswith(b"HTTP/1.1 503")
+        assert b"too_many_connections" in answer
     wait_until(lambda: _is_alive(small), 30)
 
 
@@ -130,7 +130,7 @@ def _is_alive(live: Live) -> bool:
         return bool(client.get("/livez").status_code == 200)
 
 
-def test_slow_searches_hold_up_neither_uploads_nor_searches(small: Live) -> None:
+def test_slow_searches_block_neither_uploads_nor_searches(small: Live) -> None:
     with lines_to(small, 8) as lines, small.client() as client:
         for line in lines:
             begin_form(small, line, SEARCH)
@@ -140,7 +140,7 @@ def test_slow_searches_hold_up_neither_uploads_nor_searches(small: Live) -> None
         asked = client.post(SEARCH, content=BEGIN + b"asked\r\n--x--\r\n", headers=FORM)
         assert asked.status_code == 422
         wait_until(lambda: sum(map(is_closed, lines)) == 6, 30)
-        # Two are received. After a while, the slowest of them leaves for a new one.
+        # Two bodies are received. After a while, the slower one loses its slot to a new body.
         wait_until(lambda: _begin_another(small) and sum(map(is_closed, lines)) == 7, 30)
 
 
@@ -152,7 +152,7 @@ def _begin_another(live: Live) -> bool:
 
 
 class Slow(arrival.Arrival):
-    """A body that is so many seconds behind."""
+    """A body that is `seconds` behind its rate."""
 
     def __init__(self, seconds: float, is_slow: bool) -> None:
         super().__init__()
@@ -168,7 +168,7 @@ class Slow(arrival.Arrival):
         self.has_left = True
 
 
-def test_the_slowest_body_makes_room() -> None:
+def test_the_slowest_body_loses_its_slot() -> None:
     slots = Slots(3)
     slow, slower, quick = Slow(3.0, True), Slow(5.0, True), Slow(9.0, False)
     with ExitStack() as held:
@@ -191,13 +191,13 @@ def test_small_bodies_that_come_slowly_are_bounded_too(small: Live) -> None:
         assert client.post("/v1/search/words", json={"words": ["walk"]}).status_code == 409
 
 
-def test_json_is_small_where_a_form_may_be_large(small: Live) -> None:
+def test_json_has_a_small_limit_on_a_path_with_a_large_limit_for_forms(small: Live) -> None:
     with small.client() as client:
         answer = client.post(SEARCH, json={"clip_id": "x", "cursor": "c" * 2_000_000})
         assert_problem(answer, 413, "too_large")
 
 
-# The limits of time, shortened, on one connection in this process.
+# Tests with shortened time limits, on one connection in this process.
 
 
 async def _application(scope: Scope, receive: Receive, send: Send) -> None:
@@ -206,7 +206,7 @@ async def _application(scope: Scope, receive: Receive, send: Send) -> None:
 
 
 async def _on_a_line(talk: Callable[[Any, Any], Awaitable[bytes]]) -> bytes:
-    """What `talk(reader, writer)` returns, over a connection of the guarded protocol."""
+    """Run `talk(reader, writer)` on a connection of the guarded protocol and return its result."""
     config = uvicorn.Config(_application, log_config=None, access_log=False)
     config.load()
     make = partial(GuardedProtocol, config, ServerState(), {}, connections=Connections(10, 10))
@@ -224,10 +224,10 @@ def test_headers_that_take_too_long_are_answered_408(monkeypatch: pytest.MonkeyP
 
     async def drip(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> bytes:
         writer.write(HALF)
-        # Only its beginning: what is written after the answer may reset the connection.
+        # Read only the beginning: our bytes after the answer may reset the connection.
         answer = asyncio.ensure_future(reader.read(65536))
         while not answer.done():
-            # Each byte comes in time; all of them do not.
+            # Each byte comes soon, but all of them together take too long.
             writer.write(b"a")
             await asyncio.sleep(0.02)
         return await answer
@@ -237,7 +237,9 @@ def test_headers_that_take_too_long_are_answered_408(monkeypatch: pytest.MonkeyP
     assert b"urn:kinedex:problem:request_timeout" in answer
 
 
-def test_who_sends_nothing_is_closed_without_an_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_client_that_sends_nothing_is_closed_without_an_answer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(protocol, "HEADER_SECONDS", 0.1)
     assert asyncio.run(_on_a_line(lambda reader, _: reader.read())) == b""
 
@@ -256,7 +258,7 @@ def test_the_time_begins_again_with_each_request(monkeypatch: pytest.MonkeyPatch
     assert b" 408 " in asyncio.run(_on_a_line(thrice))
 
 
-def test_what_is_no_http_is_answered_with_a_problem() -> None:
+def test_bytes_that_are_not_http_are_answered_with_a_problem() -> None:
     async def garbage(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> bytes:
         writer.write(b"\x16\x03\x01 this is no HTTP\r\n\r\n")
         return await reader.read()
@@ -284,7 +286,7 @@ def _arrive(pieces: list[tuple[float, int]]) -> arrival.Arrival:
     return body
 
 
-def test_a_body_must_arrive_at_a_least_rate(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_body_must_arrive_at_a_minimum_rate(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(arrival, "GRACE_SECONDS", 0.2)
     monkeypatch.setattr(arrival, "PAUSE_SECONDS", 10.0)
     monkeypatch.setattr(arrival, "MIN_BYTES_PER_SECOND", 1_000.0)
@@ -293,7 +295,7 @@ def test_a_body_must_arrive_at_a_least_rate(monkeypatch: pytest.MonkeyPatch) -> 
         _arrive([(0.05, 1)] * 10)
 
 
-def test_what_came_at_first_buys_no_time(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fast_start_gives_a_body_no_extra_time(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(arrival, "GRACE_SECONDS", 0.2)
     monkeypatch.setattr(arrival, "FAIR_SECONDS", 0.1)
     assert not _arrive([(0.0, 10**8)]).is_slow()
@@ -303,7 +305,7 @@ def test_what_came_at_first_buys_no_time(monkeypatch: pytest.MonkeyPatch) -> Non
     assert not _arrive([(0.15, 1), (0.0, 10**8)]).is_slow()
 
 
-def test_a_body_that_is_late_already_can_be_asked_to_leave(
+def test_a_late_body_can_lose_its_slot(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(arrival, "PAUSE_SECONDS", 0.1)
@@ -330,7 +332,7 @@ def test_a_body_may_not_pause_for_long(monkeypatch: pytest.MonkeyPatch) -> None:
         _arrive([(0.0, 10**6), (5.0, 1)])
 
 
-def test_time_in_which_nobody_waits_for_the_client_does_not_count() -> None:
+def test_only_time_in_which_we_wait_for_the_client_counts() -> None:
     body = _arrive([(0.0, 1)] * 3)
     time.sleep(0.05)
     assert body.behind() < 0.05

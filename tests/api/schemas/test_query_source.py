@@ -1,4 +1,4 @@
-"""A body becomes a QuerySource whole: nothing that a client says of a motion is lost."""
+"""A body becomes a QuerySource with all fields that the client sent."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SENT = {
 HINTS = QuerySource(unit="cm", frame_rate=30.0, roles={"hips": "Pelvis"}, stack="run")
 
 
-def test_a_form_gives_every_field_of_a_source() -> None:
+def test_a_form_fills_every_field_of_a_source() -> None:
     content, skeleton = io.BytesIO(b"motion"), io.BytesIO(b"skeleton")
     source = MotionSearchForm.model_validate(SENT).source(content, skeleton)
     assert source == replace(HINTS, content=content, skeleton=skeleton, start=0.5, end=1.5)
@@ -32,7 +32,7 @@ def test_a_form_gives_every_field_of_a_source() -> None:
     assert empty == {"clip_id"}
 
 
-def test_all_forms_take_what_describes_an_upload() -> None:
+def test_all_forms_take_the_hints_about_an_upload() -> None:
     assert set(UPLOAD_ONLY) - {"skeleton"} <= QueryForm.model_fields.keys()
     sent = {name: value for name, value in SENT.items() if name not in ("start", "end")}
     assert RecognizeForm.model_validate(sent).source() == HINTS
