@@ -1,4 +1,4 @@
-"""The real clips of BVH, described once for all measurements that need no library."""
+"""The real BVH clips, analyzed once for all benches that need no library."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ from tests.real_clips import manifest, real_clips
 
 @dataclass(frozen=True)
 class RealClips:
-    """n clips; takes: of a clip of dataset 2, 1..5, else 0; arrays: of each, by name."""
+    """n clips.
+
+    takes: (n,) the take 1..5 of a clip of dataset 2, else 0; arrays: of each clip, by name.
+    """
 
     folders: np.ndarray
     persons: np.ndarray

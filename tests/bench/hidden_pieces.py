@@ -1,7 +1,7 @@
-"""Long motions made of real clips, with pieces of others hidden in them, as a library.
+"""A library of long motions: real clips joined together, with pieces of other clips hidden in them.
 
-Each piece is hidden COPIES times: at another speed (up to 10 % longer or shorter, swaying by
-10 %), heading, place, body size and frame rate, with marker noise.
+Each piece is hidden COPIES times. Each copy has another speed (up to 10 % longer or shorter, and
+varying by 10 %), heading, position, body size and frame rate, and has marker noise.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from tests.streams import Stream, at_rate, body_of, joined, npz_of, of_size, war
 
 RATE = 30.0
 LENGTHS = (0.6, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 10.0)
-"""Seconds, of pieces."""
+"""Durations of the pieces, seconds."""
 PIECES, COPIES = 40, 5
 STREAM_RATES = (30.0, 60.0, 24.0, 120.0, 50.0, 100.0)
 NOISE = 0.003
-"""Metres, of each marker in each frame."""
-LEAST_MOVING = 0.03
-"""Of a piece, rms of its velocities: stillness is everywhere."""
+"""Standard deviation of the noise on each marker in each frame, meters."""
+MIN_RMS_VELOCITY = 0.03
+"""Least RMS of the velocities of a piece: a still piece would match everywhere."""
 
 Span = tuple[str, float, float]
 """Clip id, start and end in seconds."""
@@ -38,7 +38,7 @@ Span = tuple[str, float, float]
 
 @dataclass(frozen=True)
 class Take:
-    """A real clip: who does what, and how, (frames, 13, 3) at RATE."""
+    """A real clip: its labels and its joint positions, (frames, 13, 3) at RATE."""
 
     person: str
     task: str
@@ -48,18 +48,23 @@ class Take:
 
 @dataclass
 class Hidden:
-    """A library of long motions; the pieces, where each is hidden, and where whole takes are."""
+    """A library of long motions.
+
+    seconds: of all motions; pieces: (frames, 13, 3) each; spans: of the copies of each piece;
+    takes: spans of whole takes, by task, person and source; streams: (frames, 13, 3) at RATE, by
+    clip id.
+    """
 
     lib: Library
     seconds: float
     pieces: list[FloatArray]
-    places: list[list[Span]]
+    spans: list[list[Span]]
     takes: dict[tuple[str, str, str], list[Span]]
     streams: dict[str, FloatArray]
 
 
 def real_takes() -> list[Take]:
-    """The real clips that are files of their own."""
+    """The real clips that one file describes completely."""
     found = []
     for row in manifest():
         content = (real_clips() / row["path"]).read_bytes()
@@ -74,7 +79,7 @@ def real_takes() -> list[Take]:
 def hide(
     lib: Library, sources: list[Take], filling: list[Take], rng: np.random.Generator
 ) -> Hidden:
-    """Cut pieces from `sources`, and hide them among those of `filling` that none was cut from."""
+    """Cut pieces from `sources`, and hide them among the other takes of `filling`."""
     pieces, used = _cut(sources, rng)
     parts: list[tuple[FloatArray, object]] = [
         (take.body, (take.task, take.person, take.source))
@@ -96,7 +101,7 @@ def hide(
         for (start, end), (_, what) in zip(stream.spans, mine, strict=True):
             span = clip_id, start, min(end, seconds)
             if isinstance(what, int):
-                found.places[what].append(span)
+                found.spans[what].append(span)
             elif isinstance(what, tuple):
                 found.takes.setdefault(what, []).append(span)
     work(lib.settings)
@@ -104,7 +109,7 @@ def hide(
 
 
 def _cut(sources: list[Take], rng: np.random.Generator) -> tuple[list[FloatArray], list[Take]]:
-    """Moving pieces of all lengths, each from a take of its own."""
+    """Cut moving pieces of all lengths, each from another take."""
     pieces: list[FloatArray] = []
     used: list[Take] = []
     for index in rng.permutation(len(sources)):
@@ -115,7 +120,7 @@ def _cut(sources: list[Take], rng: np.random.Generator) -> tuple[list[FloatArray
         first = int(rng.integers(0, len(take.body) - frames + 1))
         piece = take.body[first : first + frames]
         moving = frame_features(body_track(motion_of(piece)))[:, 39:78]
-        if np.sqrt(np.mean(moving**2)) >= LEAST_MOVING:
+        if np.sqrt(np.mean(moving**2)) >= MIN_RMS_VELOCITY:
             pieces.append(piece)
             used.append(take)
     return pieces, used
@@ -124,7 +129,7 @@ def _cut(sources: list[Take], rng: np.random.Generator) -> tuple[list[FloatArray
 def _store(
     lib: Library, stream: Stream, rate: float, name: str, rng: np.random.Generator
 ) -> tuple[str, float]:
-    """The id and the seconds of the clip that the stream becomes."""
+    """Store the stream as a clip. Returns the clip's id and its duration in seconds."""
     body = at_rate(of_size(stream.body, rng.uniform(0.9, 1.3)), RATE, rate)
     noisy = body + rng.normal(scale=NOISE, size=body.shape)
     content = io.BytesIO(npz_of(noisy, rate))

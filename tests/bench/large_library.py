@@ -1,7 +1,7 @@
-"""Libraries of many clips: real ones, their vectors disturbed, written straight into a store.
+"""Libraries of many clips: copies of real clips with noise on their vectors, written into a store.
 
-Nobody has a hundred thousand recordings at hand; searches do not care. All else that a clip
-has (features, volumes, poses) is that of the real clip it was made of, so lengths are real.
+We do not have a hundred thousand recordings, and a search does not need them. The other arrays of a
+copy (features, volumes, poses) are those of its real clip, so its length is realistic.
 """
 
 from __future__ import annotations
@@ -29,17 +29,18 @@ from tests.real_clips import manifest, real_clips
 
 VECTOR = "motion_vector"
 SPREAD = 0.03
-"""Of the noise on each number of a vector: a third of a median nearest neighbour's distance."""
+"""Deviation of the noise on each number of a vector: a third of the median distance to the nearest
+neighbor."""
 PEOPLE, STYLES = 50, 8
-"""Made-up labels: so many persons, and words of which each clip carries two."""
+"""Numbers of invented persons and of invented words. Each clip carries two words."""
 AT_ONCE = 2000
 NOT_SEARCHED = ("positions", "symbol_means", "symbol_variances", "symbol_transitions")
-"""Arrays that no search by example or by pose reads, and that would fill the disk."""
+"""Arrays that no search by example or by pose reads. They would fill the disk."""
 
 
 @dataclass(frozen=True)
 class Sample:
-    """A real clip: what a manifest says of it, and its arrays."""
+    """A real clip: its task and duration, and its arrays."""
 
     task: str
     duration: float
@@ -47,7 +48,7 @@ class Sample:
 
     @functools.cached_property
     def blobs(self) -> list[dict[str, Any]]:
-        """Rows of the table of arrays, but for the vector and the clip's id."""
+        """Rows of the table of arrays, without the vector and without the clip's id."""
         return [
             {"name": name, "version": ANALYSIS_VERSION, **to_blob(array)}
             for name, array in self.arrays.items()
@@ -57,7 +58,7 @@ class Sample:
 
 @functools.lru_cache(maxsize=1)
 def samples(every: int = 3) -> tuple[Sample, ...]:
-    """Every so many of the real clips, analysed."""
+    """Analyze every `every`-th real clip."""
     found = []
     for row in manifest()[::every]:
         try:
@@ -70,7 +71,7 @@ def samples(every: int = 3) -> tuple[Sample, ...]:
 
 
 def many_clips(count: int, seed: int = 0) -> Iterator[tuple[Sample, IndexedClip]]:
-    """`count` clips made of the samples, with vectors and labels of their own."""
+    """Yield `count` copies of the samples, each with its own vector and labels."""
     rng = np.random.default_rng(seed)
     real = samples()
     vectors = np.stack([sample.arrays[VECTOR] for sample in real])
@@ -98,7 +99,10 @@ def many_clips(count: int, seed: int = 0) -> Iterator[tuple[Sample, IndexedClip]
 
 
 def fill(store: Store, count: int, names: Sequence[str] | None = None) -> None:
-    """Write `count` ready clips into an empty store; names: arrays to write, else all searched."""
+    """Write `count` ready clips into an empty store.
+
+    names: the arrays to write; default: all arrays that searches read.
+    """
     clips = enumerate(many_clips(count), 1)
     while batch := list(itertools.islice(clips, AT_ONCE)):
         with store.write() as tx:

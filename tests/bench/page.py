@@ -1,8 +1,8 @@
 """The page of figures, `tests/bench/README.md`: each bench writes its own section.
 
-A bench module has one `FIGURES = Section(...)` and prints through it. When its tests have
-passed, what they printed replaces the module's section on the page (see `conftest.py`), so
-that the page shows the figures of the last run and nobody copies figures by hand.
+A bench module has one `FIGURES = Section(...)` and prints with it. When the module's tests have
+passed, the printed lines replace the module's section on the page (see `conftest.py`). So the page
+shows the figures of the last run, and nobody copies figures by hand.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ PAGE = Path(__file__).with_name("README.md")
 class Section:
     """The figures of one bench module.
 
-    key: the module's name without `test_`; title: what is measured; trials: what is counted, and
-    how often; chance: what guessing would reach, where that means something.
+    key: the module's name without `test_`; title: the measured thing; trials: their kind and their
+    number; chance: the figures of guessing, if they make sense.
     """
 
     key: str
@@ -30,12 +30,12 @@ class Section:
     lines: list[str] = field(default_factory=list)
 
     def print(self, *parts: object, end: str = "\n", sep: str = " ") -> None:
-        """As the built-in `print`, and kept for the page."""
+        """Print like the built-in `print`, and store the text for the page."""
         print(*parts, end=end, sep=sep)
         self.lines.append(sep.join(map(str, parts)) + end)
 
     def write(self, page: Path = PAGE) -> None:
-        """Replace this module's section on the page by what was printed, or add it at the end."""
+        """Replace this module's section on the page by the printed lines, or add it at the end."""
         text = page.read_text()
         begin, end = f"<!-- {self.key} -->", f"<!-- /{self.key} -->"
         written = f"{begin}\n{self._markdown()}\n{end}"

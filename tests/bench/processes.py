@@ -1,4 +1,4 @@
-"""What process trees take: CPU time, and memory shared and alone; and killing them."""
+"""CPU time and memory of process trees, and killing processes."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ SAMPLE_SECONDS = 0.2
 MB = 1e6
 
 Key = tuple[int, float]
-"""A process for good: its id and when it was created."""
+"""Identifies a process also after its end: its id and its time of creation."""
 
 
 def key_of(process: psutil.Process) -> Key:
-    """What tells a process from a later one with the same id."""
+    """The key of a process. A later process with the same id has another key."""
     return process.pid, process.create_time()
 
 
 def tree_of(root: psutil.Process) -> list[psutil.Process]:
-    """A process and all below it; empty when it is gone."""
+    """A process and all its descendants; empty if it has ended."""
     with suppress(psutil.Error):
         return [root, *root.children(recursive=True)]
     return []
@@ -40,7 +40,7 @@ def child_running(parent: psutil.Process, module: str) -> psutil.Process | None:
 
 
 def processes_over(folder: Path) -> list[psutil.Process]:
-    """Every process whose environment names `folder`: ours, whoever their parent is now."""
+    """Every process whose environment names `folder`, also one whose parent has ended."""
     found = []
     for process in psutil.process_iter():
         with suppress(psutil.Error, OSError):
@@ -58,9 +58,9 @@ def kill(processes: Iterable[psutil.Process]) -> None:
 
 @dataclass
 class Tree:
-    """What one tree of processes took so far; peaks since `begin_phase`, bytes.
+    """CPU time and memory of one tree of processes. Peaks are since `begin_phase`, in bytes.
 
-    cpu: s by process, as last seen; memory: largest sum over the tree of the proportional
+    cpu: seconds by process, as last seen; memory: largest sum over the tree of the proportional
     set sizes (each shared page counted once); alone: largest resident set of one process.
     """
 
@@ -68,13 +68,13 @@ class Tree:
     seen: set[Key] = field(default_factory=set)
     memory: int = 0
     alone: int = 0
-    most_processes: int = 0
+    max_processes: int = 0
 
     def cpu_seconds(self) -> float:
         return sum(self.cpu.values())
 
     def begin_phase(self) -> None:
-        self.memory = self.alone = self.most_processes = 0
+        self.memory = self.alone = self.max_processes = 0
 
     def sample(self, root: psutil.Process | None) -> None:
         members = tree_of(root) if root is not None else []
@@ -88,7 +88,7 @@ class Tree:
                 total += memory.pss
                 self.alone = max(self.alone, memory.rss)
         self.memory = max(self.memory, total)
-        self.most_processes = max(self.most_processes, len(members))
+        self.max_processes = max(self.max_processes, len(members))
 
 
 class Meter:
@@ -110,18 +110,18 @@ class Meter:
         self._thread.join()
 
     def sample(self) -> None:
-        """Look now."""
+        """Take a sample now."""
         with self._lock:
             for name, module in self._modules.items():
                 self.trees[name].sample(child_running(self._parent, module))
 
     def cpu_seconds(self) -> dict[str, float]:
-        """CPU time of each tree, now."""
+        """CPU seconds of each tree, now."""
         self.sample()
         return {name: tree.cpu_seconds() for name, tree in self.trees.items()}
 
     def begin_phase(self) -> None:
-        """Forget the peaks."""
+        """Reset the peaks."""
         with self._lock:
             for tree in self.trees.values():
                 tree.begin_phase()

@@ -1,4 +1,4 @@
-"""The product as a user runs it: `kinedex serve` as a process, over a directory of its own."""
+"""The product as a user runs it: `kinedex serve` as a process, with its own directory."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Product:
     supervisor: psutil.Process
 
     def get(self, path: str, **query: Any) -> Any:
-        """What a call answers, as JSON; another status than 200 is an error."""
+        """Return the answer of a call as JSON. A status of 400 or above raises HTTPStatusError."""
         with self.client() as client:
             answer = client.get(path, params=query)
             answer.raise_for_status()
@@ -46,7 +46,7 @@ class Product:
         return httpx2.Client(base_url=self.url, timeout=120.0, trust_env=False)
 
     def start_import(self, archive: Path) -> str:
-        """Upload a ZIP; the id of its job."""
+        """Upload a ZIP and return the id of its job."""
         with self.client() as client, archive.open("rb") as content:
             answer = client.post("/v1/imports", files={"archive": (archive.name, content)})
         assert answer.status_code == 202, answer.text
@@ -54,7 +54,7 @@ class Product:
         return job
 
     def wait_for_job(self, job_id: str, seconds: float) -> dict[str, Any]:
-        """The job when it has ended."""
+        """Wait until the job has ended and return it."""
 
         def ended() -> dict[str, Any] | None:
             job: dict[str, Any] = self.get(f"/v1/jobs/{job_id}")
@@ -64,7 +64,7 @@ class Product:
         return found
 
     def items(self, path: str, **query: Any) -> list[dict[str, Any]]:
-        """All of a list, page by page."""
+        """All items of a list, page by page."""
         found: list[dict[str, Any]] = []
         cursor: dict[str, str] = {}
         while True:
@@ -77,15 +77,15 @@ class Product:
 
 @contextmanager
 def serving(data_dir: Path, **settings: object) -> Iterator[Product]:
-    """`kinedex serve` on a free port; told to stop at the end, and killed if it does not."""
+    """Run `kinedex serve` on a free port. At the end it is terminated, or killed if that fails."""
     data_dir.mkdir(parents=True)
     log = data_dir.parent / f"{data_dir.name}.log"
-    told = {f"KINEDEX_{name.upper()}": str(value) for name, value in settings.items()}
-    told |= {"KINEDEX_DATA_DIR": str(data_dir), "OPENBLAS_NUM_THREADS": "1"}
+    variables = {f"KINEDEX_{name.upper()}": str(value) for name, value in settings.items()}
+    variables |= {"KINEDEX_DATA_DIR": str(data_dir), "OPENBLAS_NUM_THREADS": "1"}
     port = _free_port()
     command = [str(Path(sys.executable).with_name("kinedex")), "serve", "--port", str(port)]
     with log.open("wb") as lines:
-        process = subprocess.Popen(command, env=os.environ | told, stdout=lines, stderr=lines)
+        process = subprocess.Popen(command, env=os.environ | variables, stdout=lines, stderr=lines)
     product = Product(f"http://127.0.0.1:{port}", data_dir, log, psutil.Process(process.pid))
     try:
         wait_until(lambda: _is_ready(product, process), START_SECONDS)
@@ -101,7 +101,7 @@ def serving(data_dir: Path, **settings: object) -> Iterator[Product]:
 
 
 def zip_of_real_clips(target: Path) -> Path:
-    """A ZIP of the folder of real clips, as a user would make it."""
+    """Make a ZIP of the folder of real clips, as a user would."""
     folder = real_clips()
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
         for file in sorted(folder.rglob("*")):

@@ -1,16 +1,18 @@
-"""The same task from another skeleton, size, unit and frame rate: walk and run in three sources.
+"""The same task with another skeleton, size, unit and frame rate: walks and runs of three sources.
 
 Run: pytest -m bench -s tests/bench/test_across_sources.py
-A walk (run) of one source asks all clips of another one. Bandai Namco's two sets share a
-skeleton, of 30 Hz and cm; CMU's has a lower neck, wider shoulders and longer legs, 120 Hz and
-another unit. "Strict" counts the same task; "gait" takes all tasks that walk (to the side, with
-a turn) for one, and dash for a run, since that is how far the sources' own names agree.
+A walk (run) of one source is the query, and all clips of another source are searched. Bandai
+Namco's two sets share a skeleton (30 Hz, cm). CMU's skeleton has a lower neck, wider shoulders and
+longer legs (120 Hz, another unit). "Strict" counts the same task. "Gait" counts all walking tasks
+(to the side, with a turn) as one task, and dash as a run, because the sources use these names
+differently.
 
-Tried and not kept, mean strict MAP of all 501 files: bones of standard lengths in the clip's
+Tried and rejected, mean strict MAP of all 501 files: bones of standard lengths in the clip's
 directions (vector .677 to .690, fused .668 to .688, but dtw within dataset 2 .700 to .695 and
-within CMU .787 to .773). Sun's distances break by length: epsilon has unit length however many
-frames it has, and msv-dtw goes with the log ratio of the clips' lengths (correlation .8). Times
-the root of the frames (and a tenth) it would find .392 in place of .252; as printed it stays.
+within CMU .787 to .773). Sun's distances fail if lengths differ: epsilon has unit length for any
+number of frames, and msv-dtw follows the log ratio of the clips' lengths (correlation .8). If
+epsilon is multiplied by the root of the frames (and by a tenth), it reaches .392 instead of .252.
+We keep the printed form.
 """
 
 from __future__ import annotations
@@ -31,7 +33,7 @@ from tests.search.fused import fused_distances
 FIGURES = Section(
     "across_sources",
     "Walks and runs found in other sources",
-    trials="each walk and run of one source asks all clips of another source",
+    trials="each walk and run of one source is a query among all clips of another source",
 )
 
 pytestmark = pytest.mark.bench
@@ -70,13 +72,13 @@ def test_walks_and_runs_are_found_in_other_sources(clips: RealClips, sources: np
                 for task in TASKS
                 if len(who := asks[(sources[asks] == a) & (clips.tasks[asks] == task)])
             ]
-            told = "".join(f"{p:6.2f}{m:5.2f}" for p, m in cells)
+            shown = "".join(f"{p:6.2f}{m:5.2f}" for p, m in cells)
             mean = np.mean(cells, axis=0)
             found[name, way] = float(mean[1])
-            FIGURES.print(f"{way:34}{told}   mean {mean[0]:.3f} {mean[1]:.3f}")
+            FIGURES.print(f"{way:34}{shown}   mean {mean[0]:.3f} {mean[1]:.3f}")
     for way, floor in FLOORS.items():
         assert found["strict", way] >= floor
-    # Labels of the source that is searched are worth more than any measure without.
+    # Labels of the searched source improve the ranking more than any method without labels.
     assert found["strict", "metric-task, own source untaught"] > found["strict", "vector"]
 
 
@@ -87,8 +89,8 @@ def gait(task: str) -> str:
 
 
 def by_methods(clips: RealClips, asks: np.ndarray) -> dict[str, dict[int, np.ndarray]]:
-    """(n,) distances of all clips to each that asks, by method."""
-    names = [str(place) for place in range(len(clips))]
+    """(n,) distances of all clips to each query, by method."""
+    names = [str(index) for index in range(len(clips))]
     vectors = clips.column("motion_vector")
     found: dict[str, dict[int, np.ndarray]] = {method: {} for method in UNLEARNED}
     for query in asks:
@@ -110,7 +112,7 @@ UNLEARNED = (Method.FUSED, Method.VECTOR, Method.DTW, Method.MSV_DTW, Method.MSV
 def by_labels(
     clips: RealClips, sources: np.ndarray, asks: np.ndarray
 ) -> dict[str, dict[int, np.ndarray]]:
-    """The same by metric-task: with no label of the query's source, and with all but its own."""
+    """The same by metric-task: without labels of the query's source, and without its own label."""
     untaught: dict[int, np.ndarray] = {}
     taught: dict[int, np.ndarray] = {}
     for source in np.unique(sources):
@@ -135,7 +137,7 @@ def learned(clips: RealClips, teaches: np.ndarray, asks: np.ndarray) -> dict[int
 def judge(
     distances: np.ndarray, labels: np.ndarray, query: int, among: np.ndarray
 ) -> tuple[float, float]:
-    """P@10 (fewer where fewer are relevant) and average precision in another source."""
+    """P@10 (or fewer, if fewer clips are relevant) and average precision in another source."""
     those = np.flatnonzero(among)
     same = labels[those[np.argsort(distances[those], kind="stable")]] == labels[query]
     first = same[: min(10, np.count_nonzero(same))].mean()

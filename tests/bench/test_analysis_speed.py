@@ -1,7 +1,7 @@
-"""Seconds of motion that one CPU second analyzes: from a file's bytes to all stored arrays.
+"""Seconds of motion that are analyzed in one CPU second: from a file to all stored arrays.
 
 Run: OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 pytest -m bench -s tests/bench/test_analysis_speed.py
-No processes, no store: test_import.py measures the whole product. Every third real clip.
+It uses every third real clip, without processes or a store. test_import.py measures the product.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from tests.real_clips import manifest, real_clips
 
 FIGURES = Section(
     "analysis_speed",
-    "What one CPU second analyzes",
+    "Motion analyzed in one CPU second",
     trials="every third real clip, in rounds that take turns; the best round counts",
 )
 
 pytestmark = pytest.mark.bench
 
 ROUNDS = 3
-LEAST_SPEED = 100.0
-"""Seconds of motion a second of a core (issue 2)."""
+MIN_SPEED = 100.0
+"""Seconds of motion per second of a core (issue 2)."""
 
 
 def test_seconds_of_motion_per_cpu_second() -> None:
@@ -39,7 +39,7 @@ def test_seconds_of_motion_per_cpu_second() -> None:
     reading = [_speed(files, stored=False) for _ in range(ROUNDS)]
     FIGURES.print(f"\n{len(files)} files, best of {ROUNDS} rounds, seconds of motion a CPU second:")
     FIGURES.print(f"  read and analyzed {max(speeds):.0f}, read only {max(reading):.0f}")
-    assert max(speeds) >= LEAST_SPEED
+    assert max(speeds) >= MIN_SPEED
 
 
 def _speed(files: list[tuple[bytes, float]], *, stored: bool) -> float:

@@ -1,11 +1,11 @@
-"""How well beats are found: in recordings, in motions, and between the two.
+"""Quality of the beats of recordings, of the tempo of motions, and of the offset between both.
 
 Run: pytest -m bench -s tests/bench/test_beats.py
 
-Pieces and dances of `app.demo.dances`, of seeds that chose nothing: weights and
-thresholds were fitted on seeds below 10,000 (pieces below 40,000). Half of all drift. The
-weights for recordings were fitted on other pieces of the same styles; those of
-`tests.unheard_music` chose nothing at all and are told apart.
+Generated pieces and dances of `app.demo.dances` with new seeds: weights and thresholds were fitted
+on seeds below 10,000 (pieces: below 40,000). Half of the pieces change their tempo. The weights for
+recordings were fitted on other pieces of the same styles. The styles of `tests.unheard_music` were
+used for no fit, and their figures are printed separately.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from tests.unheard_music import UNHEARD
 FIGURES = Section(
     "beats",
     "Beats of recordings, tempo from motion, and where a recording begins",
-    trials="generated pieces and dances of seeds that chose nothing; each line says how many",
+    trials="generated pieces and dances with new seeds; each line says how many",
 )
 
 pytestmark = pytest.mark.bench
@@ -52,7 +52,7 @@ PIECES, DANCES, OFFSETS = 90_000, 91_000, 92_000
 
 @lru_cache
 def pieces(kind: str) -> tuple[tuple[int, np.ndarray, np.ndarray], ...]:
-    """(tempo, samples, beats), two of each tempo, the second one drifting by 5 %."""
+    """(tempo, samples, beats): two of each tempo. The tempo of the second one drifts by 5 %."""
     first = PIECES + 100 * [CLICKS, *STYLES, *UNHEARD].index(kind)
     return tuple(
         (bpm, *piece(first + 2 * i + half, kind, bpm, drift=0.05 * half))
@@ -62,7 +62,7 @@ def pieces(kind: str) -> tuple[tuple[int, np.ndarray, np.ndarray], ...]:
 
 
 def test_beats_of_recordings() -> None:
-    means = _told((CLICKS, *STYLES))
+    means = _mean_scores((CLICKS, *STYLES))
     music = float(np.mean([means[style] for style in STYLES]))
     FIGURES.print(f"music {music:.3f}")
     assert means[CLICKS] >= 0.98
@@ -70,12 +70,12 @@ def test_beats_of_recordings() -> None:
 
 
 def test_beats_of_styles_never_heard() -> None:
-    """None of them chose anything, and no target was set for them."""
-    FIGURES.print(f"music never heard {np.mean(list(_told(tuple(UNHEARD)).values())):.3f}")
+    """These styles were used for no fit, and they have no target."""
+    FIGURES.print(f"music never heard {np.mean(list(_mean_scores(tuple(UNHEARD)).values())):.3f}")
 
 
-def _told(kinds: tuple[str, ...]) -> dict[str, float]:
-    """Mean F by kind of piece; printed by tempo, with how often the tempo itself is right."""
+def _mean_scores(kinds: tuple[str, ...]) -> dict[str, float]:
+    """Return the mean F by kind of piece. Prints F by tempo, and the share of right tempi."""
     FIGURES.print(
         "\nF at 70 ms of beats in recordings of 30 s; tempo within 4 %, and half or double it"
     )
@@ -91,14 +91,14 @@ def _told(kinds: tuple[str, ...]) -> dict[str, float]:
             ratios.append((found.tempo or 1.0) * float(np.median(np.diff(beats))) / 60)
         means[kind] = float(np.mean([score for both in scores.values() for score in both]))
         row = "".join(f"{np.mean(scores[bpm]):6.2f}" for bpm in TEMPI)
-        right, octave = (_near(ratios, wanted) for wanted in ((1.0,), (0.5, 2.0)))
+        right, octave = (_near(ratios, factors) for factors in ((1.0,), (0.5, 2.0)))
         FIGURES.print(f"{kind:11}{row}{means[kind]:6.3f}{right:6.2f}{octave:7.2f}")
     FIGURES.print(f"{np.median(seconds):.2f} s each")
     return means
 
 
-def _near(ratios: list[float], wanted: tuple[float, ...]) -> float:
-    return float(np.mean([any(abs(r / w - 1) < 0.04 for w in wanted) for r in ratios]))
+def _near(ratios: list[float], factors: tuple[float, ...]) -> float:
+    return float(np.mean([any(abs(r / w - 1) < 0.04 for w in factors) for r in ratios]))
 
 
 def test_the_peer_on_the_same_recordings() -> None:
@@ -138,7 +138,7 @@ def _energy(clip: DemoClip) -> np.ndarray:
 
 
 def test_tempo_from_motion() -> None:
-    """The same 36 dances with each noise."""
+    """The same 36 dances with each level of noise."""
     FIGURES.print("\ntempo of dances from their motion, within 3 %; F of beats at 100 ms")
     every = []
     for noise in NOISES:
@@ -152,8 +152,8 @@ def test_tempo_from_motion() -> None:
             right.append(found.tempo is not None and abs(found.tempo / true - 1) < 0.03)
             scores.append(f_score(found.times, beats, within=0.1))
         every += right
-        told = f"{sum(right)} of {len(right)} right, {silent} none, F {np.mean(scores):.3f}"
-        FIGURES.print(f"{noise:>3} mm: {told}")
+        shown = f"{sum(right)} of {len(right)} right, {silent} none, F {np.mean(scores):.3f}"
+        FIGURES.print(f"{noise:>3} mm: {shown}")
     FIGURES.print(f"all: {np.mean(every):.3f}")
     assert np.mean(every) >= 0.95
 

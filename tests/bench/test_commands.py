@@ -1,10 +1,10 @@
-"""CPU time of commands, from start to end: imports are nearly all of it.
+"""CPU time of commands from start to end. Nearly all of it is imports.
 
 Run: pytest -m bench -s tests/bench/test_commands.py
-The program as a user starts it, over a library of 500 clips made of real ones. Targets (issue 13):
+The program as a user starts it, over a library of 500 copies of real clips. Targets (issue 13):
 0.3 s for --version and --help, 1 s for a search; 0.4 s for the help of one command, because typer
-imports pydantic then. A machine at work takes up to half as much again for the same, which the
-floors allow for.
+imports pydantic then. On a busy machine the same work may take half as long again, so the test
+allows for that.
 """
 
 from __future__ import annotations
@@ -41,8 +41,9 @@ COMMANDS = {
     ("search", FIRST, "--method", "vector"): 1.0,
     ("search", FIRST, "--method", "dtw"): 1.0,
 }
-"""The target of each, seconds of CPU."""
+"""Target of each command, CPU seconds."""
 AT_WORK = 1.5
+"""Allowed factor over a target, because the machine may be busy."""
 
 
 def test_commands_start_at_once(tmp_path: Path) -> None:

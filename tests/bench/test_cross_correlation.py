@@ -1,7 +1,7 @@
-"""D_xcorr of one motion against many: the batch beside numpy.correlate in a loop, in one run.
+"""D_xcorr of one motion and many others: our batch compared with numpy.correlate in a loop.
 
 Run: pytest -m bench -s tests/bench/test_cross_correlation.py
-Lengths are spread as those of real clips are: half between 3 and 7 seconds, some a minute.
+Lengths are distributed like those of real clips: half between 3 and 7 seconds, some a minute.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ REPEATS = 5
 
 
 def _volumes(count: int) -> tuple[FloatArray, list[FloatArray]]:
-    """rhos (count, 13) and epsilons of unit length, none negative."""
+    """rhos (count, 13) and epsilons (frames,), all of unit length and without negative values."""
     rng = np.random.default_rng(0)
     rhos = 1 + 0.1 * rng.random((count, 13))
     lengths = np.clip(np.exp(rng.normal(np.log(140), 0.6, size=count)), 20, 1900).astype(int)

@@ -1,10 +1,10 @@
-"""DTW of queries against 350 real clips, beside aeon, tslearn and dtaidistance.
+"""DTW of queries with 350 real clips, compared with aeon, tslearn and dtaidistance.
 
 Run: OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 pytest -m bench -s tests/bench/test_dtw.py
-The 10 Hz features (82 wide) of dataset 2, each way against the same clips, one thread, best
-CPU time of some rounds that take turns. dtaidistance runs its C library with Euclidean cost, whose
-totals must be ours; aeon and tslearn know the squared cost alone, which is no more work.
-Searches use no band, so none is measured.
+Each library compares the 10 Hz features (82 columns) of dataset 2 with the same clips, in one
+thread. The best CPU time of several rounds counts, in which the libraries take turns. dtaidistance
+runs its C library with Euclidean cost: its totals must equal ours. aeon and tslearn only have the
+squared cost, which is not more work. Searches use no band, so we measure without a band.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tests.bench.page import Section
 
 FIGURES = Section(
     "dtw",
-    "DTW beside its peers",
+    "DTW compared with other libraries",
     trials="each query against 350 real clips, one thread, best of some rounds",
 )
 
@@ -32,7 +32,7 @@ pytestmark = pytest.mark.bench
 ROUNDS = 5
 QUERIES = 5
 TARGET = 2.0
-"""Times as fast as the best peer."""
+"""Least speed, relative to the fastest other library."""
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +50,7 @@ def test_dtw_beside_its_peers(sequences: list[np.ndarray]) -> None:
     ways = _ways(sequences)
     queries = np.linspace(0, len(sequences) - 1, QUERIES).astype(int)
     for way in ways.values():
-        way(0)  # compiles, and fills the caches
+        way(0)  # compiles the code and fills the caches
     best = dict.fromkeys(ways, np.inf)
     for _ in range(ROUNDS):
         for name, way in ways.items():
@@ -66,7 +66,7 @@ def test_dtw_beside_its_peers(sequences: list[np.ndarray]) -> None:
 
 
 def _ways(sequences: list[np.ndarray]) -> dict[str, Callable[[int], np.ndarray]]:
-    """Totals (350,) of the query with a number, by each library."""
+    """Functions from the number of a query to its totals (350,), by library."""
     from aeon.distances import dtw_distance
     from dtaidistance import dtw_ndim
     from tslearn.metrics import dtw

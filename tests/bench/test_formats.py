@@ -1,12 +1,12 @@
 """Every format of the real clips: files read, joint roles found, frame rates judged, time.
 
 Run: pytest -m bench -s tests/bench/test_formats.py
-The manifest's `fps` is the truth of the frame rates; here the files are read without it.
-The time is that of reading and kinematics beside a numpy read of the same numbers, in one
-run: for text the numbers of its motion, for binary files their bytes as float32.
+The manifest's `fps` is the true frame rate. The files are read without it. The time of reading and
+kinematics is compared with a numpy read of the same numbers: for text the numbers of its motion,
+for binary files their bytes as float32.
 
-The two FBX files count as wrong and not found, but it is the manifest that errs: it gives the
-120 Hz of the recording, and their keys lie at 30 Hz (at 120 Hz hands would reach 38 m/s).
+The two FBX files count as wrong and not noticed, but the manifest is wrong: it gives the 120 Hz of
+the recording, and the keys have 30 Hz (at 120 Hz the hands would reach 38 m/s).
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _NUMBER = re.compile(rb"(?<=\s)-?[0-9]+\.[0-9]+")
 
 @dataclass
 class Tally:
-    """What came of one format's files."""
+    """Results for the files of one format."""
 
     read: int = 0
     refused: list[str] = field(default_factory=list)
@@ -92,7 +92,7 @@ def _judge_rate(tally: Tally, name: str, motion: Motion, true_rate: float) -> No
 
 
 def _companion(path: Path) -> bytes | None:
-    """The ASF beside an AMC: the file whose stem the AMC's begins with."""
+    """The ASF file of an AMC file: the stem of the AMC begins with the stem of the ASF."""
     if path.suffix != ".amc":
         return None
     return next(p for p in path.parent.glob("*.asf") if path.stem.startswith(p.stem)).read_bytes()

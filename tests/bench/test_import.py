@@ -1,8 +1,8 @@
 """Import of the 501 real clips through the running product: speed, memory, nothing lost.
 
 Run: pytest -m bench -s tests/bench/test_import.py
-Speed is seconds of motion made ready per CPU second of the worker and its children, start of
-the processes included. Memory is what a machine must have: each shared page counted once.
+Speed is seconds of motion made ready per CPU second of the worker and its children, including the
+start of the processes. Memory is the need of the machine: each shared page is counted once.
 """
 
 from __future__ import annotations
@@ -42,16 +42,16 @@ FIGURES = Section(
 pytestmark = pytest.mark.bench
 
 IMPORT_SECONDS = 600.0
-LEAST_SPEED = 100.0
+MIN_SPEED = 100.0
 """Seconds of motion per second of a core (issue 2)."""
-MOST_MEMORY = 500 * MB
+MAX_MEMORY_BYTES = 500 * MB
 NOT_YET = "format_not_supported"
-"""The code of failures of formats that later issues bring."""
+"""The code of failures of formats that Kinedex does not read."""
 
 
 @dataclass(frozen=True)
 class Run:
-    """An import that was watched: its job, the clips, CPU and wall seconds, peaks by phase."""
+    """A measured import: its job, files and clips, wall and CPU seconds, peaks by phase."""
 
     job: dict[str, Any]
     files: list[dict[str, Any]]
@@ -91,7 +91,7 @@ def _watched(product: Product, meter: Meter, archive: Path) -> Run:
 
 
 def _peaks(meter: Meter) -> dict[str, tuple[int, int, int]]:
-    """(tree's peak, largest process's peak, processes) by tree since the last call."""
+    """(peak of the tree, peak of its largest process, processes) by tree, since the last call."""
     meter.sample()
     found = {name: _peak(tree) for name, tree in meter.trees.items()}
     meter.begin_phase()
@@ -99,7 +99,7 @@ def _peaks(meter: Meter) -> dict[str, tuple[int, int, int]]:
 
 
 def _peak(tree: Tree) -> tuple[int, int, int]:
-    return tree.memory, tree.alone, tree.most_processes
+    return tree.memory, tree.alone, tree.max_processes
 
 
 def _wait_for_fit(product: Product) -> None:
@@ -128,25 +128,25 @@ def _search(product: Product, clips: list[dict[str, Any]]) -> None:
         assert client.post("/v1/recognize", json={"clip_id": ready}).status_code == 200
 
 
-def test_none_is_lost_and_each_failure_is_explained(run: Run) -> None:
+def test_no_clip_is_lost_and_each_failure_has_a_reason(run: Run) -> None:
     files = run.files
-    wanted = {row["path"] for row in manifest()}
-    told = Counter(file["path"] for file in files)
+    expected = {row["path"] for row in manifest()}
+    counts = Counter(file["path"] for file in files)
     failed = [file for file in files if file["outcome"] == "failed"]
     reasons = Counter((f["error"]["code"], f["error"]["detail"]) for f in failed)
-    outcomes = Counter(file["outcome"] for file in files if file["path"] in wanted)
-    FIGURES.print(f"\n{len(wanted)} clips of the manifest: {dict(outcomes)}")
+    outcomes = Counter(file["outcome"] for file in files if file["path"] in expected)
+    FIGURES.print(f"\n{len(expected)} clips of the manifest: {dict(outcomes)}")
     for (code, detail), count in reasons.most_common():
         FIGURES.print(f"  {count:4} {code}: {detail}")
     for file in failed:
         places = "; ".join(f"{p['location']}: {p['message']}" for p in file["error"]["errors"])
         FIGURES.print(f"       {file['path']}: {file['error']['code']} {places}")
     assert run.job["state"] == "succeeded"
-    assert {path: told[path] for path in wanted} == dict.fromkeys(wanted, 1)
-    assert outcomes["ready"] + outcomes["failed"] == len(wanted)
+    assert {path: counts[path] for path in expected} == dict.fromkeys(expected, 1)
+    assert outcomes["ready"] + outcomes["failed"] == len(expected)
     assert len({clip["sha256"] for clip in run.clips}) == len(run.clips)
     surprising = [
-        f["path"] for f in failed if f["path"] in wanted and f["error"]["code"] != NOT_YET
+        f["path"] for f in failed if f["path"] in expected and f["error"]["code"] != NOT_YET
     ]
     assert not surprising
 
@@ -162,7 +162,7 @@ def test_speed(run: Run) -> None:
         f"  CPU of the worker's tree {run.cpu['worker']:.1f} s: {speed:.0f} a second and core"
     )
     FIGURES.print(f"  CPU of the API's tree {run.cpu['api']:.1f} s")
-    assert speed >= LEAST_SPEED
+    assert speed >= MIN_SPEED
 
 
 def test_memory(run: Run) -> None:
@@ -179,7 +179,7 @@ def test_memory(run: Run) -> None:
         (phase, name): round(peak[0] / MB)
         for phase, trees in run.peaks.items()
         for name, peak in trees.items()
-        if peak[0] >= MOST_MEMORY
+        if peak[0] >= MAX_MEMORY_BYTES
     }
     assert not over
 

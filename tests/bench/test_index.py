@@ -1,10 +1,10 @@
 """The index against one bare BLAS pass over the same vectors; its memory, its loading.
 
 Run: pytest -m bench -s tests/bench/test_index.py
-Real motion vectors, disturbed, at 10,000, 100,000 and a million clips. A search is the whole of
-it: filter, product, exact distances, and the page in order. Passes alternate with searches, so
-that both meet the same caches. Target (issue 4): at most three passes. Asserted is CPU time;
-times on the wall are printed alone.
+Real motion vectors with noise, for 10,000, 100,000 and a million clips. A search has all steps:
+filter, product, exact distances, and the sorted page. Passes alternate with searches, so that both
+have the same caches. Target (issue 4): at most three passes. The test asserts CPU time. Wall-clock
+times are only printed.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from tests.bench.page import Section
 
 FIGURES = Section(
     "index",
-    "The index against one bare BLAS pass",
+    "The index compared with one BLAS pass",
     trials="searches and passes in turns, at 10 thousand, 100 thousand and a million clips",
 )
 
@@ -46,7 +46,7 @@ FILTERS = {
     "2 %, by a person": ClipFilter(person=("person 7",)),
     "a quarter, by words": ClipFilter(word=("word3",)),
 }
-MOST_PASSES = 3.0
+MAX_PASSES = 3.0
 
 
 @pytest.fixture(scope="module", params=list(ROUNDS))
@@ -71,18 +71,18 @@ def test_a_search_against_a_bare_pass(rows: RowsView) -> None:
     queries = matrix[:: count // 64]
     FIGURES.print(f"\n{count} clips{'':24}limit 10{'':9}limit 1000")
     worst = 0.0
-    for name, wanted in FILTERS.items():
-        told = []
+    for name, filters in FILTERS.items():
+        cells = []
         for limit in (10, 1000):
             passes, searches = _alternate(
                 lambda q: matrix @ q,
-                lambda q, w=wanted, n=limit: _near(rows, w, q).page(None, n),
+                lambda q, f=filters, n=limit: _near(rows, f, q).page(None, n),
                 queries,
                 ROUNDS[count],
             )
-            told.append(f"{searches * 1e3:8.2f} ms {searches / passes:5.2f}x")
+            cells.append(f"{searches * 1e3:8.2f} ms {searches / passes:5.2f}x")
             worst = max(worst, searches / passes)
-        FIGURES.print(f"  {name:28}{'   '.join(told)}   (pass {passes * 1e3:.2f} ms)")
+        FIGURES.print(f"  {name:28}{'   '.join(cells)}   (pass {passes * 1e3:.2f} ms)")
     deep = _near(rows, ClipFilter(), queries[0]).page(None, min(1000, count // 2))
     after = Position(1000, float(deep.distances[-1]), str(deep.ids[-1]))
     passes, searches = _alternate(
@@ -94,8 +94,8 @@ def test_a_search_against_a_bare_pass(rows: RowsView) -> None:
     FIGURES.print(
         f"  the page after a thousand{'':24}{searches * 1e3:8.2f} ms {searches / passes:5.2f}x"
     )
-    if count > 10_000:  # below, a pass is some 0.1 ms, and what a thousand hits cost is more
-        assert worst < MOST_PASSES
+    if count > 10_000:  # with fewer clips, a thousand hits take longer than a pass (0.1 ms)
+        assert worst < MAX_PASSES
 
 
 def test_pages_are_those_of_every_distance_sorted(rows: RowsView) -> None:
@@ -108,10 +108,9 @@ def test_pages_are_those_of_every_distance_sorted(rows: RowsView) -> None:
 
 
 def test_eight_searches_at_once(rows: RowsView) -> None:
-    """Printed alone: what it gains depends on the machine's cores and on its load.
+    """The figure is only printed: it depends on the machine's cores and on its load.
 
-    That no search waits for another is a test of the quick suite
-    (tests/search/index/test_vector_index.py).
+    tests/search/index/test_vector_index.py tests that no search waits for another one.
     """
     count = len(rows.labels.ids)
     query = rows.blocks[0].vectors[5]
@@ -157,8 +156,8 @@ def test_loading(tmp_path: Path, count: int) -> None:
     assert taken * 1e6 / count < 2 * 512
 
 
-def _near(rows: RowsView, wanted: ClipFilter, query: np.ndarray) -> NearestRanking:
-    return NearestRanking(1, rows, rows.labels.mask(wanted), query)
+def _near(rows: RowsView, filters: ClipFilter, query: np.ndarray) -> NearestRanking:
+    return NearestRanking(1, rows, rows.labels.mask(filters), query)
 
 
 def _exact(block: Block, query: np.ndarray) -> np.ndarray:
@@ -172,7 +171,7 @@ def _alternate(
     queries: np.ndarray,
     rounds: int,
 ) -> tuple[float, float]:
-    """Median CPU seconds of each, taken in turns."""
+    """Median CPU seconds of both calls, which take turns."""
     taken: tuple[list[float], list[float]] = ([], [])
     for number in range(rounds):
         query = queries[number % len(queries)]

@@ -1,10 +1,10 @@
-"""How well keyposes are found on generated dances that nothing was chosen on, and how fast.
+"""Quality and time of keyposes on generated dances that were used for no choice.
 
 Run: pytest -m bench -s tests/bench/test_keyposes.py
 
-Dances of `app.demo.dances`: nine tempi, three drifts, holds, freezes, passed beats,
-ornaments, and white noise on every coordinate of every joint. What was chosen by looking
-(constants of the detector) was chosen on seeds 1000 to 1026; figures are of seeds from 9000.
+Dances of `app.demo.dances`: nine tempi, three drifts, holds, freezes, skipped beats, ornaments, and
+white noise on every coordinate of every joint. The constants of the detector were chosen on seeds
+1000 to 1026. The figures are measured on seeds from 9000.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from tests.dances import dance as simple_dance
 FIGURES = Section(
     "keyposes",
     "Keyposes of generated dances",
-    trials="generated dances of seeds that chose nothing; each line says how many",
+    trials="generated dances with new seeds; each line says how many",
 )
 
 pytestmark = pytest.mark.bench
@@ -70,7 +70,7 @@ def _danced(seed: int, bpm: float, drift: float, noise: float) -> Danced:
 
 @lru_cache
 def simple_dances(first: int, count: int, noise: float) -> tuple[Danced, ...]:
-    """As in tests/dances.py: limbs between stops, no skeleton, no ornaments."""
+    """Dances of tests/dances.py: limbs that move between stops, without skeleton and ornaments."""
     made = [
         simple_dance(first + i, TEMPI[i % 9], beats=20, noise=noise / 1000) for i in range(count)
     ]
@@ -86,7 +86,7 @@ METHODS: dict[str, Callable[[BodyTrack, Beats], Selectable]] = {
     ),
     "end effectors": end_effector_candidates,
 }
-KNOWN: dict[str, Callable[[Danced], Beats]] = {
+BEATS: dict[str, Callable[[Danced], Beats]] = {
     "given": lambda danced: given_beats(danced.beats),
     "estimated": lambda danced: find_beats(energies(danced.track).global_energy, danced.track.rate),
     "none": lambda danced: given_beats(NO_BEATS),
@@ -95,10 +95,10 @@ KNOWN: dict[str, Callable[[Danced], Beats]] = {
 
 @lru_cache
 def examples(
-    method: str, known: str, make: Callable[..., tuple[Danced, ...]], *which: float
+    method: str, source: str, make: Callable[..., tuple[Danced, ...]], *which: float
 ) -> tuple[Example, ...]:
     return tuple(
-        Example(METHODS[method](danced.track, KNOWN[known](danced)), danced.keyposes)
+        Example(METHODS[method](danced.track, BEATS[source](danced)), danced.keyposes)
         for danced in make(*which)
     )
 
@@ -107,7 +107,7 @@ def judged(some: tuple[Example, ...], pair: Thresholds = USUAL) -> Counts:
     return total(match(each.candidates.times(pair.t1, pair.t2), each.true) for each in some)
 
 
-def tell(title: str, rows: dict[str, list[Counts]]) -> None:
+def print_table(title: str, rows: dict[str, list[Counts]]) -> None:
     FIGURES.print(
         f"\n{title}\n{'F within 100 ms, noise in mm':<34}" + "".join(f"{n:>7}" for n in NOISES)
     )
@@ -118,20 +118,20 @@ def tell(title: str, rows: dict[str, list[Counts]]) -> None:
 def test_generated_dances() -> None:
     """The targets: F .95 at 5 mm and .90 at 10 mm."""
     rows = {
-        f"{method}, beats {known}": [
-            judged(examples(method, known, dances, 9000, 27, noise)) for noise in NOISES
+        f"{method}, beats {source}": [
+            judged(examples(method, source, dances, 9000, 27, noise)) for noise in NOISES
         ]
         for method in METHODS
-        for known in KNOWN
+        for source in BEATS
     }
-    tell("27 dances of the demo's generator, usual thresholds", rows)
+    print_table("27 dances of the demo's generator, usual thresholds", rows)
     best = rows["rms, beats given"][NOISES.index(5)]
     FIGURES.print(f"at 5 mm, beats given: precision {best.precision:.3f}, recall {best.recall:.3f}")
-    for known in KNOWN:
-        found = dict(zip(NOISES, rows[f"rms, beats {known}"], strict=True))
+    for source in BEATS:
+        found = dict(zip(NOISES, rows[f"rms, beats {source}"], strict=True))
         assert found[10].f >= 0.90
-        assert found[5].f >= (0.95 if known == "given" else 0.93)
-        assert found[5].f > rows[f"printed, beats {known}"][NOISES.index(5)].f
+        assert found[5].f >= (0.95 if source == "given" else 0.93)
+        assert found[5].f > rows[f"printed, beats {source}"][NOISES.index(5)].f
 
 
 def test_thresholds_learned_on_other_dances() -> None:
@@ -146,27 +146,27 @@ def test_thresholds_learned_on_other_dances() -> None:
         rows[f"{method} ({pair.t1:g}, {pair.t2:g})"] = [
             judged(examples(method, "given", dances, 9000, 27, noise), pair) for noise in NOISES
         ]
-    tell("the same, thresholds learned on 18 others, beats given", rows)
+    print_table("the same, thresholds learned on 18 others, beats given", rows)
     assert all(counts.f > 0.9 for counts in next(iter(rows.values())))
 
 
 def test_dances_without_a_skeleton() -> None:
     rows = {
-        f"{method}, beats {known}": [
-            judged(examples(method, known, simple_dances, 9100, 27, noise)) for noise in NOISES
+        f"{method}, beats {source}": [
+            judged(examples(method, source, simple_dances, 9100, 27, noise)) for noise in NOISES
         ]
         for method in METHODS
-        for known in KNOWN
+        for source in BEATS
     }
-    tell("27 dances of tests/dances.py, usual thresholds", rows)
-    for known in KNOWN:
-        found = dict(zip(NOISES, rows[f"rms, beats {known}"], strict=True))
+    print_table("27 dances of tests/dances.py, usual thresholds", rows)
+    for source in BEATS:
+        found = dict(zip(NOISES, rows[f"rms, beats {source}"], strict=True))
         assert found[5].f >= 0.95
         assert found[10].f >= 0.90
 
 
 def test_a_minute_at_120_hz() -> None:
-    """Told, not held: 0.3 s is the target for the whole analysis without audio."""
+    """The times are only printed. The target is 0.3 s for the whole analysis without audio."""
     motion = _minute()
     track = body_track(motion)
     for name, work in (
@@ -185,7 +185,7 @@ def _minute() -> Motion:
 
 
 def _seconds(work: Callable[[], object], repeats: int = 7) -> tuple[float, float]:
-    """The best of some runs: what is above it is other processes' doing."""
+    """Wall and CPU seconds of the best run: other processes only make a run slower."""
     found = []
     for _ in range(repeats):
         wall, cpu = time.perf_counter(), time.process_time()

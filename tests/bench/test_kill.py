@@ -1,8 +1,8 @@
-"""`kill -9` of the worker in the middle of an import, ten times: nothing lost, nothing twice.
+"""Ten times `kill -9` of the worker during an import: no clip is lost, and none exists twice.
 
 Run: pytest -m bench -s tests/bench/test_kill.py
-Every other kill takes the worker's process alone, so that its children must end themselves;
-the others take the whole tree at once. `kinedex serve` starts it again each time.
+Every second kill ends only the worker's own process, so that its children must end by themselves.
+The other kills end the whole tree at once. `kinedex serve` starts the worker again each time.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ SEED = 9
 IMPORT_SECONDS = 900.0
 ORPHANS_END_WITHIN = 5.0
 DIED = "worker_died"
-"""The code of a clip that was given up because its worker died; no clip may end so here."""
+"""The code of a clip that failed because its worker died. No clip may have it here."""
 
 
 @dataclass
 class Tally:
-    """What was killed, and what remained."""
+    """The kills, the job with its files, and the processes that remained."""
 
     at: list[str] = field(default_factory=list)
     orphans: set[Key] = field(default_factory=set)
@@ -82,7 +82,7 @@ def _ended(product: Product) -> int:
 
 
 def _wait_for_clips(product: Product, count: int) -> None:
-    """Until more than `count` clips have ended and a worker is at work on the next."""
+    """Wait until more than `count` clips have ended and a worker processes the next one."""
 
     def is_at_work() -> bool:
         worker = child_running(product.supervisor, WORKER)
@@ -106,7 +106,7 @@ def _database(data: Path) -> sqlite3.Connection:
     return sqlite3.connect(f"file:{data / 'kinedex.sqlite3'}?mode=ro", uri=True)
 
 
-def test_every_clip_ends_once_whatever_dies(killed: tuple[Tally, Path]) -> None:
+def test_every_clip_ends_exactly_once(killed: tuple[Tally, Path]) -> None:
     tally, data = killed
     files = tally.files
     outcomes = Counter(file["outcome"] for file in files)
@@ -115,8 +115,8 @@ def test_every_clip_ends_once_whatever_dies(killed: tuple[Tally, Path]) -> None:
     FIGURES.print("  killed: " + "; ".join(tally.at))
     FIGURES.print(f"  files {len(files)}: {dict(outcomes)}; reasons {dict(failures)}")
     assert tally.job["state"] == "succeeded"
-    told = Counter(file["path"] for file in files)
-    assert {row["path"]: told[row["path"]] for row in manifest()} == {
+    counts = Counter(file["path"] for file in files)
+    assert {row["path"]: counts[row["path"]] for row in manifest()} == {
         row["path"]: 1 for row in manifest()
     }
     assert outcomes.keys() <= {"ready", "failed", "exists"}
@@ -160,16 +160,16 @@ def _check_jobs(database: sqlite3.Connection) -> None:
 
 
 def _check_files(database: sqlite3.Connection, folder: Path) -> None:
-    """The store holds each clip's bytes once, and nothing half-written."""
-    wanted = {sha for (sha,) in database.execute("select sha256 from clips")}
+    """The store has the bytes of each clip once, and no incomplete file."""
+    expected = {sha for (sha,) in database.execute("select sha256 from clips")}
     kept = [path for path in folder.rglob("*") if path.is_file() and path.name != "library-id"]
     names = Counter(path.name for path in kept)
-    strange = [path.name for path in kept if path.name not in wanted]
+    strange = [path.name for path in kept if path.name not in expected]
     FIGURES.print(f"  files kept {len(kept)}, of which left over {len(strange)}: {strange[:3]}")
-    assert wanted - names.keys() == set()
+    assert expected - names.keys() == set()
     assert max(names.values()) == 1
-    # The next start removes temporaries; what was not committed yet waits in the quarantine, and
-    # the archive went when it was unpacked.
+    # The next start removes temporary files. Files without a committed row are in the quarantine.
+    # The archive was removed when it was unpacked.
     assert not [name for name in strange if name.startswith("up_")]
     assert len(strange) <= KILLS
 

@@ -1,8 +1,8 @@
-"""SIGKILL of whatever `kinedex serve` runs, 30 times, under uploads and an import.
+"""30 times SIGKILL of a process of `kinedex serve`, during uploads and an import.
 
 Run: pytest -m bench -s tests/bench/test_kill_everything.py
-An analysis process, the worker, the API, or a server that forks the analysis processes of
-either. Whatever was acknowledged must be there in the end, and be ready.
+The victim is an analysis process, the worker, the API, or a fork server of either. In the end every
+acknowledged clip must exist and be ready.
 """
 
 from __future__ import annotations
@@ -48,24 +48,24 @@ VICTIMS = {
     "api's forkserver": 3,
     "api's child": 3,
 }
-"""How often each is killed, in an order that the dice choose."""
+"""Number of kills of each kind of process. Their order is random."""
 SEED = 22
 PAUSE_S = (0.2, 1.5)
-"""Between two kills."""
+"""Shortest and longest pause between two kills, seconds."""
 TIMES = 40
-"""How long the clips are: a kill is to find an analysis in its middle."""
+"""Repetitions of the motion in a clip, so that an analysis is long enough to be killed."""
 EACH = 25
-"""Clips that are uploaded, and clips that are imported."""
+"""Number of uploaded clips, and number of imported clips."""
 VICTIM_S = 8.0
-"""For a process to kill to be there; an idle service analyses nothing."""
+"""How long a kill waits for its victim: an idle service has no analysis process."""
 SETTLE_S = 600.0
 STUCK_S = 120.0
-"""Without any clip that ends, what is left is stuck."""
+"""If no clip ends in this time, the remaining clips are stuck."""
 
 
 @dataclass
 class Tally:
-    """What was killed, sent, and acknowledged."""
+    """Kills, acknowledged clips, refused uploads, and statuses of searches."""
 
     killed: Counter[str] = field(default_factory=Counter)
     acknowledged: dict[str, str] = field(default_factory=dict)
@@ -75,7 +75,7 @@ class Tally:
 
 
 def _found(product: Product, name: str) -> psutil.Process | None:
-    """A process of that kind, if one runs now; of children one that is at work."""
+    """A running process of that kind, or None. A child must be working."""
     owner, _, part = name.partition("'s ")
     process = child_running(product.supervisor, API if owner == "api" else WORKER)
     if process is None or not part:
@@ -104,7 +104,7 @@ def _kill_one(product: Product, tally: Tally, name: str) -> None:
 
 
 def _upload_all(product: Product, clips: list[tuple[str, bytes]], tally: Tally) -> None:
-    """Each until it is acknowledged, as a client does whose connection broke."""
+    """Upload each clip until it is acknowledged, as a client does after a broken connection."""
     with product.client() as client:
         for path, content in clips:
             while True:
@@ -153,7 +153,7 @@ def _unless_broken(ask: Callable[[], Any]) -> Any:
 
 
 def _settle(product: Product) -> bool:
-    """Wait for every clip and job to end; False where nothing moves any more."""
+    """Wait until every clip and job has ended. Returns False if nothing changes any more."""
     seen, since = -1, time.monotonic()
     while time.monotonic() - since < STUCK_S:
         clips = _unless_broken(lambda: product.items("/v1/clips"))
@@ -171,7 +171,7 @@ def _settle(product: Product) -> bool:
     return False
 
 
-def test_nothing_that_was_acknowledged_is_lost_failed_or_stuck(tmp_path: Path) -> None:
+def test_no_acknowledged_clip_is_lost_failed_or_stuck(tmp_path: Path) -> None:
     made = list(demo_clips(takes=2))[: 2 * EACH]
     query, uploaded, imported = made[0].content, made[:EACH], made[EACH:]
     tally, draw, stop = Tally(), random.Random(SEED), threading.Event()
@@ -199,7 +199,7 @@ def test_nothing_that_was_acknowledged_is_lost_failed_or_stuck(tmp_path: Path) -
         stop.set()
         clips = _unless_broken(lambda: product.items("/v1/clips")) or []
         end = _unless_broken(lambda: product.get(f"/v1/jobs/{job}")) or {}
-    _tell(tally, clips, end, survived, has_settled, time.monotonic() - began)
+    _print(tally, clips, end, survived, has_settled, time.monotonic() - began)
     found = {clip["id"]: clip for clip in clips}
     assert survived
     assert has_settled
@@ -211,7 +211,7 @@ def test_nothing_that_was_acknowledged_is_lost_failed_or_stuck(tmp_path: Path) -
     assert set(tally.searches) <= {200, 503}
 
 
-def _tell(
+def _print(
     tally: Tally,
     clips: list[dict[str, Any]],
     end: dict[str, Any],

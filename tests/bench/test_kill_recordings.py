@@ -1,9 +1,9 @@
-"""`kill -9` of the API and of the worker while recordings are handed in: none that was
-acknowledged is lost or changed.
+"""`kill -9` of the API and of the worker while recordings are uploaded.
 
 Run: pytest -m bench -s tests/bench/test_kill_recordings.py
-Kills fall in the midst of uploads, the API and the worker in turn, `kinedex serve` starts them
-again. What is answered 202 must be there afterwards, byte by byte, with its beats heard.
+The kills come during uploads and hit the API and the worker in turn. `kinedex serve` starts them
+again. Afterwards every recording that was answered with 202 must exist, byte by byte, and its beats
+must have been found.
 """
 
 from __future__ import annotations
@@ -42,8 +42,11 @@ READY_SECONDS = 600.0
 
 @dataclass
 class Sent:
-    """acknowledged: clip id -> SHA-256 of its recording; refused: answers other than 202, by
-    status; broken: uploads that the kills cut off; killed: what was, in order."""
+    """The uploads of a run.
+
+    acknowledged: SHA-256 of the recording, by clip id; refused: number of answers other than 202,
+    by status; broken: uploads that a kill cut off; killed: the killed processes, in order.
+    """
 
     acknowledged: dict[str, str] = field(default_factory=dict)
     refused: Counter[int] = field(default_factory=Counter)
@@ -73,7 +76,7 @@ def test_an_acknowledged_recording_is_never_lost(danced: DemoClip, tmp_path: Pat
 
 
 def _recording(danced: DemoClip, number: int) -> bytes:
-    """The dance's recording, its last sample another for each number."""
+    """The recording of the dance, with another last sample for each number."""
     return danced.audio[:-2] + number.to_bytes(2, "little")
 
 
@@ -135,10 +138,10 @@ def _check(product: Product, sent: Sent) -> None:
     assert sent.acknowledged.keys() <= clips.keys()
     heard: Counter[str] = Counter()
     with product.client() as client:
-        for clip_id, wanted in sent.acknowledged.items():
+        for clip_id, digest in sent.acknowledged.items():
             assert (clips[clip_id]["state"], clips[clip_id]["has_audio"]) == ("ready", True)
             audio = client.get(f"/v1/clips/{clip_id}/audio")
-            assert hashlib.sha256(audio.content).hexdigest() == wanted
+            assert hashlib.sha256(audio.content).hexdigest() == digest
             heard[client.get(f"/v1/clips/{clip_id}/keyposes").json()["beats_source"]] += 1
     FIGURES.print(
         f"all of them ready, their recordings byte by byte as sent; beats from {dict(heard)}"
@@ -147,7 +150,7 @@ def _check(product: Product, sent: Sent) -> None:
 
 
 def _check_files(folder: Path, sent: Sent) -> None:
-    """Nothing half-written bears a recording's name."""
+    """Each stored recording is complete under its name."""
     kept = {path.name: path for path in folder.rglob("*") if path.is_file()}
-    for wanted in sent.acknowledged.values():
-        assert hashlib.sha256(kept[wanted].read_bytes()).hexdigest() == wanted
+    for digest in sent.acknowledged.values():
+        assert hashlib.sha256(kept[digest].read_bytes()).hexdigest() == digest

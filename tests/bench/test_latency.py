@@ -1,13 +1,13 @@
-"""How long a search takes over HTTP: p50, p95, p99 with one client and with eight.
+"""Time of a search over HTTP: p50, p95, p99 with one client and with eight clients.
 
 Run: pytest -m bench -s tests/bench/test_latency.py
-Real clips with their vectors disturbed, in a store of their own; the real API process. Each
-request asks for another stored clip, so that shortlists come from the disk as they would.
-Reported, not asserted (issue 4 hopes for a p95 of 50 ms at 100,000 clips with one client);
-beside it the CPU time that a search takes of the API, which tells more on a machine at work.
+The store has real clips with noise on their vectors. The API runs as its own process. Each request
+names another stored clip, so that the arrays come from the disk, as in real use. The times are
+printed and not asserted (target of issue 4: p95 of 50 ms at 100,000 clips with one client). The CPU
+time of the API is printed too: it says more on a busy machine.
 
-At 500, 10,000 and 100,000 clips it takes about five minutes and 7 GB of the disk;
-KINEDEX_BENCH_CLIPS=500,10000 chooses others.
+With 500, 10,000 and 100,000 clips it takes about five minutes and 7 GB of disk space.
+KINEDEX_BENCH_CLIPS=500,10000 chooses other numbers.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ pytestmark = pytest.mark.bench
 COUNTS = [int(n) for n in os.environ.get("KINEDEX_BENCH_CLIPS", "500,10000,100000").split(",")]
 REQUESTS = 100
 NAMES = ("features_10hz", "msv_rho", "msv_epsilon", "pose_cover", "role_positions")
-"""Arrays of the clips: those that the searches here read."""
+"""Arrays that these searches read."""
 SEARCHES: dict[str, dict[str, Any]] = {
     "vector": {"method": "vector"},
     "fused": {"method": "fused"},
@@ -56,7 +56,7 @@ HEAD = "    ".join(f"{n:>8}{'p95':>8}{'p99':>8}{'CPU':>8}" for n in ("1: p50", "
 
 @pytest.fixture(scope="module", autouse=True)
 def _patience() -> Iterator[None]:
-    """A library that has left the disk's cache takes its time to be loaded."""
+    """Allow a long start: a library that is not in the disk cache loads slowly."""
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(live_service, "START_SECONDS", 300.0)
         yield
@@ -83,17 +83,17 @@ def test_latency(service: tuple[Live, int]) -> None:
     FIGURES.print(f"\n{count} clips, ms, load {os.getloadavg()[0]:.1f}\n{'':18}{HEAD}")
     for name, asked in SEARCHES.items():
         kind = "pose" if "time" in asked else "motion"
-        # what the first search of a kind loads is not what a search takes
+        # the first search of a kind also loads arrays, so it is not measured
         _ask(live, kind, _bodies(rng, count, asked, 8), 1)
-        told = []
+        cells = []
         for clients in (1, 8):
             bodies = _bodies(rng, count, asked, REQUESTS)
             before = _cpu_seconds(live)
             seconds = _ask(live, kind, bodies, clients)
             spent = (_cpu_seconds(live) - before) / REQUESTS
             shown = (*np.percentile(seconds, [50, 95, 99]), spent)
-            told.append("".join(f"{1e3 * s:8.1f}" for s in shown))
-        FIGURES.print(f"  {name:16}{'    '.join(told)}")
+            cells.append("".join(f"{1e3 * s:8.1f}" for s in shown))
+        FIGURES.print(f"  {name:16}{'    '.join(cells)}")
 
 
 def _bodies(
@@ -103,7 +103,7 @@ def _bodies(
 
 
 def _cpu_seconds(live: Live) -> float:
-    """Of the API process, so far."""
+    """CPU seconds of the API process so far."""
     times = [process.cpu_times() for process in processes_over(live.data_dir)]
     return float(sum(one.user + one.system for one in times))
 

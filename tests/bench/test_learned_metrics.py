@@ -1,10 +1,10 @@
-"""What the library's labels are worth: learned metrics on clips that taught them nothing.
+"""Learned metrics on clips that they did not learn from.
 
 Run: pytest -m bench -s tests/bench/test_learned_metrics.py
 The constants of app.models.metric.learned_metric were chosen on dataset 1, on CMU's clips and on
-takes 1 and 2 of dataset 2. Takes 3 to 5 ask here, all of dataset 2 answers; DESIGN 5's floors (.98
-with all labels, .94 with two a cell, .80 for styles and .81 for tasks never seen) are of 840 clips,
-which are not these.
+takes 1 and 2 of dataset 2. Here takes 3 to 5 are the queries, and all of dataset 2 is searched. The
+floors (.98 with all labels, .94 with two clips per cell, .80 for new styles and .81 for new tasks)
+come from 840 other clips. A cell is a combination of person and task.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from tests.bench.page import Section
 
 FIGURES = Section(
     "learned_metrics",
-    "Learned metrics on clips that taught them nothing",
-    trials="takes 3 to 5 of dataset 2 ask, all of dataset 2 answers",
+    "Learned metrics on clips that they did not learn from",
+    trials="takes 3 to 5 of dataset 2 are the queries, and all of dataset 2 is searched",
 )
 
 pytestmark = pytest.mark.bench
 
 TAKES = range(1, 6)
 JUDGED = 3
-"""Takes from this one on ask."""
+"""The first take whose clips are queries."""
 FLOORS = {
     (Factor.TASK, "all labels"): 0.98,
     (Factor.TASK, "2 clips a cell"): 0.94,
@@ -42,7 +42,7 @@ FLOORS = {
 }
 
 Round = tuple[np.ndarray, np.ndarray]
-"""Which clips teach, and which ask, (n,) each."""
+"""Masks of the clips to learn from and of the queries, (n,) each."""
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +76,7 @@ def never_seen(labels: Callable[[RealClips], np.ndarray]) -> Callable[[RealClips
 
 
 def clips_a_label(factor: Factor, count: int) -> Callable[[RealClips], Iterator[Round]]:
-    """So many clips of each label, drawn from takes 1 and 2."""
+    """Learn from `count` clips of each label, drawn from takes 1 and 2."""
 
     def rounds(clips: RealClips) -> Iterator[Round]:
         labels = labels_of(clips, factor)
@@ -100,16 +100,16 @@ PROTOCOLS: dict[str, Callable[[RealClips], Iterator[Round]]] = {
 
 
 @pytest.mark.parametrize("factor", list(Factor))
-def test_unseen_clips_find_their_like(clips: RealClips, factor: Factor) -> None:
+def test_unseen_clips_find_clips_with_their_label(clips: RealClips, factor: Factor) -> None:
     FIGURES.print(f"\nmetric-{factor}: unseen takes ask all of dataset 2\n{HEAD}")
     found = {name: judge(clips, factor, rounds) for name, rounds in PROTOCOLS.items()}
     for name, shares in found.items():
-        FIGURES.print(told(name, shares))
+        FIGURES.print(table_row(name, shares))
     plain = judge(clips, factor, all_labels, learned=False)
-    FIGURES.print(told("motion vector", plain))
+    FIGURES.print(table_row("motion vector", plain))
     for count in (2, 4, 8):
         shares = judge(clips, factor, clips_a_label(factor, count))
-        FIGURES.print(told(f"{count} clips a {factor}", shares))
+        FIGURES.print(table_row(f"{count} clips a {factor}", shares))
         assert shares[2] > plain[2]
     for (of, name), floor in FLOORS.items():
         if of is factor:
@@ -119,7 +119,7 @@ def test_unseen_clips_find_their_like(clips: RealClips, factor: Factor) -> None:
 
 
 def test_same_style_other_task_and_same_task_other_style(clips: RealClips) -> None:
-    """As a filter asks it: by metric-person without the query's task, and the other way round."""
+    """With a filter: metric-person without the query's task, metric-task without its person."""
     FIGURES.print(
         f"\nunseen takes, the query's own task (style) left out\n{'':24}{'P@1':>8}{'P@10':>8}"
     )
@@ -141,7 +141,7 @@ def test_same_style_other_task_and_same_task_other_style(clips: RealClips) -> No
 
 @pytest.mark.parametrize("factor", list(Factor))
 def test_scores_are_probabilities(clips: RealClips, factor: Factor) -> None:
-    """The curve is drawn from takes that were held out, and judged on another take."""
+    """The curve is fitted on held-out takes, and judged on another take."""
     labels = labels_of(clips, factor)
     distances: dict[bool, list[np.ndarray]] = {True: [], False: []}
     same: dict[bool, list[np.ndarray]] = {True: [], False: []}
@@ -155,7 +155,7 @@ def test_scores_are_probabilities(clips: RealClips, factor: Factor) -> None:
     curve = calibrate_pairs(np.concatenate(distances[False]), np.concatenate(same[False]))
     there, truth = np.concatenate(distances[True]), np.concatenate(same[True])
     scores = curve.probabilities(there)
-    FIGURES.print(f"\nmetric-{factor}: score told, share that is the same, pairs")
+    FIGURES.print(f"\nmetric-{factor}: score, share with the same label, pairs")
     for low in np.arange(0, 1, 0.2):
         chosen = (scores >= low) & (scores < low + 0.2 + 1e-9)
         FIGURES.print(f"{scores[chosen].mean():8.3f}{truth[chosen].mean():8.3f}{chosen.sum():10}")
@@ -164,7 +164,7 @@ def test_scores_are_probabilities(clips: RealClips, factor: Factor) -> None:
     assert error < 0.02
 
 
-def test_learning_and_asking_take_little_time(clips: RealClips) -> None:
+def test_fits_and_queries_are_fast(clips: RealClips) -> None:
     known = described_clips()
     start = time.process_time()
     axes = fit_axes(known.described, known.tasks.tolist(), Factor.TASK)
@@ -189,7 +189,7 @@ def test_learning_and_asking_take_little_time(clips: RealClips) -> None:
 HEAD = f"{'':24}{'1-NN':>8}{'P@20':>8}{'MAP':>8}"
 
 
-def told(name: str, shares: np.ndarray) -> str:
+def table_row(name: str, shares: np.ndarray) -> str:
     return f"{name:24}" + "".join(f"{share:8.3f}" for share in shares)
 
 
@@ -217,7 +217,7 @@ def judge(
     rounds: Callable[[RealClips], Iterator[Round]],
     learned: bool = True,
 ) -> np.ndarray:
-    """1-NN, P@20 and MAP, means over all queries of all rounds."""
+    """Return 1-NN, P@20 and MAP, each the mean over all queries of all rounds."""
     labels, rows = labels_of(clips, factor), []
     for teaches, asks in rounds(clips):
         points = coordinates(clips, factor, teaches, learned)

@@ -1,9 +1,9 @@
-"""What stays ours although a library has it, beside that library, in one run.
+"""Our own functions that a library also has, compared with that library in one run.
 
 Run: OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 pytest -m bench -s tests/bench/test_libraries.py
-The docstrings of the modules cite these figures. DTW has a bench of its own (test_dtw.py), and
-so has the cross-correlation (test_cross_correlation.py). Times are of CPU, the best of some
-rounds that take turns.
+The docstrings of the modules cite these figures. DTW (test_dtw.py) and the cross-correlation
+(test_cross_correlation.py) have their own benches. Times are CPU times: the best of several rounds,
+in which the candidates take turns.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from tests.numerics.hmm_reference import wavy
 
 FIGURES = Section(
     "libraries",
-    "What stays ours, beside the library that has it",
+    "Own functions compared with a library that has them",
     trials="the best of several rounds of CPU time, on random arrays of the sizes that are printed",
 )
 
@@ -48,7 +48,7 @@ ROUNDS = 7
 
 
 def compare(name: str, ways: dict[str, Callable[[], Any]]) -> dict[str, Any]:
-    """What each way gives; prints its time, and how many times the first way's that is."""
+    """Run each candidate and return its result. Prints its time, also relative to the first one."""
     best, given = dict.fromkeys(ways, np.inf), {}
     for _ in range(ROUNDS):
         for way, work in ways.items():
@@ -132,27 +132,27 @@ def test_nearest_of_a_hundred_thousand(share: float) -> None:
 
 @pytest.mark.parametrize("count", [20, 100, 200])
 def test_classical_scaling(count: int) -> None:
-    wanted = _distances(count)
+    distances = _distances(count)
     compare(
         f"classical scaling of {count} points",
         {
-            "ours": lambda: classical_mds(wanted, 10),
-            "scikit-learn": lambda: ClassicalMDS(10, metric="precomputed").fit_transform(wanted),
+            "ours": lambda: classical_mds(distances, 10),
+            "scikit-learn": lambda: ClassicalMDS(10, metric="precomputed").fit_transform(distances),
         },
     )
 
 
-def test_the_paper_s_error_is_lower_where_it_is_minimized() -> None:
-    wanted = _distances(100)
+def test_eq_3_is_lower_if_it_is_minimized() -> None:
+    distances = _distances(100)
     given = compare(
         "scaling of 100 symbols in 10 dimensions",
         {
-            "eq. 3, ours": lambda: metric_mds(wanted, 10),
-            "SMACOF of scikit-learn": lambda: smacof(wanted, 10),
+            "eq. 3, ours": lambda: metric_mds(distances, 10),
+            "SMACOF of scikit-learn": lambda: smacof(distances, 10),
         },
     )
     FIGURES.print(
-        "\n  eq. 3:", {name: round(stress(points, wanted), 1) for name, points in given.items()}
+        "\n  eq. 3:", {name: round(stress(points, distances), 1) for name, points in given.items()}
     )
 
 

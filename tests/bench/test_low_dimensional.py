@@ -1,8 +1,8 @@
 """Keyposes against uniform poses on real clips (Perera 2009, section 4).
 
 Run: pytest -m bench -s tests/bench/test_low_dimensional.py
-Nothing here is fitted but the limits of plausible poses, which were chosen on every second
-clip (by name); their table is of the others.
+Only the limits of plausible poses were fitted, on every second clip (by name). Their figures are
+measured on the other clips.
 """
 
 from __future__ import annotations
@@ -53,13 +53,13 @@ def _stem(row: dict[str, str]) -> str:
 
 @lru_cache(maxsize=600)
 def _track(path: str, fps: str) -> BodyTrack:
-    """fps: of the manifest; some files lie."""
+    """fps: from the manifest, because some files declare a wrong one."""
     recording = read_recording((real_clips() / path).read_bytes())
     return body_track(canonicalize(recording, frame_rate=float(fps) if fps else None))
 
 
 def _readable() -> list[dict[str, str]]:
-    """Clips of one file each, by name."""
+    """The clips that one file describes completely, by name."""
     rows = [row for row in manifest() if not row["path"].endswith((".amc", ".asf"))]
     return sorted(rows, key=_stem)
 
@@ -97,7 +97,7 @@ def test_variance_and_error_of_dances_and_a_walk() -> None:
 
 
 def test_keyposes_keep_more_of_their_own_and_less_of_the_motion() -> None:
-    """Means over all real clips with four keyposes or more, K' = 3."""
+    """Means over real clips with at least four keyposes, K' = 3."""
     kept: dict[Basis, list[float]] = {basis: [] for basis in Basis}
     errors: dict[Basis, list[float]] = {basis: [] for basis in Basis}
     silhouettes: dict[Basis, list[float]] = {basis: [] for basis in Basis}
@@ -115,20 +115,20 @@ def test_keyposes_keep_more_of_their_own_and_less_of_the_motion() -> None:
             silhouettes[basis].append(found.clusters.silhouette if found else 0.0)
     FIGURES.print(f"\n{len(kept[Basis.KEYPOSE])} clips, 3 dimensions")
     for basis in Basis:
-        told = [np.mean(figures[basis]) for figures in (kept, errors, silhouettes)]
+        means = [np.mean(figures[basis]) for figures in (kept, errors, silhouettes)]
         FIGURES.print(
-            "{:10} variance {:.3f}  error {:5.1f} mm  silhouette {:.3f}".format(basis, *told)
+            "{:10} variance {:.3f}  error {:5.1f} mm  silhouette {:.3f}".format(basis, *means)
         )
     better = np.mean(np.array(errors[Basis.KEYPOSE]) < errors[Basis.UNIFORM])
     FIGURES.print(f"keyposes draw the motion better in {better:.0%} of the clips")
     assert np.mean(kept[Basis.KEYPOSE]) > np.mean(kept[Basis.UNIFORM])
     assert np.mean(silhouettes[Basis.KEYPOSE]) > np.mean(silhouettes[Basis.UNIFORM])
-    # What the paper does not measure: people preferred keyposes, the error does not.
+    # People preferred keyposes (Perera, Table 2), but uniform poses have the smaller error.
     assert np.mean(errors[Basis.KEYPOSE]) > np.mean(errors[Basis.UNIFORM])
 
 
-def test_people_hardly_ever_pass_the_limits_of_plausible_poses() -> None:
-    """Frames of real clips, every second of which was used to choose the limits."""
+def test_real_poses_are_hardly_ever_implausible() -> None:
+    """Frames of the real clips that were not used to choose the limits."""
     counts = {"original": 0, **{basis.value: 0 for basis in Basis}}
     frames = drawn = 0
     for row in _readable()[::2]:
@@ -150,8 +150,10 @@ def test_people_hardly_ever_pass_the_limits_of_plausible_poses() -> None:
 
 
 def test_the_same_keyposes_of_eight_dancers_cluster() -> None:
-    """Figures 7 and 8: poses of one cycle of each of eight dancers, labelled by their number in
-    the cycle; generated, since real clips do not tell which keyposes are the same."""
+    """Figures 7 and 8: poses of one cycle of each of eight dancers, with their index in the cycle.
+
+    The dances are generated, because real clips do not say which keyposes are the same.
+    """
     own: dict[Basis, list[float]] = {basis: [] for basis in Basis}
     for seed in range(2000, 2010):
         poses: dict[Basis, list[FloatArray]] = {basis: [] for basis in Basis}
@@ -168,9 +170,9 @@ def test_the_same_keyposes_of_eight_dancers_cluster() -> None:
             rows = np.concatenate(each)
             points = eigen_model(rows).coordinates(rows, 3)
             own[basis].append(silhouette_score(points, np.tile(np.arange(8), 8)))
-    told = {basis: float(np.mean(values)) for basis, values in own.items()}
+    silhouettes = {basis: float(np.mean(values)) for basis, values in own.items()}
     FIGURES.print(
         "\nsilhouette of poses by their number: "
-        + ", ".join(f"{b} {v:.3f}" for b, v in told.items())
+        + ", ".join(f"{b} {v:.3f}" for b, v in silhouettes.items())
     )
-    assert told[Basis.KEYPOSE] > told[Basis.UNIFORM]
+    assert silhouettes[Basis.KEYPOSE] > silhouettes[Basis.UNIFORM]

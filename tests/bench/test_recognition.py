@@ -39,7 +39,7 @@ from tests.real_clips import manifest, real_clips
 FIGURES = Section(
     "recognition",
     "Who is it, and what are they doing?",
-    trials="each clip is asked about once in each round in which it was not learned",
+    trials="each clip is recognized once in each round in which it was not learned",
     chance="the most frequent label, printed as the prior",
 )
 
@@ -65,7 +65,7 @@ class Library:
     def part(
         self, chosen: np.ndarray, method: str = "default"
     ) -> tuple[np.ndarray, list[str | None], list[str]]:
-        """What a method is given of some clips, and their labels."""
+        """The samples that a method learns from, of some clips, and their labels."""
         index = np.flatnonzero(chosen)
         who, what = [self.persons[i] for i in index], [self.tasks[i] for i in index]
         given = {"default": self.full, "signatures": self.angles}.get(method, self.samples)
@@ -105,7 +105,7 @@ METHODS = ("default", "multilinear", "signatures", "perera", "pca")
 def _recognize(
     library: Library, method: str, train: np.ndarray, probe: np.ndarray
 ) -> list[Recognition]:
-    """What each clip of `probe` is by a model of `train`, nothing told."""
+    """Recognize the clips of `probe` by a model of `train`, without a known person or task."""
     learned = library.part(train, method)
     asked, _, _ = library.part(probe, method)
     if method == "default":
@@ -123,9 +123,9 @@ def test_the_whole_library(library: Library) -> None:
     figures = held_out_recognition_figures(
         library.samples, library.persons, library.tasks, library.groups, wide=library.wide
     )
-    _tell("all clips, 5 folds", figures)
+    _print("all clips, 5 folds", figures)
     record = fit_recognizer(library.full, library.persons, library.tasks, library.groups)
-    _tell("unknown, all clips (threshold chosen on these)", unknown_figures(record))
+    _print("unknown, all clips (threshold chosen on these)", unknown_figures(record))
     assert figures["default"]["task"] > 0.85
     assert figures["default"]["person"] > 0.8
     assert figures["default"]["both"] > figures["prior"]["both"] + 0.6
@@ -137,7 +137,7 @@ def test_five_takes_a_cell(library: Library) -> None:
     takes = [str(take) for take in library.takes[second]]
     wide = library.wide[second]
     figures = held_out_recognition_figures(samples, who, what, takes, wide=wide)
-    _tell("dataset 2, a take held out in turn", figures)
+    _print("dataset 2, a take held out in turn", figures)
     assert figures["default"]["task"] >= 0.993
     assert figures["default"]["person"] >= 0.996
     assert figures["multilinear"]["both"] >= 0.97
@@ -145,11 +145,11 @@ def test_five_takes_a_cell(library: Library) -> None:
 
 @pytest.mark.parametrize("method", METHODS)
 def test_takes_that_chose_nothing(library: Library, method: str) -> None:
-    """Nothing told: one take a cell, each in turn, and takes 1-3 with 4 and 5 probed."""
+    """Without known labels: learn one take of each cell, each in turn, or takes 1 to 3."""
     rounds = [((take,), tuple({1, 2, 3, 4, 5} - {take})) for take in range(1, 6)]
     one = np.mean([_shares(library, method, *chosen) for chosen in rounds], axis=0)
     three = _shares(library, method, (1, 2, 3), (4, 5))
-    _tell(
+    _print(
         f"dataset 2, {method}",
         {
             "1 take": {"task": one[0], "person": one[1]},
@@ -166,7 +166,7 @@ def test_takes_that_chose_nothing(library: Library, method: str) -> None:
 def _shares(
     library: Library, method: str, train: tuple[int, ...], probe: tuple[int, ...]
 ) -> tuple[float, float]:
-    """Tasks and persons recognised."""
+    """Shares of tasks and of persons that are recognized."""
     asked = np.isin(library.takes, probe)
     found = _recognize(library, method, np.isin(library.takes, train), asked)
     _, who, what = library.part(asked)
@@ -199,7 +199,7 @@ def test_the_other_factor_known(library: Library) -> None:
                 ]
             )
     shares = np.mean(hits, axis=0)
-    _tell(
+    _print(
         "dataset 2, the other factor known",
         {
             "default": {"person": shares[0], "task": shares[1]},
@@ -213,7 +213,7 @@ def test_the_other_factor_known(library: Library) -> None:
 @pytest.mark.parametrize("factor", ["task", "person"])
 @pytest.mark.parametrize("learned", [3, 4])
 def test_the_unknown(library: Library, factor: str, method: str, learned: int) -> None:
-    """Each task (person) left out in turn; the first takes learned, the others probed."""
+    """Leave each task (person) out in turn; learn the first takes and probe the others."""
     labels = np.array(library.tasks if factor == "task" else [p or "" for p in library.persons])
     asked = library.takes > learned
     novelties: dict[str, list[float]] = {"new": [], "known": []}
@@ -241,10 +241,13 @@ def test_the_unknown(library: Library, factor: str, method: str, learned: int) -
         "worst": min(rejected.values()),
     }
     shares["balanced_accuracy"] = (shares["new_rejected"] + shares["known_accepted"]) / 2
-    _tell(f"dataset 2, a new {factor}, takes 1-{learned}", {method: shares})
+    _print(f"dataset 2, a new {factor}, takes 1-{learned}", {method: shares})
     if factor == "person":
         known_task, right_task = np.mean(others, axis=0)
-        _tell("what strangers do", {method: {"called_known": known_task, "best_right": right_task}})
+        _print(
+            "tasks of new persons",
+            {method: {"called_known": known_task, "best_right": right_task}},
+        )
     if method == "default":
         assert shares["balanced_accuracy"] > 0.92
         assert shares["area_under_curve"] > 0.98
@@ -252,7 +255,7 @@ def test_the_unknown(library: Library, factor: str, method: str, learned: int) -
 
 
 def test_perera_s_experiment(library: Library) -> None:
-    """Tables 3-5 on the cycles of dataset 2, as printed and as meant."""
+    """Tables 3 to 5 on the cycles of dataset 2, in both readings of the paper."""
     second = np.flatnonzero(library.takes > 0)
     danced = arrange(
         [library.cycles[i] for i in second],
@@ -261,12 +264,12 @@ def test_perera_s_experiment(library: Library) -> None:
     )
     for reading in Reading:
         rows = perera_tables(danced, reading)
-        told = {
+        shares = {
             f"{row.table} {row.category}": {"found": row.accuracy, "paper": row.paper}
             | ({"balanced": row.balanced_accuracy} if row.table == 4 else {})
             for row in rows
         }
-        _tell(f"Perera's tables, {reading.value}", told)
+        _print(f"Perera's tables, {reading.value}", shares)
         assert rows[0].accuracy > 0.8
 
 
@@ -278,7 +281,7 @@ def test_fitting_and_probing_are_quick(library: Library) -> None:
     for sample in library.full[:100]:
         recognize(record, sample)
     probe = (time.process_time() - start) / 100
-    _tell("CPU seconds", {"default": {"fit": fitted, "probe": probe}})
+    _print("CPU seconds", {"default": {"fit": fitted, "probe": probe}})
     assert fitted < 2.0
     assert probe < 0.005
 
@@ -288,9 +291,9 @@ def _right(answers: list[Answer], truth: list[str] | list[str | None]) -> float:
     return float(np.mean([label == true for label, true in zip(best, truth, strict=True)]))
 
 
-def _tell(what: str, figures: Mapping[str, Mapping[str, Any]]) -> None:
+def _print(what: str, figures: Mapping[str, Mapping[str, Any]]) -> None:
     FIGURES.print(f"\n{what}")
     for name, shares in figures.items():
         numbers = {key: value for key, value in shares.items() if not isinstance(value, list)}
-        told = "  ".join(f"{key} {value:.4g}" for key, value in numbers.items())
-        FIGURES.print(f"  {name:12} {told}")
+        line = "  ".join(f"{key} {value:.4g}" for key, value in numbers.items())
+        FIGURES.print(f"  {name:12} {line}")

@@ -1,8 +1,8 @@
-"""Segments and cycles: real clips, and dances that were not used to choose anything.
+"""Segments and cycles of real clips, and of generated dances that were used for no choice.
 
 Run: pytest -m bench -s tests/bench/test_segments.py
-The weights of segment vectors were chosen on every second real clip (by name), the concordance
-of cycles on generated dances of seeds below 200; what is told is of the others.
+The weights of segment vectors were chosen on every second real clip (by name), the concordance of
+cycles on generated dances of seeds below 200. The figures are measured on the others.
 """
 
 from __future__ import annotations
@@ -38,15 +38,15 @@ FIGURES = Section(
 
 pytestmark = pytest.mark.bench
 
-MOST_OF_A_CLIP = 8
-"""Segments of a clip that ask, so that long clips do not outweigh the others."""
+MAX_SEGMENTS_PER_CLIP = 8
+"""Segments of a clip that are queries, so that long clips do not dominate."""
 FIRST_SEED = 1000
 DANCES = 40
 
 
 @lru_cache(maxsize=600)
 def _track(path: str, fps: str) -> BodyTrack:
-    """fps: of the manifest; some files lie."""
+    """fps: from the manifest, because some files declare a wrong one."""
     recording = read_recording((real_clips() / path).read_bytes())
     return body_track(canonicalize(recording, frame_rate=float(fps) if fps else None))
 
@@ -56,14 +56,14 @@ def _rows() -> list[dict[str, str]]:
     return sorted(rows, key=lambda row: Path(row["path"]).stem)
 
 
-def test_segments_find_those_of_their_task() -> None:
-    """1-NN among the segments of other clips; the segment vector beside the motion vector."""
+def test_segments_find_segments_of_their_task() -> None:
+    """1-NN among the segments of other clips, by segment vector and by motion vector."""
     vectors: dict[str, list[FloatArray]] = {"segment vector": [], "motion vector": []}
     tasks, owners = [], []
     for number, row in enumerate(_rows()[::2]):
         track = _track(row["path"], row["fps"])
         features = frame_features(track)
-        spans = segment_spans(find_keyposes(track).times)[:MOST_OF_A_CLIP]
+        spans = segment_spans(find_keyposes(track).times)[:MAX_SEGMENTS_PER_CLIP]
         found = segment_vectors(features_at_10hz(features, track.rate), spans)
         vectors["segment vector"] += list(found.astype(np.float16).astype(float))
         for first, stop in np.round(spans * track.rate).astype(int):
@@ -82,7 +82,7 @@ def test_segments_find_those_of_their_task() -> None:
     assert shares["segment vector"] > shares["motion vector"] - 0.05
 
 
-def test_walks_have_cycles_and_these_are_their_strides() -> None:
+def test_cycles_of_walks_are_strides() -> None:
     walks = agree = found = held = false = 0
     for row in _rows():
         track = _track(row["path"], row["fps"])
@@ -105,8 +105,10 @@ def test_walks_have_cycles_and_these_are_their_strides() -> None:
 
 
 def test_cycles_of_generated_dances() -> None:
-    """Period within 10 %, and no cycle in dances that repeat nothing, by how unlike itself a
-    dancer dances (of each pose's reach)."""
+    """The period is right within 10 %, and dances without repetition have no cycle.
+
+    change: how much repetitions of a pose differ, as a share of the pose's reach.
+    """
     for change in (0.0, 0.15, 0.3, 0.5):
         right = false = 0
         for seed in range(FIRST_SEED, FIRST_SEED + DANCES):
@@ -127,7 +129,7 @@ def test_cycles_of_generated_dances() -> None:
     FIGURES.print()
 
 
-def test_segments_cost_little() -> None:
+def test_the_time_of_segments_is_printed() -> None:
     dance = cyclic_dance(FIRST_SEED, poses=8, times=8, tempo=110)
     track = body_track(motion_of(dance.positions, dance.rate))
     features = features_at_10hz(frame_features(track), track.rate)
@@ -140,7 +142,7 @@ def test_segments_cost_little() -> None:
 
 
 def _periods(positions: FloatArray, rate: float) -> float:
-    """Seconds of the median cycle of the run with most of them; 0 where there is none."""
+    """Seconds of the median cycle of the longest run; 0 without cycles."""
     track = body_track(motion_of(positions, rate))
     keyposes = find_keyposes(track).frames.astype(float)
     cycles = find_cycles(track.local.reshape(track.frames, -1), keyposes)

@@ -1,10 +1,12 @@
-"""Synthesis on cells left out, by how much is given, beside baselines; and of the motions that
-are made of them, analysed again as any other: hits, feet, jumps, and whether they are as brisk as
-real takes (a mean of gestures that begin at other times is not).
+"""Synthesis of cells (person and task) that were left out, compared with baselines.
+
+The figures depend on the number of given persons or tasks. Some motions are made completely and
+analyzed again: hits, foot skate, jumps, and whether they are as fast as real takes. (A mean of
+gestures with different timing would be slower.)
 
 Weights, ridges, parts and the mirror were chosen on dataset 2. Sides, timing and agreement were
-chosen on the demo library, dataset 1 and four of dataset 2's persons; its other three (HELD) and
-the whole of the data set chose nothing of them.
+chosen on the demo library, on dataset 1 and on four persons of dataset 2. The other three persons
+(HELD) and the whole data set were not used for these choices.
 
 Run: pytest -m bench -s tests/bench/test_synthesis.py
 """
@@ -54,7 +56,7 @@ pytestmark = pytest.mark.bench
 
 EVERY_CELL = 10_000
 MADE = 40
-"""Motions that are made whole and looked at."""
+"""Number of motions that are made completely and analyzed."""
 
 HELD = ("masculine", "normal", "youthful")
 
@@ -112,7 +114,7 @@ def test_dataset_2(second: list[Clip]) -> None:
 
 
 def test_all_others_did_it(second: list[Clip]) -> None:
-    """The target's condition: a new task for known persons, of all other persons' takes."""
+    """The condition of the target: a new task of a known person, from the takes of all others."""
     record = fitted(second)
     hits = []
     for person in record.persons:
@@ -151,7 +153,7 @@ def demo() -> list[Clip]:
 
 
 def test_the_demo_library(demo: list[Clip]) -> None:
-    """Two of its six persons are left-handed."""
+    """Two of the six persons are left-handed."""
     rows = _table("demo library (synthetic people), 100 cells a row", fitted(demo), 100)
     assert rows[NEW_TASK][-1]["hit"] > rows[NEW_TASK][-1]["effects"] + 0.2
     assert rows[NEW_TASK][-1]["hit"] >= 0.65
@@ -220,7 +222,7 @@ def _table(title: str, record: Synthesis, trials: int) -> dict[str, list[dict[st
 
 
 def _made(record: Synthesis, clips: list[Clip], kind: str, trial: Trial) -> Motion:
-    """As the service makes it, but that the cell's own clips are unseen."""
+    """Make the motion as the service does, without the clips of the cell itself."""
     predicted = made(record, kind, trial)
     shape = predicted.shape
     away = record.distances(shape)
@@ -282,6 +284,6 @@ def _jerk(motion: Motion) -> float:
 
 
 def _brisk(motion: Motion) -> float:
-    """How fast the fastest joint role is in the fastest twentieth of the frames, m/s."""
+    """Speed of the fastest joint role: the 95 % quantile over the frames, m/s."""
     steps = np.diff(motion.role_positions().astype(float), axis=0)
     return float(np.quantile(np.linalg.norm(steps, axis=-1).max(axis=1), 0.95) * motion.frame_rate)

@@ -1,13 +1,12 @@
-"""Pieces of real clips hidden in long motion: are they found, where, and how fast?
+"""Pieces of real clips hidden in long motion: are they found, with which bounds, and how fast?
 
 Run: pytest -m bench -s tests/bench/test_windows.py
-Clips are halved by their place in the manifest. What `fused` weighs is chosen with pieces of
-one half, in streams of that half; the report hides pieces of the other half in an hour of
-motion made of all clips that no piece was cut from (`hidden_pieces`). Relevant is what first
-overlaps one of a piece's five places (their intersection at least half of their union);
-whatever else is found counts as wrong, other takes of the same task too. The second figure
-asks for those: the query is a whole take where it stands in a stream, relevant are the other
-takes of the same task by the same person.
+Every second clip of the manifest belongs to one half. The weight of `fused` is chosen with pieces
+of one half, in streams of that half. The report hides pieces of the other half in an hour of
+motion from all clips without a piece (`hidden_pieces`). A hit is relevant if it is the first that
+overlaps one of the piece's five spans (intersection at least half of the union). All other hits
+count as wrong, also other takes of the same task. The second figure searches for these: the query
+is a whole take in a stream, and the other takes of the same task by the same person are relevant.
 """
 
 from __future__ import annotations
@@ -60,7 +59,7 @@ from tests.streams import npz_of
 FIGURES = Section(
     "windows",
     "Pieces hidden in an hour of motion",
-    trials="200 pieces, each hidden at five places",
+    trials="200 pieces, each hidden at five spans",
 )
 
 pytestmark = pytest.mark.bench
@@ -69,7 +68,7 @@ METHODS = ("fused", "dtw", "vector")
 WEIGHTS = (0.0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4)
 FLOORS = {"fused": 0.95, "dtw": 0.95, "vector": 0.65}
 FEW, FLOOR_OF_FEW = 25, 0.85
-"""Places that `fused` warps a query onto, as a 20th of those that it may."""
+"""Spans that `fused` compares by time warping: a 20th of the usual number."""
 
 
 @pytest.fixture(scope="module")
@@ -102,7 +101,7 @@ class Figures:
     errors: FloatArray
     took: FloatArray
 
-    def told(self) -> str:
+    def as_text(self) -> str:
         median, ninth = np.quantile(self.errors, [0.5, 0.9])
         half, most = np.quantile(self.took, [0.5, 0.95])
         return f"{self.average.mean():8.3f}{median:9.3f}{ninth:9.3f}{half:9.1f}{most:9.1f}"
@@ -113,14 +112,14 @@ HEAD = f"{'':10}{'AP@5':>8}{'median':>9}{'90 %':>9}{'p50 ms':>9}{'p95 ms':>9}"
 
 def _of_pieces(hidden: Hidden, method: str) -> Figures:
     averages, errors, took = [], [], []
-    for piece, truth in zip(hidden.pieces, hidden.places, strict=True):
+    for piece, truth in zip(hidden.pieces, hidden.spans, strict=True):
         content = io.BytesIO(npz_of(piece, RATE))
         asked = MotionQuery(QuerySource(content=content), method=method, scope="windows", limit=20)
         hits = find.find_motion(hidden.lib, asked)
         average, apart = _judged(_spans(hits.items), truth)
         averages.append(average)
         errors += apart
-    for spans in hidden.places:
+    for spans in hidden.spans:
         clip_id, start, end = spans[0]
         asked = MotionQuery(
             QuerySource(clip_id, start=start, end=end), method=method, scope="windows"
@@ -151,7 +150,7 @@ def _spans(hits: tuple[Hit, ...]) -> list[Span]:
 
 
 def _judged(hits: list[Span], truth: list[Span], least: float = 0.5) -> tuple[float, list[float]]:
-    """AP@5, and how far both ends of every place that was found are from where it is."""
+    """AP@5, and the errors of both ends of every span that was found, seconds."""
     left = list(truth)
     found: list[bool] = []
     errors: list[float] = []
@@ -185,9 +184,9 @@ def test_pieces_hidden_in_an_hour_are_found_and_bounded(
     FIGURES.print(f"load {os.getloadavg()[0]:.1f}\n{HEAD}{'takes':>9}")
     found = {}
     for method in METHODS:
-        _of_pieces(reported, method)  # what is loaded once does not count as a search
+        _of_pieces(reported, method)  # the first search also loads arrays, so it is not measured
         found[method] = _of_pieces(reported, method)
-        FIGURES.print(f"{method:10}{found[method].told()}{_of_takes(reported, method):9.3f}")
+        FIGURES.print(f"{method:10}{found[method].as_text()}{_of_takes(reported, method):9.3f}")
     seconds = np.array([len(piece) / RATE for piece in reported.pieces])
     FIGURES.print("AP@5 of fused by seconds: ", end="")
     for length in LENGTHS:
@@ -197,7 +196,7 @@ def test_pieces_hidden_in_an_hour_are_found_and_bounded(
     monkeypatch.setattr(in_windows, "MAX_PROPOSED", FEW)
     monkeypatch.setattr(in_windows, "MIN_PROPOSED", FEW)
     few = _of_pieces(reported, "fused")
-    FIGURES.print(f"\n{FEW} places only:{few.told()[:8]}, as where the hour is one of 20", end="")
+    FIGURES.print(f"\n{FEW} spans only:{few.as_text()[:8]}, as where the hour is one of 20", end="")
     kept = sum(index.state[1].nbytes for index in reported.lib.windows.values())
     FIGURES.print(f"\nwindows in memory: {kept / hours / 2**20:.1f} MB an hour")
     assert few.average.mean() >= FLOOR_OF_FEW
@@ -218,13 +217,13 @@ def test_the_weight_of_fused_is_the_best_on_other_clips(
     for weight in WEIGHTS:
         monkeypatch.setattr(in_windows, "VECTOR_WEIGHT", weight)
         figures, takes = _of_pieces(chosen, "fused"), _of_takes(chosen, "fused")
-        FIGURES.print(f"{weight:<10}{figures.told()}{takes:9.3f}")
+        FIGURES.print(f"{weight:<10}{figures.as_text()}{takes:9.3f}")
         by_weight[weight] = figures.average.mean() + takes
     assert by_weight[used] > max(by_weight.values()) - 0.01
 
 
 def test_the_light_vectors_rank_a_little_worse_than_motion_vectors(chosen: Hidden) -> None:
-    """Both describe the same windows of 2 s, and pieces of about that length."""
+    """Both describe the same windows of 2 s, and pieces of a similar length."""
     pieces = [n for n, piece in enumerate(chosen.pieces) if 1.5 <= len(piece) / RATE <= 3.0]
     found = {}
     FIGURES.print(f"\n{len(pieces)} pieces of 1.5 to 3 s by windows of 2 s alone")
@@ -276,11 +275,11 @@ def _ranked(hidden: Hidden, number: int, windows: list[Windows], describe: Descr
         distances=np.linalg.norm(np.concatenate([v for _, v in windows]) - query, axis=1),
     )
     hits = [(place.clip_id, place.start, place.end) for place in merge_overlapping(found, 5)[0]]
-    return _judged(hits, hidden.places[number])[0]
+    return _judged(hits, hidden.spans[number])[0]
 
 
 def test_what_windows_add_to_an_analysis(chosen: Hidden) -> None:
-    """The share of their arrays, of an analysis without reading the file."""
+    """The share of the window arrays in an analysis, without reading the file."""
     took = {"windows": 0.0, "analysis": 0.0}
     for stream in chosen.streams.values():
         began = time.process_time()

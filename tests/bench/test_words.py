@@ -1,8 +1,8 @@
-"""Words on the real clips, held out: DESIGN 6's figures are the floors to beat.
+"""Words on held-out real clips.
 
-DESIGN's own (618 clips, consistent labels): top-3 .96, F .83, MAP .57; prior .50; cca as
-printed .32, .11, .36. Ours are labelled as different annotators would, so that one who
-knew each clip's task and style would reach .99, .77, .46 (mean labels of its like).
+Figures of 618 other clips with consistent labels: top-3 .96, F .83, MAP .57; prior .50; cca as
+printed .32, .11, .36. The labels of our clips differ as between annotators: a model that knows the
+task and style of each clip would reach .99, .77, .46 (with the mean labels of similar clips).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from tests.real_clips import manifest, real_clips
 FIGURES = Section(
     "words",
     "Words for clips and clips for words",
-    trials="all labelled real clips, held out by recording",
+    trials="all labeled real clips, held out by recording",
     chance="the frequency of the words, printed as `prior`",
 )
 
@@ -43,7 +43,7 @@ def tracks() -> list[tuple[dict[str, str], BodyTrack]]:
             recording = read_recording((real_clips() / row["path"]).read_bytes())
             motion = canonicalize(recording, frame_rate=float(row["fps"]))
         except BadContent:
-            continue  # a format of a later issue
+            continue  # a format that Kinedex does not read
         found.append((row, body_track(motion)))
     return found
 
@@ -95,7 +95,7 @@ def test_words_held_out(
     default = columns(by_method.pop("default"))
     assert (default > (0.95, 0.71, 0.52)).all()
     for other in by_method.values():
-        # the prior and every form of cca, in every column
+        # the default must be better than the prior and every form of cca in every column
         assert (default > columns(other) + 0.07).all(), other.method
     assert (columns(by_method["cca"]) > (0.80, 0.20, 0.28)).all()
     assert columns(by_method["prior"])[0] < 0.5

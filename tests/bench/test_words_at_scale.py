@@ -1,9 +1,9 @@
-"""Words in a library of 10,000 clips: how long a fit takes, and queries during and after it.
+"""Words in a library of 10,000 clips: time of a fit, and of queries during and after it.
 
 Run: pytest -m bench -s tests/bench/test_words_at_scale.py
-Real clips with their vectors, statistics and symbols disturbed and the words of their manifest,
-in a store of their own; the real API process and worker. Times are reported, and compared only
-within the run (issue 6 hopes for queries of 20 ms at the 95th percentile, a fit in minutes).
+The store has real clips with noise on their vectors, statistics and symbols, and with the words of
+their manifest. The API and the worker run as processes. Times are printed, and compared only within
+the run (target of issue 6: queries of 20 ms at the 95th percentile, a fit in minutes).
 """
 
 from __future__ import annotations
@@ -47,10 +47,10 @@ pytestmark = pytest.mark.bench
 
 CLIPS = 10_000
 SPREAD = 0.05
-"""Of the noise, in deviations of a statistic and in the channels' own scales."""
+"""Deviation of the noise, relative to that of a statistic, and in the units of the channels."""
 STATISTICS, MOVED = "symbol_statistics", "symbol_means"
 AS_THEY_ARE = tuple({*NAMES} - {VECTOR, STATISTICS, MOVED})
-"""What else a fit reads."""
+"""The other arrays that a fit reads."""
 QUERIES = 101
 AT_ONCE = 500
 FIT_SECONDS = 3600.0
@@ -66,7 +66,7 @@ def _words() -> dict[str, list[tuple[str, ...]]]:
 
 
 def _disturbed(sample: Sample, rng: np.random.Generator) -> dict[str, FloatArray]:
-    """What word models read of a clip."""
+    """The arrays of a clip that word models read, with noise."""
     spread = np.stack([one.arrays[STATISTICS] for one in samples()]).std(axis=0)
     statistics = sample.arrays[STATISTICS] + rng.normal(size=spread.shape) * spread * SPREAD
     means = sample.arrays[MOVED] + rng.normal(size=sample.arrays[MOVED].shape[1]) * SPREAD
@@ -75,7 +75,7 @@ def _disturbed(sample: Sample, rng: np.random.Generator) -> dict[str, FloatArray
 
 
 def _describe(store: Store) -> None:
-    """Give the clips of a filled store what a fit reads, and words that people use."""
+    """Give the clips of a filled store the arrays that a fit reads, and words that people use."""
     rng = np.random.default_rng(3)
     made = list(many_clips(CLIPS))
     for first in range(0, CLIPS, AT_ONCE):
@@ -110,12 +110,12 @@ def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
 
 @dataclass
 class Asked:
-    """Milliseconds of queries, of the wall and of the API process' CPU."""
+    """Times of queries in milliseconds: wall clock, and CPU of the API process."""
 
     wall: list[float] = field(default_factory=list)
     cpu: list[float] = field(default_factory=list)
 
-    def told(self) -> str:
+    def as_text(self) -> str:
         wall, cpu = np.array(self.wall), np.array(self.cpu)
         return (
             f"{len(wall)} queries, ms: median {np.median(wall):.1f}, "
@@ -124,7 +124,7 @@ class Asked:
 
 
 class Asker:
-    """Asks the service for words, one query after another, over one connection."""
+    """Sends queries by words to the service, one after another, over one connection."""
 
     def __init__(self, live: Live, client: httpx2.Client) -> None:
         self._client = client
@@ -150,7 +150,7 @@ class Asker:
 
 
 def _fit(live: Live, client: httpx2.Client) -> tuple[float, float]:
-    """Seconds of a fit of all models, of the wall and of the CPU."""
+    """Fit all models. Returns the wall-clock seconds and the CPU seconds."""
     workers = [p for p in processes_over(live.data_dir) if "app.worker" in p.cmdline()]
     tree, began = Tree(), time.perf_counter()
     job = client.post("/v1/models/fit").json()["job"]
@@ -163,7 +163,7 @@ def _fit(live: Live, client: httpx2.Client) -> tuple[float, float]:
 
 
 def _while_words_are_fitted(client: httpx2.Client, asker: Asker, asked: Asked) -> None:
-    """Ask until words are fitted anew; the rest of that fit is canceled."""
+    """Send queries until words are fitted again. The rest of that fit is canceled."""
     before, began = _words_version(client), time.perf_counter()
     job = client.post("/v1/models/fit").json()["job"]
     while _words_version(client) == before:
@@ -187,14 +187,14 @@ def test_a_fit_takes_minutes_and_searches_go_on(live: Live) -> None:
             for _ in range(QUERIES):
                 asker.ask(alone, mode)
                 asker.ask(without, mode, leave_out=True)
-            FIGURES.print(f"{mode}: first {opening.wall[0]:.0f} ms; then {alone.told()}")
-            FIGURES.print(f"{mode}, with a word left out: {without.told()}")
-            # nothing is computed of clips that the fit saw: the first only reads what it kept
+            FIGURES.print(f"{mode}: first {opening.wall[0]:.0f} ms; then {alone.as_text()}")
+            FIGURES.print(f"{mode}, with a word left out: {without.as_text()}")
+            # the first query reads stored values of the fit: nothing is computed for its clips
             assert opening.wall[0] < 200 * np.median(alone.wall)
         _while_words_are_fitted(client, asker, during)
-        FIGURES.print(f"default, while the next fit ran: {during.told()}")
+        FIGURES.print(f"default, while the next fit ran: {during.as_text()}")
         assert len(during.wall) > QUERIES
-        # a fit in the background takes a processor, not the service
+        # a fit in the background uses one processor, and the service goes on
         assert np.median(during.wall) < 10 * np.median(alone.wall)
 
 
@@ -210,14 +210,14 @@ def test_distances_grow_with_landmarks_not_with_the_square() -> None:
         began = time.process_time()
         symbol_distances(symbols[:count], symbols[:LANDMARKS])
         took[count] = time.process_time() - began
-    told = ", ".join(f"{count}: {seconds:.2f} s" for count, seconds in took.items())
-    FIGURES.print(f"\nplaced against {LANDMARKS} landmarks, CPU: {told}")
+    shown = ", ".join(f"{count}: {seconds:.2f} s" for count, seconds in took.items())
+    FIGURES.print(f"\nplaced against {LANDMARKS} landmarks, CPU: {shown}")
     assert took[1200] < 6 * took[300]
     began = time.process_time()
     symbol_distances(symbols[:618], symbols[:618])
     whole = time.process_time() - began
     FIGURES.print(f"618 x 618, CPU: {whole:.1f} s")
-    # 100 landmarks both ways against all pairs one way
+    # distances to 100 landmarks in both directions, compared with all pairs in one direction
     assert took[600] < whole
 
 
