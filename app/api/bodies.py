@@ -125,9 +125,9 @@ def check(model: type[Model], content: Any) -> Model:
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        found = error.errors(include_url=False, include_context=False, include_input=False)
+        details = error.errors(include_url=False, include_context=False, include_input=False)
         raise RequestValidationError(
-            [{**detail, "loc": ("body", *detail["loc"])} for detail in found]
+            [{**detail, "loc": ("body", *detail["loc"])} for detail in details]
         ) from error
 
 

@@ -19,7 +19,7 @@ from app.api.schemas.problem import Problem
 
 _REF = "#/components/schemas/{model}"
 _DESCRIPTIONS = {
-    400: "The body cannot be read as what its Content-Type says",
+    400: "The body does not match its Content-Type",
     401: "An API key is needed",
     403: "This API key does not allow that",
     404: "The clip, job or other object does not exist",

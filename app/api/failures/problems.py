@@ -65,7 +65,7 @@ class ReaderTooSlow(KinedexError):
 
 
 class MalformedBody(KinedexError):
-    """The body cannot be read as what its Content-Type says."""
+    """The body does not match its Content-Type."""
 
     code = "malformed_body"
 

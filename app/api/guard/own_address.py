@@ -45,13 +45,13 @@ def refuse_other_sites(scope: Scope) -> None:
 
 def _own_host(headers: Headers) -> str:
     hosts = headers.getlist("host")
-    found = _HOST.fullmatch(hosts[0]) if len(hosts) == 1 else None
-    if found is None or not 1 <= int(found["port"] or 1) <= MAX_PORT:
+    match = _HOST.fullmatch(hosts[0]) if len(hosts) == 1 else None
+    if match is None or not 1 <= int(match["port"] or 1) <= MAX_PORT:
         raise Forbidden(
             "Without API keys, only this machine's own addresses are answered:"
             " localhost, 127.0.0.1 and [::1]."
         )
-    return found[0].lower()
+    return match[0].lower()
 
 
 def _opens_a_page(scope: Scope, headers: Headers) -> bool:

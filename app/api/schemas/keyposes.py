@@ -75,7 +75,7 @@ class Keyposes(Outgoing):
     t2: float
     thresholds: ThresholdSources
     frame_rate: float = Field(description="Frames per second of `frames` and of the energy curves.")
-    tempo: float | None = Field(description="Beats per minute; null if no beat was found.")
+    tempo: float | None = Field(description="Beats per minute; null if no beat was detected.")
     beats: list[float] = Field(description="Seconds.")
     beats_source: Literal["given", "tempo", "audio", "motion", "none"] = Field(
         description="The source of the beats. Keyposes are searched only near beats from `given`, "
@@ -102,26 +102,26 @@ class Keyposes(Outgoing):
     @classmethod
     def of(cls, view: KeyposesView) -> Keyposes:
         """The keyposes as the API shows them."""
-        found, used = view.found, view.thresholds
-        whole, own = found.energies.whole, found.energies.own
+        detected, used = view.found, view.thresholds
+        whole, own = detected.energies.whole, detected.energies.own
         return cls(
-            method=found.method.value,
-            weights=found.weights.value,
-            t1=found.t1,
-            t2=found.t2,
+            method=detected.method.value,
+            weights=detected.weights.value,
+            t1=detected.t1,
+            t2=detected.t2,
             thresholds=ThresholdSources(
                 t1=used.t1_source.value,
                 t2=used.t2_source.value,
                 model_version=used.model_version,
             ),
             frame_rate=view.frame_rate,
-            tempo=found.beats.tempo,
-            beats=plain(found.beats.times),
-            beats_source=found.beats.source.value,
-            beats_confidence=found.beats.confidence,
-            frames=found.frames.tolist(),
-            times=plain(found.times),
-            chosen_by=[scope.value for scope in found.chosen_by],
+            tempo=detected.beats.tempo,
+            beats=plain(detected.beats.times),
+            beats_source=detected.beats.source.value,
+            beats_confidence=detected.beats.confidence,
+            frames=detected.frames.tolist(),
+            times=plain(detected.times),
+            chosen_by=[scope.value for scope in detected.chosen_by],
             roles=[role.value for role in SUN_ROLES],
             poses=plain(view.poses),
             energy=Energy(**{"global": plain(whole.values)}, local=plain(own.values)),

@@ -65,9 +65,9 @@ class WordSuggestions(Outgoing):
     next: str | None = None
 
     @classmethod
-    def of(cls, found: tuple[tuple[str, float], ...]) -> WordSuggestions:
+    def of(cls, suggested: tuple[tuple[str, float], ...]) -> WordSuggestions:
         """The suggestions as the API shows them."""
-        return cls(items=[WordSuggestion(word=word, score=score) for word, score in found])
+        return cls(items=[WordSuggestion(word=word, score=score) for word, score in suggested])
 
 
 class AcceptedWords(Incoming):

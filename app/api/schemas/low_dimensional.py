@@ -167,16 +167,16 @@ class LowDimensionalFigures(Outgoing):
     @classmethod
     def of(cls, view: ReducedView) -> LowDimensionalFigures:
         """The figures as the API shows them."""
-        found = view.reduced
-        points = plain(found.eigen_poses)
+        reduced = view.reduced
+        points = plain(reduced.eigen_poses)
         return cls(
-            basis=found.basis,
-            dimensions=found.dimensions,
-            poses=found.model.poses,
-            variance_kept=plain(found.variance_kept),
-            error=plain(found.errors),
+            basis=reduced.basis,
+            dimensions=reduced.dimensions,
+            poses=reduced.model.poses,
+            variance_kept=plain(reduced.variance_kept),
+            error=plain(reduced.errors),
             eigen_poses=[
-                EigenPose.of(pose, point) for pose, point in zip(found.poses, points, strict=True)
+                EigenPose.of(pose, point) for pose, point in zip(reduced.poses, points, strict=True)
             ],
             implausible=ImplausiblePoses.of(view.plausibility, view.original_plausibility),
         )

@@ -63,7 +63,7 @@ class Model(Outgoing):
         shown = (
             None
             if errors is None
-            else {factor: ErrorsInForce.model_validate(found) for factor, found in errors.items()}
+            else {factor: ErrorsInForce.model_validate(rates) for factor, rates in errors.items()}
         )
         return cls(
             id=record.id,

@@ -69,13 +69,13 @@ class Answer(Outgoing):
     candidates: list[Candidate]
 
     @classmethod
-    def of(cls, found: FoundAnswer) -> Answer:
+    def of(cls, answer: FoundAnswer) -> Answer:
         """An answer as the API shows it."""
         return cls(
-            label=found.label,
-            known=found.known,
-            score=found.score,
-            candidates=[Candidate(label=c.label, score=c.score) for c in found.candidates],
+            label=answer.label,
+            known=answer.known,
+            score=answer.score,
+            candidates=[Candidate(label=c.label, score=c.score) for c in answer.candidates],
         )
 
 
@@ -94,10 +94,10 @@ class Recognition(Outgoing):
     words: list[WordScore]
 
     @classmethod
-    def of(cls, found: Recognized) -> Recognition:
+    def of(cls, recognized: Recognized) -> Recognition:
         """A recognition as the API shows it."""
         return cls(
-            person=Answer.of(found.person),
-            task=Answer.of(found.task),
-            words=[WordScore(word=word, score=score) for word, score in found.words],
+            person=Answer.of(recognized.person),
+            task=Answer.of(recognized.task),
+            words=[WordScore(word=word, score=score) for word, score in recognized.words],
         )

@@ -17,8 +17,8 @@ from app.services.find.query_source import QuerySource
 
 
 class _MotionOptions(QueryFields):
-    start: Seconds | None = Field(None, description="Seconds: where the queried part begins.")
-    end: Seconds | None = Field(None, description="Seconds: where that part ends.")
+    start: Seconds | None = Field(None, description="Start of the queried part, seconds.")
+    end: Seconds | None = Field(None, description="End of the queried part, seconds.")
     method: Method = Method.FUSED
     limit: Limit = 10
     scope: Literal["clips", "windows", "segments"] = Field(
@@ -128,10 +128,10 @@ class Hit(Outgoing):
     score: float = Field(ge=0, le=1, description="Higher is closer.")
     distance: float
     start: float = Field(
-        description="Seconds from the start of the clip: where the part that was found begins. 0 "
-        "with scope clips."
+        description="Start of the found part, seconds from the start of the clip. 0 with scope "
+        "clips."
     )
-    end: float = Field(description="Seconds: where it ends.")
+    end: float = Field(description="End of the found part, seconds.")
     clip: Clip
 
     @classmethod

@@ -61,16 +61,16 @@ class SpaceMap(Outgoing):
     next: str | None = None
 
     @classmethod
-    def of(cls, query: SpaceQuery, found: Map) -> SpaceMap:
+    def of(cls, query: SpaceQuery, drawn: Map) -> SpaceMap:
         """The map as the API shows it."""
-        points = found.points.tolist()
+        points = drawn.points.tolist()
         return cls(
             space=query.space,
             dimensions=int(query.dimensions),
-            variance_kept=min(found.kept, 1.0),
-            total=found.total,
-            library_version=found.library_version,
-            model=found.model,
+            variance_kept=min(drawn.kept, 1.0),
+            total=drawn.total,
+            library_version=drawn.library_version,
+            model=drawn.model,
             items=[
                 MapPoint(
                     clip_id=clip.id,
@@ -80,6 +80,6 @@ class SpaceMap(Outgoing):
                     words=list(clip.words),
                     point=point,
                 )
-                for clip, point in zip(found.clips, points, strict=True)
+                for clip, point in zip(drawn.clips, points, strict=True)
             ],
         )

@@ -156,13 +156,13 @@ class SequenceTally(Tally):
     dimensions: int
 
     @classmethod
-    def of_sequence(cls, found: studies.SequenceTally) -> SequenceTally:
+    def of_sequence(cls, tally: studies.SequenceTally) -> SequenceTally:
         """The row of Table 2 as the API shows it."""
         return cls(
-            **dict(Tally.model_validate(found.votes)),
-            clip_id=found.clip_id,
-            name=found.name,
-            dimensions=found.dimensions,
+            **dict(Tally.model_validate(tally.votes)),
+            clip_id=tally.clip_id,
+            name=tally.name,
+            dimensions=tally.dimensions,
         )
 
 
@@ -179,10 +179,10 @@ class StudyTally(Outgoing):
     )
 
     @classmethod
-    def of(cls, found: studies.StudyTally) -> StudyTally:
+    def of(cls, tally: studies.StudyTally) -> StudyTally:
         """The table as the API shows it."""
         return cls(
-            sequences=[SequenceTally.of_sequence(row) for row in found.sequences],
-            total=Tally.model_validate(found.total),
-            left_share=found.left_share,
+            sequences=[SequenceTally.of_sequence(row) for row in tally.sequences],
+            total=Tally.model_validate(tally.total),
+            left_share=tally.left_share,
         )

@@ -34,10 +34,10 @@ def channels_json(view: SymbolMotionView) -> Iterator[str]:
 
     A long clip has a million numbers, so the list is never built as a whole.
     """
-    found = view.generated
+    generated = view.generated
     yield ', "channels": ['
     for number, (name, mean, spread) in enumerate(
-        zip(CHANNELS, found.means.T, found.spreads.T, strict=True)
+        zip(CHANNELS, generated.means.T, generated.spreads.T, strict=True)
     ):
         channel = Channel(name=name, mean=plain(mean), spread=plain(spread))
         yield ("," if number else "") + channel.model_dump_json()
