@@ -16,20 +16,20 @@ from app.evaluate.recognition.results import HeldOut, Judged, LabelGiven
 from app.evaluate.recognition.rounds import DRAWS, LeftOut
 from app.evaluate.recognition.shares import Recognized, Share, Unknown
 
-_WAYS = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
+_LEFT_OUT_FACTORS = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
 MAX_SHOWN = 40
 """Largest number of labels in a printed table; --json has all."""
 
 
 def print_tables(found: RecognitionEvaluation) -> None:
-    """Print the tables, the confusions of the first method, and what could not be judged."""
+    """Print the tables, the confusions of the first method, and the parts that were not judged."""
     clips = found.clips
     kinds = {"person": clips.persons, "task": clips.tasks, "source": clips.sources}
     counted = ", ".join(_counted(len(names_of(labels)), kind) for kind, labels in kinds.items())
     typer.echo(f"{len(clips)} clips: {counted}. No method has seen the clips that it is judged on.")
     _print_recognized(found)
     _print_label_given(found.label_given)
-    for way, factor in _WAYS.items():
+    for way, factor in _LEFT_OUT_FACTORS.items():
         if way in found.held_out:
             _print_new(found.held_out[way], factor)
     if LeftOut.SOURCE in found.held_out:

@@ -1,4 +1,4 @@
-"""`kinedex evaluate retrieval`: the tables and figures of Sun 2011 for one's own library."""
+"""`kinedex evaluate retrieval`: the tables and figures of Sun 2011 for your own library."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def retrieval(
     picture_format: PictureFormat = "svg",
     as_json: AsJson = False,
 ) -> None:
-    """Each clip is a query; clips with the same task are relevant (Sun 2011)."""
+    """Search with each clip as the query; clips of the same task are relevant (Sun 2011)."""
     filter = parsed_filter(filter_json)
     names = None if classes is None else [name.strip() for name in classes.split(",")]
     drawing = Drawing.prepared(picture, pictures_dir, picture_format)
