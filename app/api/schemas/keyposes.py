@@ -92,7 +92,7 @@ class Keyposes(Outgoing):
     def of(cls, view: KeyposesView) -> Keyposes:
         """The keyposes as the API shows them."""
         found, used = view.found, view.thresholds
-        whole, own = found.energies.whole, found.energies.own
+        whole, own = found.energies.global_curve, found.energies.local_curve
         return cls(
             method=found.method.value,
             weights=found.weights.value,
