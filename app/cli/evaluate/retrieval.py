@@ -71,7 +71,7 @@ def retrieval(
             classes=names,
             k=k,
             threshold=eta,
-            most_queries=queries,
+            max_queries=queries,
             progress=progress,
         )
         volumes = evaluate.judge_volumes(lib, filter, classes=names, threshold=eta)

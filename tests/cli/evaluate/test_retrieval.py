@@ -55,7 +55,7 @@ def test_pictures_are_written_to_the_given_paths(kinedex: Kinedex, tmp_path: Pat
 @pytest.mark.parametrize(
     ("words", "expected"),
     [
-        (("--classes", "walk,fly"), "'fly'; they do of kick, walk, wave"),
+        (("--classes", "walk,fly"), "'fly', only the tasks kick, walk, wave"),
         (("--filter", '{"task": "walk"}'), "'walk', so every answer would be right"),
         (("--filter", '{"task": "nothing"}'), "nothing can be judged"),
         (("--picture", "figure.gif"), ".svg, .png, .pdf"),
