@@ -54,7 +54,7 @@ def _import_demo(context: typer.Context) -> None:
         typer.echo(f"The demo library: {count} clips, generated on this machine.")
         job = register(lib, Path(folder))
         with working(lib):
-            follow(lib, job.id, "analysing")
+            follow(lib, job.id, "analyzing")
             fit_if_due(lib)
 
 

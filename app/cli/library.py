@@ -45,7 +45,7 @@ def import_clips(
         job = register(lib, path)
         if wait:
             with working(lib):
-                job = follow(lib, job.id, "analysing")
+                job = follow(lib, job.id, "analyzing")
                 fit_if_due(lib)
         if as_json:
             print_json(_document(lib, job))

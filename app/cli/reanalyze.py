@@ -57,7 +57,7 @@ def _show_progress(lib: Library) -> None:
 
     with progress_bar() as bar:
         total = _count_waiting(lib)
-        task = bar.add_task("analysing", total=total)
+        task = bar.add_task("analyzing", total=total)
         while waiting := _count_waiting(lib):
             bar.update(task, completed=total - waiting)
             time.sleep(POLL_S)

@@ -31,7 +31,7 @@ def low_dimensional(
     """Compare keyposes with uniform poses as basis of low-dimensional motion (Perera 2009)."""
     filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
-    with judging(context, "drawing") as (lib, progress):
+    with judging(context, "reducing") as (lib, progress):
         found = evaluate.judge_low_dimensional(lib, filter, progress)
     if as_json:
         print_json(_document(found))

@@ -27,7 +27,7 @@ Rate = Annotated[
     float | None,
     typer.Option(
         "--false-accept-rate",
-        help="For default and perera, 0..1: how often something new may be called known.",
+        help="For default and perera, 0..1: how often new persons and tasks may be called known.",
     ),
 ]
 Pictures = Annotated[
@@ -50,7 +50,7 @@ def recognition(
     """Recognize held-out takes, persons, tasks and sources (Vasilescu; Perera, section 5)."""
     filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
-    with judging(context, "asking") as (lib, progress):
+    with judging(context, "recognizing") as (lib, progress):
         found = evaluate.judge_recognition(
             lib,
             filter,

@@ -22,7 +22,7 @@ from app.search.example.methods import Method
 
 Classes = Annotated[
     str | None,
-    typer.Option(help="Tasks of table 1, as walk,run,jump,kick; default: the four largest."),
+    typer.Option(help="Tasks of table 1, like walk,run,jump,kick; default: the four largest."),
 ]
 Methods = Annotated[
     list[Method] | None, typer.Option("--method", help="Judge this method; may be repeated.")
@@ -63,7 +63,7 @@ def retrieval(
     filter = parsed_filter(filter_json)
     names = None if classes is None else [name.strip() for name in classes.split(",")]
     drawing = Drawing.prepared(picture, pictures_dir, picture_format)
-    with judging(context, "asking") as (lib, progress):
+    with judging(context, "searching") as (lib, progress):
         found = evaluate.judge_retrieval(
             lib,
             filter,

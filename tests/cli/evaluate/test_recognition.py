@@ -21,7 +21,7 @@ def test_tables_for_people(kinedex: Kinedex) -> None:
     rows = {line[0]: line[1:] for line in lines[by_take + 1 : by_take + 9] if line}
     assert list(rows)[:2] == ["default", "multilinear"]
     assert rows["chance"] == ["0.333", "0.500", "0.167", "12"]
-    assert ["method", "task", "person", "told", "person", "task", "told"] in lines
+    assert ["method", "task", "person", "given", "person", "task", "given"] in lines
     columns = ["new", "known", "together", "balanced", "AUC", "EER", "worst"]
     assert ["method", "person", *columns] in lines
     columns = ["trials", "person", "task", "both", "effects", "mean", "motion", "real"]
