@@ -1,1 +1,1 @@
-"""From a canonical motion to its descriptors."""
+"""Computes the arrays that describe a canonical motion."""

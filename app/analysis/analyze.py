@@ -34,7 +34,7 @@ from app.analysis.descriptors.windows import WINDOW_SCALES, window_arrays
 from app.analysis.energy.energy import energies
 from app.analysis.keyposes.keyposes import T1, T2, find_keyposes
 from app.analysis.rhythm.onsets import Onsets
-from app.analysis.rhythm.rhythm import NOTHING_GIVEN, RhythmInput, find_rhythm, rhythm_arrays
+from app.analysis.rhythm.rhythm import NO_RHYTHM_INPUT, RhythmInput, find_rhythm, rhythm_arrays
 from app.analysis.segments.keypose_arrays import keypose_arrays
 from app.analysis.symbols.channels import symbol_features, symbol_statistics
 from app.analysis.symbols.symbol import describe_symbol
@@ -68,7 +68,7 @@ def analyze(
     *,
     t1: float = T1,
     t2: float = T2,
-    rhythm_input: RhythmInput = NOTHING_GIVEN,
+    rhythm_input: RhythmInput = NO_RHYTHM_INPUT,
     onsets: Onsets | None = None,
 ) -> Analysis:
     """Compute all arrays of `motion`.
@@ -80,10 +80,12 @@ def analyze(
     track = body_track(motion)
     parts = _Parts(motion, track)
     arrays: dict[str, NDArray[Any]] = {**_for_search(parts), **describe_symbol(parts.channels)}
-    plain = energies(track)
-    rhythm = find_rhythm(track, rhythm_input, onsets, plain)
+    rms_energies = energies(track)
+    rhythm = find_rhythm(track, rhythm_input, onsets, rms_energies)
     arrays |= rhythm_arrays(rhythm)
-    keyposes = find_keyposes(track, t1=t1, t2=t2, beats=rhythm.beats, plain=plain).frames
+    keyposes = find_keyposes(
+        track, t1=t1, t2=t2, beats=rhythm.beats, rms_energies=rms_energies
+    ).frames
     arrays["pose_cover"] = pose_cover(arrays["role_positions"], keyposes)
     arrays |= keypose_arrays(keyposes, arrays["features_10hz"])
     offset = None if rhythm.offset is None else rhythm.offset.seconds

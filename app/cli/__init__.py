@@ -1,7 +1,7 @@
 """The command line: `kinedex`.
 
-Commands call the services directly on the library of the settings. `--json` prints the same JSON as
-the HTTP API.
+The commands call the services directly, without the HTTP API. The settings name the library.
+`--json` prints the same JSON as the HTTP API.
 """
 
 from app.cli.main import main

@@ -22,38 +22,43 @@ def backup(
     path: Annotated[Path, typer.Argument(help="A new folder; it must not exist yet.")],
     as_json: AsJson = False,
 ) -> None:
-    """Copy the library as it is now, while it is in use, into a new folder.
+    """Copy the library into a new folder; the library may be in use.
 
     The copy is a data directory: to restore it, start Kinedex with KINEDEX_DATA_DIR set to it, or
-    to a copy of it. It holds everything, also keys (hashed) and what is deleted later.
+    to a copy of it. It contains everything: also the hashed API keys, and clips that you delete
+    from the library later.
     """
     from app.store.upkeep.backup import back_up
 
     _refuse_inside(settings_of(context).data_dir, path)
-    with open_store(context) as store, _ended_by_sigterm(), progress_bar() as bar:
+    with open_store(context) as store, exit_on_sigterm(), progress_bar() as bar:
         task = bar.add_task("copying", total=None)
-        made = back_up(
+        copy = back_up(
             store, path, lambda done, total: bar.update(task, completed=done, total=total)
         )
         bar.update(task, completed=1, total=1)
     if as_json:
-        print_json({"path": str(made.path), "files": made.files, "bytes": made.bytes})
+        print_json({"path": str(copy.path), "files": copy.files, "bytes": copy.bytes})
     else:
-        typer.echo(f"{made.path}: the database and {made.files} files, {made.bytes} bytes")
+        typer.echo(f"{copy.path}: the database and {copy.files} files, {copy.bytes} bytes")
 
 
 @contextmanager
-def _ended_by_sigterm() -> Iterator[None]:
-    """In this block, SIGTERM raises an exception, so that an incomplete copy is removed."""
-    before = signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
+def exit_on_sigterm() -> Iterator[None]:
+    """In this block, SIGTERM raises SystemExit, so that `back_up` removes an incomplete copy."""
+    previous_handler = signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
+        signal.signal(signal.SIGTERM, previous_handler)
 
 
 def _refuse_inside(data_dir: Path, path: Path) -> None:
-    """Refuse a folder inside the library: it would be lost with it, and part of later copies."""
+    """Raise BadField if `path` is inside the data directory.
+
+    Such a copy would be lost together with the library, and later copies would contain it.
+    """
+    # symbolic links are resolved, because one may lead into the data directory
     if Path(os.path.realpath(data_dir)) in Path(os.path.realpath(path)).parents:
         message = f"{path} is inside the library ({data_dir}); choose a folder outside it"
         raise BadField(f"path: {message}", places=[Place("path", message)])

@@ -1,101 +1,111 @@
-"""The list of commands: the name, the module and one line of help of each.
+"""The list of commands. Each entry has the name, the module and one line of help.
 
-The help is the first line of the command's docstring (a test compares them). It is written here
-too, so that `kinedex --help` does not import what the commands need.
+The help is also the first line of the command's docstring (a test compares both). The copy here
+allows `kinedex --help` to list the commands without importing their modules.
 """
 
 from __future__ import annotations
 
-from app.cli.lazy import CommandPlace
+from app.cli.lazy import CommandEntry
 
 COMMANDS = {
-    "serve": CommandPlace(
+    "serve": CommandEntry(
         "app.cli.serve",
         "serve",
-        "Serve the API and do the work, until stopped; each process is restarted if it dies.",
+        "Run the API and a worker until you stop them; a process that dies is restarted.",
     ),
-    "worker": CommandPlace(
+    "worker": CommandEntry(
         "app.cli.serve",
         "worker",
-        "Do the queued work, until stopped; any number of workers share one library.",
+        "Do the queued work until you stop it; several workers can share one library.",
     ),
-    "demo": CommandPlace(
-        "app.cli.demo", "demo", "Make the demo library, ingest it, serve it, and print where."
+    "demo": CommandEntry(
+        "app.cli.demo",
+        "demo",
+        "Generate the demo library, import it, serve it, and print its address.",
     ),
-    "import": CommandPlace(
+    "import": CommandEntry(
         "app.cli.library",
         "import_clips",
         "Import a folder (with or without manifest.csv), a ZIP or a file.",
     ),
-    "reanalyze": CommandPlace(
+    "reanalyze": CommandEntry(
         "app.cli.reanalyze", "reanalyze", "Analyze clips again from their stored files."
     ),
-    "search": CommandPlace(
+    "search": CommandEntry(
         "app.cli.find",
         "search",
-        "Find motions like one (a file or a stored clip), or motions for words.",
+        "Find motions that are similar to a file or a stored clip, or motions for words.",
     ),
-    "search-pose": CommandPlace(
-        "app.cli.find_pose", "search_pose", "Find the clips that take a pose, and when they do."
+    "search-pose": CommandEntry(
+        "app.cli.find_pose",
+        "search_pose",
+        "Find the clips that contain a pose, and the time of the pose in each.",
     ),
-    "recognize": CommandPlace(
-        "app.cli.find", "recognize", "Say who it is, what they do, and in which words."
+    "recognize": CommandEntry(
+        "app.cli.find",
+        "recognize",
+        "Recognize the person and the task of a motion, and describe it with words.",
     ),
-    "synthesize": CommandPlace(
+    "synthesize": CommandEntry(
         "app.cli.synthesize",
         "synthesize",
-        "Make a motion that a person never recorded, as a BVH file, and judge its quality.",
+        "Synthesize a motion that a person never recorded, as a BVH file, and report its quality.",
     ),
-    "fit": CommandPlace(
+    "fit": CommandEntry(
         "app.cli.fit",
         "fit",
-        "Fit the models on the library as it is now, and show their held-out figures.",
+        "Fit the models on the current library, and show their held-out figures.",
     ),
-    "export": CommandPlace("app.cli.export", "export", "Export a clip as BVH, GLB, NPZ or CSV."),
-    "backup": CommandPlace(
+    "export": CommandEntry("app.cli.export", "export", "Export a clip as BVH, GLB, NPZ or CSV."),
+    "backup": CommandEntry(
         "app.cli.backup",
         "backup",
-        "Copy the library as it is now, while it is in use, into a new folder.",
+        "Copy the library into a new folder; the library may be in use.",
     ),
-    "verify": CommandPlace(
+    "verify": CommandEntry(
         "app.cli.verify",
         "verify",
-        "Read the whole library and say what is damaged or missing; the exit code is then 1.",
+        "Check the whole library for damaged or missing data; the exit code is then 1.",
     ),
-    "evaluate": CommandPlace("app.cli.evaluate.app", "program", "Figures on your own library."),
-    "keys": CommandPlace("app.cli.keys", "program", "API keys."),
-    "db": CommandPlace("app.cli.db", "program", "The database."),
+    "evaluate": CommandEntry(
+        "app.cli.evaluate.app", "program", "Measure the methods on your own library."
+    ),
+    "keys": CommandEntry("app.cli.keys", "program", "Create, list and revoke API keys."),
+    "db": CommandEntry(
+        "app.cli.db", "program", "Upgrade the database, or connect it to its files."
+    ),
 }
 
 EVALUATIONS = {
-    "retrieval": CommandPlace(
+    "retrieval": CommandEntry(
         "app.cli.evaluate.retrieval",
         "retrieval",
-        "Each clip is a query; clips with the same task are relevant (Sun 2011).",
+        "Search with each clip as the query; clips of the same task are relevant (Sun 2011).",
     ),
-    "keyposes": CommandPlace(
+    "keyposes": CommandEntry(
         "app.cli.evaluate.keyposes",
         "keyposes",
-        "Keyposes found against those that people named (Perera 2009, table 1, figs 3 to 6).",
+        "Compare found keyposes with annotated ones (Perera 2009, table 1, figs 3 to 6).",
     ),
-    "low-dimensional": CommandPlace(
+    "low-dimensional": CommandEntry(
         "app.cli.evaluate.low_dimensional",
         "low_dimensional",
-        "Motions drawn from few dimensions of keyposes, and of uniform poses (Perera 2009).",
+        "Compare keyposes with uniform poses as basis of low-dimensional motion (Perera 2009).",
     ),
-    "symbols": CommandPlace(
+    "symbols": CommandEntry(
         "app.cli.evaluate.symbols",
         "symbols",
-        "How many dimensions motion symbols need, and how well new ones are placed (Takano).",
+        "Measure the errors of the motion symbol space by its dimensions (Takano).",
     ),
-    "recognition": CommandPlace(
+    "recognition": CommandEntry(
         "app.cli.evaluate.recognition",
         "recognition",
-        "Person and task, held out by take, person, task and source (Vasilescu; Perera, 5).",
+        "Recognize held-out takes, persons, tasks and sources (Vasilescu; Perera, section 5).",
     ),
-    "words": CommandPlace(
+    "words": CommandEntry(
         "app.cli.evaluate.words",
         "words",
-        "Words for clips and clips for words, held out and in-sample, and by frequency.",
+        "Find words for clips and clips for words, held out and in-sample.",
     ),
 }

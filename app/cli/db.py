@@ -6,7 +6,9 @@ import typer
 
 from app.cli.settings import settings_of
 
-program = typer.Typer(help="The database.", no_args_is_help=True)
+program = typer.Typer(
+    help="Upgrade the database, or connect it to its files.", no_args_is_help=True
+)
 
 
 @program.command("upgrade")
@@ -25,17 +27,17 @@ def upgrade(context: typer.Context) -> None:
 
 @program.command("adopt-files")
 def adopt_files(context: typer.Context) -> None:
-    """Confirm that the folder of files belongs to the database, if Kinedex refuses to start.
+    """Connect the folder of files to the database, if Kinedex refuses to start.
 
-    Run it only when you are sure. Files that the database does not name are moved to the
-    quarantine by the next worker, and are removed after the retention.
+    Run this command only if you are sure that both belong together. The next worker moves files
+    that the database does not name to the quarantine, and deletes them after the retention time.
     """
     from app.store import identity
 
     settings = settings_of(context)
-    found = identity.adopt(settings.database, settings.files_dir)
+    adopted = identity.adopt(settings.database, settings.files_dir)
     typer.echo(
-        f"{settings.files_dir} now belongs to this database. Of the files that it names, "
-        f"{found.present} are there and {found.missing} are missing; {found.unknown} others go "
-        "to the quarantine."
+        f"{settings.files_dir} now belongs to this database. It names "
+        f"{adopted.present} files that exist and {adopted.missing} that are missing. The next "
+        f"worker moves {adopted.unknown} other files to the quarantine."
     )

@@ -19,43 +19,46 @@ if TYPE_CHECKING:
     from app.config import Settings
 
 READY_POLL_S = 0.25
-QUIET = "WARNING"
-"""The default log level of the demo, since its output is for a person."""
+READY_TIMEOUT_S = 2
+LOG_LEVEL = "WARNING"
+"""The log level of the demo. A person reads its output, so it shows no routine log lines."""
 
 
 def demo(context: typer.Context, host: Host = None, port: Port = None) -> None:
-    """Make the demo library, ingest it, serve it, and print where.
+    """Generate the demo library, import it, serve it, and print its address.
 
-    A second run serves the existing library: clips that it has are skipped.
+    A second run serves the existing library and skips the clips that it already has.
     """
     from app.services.exposure import refuse_exposure_without_keys, refuse_taken_address
     from app.worker.supervisor import supervise
 
     settings = settings_of(context, host=host, port=port)
-    configure_logging(QUIET)
+    configure_logging(LOG_LEVEL)
     refuse_exposure_without_keys(settings)
     refuse_taken_address(settings)
-    _fill(context)
-    announcer = threading.Thread(target=_announce, args=(settings,), daemon=True)
+    _import_demo(context)
+    announcer = threading.Thread(target=_print_url_when_ready, args=(settings,), daemon=True)
     announcer.start()
-    quiet = settings.model_copy(update={"log_level": QUIET.lower()})
-    raise typer.Exit(supervise(quiet))
+    # the child processes read their log level from the settings
+    quiet_settings = settings.model_copy(update={"log_level": LOG_LEVEL.lower()})
+    raise typer.Exit(supervise(quiet_settings))
 
 
-def _fill(context: typer.Context) -> None:
+def _import_demo(context: typer.Context) -> None:
+    """Generate the demo clips into a temporary folder, import them, and fit the models."""
     from app.cli.library import fit_if_due, follow, register, working
     from app.demo.library import write_demo
 
     with open_library(context) as lib, tempfile.TemporaryDirectory() as folder:
         count = write_demo(Path(folder))
-        typer.echo(f"The demo library: {count} clips, generated here.")
+        typer.echo(f"The demo library: {count} clips, generated on this machine.")
         job = register(lib, Path(folder))
         with working(lib):
-            follow(lib, job.id, "analysing")
+            follow(lib, job.id, "analyzing")
             fit_if_due(lib)
 
 
-def _announce(settings: Settings) -> None:
+def _print_url_when_ready(settings: Settings) -> None:
     """Print the URL once the service can answer searches."""
     url = f"http://{settings.host}:{settings.port}"
     pause = threading.Event()
@@ -66,7 +69,7 @@ def _announce(settings: Settings) -> None:
 
 def _is_ready(url: str) -> bool:
     try:
-        with urllib.request.urlopen(url, timeout=2):  # noqa: S310 - our own address
+        with urllib.request.urlopen(url, timeout=READY_TIMEOUT_S):  # noqa: S310 - our own address
             return True
     except (urllib.error.URLError, OSError):
         return False

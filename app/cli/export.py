@@ -25,7 +25,7 @@ def export(
         ),
     ] = None,
     format: Annotated[
-        ExportFormat | None, typer.Option(help="Default: by the ending of --output, else bvh.")
+        ExportFormat | None, typer.Option(help="Default: the suffix of --output, else bvh.")
     ] = None,
     fps: Annotated[
         float | None,
@@ -48,26 +48,27 @@ def export(
     from app.services.views import export as exporting
     from app.services.views.low_dimensional import Reduction
 
-    wanted = format or _by_ending(output)
+    target = format or _format_by_suffix(output)
     with open_library(context) as lib:
         reduction = None if dimensions is None else Reduction(dimensions, basis)
         file = exporting.export(
-            lib, clip_id, wanted, fps=fps, skeleton=skeleton, reduction=reduction
+            lib, clip_id, target, fps=fps, skeleton=skeleton, reduction=reduction
         )
         path = output or Path(file.file_name)
         size = write_whole(path, file.blocks)
     if as_json:
-        print_json({"path": str(path), "format": wanted.value, "bytes": size})
+        print_json({"path": str(path), "format": target.value, "bytes": size})
     else:
         typer.echo(f"{path}: {size} bytes")
 
 
-def _by_ending(output: Path | None) -> ExportFormat:
+def _format_by_suffix(output: Path | None) -> ExportFormat:
+    """The format that the suffix of `output` names; BVH without a path. Raises BadField."""
     if output is None:
         return ExportFormat.BVH
     try:
         return ExportFormat(output.suffix.lower().removeprefix("."))
     except ValueError:
-        known = ", ".join(ExportFormat)
-        message = f"must end with one of {known}, unless --format is given"
+        formats = ", ".join(ExportFormat)
+        message = f"must end with one of {formats}, unless --format is given"
         raise BadField(f"output: {message}", places=[Place("output", message)]) from None

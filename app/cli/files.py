@@ -1,4 +1,4 @@
-"""Writes the files of commands."""
+"""Writes the output files of commands."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ from app.errors import BadField, Place
 
 
 def write_whole(path: Path, blocks: Iterable[bytes]) -> int:
-    """Write to a temporary file, then rename it; an older file stays until all is written.
+    """Write all blocks to a file. An older file stays until the new one is complete.
 
     Returns the number of bytes. Raises BadField if the path cannot be written.
     """
+    # rename replaces a file in one step, so no reader sees half of it
     part = path.with_name(f".{path.name}.part")
     try:
-        with part.open("wb") as written:
-            size = sum(written.write(block) for block in blocks)
+        with part.open("wb") as file:
+            size = sum(file.write(block) for block in blocks)
         part.replace(path)
     except OSError as problem:
         message = f"{path} cannot be written: {problem.strerror}"

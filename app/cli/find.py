@@ -1,4 +1,4 @@
-"""Search by example and by words, and recognize."""
+"""The commands that search by example or by words, and that recognize a motion."""
 
 from __future__ import annotations
 
@@ -30,21 +30,28 @@ def search(
         list[str] | None,
         typer.Option(
             "--words",
-            help="Words or a sentence; -word leaves out clips that carry it; can be repeated.",
+            help="Words or a sentence; -word excludes clips with that word; may be repeated.",
         ),
     ] = None,
-    method: Annotated[Method, typer.Option(help="Of a search by example.")] = Method.FUSED,
+    method: Annotated[Method, typer.Option(help="Method of a search by example.")] = Method.FUSED,
     scope: Annotated[
         str,
-        typer.Option(help="clips; windows: parts of clips; segments: steps between keyposes."),
+        typer.Option(
+            help="Search for: clips; windows (parts of clips); segments (between keyposes)."
+        ),
     ] = "clips",
     segment: Annotated[
-        int | None, typer.Option(help="With --scope segments: a clip's step, counted from 0.")
+        int | None,
+        typer.Option(help="With --scope segments: the segment of the clip, counted from 0."),
     ] = None,
-    mode: Annotated[str, typer.Option(help="Of a search by words: default or cca.")] = "default",
-    start: Annotated[float | None, typer.Option(help="Seconds: search by a part.")] = None,
-    end: Annotated[float | None, typer.Option(help="Seconds: where the part ends.")] = None,
-    limit: Annotated[int, typer.Option(help="Most hits, 1 to 1000.")] = 10,
+    mode: Annotated[
+        str, typer.Option(help="Mode of a search by words: default or cca.")
+    ] = "default",
+    start: Annotated[
+        float | None, typer.Option(help="Search with a part of the motion: its start in seconds.")
+    ] = None,
+    end: Annotated[float | None, typer.Option(help="The end of that part in seconds.")] = None,
+    limit: Annotated[int, typer.Option(help="Largest number of hits, 1 to 1000.")] = 10,
     filter_json: FilterJson = None,
     skeleton: Skeleton = None,
     frame_rate: FrameRate = None,
@@ -52,7 +59,7 @@ def search(
     stack: Stack = None,
     as_json: AsJson = False,
 ) -> None:
-    """Find motions like one (a file or a stored clip), or motions for words."""
+    """Find motions that are similar to a file or a stored clip, or motions for words."""
     from app.services.find import find
     from app.services.find.queries import MotionQuery, WordQuery
 
@@ -60,10 +67,10 @@ def search(
         raise typer.BadParameter("give either a file or clip id, or --words")
     if words and scope != "clips":
         raise typer.BadParameter("--scope goes with a file or clip id, not with --words")
-    wanted = filter_of(filter_json)
+    fields = filter_of(filter_json)
     with open_library(context) as lib:
         if words:
-            hits = find.find_words(lib, WordQuery(words, mode, limit, wanted))
+            hits = find.find_words(lib, WordQuery(words, mode, limit, fields))
         elif query is not None:
             with source_of(
                 query,
@@ -75,9 +82,9 @@ def search(
                 stack=stack,
                 advice=ADVICE,
             ) as source:
-                sent = MotionQuery(source, method, limit, wanted, scope, segment)
-                hits = find.find_motion(lib, sent)
-    _show(hits, as_json, by_words=bool(words), parts=scope != "clips")
+                motion_query = MotionQuery(source, method, limit, fields, scope, segment)
+                hits = find.find_motion(lib, motion_query)
+    _print_hits(hits, as_json, by_words=bool(words), with_times=scope != "clips")
 
 
 def recognize(
@@ -94,7 +101,7 @@ def recognize(
     stack: Stack = None,
     as_json: AsJson = False,
 ) -> None:
-    """Say who it is, what they do, and in which words."""
+    """Recognize the person and the task of a motion, and describe it with words."""
     from app.api.schemas.recognition import Recognition
     from app.services.recognition import recognize
 
@@ -104,21 +111,22 @@ def recognize(
             query, skeleton=skeleton, frame_rate=frame_rate, unit=unit, stack=stack
         ) as source,
     ):
-        sent = recognize.RecognizeQuery(source, known_person, known_task, method)
-        found = recognize.recognize(lib, sent)
-    answer = Recognition.of(found)
+        request = recognize.RecognizeQuery(source, known_person, known_task, method)
+        recognized = recognize.recognize(lib, request)
+    answer = Recognition.of(recognized)
     if as_json:
         print_json(answer.model_dump(mode="json"))
         return
     rows = [
-        (name, _shown(one), one.score)
+        (name, _answer_text(one), one.score)
         for name, one in (("person", answer.person), ("task", answer.task))
     ]
     print_table(("", "answer", "score"), rows)
     print_table(("word", "score"), [(one.word, one.score) for one in answer.words])
 
 
-def _shown(answer: Answer) -> str:
+def _answer_text(answer: Answer) -> str:
+    """The label, or "unknown" with the nearest label."""
     if answer.known and answer.label is not None:
         return answer.label
     nearest = answer.candidates[0].label if answer.candidates else "nothing"
@@ -126,17 +134,18 @@ def _shown(answer: Answer) -> str:
 
 
 def filter_of(text: str | None) -> dict[str, Any]:
-    """The filter in a JSON text; empty without a text. Raises BadField."""
+    """The fields of a filter in a JSON text; empty without a text. Raises BadField."""
     try:
-        wanted = json.loads(text) if text else {}
+        fields = json.loads(text) if text else {}
     except ValueError as problem:
         raise BadField("The filter is not JSON.", places=[Place("filter", str(problem))]) from None
-    if not isinstance(wanted, dict):
+    if not isinstance(fields, dict):
         raise BadField("The filter must be a JSON object.", places=[Place("filter", str(text))])
-    return wanted
+    return fields
 
 
-def _show(hits: Hits, as_json: bool, *, by_words: bool, parts: bool) -> None:
+def _print_hits(hits: Hits, as_json: bool, *, by_words: bool, with_times: bool) -> None:
+    """Print hits; with_times: with the start and the end of the part that was found."""
     if as_json:
         from app.api.schemas.search import MotionHits, WordHits
 
@@ -144,12 +153,20 @@ def _show(hits: Hits, as_json: bool, *, by_words: bool, parts: bool) -> None:
         print_json(answer.model_dump(mode="json"))
         return
     print_table(
-        ("rank", "score", *(("start", "end") if parts else ()), "name", "person", "task", "id"),
+        (
+            "rank",
+            "score",
+            *(("start", "end") if with_times else ()),
+            "name",
+            "person",
+            "task",
+            "id",
+        ),
         [
             (
                 hit.rank,
                 hit.score,
-                *((hit.start, hit.end) if parts else ()),
+                *((hit.start, hit.end) if with_times else ()),
                 hit.clip.name,
                 hit.clip.person,
                 hit.clip.task,
@@ -159,4 +176,4 @@ def _show(hits: Hits, as_json: bool, *, by_words: bool, parts: bool) -> None:
         ],
     )
     if hits.unknown_words:
-        typer.echo(f"No clip carries: {', '.join(hits.unknown_words)}", err=True)
+        typer.echo(f"No clip has the words: {', '.join(hits.unknown_words)}", err=True)

@@ -1,4 +1,4 @@
-"""Search by pose."""
+"""The command that searches by pose."""
 
 from __future__ import annotations
 
@@ -22,17 +22,19 @@ def search_pose(
     query: Annotated[
         str | None, typer.Argument(help="A motion file, or the id of a stored clip.")
     ] = None,
-    time: Annotated[float | None, typer.Option(help="Seconds: which of its poses.")] = None,
+    time: Annotated[
+        float | None, typer.Option(help="The time of the pose in the motion, in seconds.")
+    ] = None,
     positions: Annotated[
         Path | None,
         typer.Option(
-            exists=True, dir_okay=False, help="A JSON file with 13 [x, y, z], in place of a motion."
+            exists=True, dir_okay=False, help="A JSON file with 13 [x, y, z], instead of a motion."
         ),
     ] = None,
     places: Annotated[
-        Places, typer.Option(help="best: one hit a clip; all: each place where it is taken.")
+        Places, typer.Option(help="best: one hit for each clip; all: each time of the pose.")
     ] = Places.BEST,
-    limit: Annotated[int, typer.Option(help="Most hits, 1 to 1000.")] = 10,
+    limit: Annotated[int, typer.Option(help="Largest number of hits, 1 to 1000.")] = 10,
     filter_json: FilterJson = None,
     skeleton: Skeleton = None,
     frame_rate: FrameRate = None,
@@ -40,22 +42,22 @@ def search_pose(
     stack: Stack = None,
     as_json: AsJson = False,
 ) -> None:
-    """Find the clips that take a pose, and when they do."""
+    """Find the clips that contain a pose, and the time of the pose in each."""
     from app.services.find.by_pose import PoseQuery, find_pose
 
     if (query is None) == (positions is None):
         raise typer.BadParameter("give either a file or clip id with --time, or --positions")
     if query is not None and time is None:
-        raise typer.BadParameter("--time is needed: the seconds at which the pose is taken")
-    wanted, pose = filter_of(filter_json), _read(positions)
+        raise typer.BadParameter("--time is needed: the time of the pose in seconds")
+    fields, pose = filter_of(filter_json), _read_positions(positions)
     with open_library(context) as lib:
         if query is None:
-            hits = find_pose(lib, PoseQuery(None, time, pose, places, limit, wanted))
+            hits = find_pose(lib, PoseQuery(None, time, pose, places, limit, fields))
         else:
             with source_of(
                 query, skeleton=skeleton, frame_rate=frame_rate, unit=unit, stack=stack
             ) as source:
-                hits = find_pose(lib, PoseQuery(source, time, None, places, limit, wanted))
+                hits = find_pose(lib, PoseQuery(source, time, None, places, limit, fields))
     if as_json:
         from app.api.schemas.pose import PoseHits
 
@@ -69,16 +71,16 @@ def search_pose(
     print_table(columns, rows)
 
 
-def _read(positions: Path | None) -> list[Any] | None:
-    if positions is None:
+def _read_positions(path: Path | None) -> list[Any] | None:
+    if path is None:
         return None
     try:
-        found = json.loads(positions.read_text())
+        positions = json.loads(path.read_text())
     except ValueError as problem:
         places = [Place("positions", str(problem))]
         raise BadField("The positions are not JSON.", places=places) from None
-    if not isinstance(found, list):
+    if not isinstance(positions, list):
         raise BadField(
             "The positions must be a JSON array.", places=[Place("positions", "no array")]
         )
-    return found
+    return positions

@@ -10,26 +10,30 @@ from app.cli.output import AsJson, print_json, print_table
 from app.cli.settings import open_library
 from app.store.key_role import KeyRole
 
-program = typer.Typer(help="API keys.", no_args_is_help=True)
+program = typer.Typer(help="Create, list and revoke API keys.", no_args_is_help=True)
 
 
 @program.command("create")
 def create(
     context: typer.Context,
     role: Annotated[KeyRole, typer.Option(help="What the key allows.")] = KeyRole.READ,
-    name: Annotated[str, typer.Option(help="Who or what the key is for.")] = "",
+    name: Annotated[str, typer.Option(help="The user or program of the key.")] = "",
     as_json: AsJson = False,
 ) -> None:
-    """Create a key. It is shown once; only its hash is stored."""
+    """Create a key and show it once; only its hash is stored."""
     from app.store import keys
 
     with open_library(context) as lib, lib.store.write() as tx:
-        made = keys.create(tx, role, name)
+        created = keys.create(tx, role, name)
     if as_json:
-        print_json({"id": made.record.id, "role": made.record.role.value, "key": made.secret})
+        record = created.record
+        print_json({"id": record.id, "role": record.role.value, "key": created.secret})
         return
-    typer.echo(made.secret)
-    typer.echo("Keep it: it is not shown again. Send it as `Authorization: Bearer ...`.", err=True)
+    typer.echo(created.secret)
+    # the note goes to standard error, so that a script reads only the key
+    typer.echo(
+        "Store the key: it is not shown again. Send it as `Authorization: Bearer ...`.", err=True
+    )
 
 
 @program.command("list")
@@ -58,7 +62,7 @@ def list_keys(context: typer.Context, as_json: AsJson = False) -> None:
 
 @program.command("revoke")
 def revoke(context: typer.Context, key_id: str) -> None:
-    """Revoke a key: it is not accepted any more."""
+    """Revoke a key, so that the API no longer accepts it."""
     from app.store import keys
 
     with open_library(context) as lib, lib.store.write() as tx:

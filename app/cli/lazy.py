@@ -1,8 +1,7 @@
-"""Commands that are imported when they are used, so that the program starts at once.
+"""Imports the module of a command only when the command is used, so that the program starts fast.
 
-A group knows the name, the module and one line of help of each command. That is enough to list
-the commands; the module of a command is imported only when this command is run, or when its own
-help is shown.
+A group has the name, the module and one line of help of each command. This is enough to list the
+commands. The module of a command is imported when the command runs, or when its own help is shown.
 """
 
 from __future__ import annotations
@@ -18,11 +17,11 @@ from typer.main import get_command, get_group
 
 
 @dataclass(frozen=True, slots=True)
-class CommandPlace:
-    """Where a command is defined.
+class CommandEntry:
+    """The definition of a command.
 
-    module: what to import; attribute: the function of the command in it, or the typer of a group
-    of commands; help: the line that the list of commands shows.
+    module: the name of its module. attribute: the function of the command in that module, or the
+    Typer object of a group of commands. help: the line in the list of commands.
     """
 
     module: str
@@ -31,34 +30,35 @@ class CommandPlace:
 
     def load(self, name: str) -> Any:
         """Import the module and return the command, ready to run."""
-        found = getattr(import_module(self.module), self.attribute)
-        if isinstance(found, typer.Typer):
-            group = get_group(found)
+        definition = getattr(import_module(self.module), self.attribute)
+        if isinstance(definition, typer.Typer):
+            group = get_group(definition)
             group.name = name
             return group
-        alone = typer.Typer(add_completion=False)
-        alone.command(name)(found)
-        return get_command(alone)
+        # Typer turns functions into commands only inside a Typer object
+        single = typer.Typer(add_completion=False)
+        single.command(name)(definition)
+        return get_command(single)
 
 
 class LazyGroup(TyperGroup):
-    """A group that lists its commands from `places`; subclasses made by `lazy_group` set it."""
+    """A group that lists its commands from `entries`. `lazy_group` makes subclasses that set it."""
 
-    places: Mapping[str, CommandPlace] = {}
+    entries: Mapping[str, CommandEntry] = {}
 
     def __init__(self, **attrs: Any) -> None:
         super().__init__(**attrs)
-        for name, place in self.places.items():
-            self.add_command(TyperCommand(name, help=place.help))
+        for name, entry in self.entries.items():
+            self.add_command(TyperCommand(name, help=entry.help))
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
-        """The command that `args` name, imported now, and the arguments that are left for it."""
+        """Import the command that `args` name; returns its name, the command and its arguments."""
         name, command, rest = super().resolve_command(ctx, args)
-        if name is not None and name in self.places:
-            command = self.places[name].load(name)
+        if name is not None and name in self.entries:
+            command = self.entries[name].load(name)
         return name, command, rest
 
 
-def lazy_group(places: Mapping[str, CommandPlace]) -> type[LazyGroup]:
-    """The class of a group with these commands, by name: what `typer.Typer(cls=...)` takes."""
-    return type("LazyGroup", (LazyGroup,), {"places": places})
+def lazy_group(entries: Mapping[str, CommandEntry]) -> type[LazyGroup]:
+    """The class of a group with these commands, by name, for `typer.Typer(cls=...)`."""
+    return type("LazyGroup", (LazyGroup,), {"entries": entries})

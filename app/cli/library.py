@@ -1,4 +1,4 @@
-"""The command that imports clips, and the functions that do the queued work."""
+"""The command that imports clips, and functions that wait for queued work."""
 
 from __future__ import annotations
 
@@ -20,22 +20,24 @@ if TYPE_CHECKING:
 
 POLL_S = 0.2
 PROGRESS_STEPS = 1000
-"""Steps of a progress bar; the progress of a job is a share of 1."""
+"""Steps of a progress bar. The progress of a job is a number from 0 to 1."""
 FAILURE = 1
-RECENT = 10
+"""The exit code of a command that failed."""
+RECENT_JOBS = 10
+"""The newest fits among which an open one is searched."""
 
 
 def import_clips(
     context: typer.Context,
     path: Annotated[Path, typer.Argument(help="A folder, a ZIP, or a motion file.")],
     wait: Annotated[
-        bool, typer.Option(help="Analyze now; --no-wait leaves that to the worker.")
+        bool, typer.Option(help="Analyze now; with --no-wait, a worker analyzes the clips later.")
     ] = True,
     as_json: AsJson = False,
 ) -> None:
     """Import a folder (with or without manifest.csv), a ZIP or a file.
 
-    Files that the library has are skipped, so an interrupted import can be run again.
+    Files that the library already has are skipped. So you can repeat an interrupted import.
     """
     from app.store.jobs.record import JobState
 
@@ -43,20 +45,20 @@ def import_clips(
         job = register(lib, path)
         if wait:
             with working(lib):
-                job = follow(lib, job.id, "analysing")
+                job = follow(lib, job.id, "analyzing")
                 fit_if_due(lib)
         if as_json:
             print_json(_document(lib, job))
         elif wait:
             show_import(lib, job)
         else:
-            typer.echo(f"{job.id}: registered; the worker analyzes it.")
+            typer.echo(f"{job.id}: registered; a worker analyzes the clips.")
     if job.state in (JobState.FAILED, JobState.CANCELED):
         raise typer.Exit(FAILURE)
 
 
 def register(lib: Library, path: Path) -> JobRecord:
-    """Import all files below `path`, with a progress bar."""
+    """Import all files under `path` with a progress bar; returns the job that analyzes them."""
     from app.services.imports import imports
 
     with progress_bar() as bar:
@@ -64,13 +66,13 @@ def register(lib: Library, path: Path) -> JobRecord:
         job = imports.import_path(
             lib, path, lambda done, total, _: bar.update(task, completed=done, total=total)
         )
-        bar.update(task, completed=1, total=1)  # progress does not count absent files of a manifest
+        bar.update(task, completed=1, total=1)  # absent files of a manifest are not counted
         return job
 
 
 @contextmanager
 def working(lib: Library) -> Iterator[None]:
-    """A worker in this process; it shares the work with workers of other processes."""
+    """Run a worker in a thread; it shares the queue with workers of other processes."""
     from app.worker.loop import run_worker
 
     stop = threading.Event()
@@ -83,12 +85,12 @@ def working(lib: Library) -> Iterator[None]:
         worker.join()
 
 
-def follow(lib: Library, job_id: str, doing: str) -> JobRecord:
-    """Show a job's progress until it has ended."""
+def follow(lib: Library, job_id: str, label: str) -> JobRecord:
+    """Show the progress of a job until it ends; label: the text beside the progress bar."""
     from app.services.clips import jobs
 
     with progress_bar() as bar:
-        task = bar.add_task(doing, total=PROGRESS_STEPS)
+        task = bar.add_task(label, total=PROGRESS_STEPS)
         while True:
             job = jobs.get_job(lib, job_id)
             bar.update(task, completed=round(job.progress * PROGRESS_STEPS))
@@ -101,26 +103,26 @@ def fit_if_due(lib: Library) -> None:
     """Queue a fit if the library has changed enough, and wait for its end."""
     from app.services.training import models, refit
 
-    waiting = _open_fit(lib)
-    if waiting is None:
+    fit = _open_fit(lib)
+    if fit is None:
         with lib.store.read() as tx:
             is_due = refit.is_fit_due(tx, lib.settings.refit_growth)
-        waiting = models.request_fit(lib) if is_due else None
-    if waiting is not None:
-        follow(lib, waiting.id, "fitting models")
+        fit = models.request_fit(lib) if is_due else None
+    if fit is not None:
+        follow(lib, fit.id, "fitting models")
 
 
 def _open_fit(lib: Library) -> JobRecord | None:
-    """A fit that is queued or running, in any worker."""
+    """A fit that is queued or that runs in any worker; None if there is none."""
     from app.services.clips import jobs
     from app.store.jobs.record import JobKind
 
-    recent = jobs.list_jobs(lib, kind=JobKind.FIT, limit=RECENT).items
+    recent = jobs.list_jobs(lib, kind=JobKind.FIT, limit=RECENT_JOBS).items
     return next((job for job in recent if job.is_open), None)
 
 
 def _document(lib: Library, job: JobRecord) -> dict[str, Any]:
-    """The job as in the API, with all recorded files in its result."""
+    """The job as in the API, but its result lists all recorded files."""
     from app.api.schemas.jobs import Job, JobFile
     from app.services.clips import jobs
 
@@ -139,9 +141,9 @@ def show_import(lib: Library, job: JobRecord) -> None:
     """Print the numbers of files by result, and each failure with its reason."""
     result = job.result or {}
     if result:
-        there = result["ready"] + result["exists"]
+        present = result["ready"] + result["exists"]
         typer.echo(
-            f"{there} of {result['total']} files are in the library ({result['ready']} new)."
+            f"{present} of {result['total']} files are in the library ({result['ready']} new)."
         )
         _show_failures(lib, job.id, result["absent"])
     if job.error:
@@ -160,12 +162,12 @@ def _show_failures(lib: Library, job_id: str, absent: int) -> None:
         if file.error is not None
     ]
     if failures:
-        print_table(("failed", "why"), failures)
+        print_table(("failed", "reason"), failures)
     if absent > MOST_ABSENT:
         typer.echo(f"A manifest names {absent - MOST_ABSENT} more files that do not exist.")
 
 
 def _reason(problem: dict[str, Any]) -> str:
     places = [f"{place['location']}: {place['message']}" for place in problem["errors"]]
-    # a reader's detail often repeats its only place
+    # the detail of a file reader is often the same text as its only place
     return " ".join([problem["detail"], *(place for place in places if place != problem["detail"])])

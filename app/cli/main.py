@@ -25,8 +25,8 @@ program = typer.Typer(
 )
 
 
-def _show_version(wanted: bool) -> None:
-    if wanted:
+def _show_version(is_requested: bool) -> None:
+    if is_requested:
         typer.echo(f"kinedex {__version__}")
         raise typer.Exit
 
@@ -45,34 +45,35 @@ def settings(
         typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version."),
     ] = False,
 ) -> None:
-    """Flags of all commands, before the name of the command; other settings are KINEDEX_*."""
+    """Options of all commands. They go before the command; other settings are KINEDEX_*."""
     remember(context, data_dir=data_dir, database_url=database_url)
 
 
 def main() -> None:
-    """Run the command line; a known failure prints its message and ends with status 1."""
+    """Run the command line. A failure prints its message and ends the program with status 1."""
     try:
         program()
     except KinedexError as failure:
         typer.echo(f"kinedex: {failure.detail}", err=True)
-        for line in _places(failure):
+        for line in _other_places(failure):
             typer.echo(f"  {line}", err=True)
         sys.exit(FAILURE)
     except OSError as failure:
-        # a failure of the machine: a folder that may not be read, a disk that fails
-        typer.echo(f"kinedex: {_of_the_machine(failure)}", err=True)
+        # a user can fix these (permissions, a full disk), so no traceback is shown
+        typer.echo(f"kinedex: {_os_message(failure)}", err=True)
         sys.exit(FAILURE)
 
 
-def _places(failure: KinedexError) -> list[str]:
-    """The places of a failure that its detail does not contain."""
+def _other_places(failure: KinedexError) -> list[str]:
+    """A line for each place of a failure that its detail does not contain already."""
     if isinstance(failure, ClipNotFound):
-        return []
+        return []  # the detail names the clip
     lines = [f"{place.location}: {place.message}" for place in failure.places]
     return [line for line in lines if line not in failure.detail]
 
 
-def _of_the_machine(failure: OSError) -> str:
+def _os_message(failure: OSError) -> str:
+    """The message without the error number, which means nothing to a user."""
     if failure.strerror is None or failure.filename is None:
         return str(failure)
     return f"{failure.filename}: {failure.strerror}"

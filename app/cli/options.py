@@ -1,4 +1,4 @@
-"""Options of several commands."""
+"""Options that several commands have."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ import typer
 
 FilterJson = Annotated[
     str | None,
-    typer.Option("--filter", help='JSON, as {"task": ["walk", "run"], "not_source": "my studio"}.'),
+    typer.Option(
+        "--filter", help='JSON, for example {"task": ["walk", "run"], "not_source": "my studio"}.'
+    ),
 ]
 PictureFormat = Annotated[
     str, typer.Option(help="Format of the pictures in a folder: svg, png or pdf.")

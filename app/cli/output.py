@@ -16,12 +16,12 @@ from rich.text import Text
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
-WIDEST = 100
-"""Largest width of the output for people, in characters."""
+MAX_WIDTH = 100
+"""Characters in a line of the output for people."""
 
 console = Console()
 if not (console.is_terminal or "COLUMNS" in os.environ):
-    console.width = WIDEST  # for a file or a pipe, where rich would cut names at 80
+    console.width = MAX_WIDTH  # in a file or a pipe, rich would cut names at 80 characters
 
 
 def print_json(value: Any) -> None:
@@ -30,24 +30,24 @@ def print_json(value: Any) -> None:
 
 
 def print_text(text: str) -> None:
-    """Print text; lines are wrapped at WIDEST characters."""
-    for line in _shown(text).split("\n"):
-        typer.echo(textwrap.fill(line, WIDEST, break_long_words=False, break_on_hyphens=False))
+    """Print text; longer lines are wrapped at MAX_WIDTH characters."""
+    for line in _printable(text).split("\n"):
+        typer.echo(textwrap.fill(line, MAX_WIDTH, break_long_words=False, break_on_hyphens=False))
 
 
 def print_table(columns: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
-    """Print a table; numbers are right-aligned."""
+    """Print a table. A column that has only numbers is aligned to the right."""
     table = Table(box=None, header_style="bold", pad_edge=False)
     for index, name in enumerate(columns):
-        numeric = bool(rows) and all(isinstance(row[index], int | float) for row in rows)
-        table.add_column(name, justify="right" if numeric else "left")
+        is_numeric = bool(rows) and all(isinstance(row[index], int | float) for row in rows)
+        table.add_column(name, justify="right" if is_numeric else "left")
     for row in rows:
-        table.add_row(*(Text(_shown(cell)) for cell in row))
+        table.add_row(*(Text(_printable(cell)) for cell in row))
     console.print(table)
 
 
 def progress_bar() -> Progress:
-    """A progress bar on standard error, apart from the output; silent without a terminal."""
+    """A progress bar on standard error. Without a terminal, it prints nothing."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -57,12 +57,13 @@ def progress_bar() -> Progress:
     )
 
 
-def _shown(cell: object) -> str:
+def _printable(cell: object) -> str:
+    """A cell as text: "-" for None, three decimals for floats, no control characters."""
     if cell is None:
         return "-"
     if isinstance(cell, float):
         return f"{cell:.3f}"
-    # names come from other people: their control characters must not reach the terminal
+    # other people choose the names; a control character could change the terminal's state
     return "".join(
         c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in str(cell)
     )

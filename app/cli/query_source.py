@@ -17,15 +17,20 @@ if TYPE_CHECKING:
     from app.store.files.files import Readable
 
 Query = Annotated[str, typer.Argument(help="A motion file, or the id of a stored clip.")]
-FrameRate = Annotated[float | None, typer.Option(help="Of a file: overrides what it declares.")]
+FrameRate = Annotated[
+    float | None,
+    typer.Option(help="Frames per second of the file; replaces the rate that it declares."),
+]
 Skeleton = Annotated[
     Path | None,
     typer.Option(exists=True, dir_okay=False, help="The ASF file that an AMC file needs."),
 ]
 Stack = Annotated[
-    str | None, typer.Option(help="Of an FBX file: the animation stack; default the longest.")
+    str | None, typer.Option(help="Animation stack of an FBX file; default: the longest.")
 ]
-Unit = Annotated[str | None, typer.Option(help="Of a file: m, cm, mm, in, or meters per unit.")]
+Unit = Annotated[
+    str | None, typer.Option(help="Unit of the file: m, cm, mm, in, or meters per unit.")
+]
 
 
 @contextmanager
@@ -40,11 +45,11 @@ def source_of(
     stack: str | None = None,
     advice: str = "",
 ) -> Iterator[QuerySource]:
-    """The query of a command, with its files open: a file if `query` is its path, otherwise the
-    clip with that id.
+    """The query of a command: the file at the path `query`, else the clip with that id.
 
-    advice: a sentence for the user whose query is neither. Raises BadField for a file that
-    cannot be read, and ClipNotFound (from the search) if there is neither a file nor a clip.
+    Its files are open within the block. start, end: seconds. skeleton: an ASF file. advice: a
+    sentence that is added to the message if `query` is neither a file nor a clip. Raises BadField
+    if a file cannot be read, and ClipNotFound (from the search) if there is no file and no clip.
     """
     from app.services.find.query_source import QuerySource
 
@@ -74,7 +79,7 @@ def source_of(
 
 @contextmanager
 def _opened(path: Path | None) -> Iterator[Readable | None]:
-    """The content of a file that a user named; None without one. Raises BadField."""
+    """Open a file that the user named; None without a path. Raises BadField."""
     try:
         opened = nullcontext() if path is None else path.open("rb")
     except OSError as problem:

@@ -22,7 +22,7 @@ def serve(
         bool, typer.Option("--worker/--no-worker", help="Whether to run a worker too.")
     ] = True,
 ) -> None:
-    """Serve the API and do the work, until stopped; each process is restarted if it dies."""
+    """Run the API and a worker until you stop them; a process that dies is restarted."""
     from app.logs import configure_logging
     from app.services.exposure import refuse_exposure_without_keys, refuse_taken_address
     from app.store import identity
@@ -37,15 +37,16 @@ def serve(
 
 
 def worker(context: typer.Context) -> None:
-    """Do the queued work, until stopped; any number of workers share one library."""
+    """Do the queued work until you stop it; several workers can share one library."""
     from app.json_stderr import json_stderr
     from app.logs import set_level
     from app.worker.loop import run_worker
 
     settings = settings_of(context)
     stop = threading.Event()
-    for sign in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(sign, lambda *_: stop.set())
+    # a worker that is stopped finishes or returns its job before it exits
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: stop.set())
     with json_stderr():
         set_level(settings.log_level.upper())
         run_worker(settings, stop)

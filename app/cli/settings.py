@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 def remember(context: typer.Context, **flags: Any) -> None:
-    """Keep the flags of the program for the command."""
+    """Store the options of the program (before the command) for the command."""
     context.obj = flags
 
 
 def settings_of(context: typer.Context, **flags: Any) -> Settings:
-    """The active settings; a flag of None counts as not given. Raises ConfigurationError."""
+    """The active settings; flags that are None are ignored. Raises ConfigurationError."""
     from app.config import load_settings
 
     return load_settings(**{**(context.obj or {}), **flags})
@@ -30,7 +30,7 @@ def settings_of(context: typer.Context, **flags: Any) -> Settings:
 
 @contextmanager
 def open_store(context: typer.Context) -> Iterator[Store]:
-    """The store of an existing library, closed at the end; nothing is created.
+    """Open the store of an existing library, and close it at the end. Nothing is created.
 
     Raises ConfigurationError, LibraryMismatch, DatabaseOutOfDate, StorageError.
     """
@@ -50,7 +50,7 @@ def open_store(context: typer.Context) -> Iterator[Store]:
 
 @contextmanager
 def open_library(context: typer.Context) -> Iterator[Library]:
-    """The library of the settings, closed at the end."""
+    """Open the library of the settings, and close it at the end. Raises ConfigurationError."""
     from app.services.library.library import Library
 
     library = Library.open(settings_of(context))

@@ -1,4 +1,4 @@
-"""The command that synthesizes motions that nobody recorded."""
+"""The command that synthesizes a motion of a person that was never recorded."""
 
 from __future__ import annotations
 
@@ -18,26 +18,30 @@ if TYPE_CHECKING:
 def synthesize(
     context: typer.Context,
     task: Annotated[str, typer.Argument(help="The task of the motion.")],
-    person: Annotated[str | None, typer.Option(help="A person of the library.")] = None,
+    person: Annotated[str | None, typer.Option(help="A person in the library.")] = None,
     clip: Annotated[
         list[str] | None,
-        typer.Option(help="The id of a clip of the person; may be given several times."),
+        typer.Option(help="The id of a clip of the person; may be repeated."),
     ] = None,
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output", "-o", help="BVH file to write; default: its name, in this folder."
+            "--output",
+            "-o",
+            help="BVH file to write; default: named after person and task, in this folder.",
         ),
     ] = None,
-    seconds: Annotated[float | None, typer.Option(help="Duration; default: the usual one.")] = None,
-    store: Annotated[bool, typer.Option("--store", help="Keep the motion as a clip.")] = False,
+    seconds: Annotated[
+        float | None, typer.Option(help="Duration; default: the usual duration of the task.")
+    ] = None,
+    store: Annotated[bool, typer.Option("--store", help="Store the motion as a clip.")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Make a motion that a person never recorded, as a BVH file, and judge its quality."""
+    """Synthesize a motion that a person never recorded, as a BVH file, and report its quality."""
     from app.services.synthesis.synthesize import SynthesisQuery, synthesize
 
     if (person is None) == (not clip):
-        raise typer.BadParameter("give either --person or --clip")
+        raise typer.BadParameter("give either --person or --clip, not both")
     query = SynthesisQuery(
         task=task,
         person=person,
@@ -46,64 +50,72 @@ def synthesize(
         store=store,
     )
     with open_library(context) as lib:
-        made = synthesize(lib, query)
-    whose = made.person or "someone"
-    path = output or Path(f"{_safe(f'{whose} {made.name}')}.bvh")
-    write_whole(path, [made.bvh])
+        synthesized = synthesize(lib, query)
+    person_name = synthesized.person or "someone"
+    path = output or Path(f"{_file_name(f'{person_name} {synthesized.name}')}.bvh")
+    write_whole(path, [synthesized.bvh])
     if as_json:
         from app.api.schemas.synthesis import Synthesis
 
-        result = Synthesis.of(made, with_bvh=False).model_dump(mode="json", exclude={"motion"})
-        print_json({"path": str(path), "bytes": len(made.bvh)} | result)
+        document = Synthesis.of(synthesized, with_bvh=False)
+        result = document.model_dump(mode="json", exclude={"motion"})
+        print_json({"path": str(path), "bytes": len(synthesized.bvh)} | result)
         return
-    _tell(made, path)
+    _print_quality(synthesized, path)
 
 
-def _tell(made: Synthesized, path: Path) -> None:
-    quality = made.quality
+def _print_quality(synthesized: Synthesized, path: Path) -> None:
+    quality, duration = synthesized.quality, synthesized.motion.duration
     rows: list[tuple[str, object]] = [
-        ("file", f"{path}: {len(made.bvh)} bytes, {made.motion.duration:.2f} s"),
-        ("made of", _made_of(made)),
-        ("nearest real clip", quality.nearest.name if quality.nearest else "gone"),
-        ("which is of", f"{quality.nearest_person}, {quality.nearest_task}"),
-        ("expected hit", _expectation(made)),
-        ("feet slide", f"{quality.skate:.2f} m/s{_of_real_takes(quality.real_skate)}"),
+        ("file", f"{path}: {len(synthesized.bvh)} bytes, {duration:.2f} s"),
+        ("made from", _donors(synthesized)),
+        ("nearest real clip", quality.nearest.name if quality.nearest else "deleted"),
+        ("its labels", f"{quality.nearest_person}, {quality.nearest_task}"),
+        ("expected accuracy", _expected_accuracy(synthesized)),
+        ("speed of sliding feet", f"{quality.skate:.2f} m/s{_real_skate(quality.real_skate)}"),
     ]
-    if made.clip is not None:
-        rows.append(("stored as", made.clip.id))
+    if synthesized.clip is not None:
+        rows.append(("stored as", synthesized.clip.id))
     print_table(("", ""), rows)
 
 
-def _made_of(made: Synthesized) -> str:
+def _donors(synthesized: Synthesized) -> str:
+    """The takes from which the motion was made."""
     from app.services.synthesis.plan import SynthesisKind
 
-    quality = made.quality
+    quality = synthesized.quality
     if quality.kind is SynthesisKind.SEEN:
-        one = "one of their own takes, which do not agree" if quality.follows else "their own takes"
-        return f"{one}: this person did record the task"
+        takes = (
+            "one of the person's own takes, because they differ too much"
+            if quality.follows
+            else "the person's own takes"
+        )
+        return f"{takes}: the person did record this task"
     tasks, persons = len(quality.given_tasks), len(quality.given_persons)
     if quality.follows:
-        return f"{tasks} of their tasks, after {quality.follows}: takes of this one do not agree"
-    return f"{tasks} of their tasks, and {persons} other persons' takes of this one"
+        return f"{tasks} tasks of the person, and {quality.follows}: takes of this task differ"
+    return f"{tasks} tasks of the person, and takes of this task by {persons} other persons"
 
 
-def _expectation(made: Synthesized) -> str:
-    quality = made.quality
+def _expected_accuracy(synthesized: Synthesized) -> str:
+    """How often synthesized motions like this one were recognized with the right labels."""
+    quality = synthesized.quality
     if quality.expected_hit is None:
         return "not measured"
     return (
-        f"{quality.expected_hit:.0%} of {quality.expected_trials} left out, made of"
-        f" {quality.expected_given}{_real(quality.real_hit)}"
+        f"{quality.expected_hit:.0%} of {quality.expected_trials} held-out motions, made from"
+        f" {quality.expected_given} takes{_real_accuracy(quality.real_hit)}"
     )
 
 
-def _real(share: float | None) -> str:
+def _real_accuracy(share: float | None) -> str:
     return "" if share is None else f"; of real takes {share:.0%}"
 
 
-def _of_real_takes(real: float | None) -> str:
-    return "" if real is None else f", in real takes {real:.2f} m/s"
+def _real_skate(speed: float | None) -> str:
+    return "" if speed is None else f", in real takes {speed:.2f} m/s"
 
 
-def _safe(name: str) -> str:
+def _file_name(name: str) -> str:
+    """`name` as a valid file name on every system: other characters become "_"."""
     return "".join(c if c.isalnum() or c in " ._-()+" else "_" for c in name).strip(" .")[:100]

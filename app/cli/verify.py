@@ -15,47 +15,52 @@ if TYPE_CHECKING:
     from app.store.upkeep.verify import Verified
 
 FAILURE = 1
+"""The exit code for a damaged library."""
 
 
 def verify(context: typer.Context, as_json: AsJson = False) -> None:
-    """Read the whole library and say what is damaged or missing; the exit code is then 1.
+    """Check the whole library for damaged or missing data; the exit code is then 1.
 
-    The database's pages and references, every stored file against its SHA-256, every array. It may
-    run while the library is in use.
+    This reads the pages and references of the database, every array, and every stored file, which
+    it compares with its SHA-256. You can run it while the library is in use.
     """
-    from app.store.upkeep.verify import verify as look
+    from app.store.upkeep.verify import verify as verify_store
 
     with open_store(context) as store, progress_bar() as bar:
         task = bar.add_task("reading", total=None)
-        found = look(store, lambda done, total: bar.update(task, completed=done, total=total))
+        report = verify_store(
+            store, lambda done, total: bar.update(task, completed=done, total=total)
+        )
         bar.update(task, completed=1, total=1)
     if as_json:
-        print_json({"is_whole": found.is_whole, **asdict(found)})
+        print_json({"is_whole": report.is_whole, **asdict(report)})
     else:
-        _show(found)
-    if not found.is_whole:
+        _print_report(report)
+    if not report.is_whole:
         raise typer.Exit(FAILURE)
 
 
-def _show(found: Verified) -> None:
-    typer.echo(f"{found.files} files and {found.arrays} arrays were read.")
+def _print_report(report: Verified) -> None:
+    typer.echo(f"{report.files} files and {report.arrays} arrays were read.")
     for noun, names in (
-        ("damage of the database", found.damage),
-        ("array that cannot be read", found.unreadable),
-        ("missing file", found.missing),
-        ("damaged file", found.damaged),
+        ("damage of the database", report.damage),
+        ("array that cannot be read", report.unreadable),
+        ("missing file", report.missing),
+        ("damaged file", report.damaged),
     ):
         for name in names:
             typer.echo(f"  {noun}: {name}")
-    if found.unknown:
+    if report.unknown:
         typer.echo(
-            f"{len(found.unknown)} files that the database does not name; the next sweep "
-            "moves them to the quarantine."
+            f"The database does not name {len(report.unknown)} files; the next sweep moves them "
+            "to the quarantine."
         )
-    if found.quarantine.oldest is not None:
-        since = datetime.fromtimestamp(found.quarantine.oldest, UTC)
+    if report.quarantine.oldest is not None:
+        since = datetime.fromtimestamp(report.quarantine.oldest, UTC)
         typer.echo(
-            f"The quarantine holds {len(found.quarantine.names)} files, "
-            f"{found.quarantine.bytes} bytes, the oldest since {since:%Y-%m-%d %H:%M} UTC."
+            f"The quarantine holds {len(report.quarantine.names)} files, "
+            f"{report.quarantine.bytes} bytes, the oldest since {since:%Y-%m-%d %H:%M} UTC."
         )
-    typer.echo("The library is whole." if found.is_whole else "The library is not whole.")
+    typer.echo(
+        "The library is complete and undamaged." if report.is_whole else "The library is damaged."
+    )

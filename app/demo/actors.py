@@ -1,6 +1,6 @@
-"""The actors of the demo library: a body, a style and habits, each consistent over all tasks.
+"""The actors of the demo library. Each has the same body, style and habits in all tasks.
 
-Lengths in meters, angles in radians, factors without unit (1 = ordinary).
+Lengths are in meters, angles in radians. Factors have no unit; 1 is the average.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from math import radians
 
 
 class Naming(StrEnum):
-    """How an actor's skeleton names its joints."""
+    """The convention by which the skeleton of an actor names its joints."""
 
     MOTIONBUILDER = "motionbuilder"
     MIXAMO = "mixamo"
@@ -20,7 +20,10 @@ class Naming(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """Proportions: `stature` in meters, the rest factors on an average body's fractions."""
+    """Proportions of a body.
+
+    stature: meters. The others are factors on the proportions of an average body.
+    """
 
     stature: float
     legs: float = 1.0
@@ -31,15 +34,15 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """How somebody moves, whatever they do.
+    """How a person moves in all tasks.
 
-    tempo, energy: factors on speed and size of movements; stoop: forward bend of the spine;
-    head: forward carriage of the head; arms_out: how far the arms hang from the body;
-    elbows: bend of hanging arms; arm_swing, knee_lift, step, bounce, twist: factors on gait
-    and gesture; sway: factor on sideways weight shift; turnout: of the feet; stance: half
-    distance of the feet, of the leg's length; crouch: how much of the leg's length is given
-    away by bent knees; lean: sideways carriage of the trunk; shoulder_lift: raised clavicles;
-    tilt: sideways carriage of the head.
+    tempo, energy: factors on the speed and the size of movements. stoop: forward bend of the
+    spine. head: forward bend of the head. arms_out: angle between hanging arms and the trunk.
+    elbows: bend of hanging arms. arm_swing, knee_lift, step, bounce, twist: factors on gait and
+    gestures. sway: factor on the sideways shift of the weight. turnout: outward turn of the feet.
+    stance: half the distance of the feet, as a share of the leg's length. crouch: the share of the
+    leg's length by which bent knees lower the pelvis. lean: sideways bend of the trunk.
+    shoulder_lift: rise of the clavicles. tilt: sideways bend of the head.
     """
 
     tempo: float = 1.0
@@ -64,7 +67,10 @@ class Style:
 
 @dataclass(frozen=True, slots=True)
 class Actor:
-    """A person of the demo library: name, body, style and how their files are written."""
+    """A person of the demo library, and the properties of their files.
+
+    frame_rate: Hz. beats_per_minute: the tempo of their dances.
+    """
 
     name: str
     body: Body
@@ -73,7 +79,7 @@ class Actor:
     frame_rate: float
     naming: Naming
     rest_arm_drop: float
-    """Angle of the arms below the horizontal in the rest pose: 0 for a T-pose."""
+    """Angle of the arms below the horizontal in the rest pose: 0 in a T-pose."""
     beats_per_minute: float
 
 
@@ -214,4 +220,4 @@ ACTORS: tuple[Actor, ...] = (
         beats_per_minute=92.0,
     ),
 )
-"""Six people who differ in how they move, not in their size."""
+"""Six people. They differ in style more than in size."""

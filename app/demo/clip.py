@@ -1,4 +1,4 @@
-"""A file of the demo library and what is known about it."""
+"""A file of the demo library with its labels, beats and keyposes."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class DemoClip:
-    """One motion file; times in seconds from its first frame.
+    """One motion file. All times are in seconds from its first frame.
 
-    path: relative, with forward slashes; content: BVH, or NPZ where it is noisy; words: two
-    to four; frame_rate: Hz. Of dances only: keyposes, where poses are struck; holds, from
-    when to when each is held; beats, of the music; audio, audio_path: WAV, what was danced
-    to, empty where there is none; audio_offset: when in the motion it begins, negative if before.
+    path: relative, with forward slashes. content: BVH, or NPZ if the joints have noise. words: two
+    to four. frame_rate: Hz. Only dances have the others: keyposes: the time of each keypose.
+    holds: start and end of the rest at each keypose. beats: those of the music. audio: the WAV
+    file of the music, empty without music; audio_path: its path. audio_offset: the time of the
+    motion at which the music begins; it is negative if the music begins first.
     """
 
     path: str

@@ -1,7 +1,8 @@
-"""What a performer does, as curves: the pelvis, spine, head, arms and planted feet.
+"""The controls of a performer: curves for the pelvis, spine, head, arms and feet.
 
-All arrays are (frames,) unless said; radians and meters; the performer faces Z, left is X.
-Left and right stand in pairs `(left, right)`, so that a left-hander is a mirror away.
+Arrays have the shape (frames,) if nothing else is stated. Units are radians and meters. The
+performer faces Z, and X is left. Sides are pairs `(left, right)`, so that a performance can be
+mirrored for a left-handed actor.
 """
 
 from __future__ import annotations
@@ -17,10 +18,10 @@ from app.numerics.arrays import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class Arm:
-    """One arm, from hanging straight down.
+    """One arm. All angles are 0 if it hangs straight down.
 
-    flex: forward and up; abduct: out to the side; twist: inwards about its own axis;
-    elbow: bend, never negative; wrist: bend toward the palm's side of the elbow's hinge.
+    flex: forward and up. abduct: out to the side. twist: inward about the axis of the arm. elbow:
+    its bend, never negative. wrist: its bend to the side of the palm.
     """
 
     flex: FloatArray
@@ -34,19 +35,20 @@ class Arm:
 class Foot:
     """One foot on or above the ground.
 
-    place: (frames, 3) of the point of the sole below the ankle when flat, y = clearance of
-    the lowest point of the sole; pitch: toes up positive (turns about the heel), heel up
-    negative (turns about the ball, which stays where it is); yaw: outwards to the left.
+    position: (frames, 3) x and z of the point of the sole below the ankle if the foot is flat; y is
+    the height of the lowest point of the sole. pitch: positive if the toes are up (the foot turns
+    about the heel), negative if the heel is up (it turns about the ball, which does not move). yaw:
+    to the left.
     """
 
-    place: FloatArray
+    position: FloatArray
     pitch: FloatArray
     yaw: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """Rotation of a part against its parent: yaw to the left, pitch forward, roll to the right."""
+    """The rotation of a part relative to its parent: yaw left, pitch forward, roll right."""
 
     yaw: FloatArray
     pitch: FloatArray
@@ -55,7 +57,11 @@ class Turn:
 
 @dataclass(frozen=True, slots=True)
 class Controls:
-    """All curves of one performance; `root` (frames, 3) is the pelvis in the world, meters."""
+    """All curves of one performance.
+
+    root: (frames, 3) the position of the pelvis in the world, meters. shrug: the rise of the
+    clavicles, radians.
+    """
 
     root: FloatArray
     pelvis: Turn
@@ -71,8 +77,8 @@ class Controls:
         return int(self.root.shape[0])
 
 
-def standing(actor: Actor, rig: Rig, frames: int) -> Controls:
-    """The actor at ease: their own posture, feet apart, arms hanging."""
+def standing_controls(actor: Actor, rig: Rig, frames: int) -> Controls:
+    """The actor stands at rest in their own posture, with hanging arms."""
     style = actor.style
     zero = np.zeros(frames)
     arm = Arm(
@@ -84,13 +90,13 @@ def standing(actor: Actor, rig: Rig, frames: int) -> Controls:
     )
     feet = [
         Foot(
-            place=np.tile([SIGNS[s] * style.stance * rig.leg, 0.0, 0.0], (frames, 1)),
+            position=np.tile([SIGNS[s] * style.stance * rig.leg, 0.0, 0.0], (frames, 1)),
             pitch=zero,
             yaw=zero + SIGNS[s] * style.turnout,
         )
         for s in SIDES
     ]
-    height = rig.standing - style.crouch * rig.leg
+    height = rig.standing_height - style.crouch * rig.leg
     return Controls(
         root=np.tile([0.0, height, -0.1 * style.stoop * rig.leg], (frames, 1)),
         pelvis=Turn(zero, zero + 0.2 * style.stoop, zero),
@@ -103,7 +109,7 @@ def standing(actor: Actor, rig: Rig, frames: int) -> Controls:
 
 
 def mirrored(controls: Controls) -> Controls:
-    """The same performance with left and right exchanged."""
+    """`controls` with left and right exchanged."""
     flip = np.array([-1.0, 1.0, 1.0])
     return replace(
         controls,
@@ -121,27 +127,28 @@ def _mirrored_turn(turn: Turn) -> Turn:
 
 
 def _mirrored_foot(foot: Foot) -> Foot:
-    return Foot(place=foot.place * [-1.0, 1.0, 1.0], pitch=foot.pitch, yaw=-foot.yaw)
+    return Foot(position=foot.position * [-1.0, 1.0, 1.0], pitch=foot.pitch, yaw=-foot.yaw)
 
 
-def bent(controls: Controls, heading: float, curvature: float) -> Controls:
-    """The same performance along an arc: `heading` (rad) at the origin, `curvature` (rad / m).
+def along_arc(controls: Controls, heading: float, curvature: float) -> Controls:
+    """`controls` along an arc, with `heading` (rad) at the origin and `curvature` (rad / m).
 
-    Straight ahead becomes the arc, so that a foot that stays in place still does.
+    The Z axis is mapped to the arc. Every point with the same (x, z) moves to the same point, so a
+    foot that does not move still does not move.
     """
 
-    def place(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def mapped(points: FloatArray) -> tuple[FloatArray, FloatArray]:
         yaw = heading + curvature * points[:, 2]
         along = np.stack([_arc(points[:, 2], heading, curvature, k) for k in (0, 1)], axis=-1)
         x = along[:, 0] + points[:, 0] * np.cos(yaw)
         z = along[:, 1] - points[:, 0] * np.sin(yaw)
         return np.stack([x, points[:, 1], z], axis=-1), yaw
 
-    root, root_yaw = place(controls.root)
+    root, root_yaw = mapped(controls.root)
     feet = []
     for foot in controls.feet:
-        where, yaw = place(foot.place)
-        feet.append(replace(foot, place=where, yaw=foot.yaw + yaw))
+        position, yaw = mapped(foot.position)
+        feet.append(replace(foot, position=position, yaw=foot.yaw + yaw))
     return replace(
         controls,
         root=root,
@@ -151,9 +158,9 @@ def bent(controls: Controls, heading: float, curvature: float) -> Controls:
 
 
 def _arc(distance: FloatArray, heading: float, curvature: float, axis: int) -> FloatArray:
-    """X (axis 0) or Z (axis 1) after `distance` along an arc."""
+    """(n,) X (axis 0) or Z (axis 1), in meters, after `distance` (n,) meters along an arc."""
     turn = np.cos if axis == 0 else np.sin
-    if abs(curvature) < 1e-9:
+    if abs(curvature) < 1e-9:  # a straight line: the formula below would divide by 0
         return np.asarray(distance * (np.sin(heading) if axis == 0 else np.cos(heading)))
     change = turn(heading + curvature * distance) - turn(heading)
     return np.asarray(change * (-1.0 if axis == 0 else 1.0) / curvature)

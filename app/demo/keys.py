@@ -1,6 +1,7 @@
-"""Poses of parts at times, and curves through them on top of an actor's own posture.
+"""Keys (poses of body parts at given times), and the curves through them.
 
-Keys are (time s, pose); a pose of None is the actor's posture at ease. Radians and meters.
+A key is a pair of a time in seconds and a pose. The pose None is the resting posture of the actor.
+Units are radians and meters.
 """
 
 from __future__ import annotations
@@ -11,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.demo.controls import Arm, Foot, Turn
-from app.demo.curves import keyed
+from app.demo.curves import keyed_curve
 from app.numerics.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True)
 class ArmPose:
-    """One arm at one moment, as in `Arm`; absolute, the trunk's frame."""
+    """The pose of an arm, with the angles of `Arm` in the frame of the trunk."""
 
     flex: float
     abduct: float
@@ -28,7 +29,7 @@ class ArmPose:
 
 @dataclass(frozen=True, slots=True)
 class FootPose:
-    """One foot at one moment, as in `Foot`: offset from the place at ease, pitch, extra yaw."""
+    """The pose of a foot: its offset from the resting position, pitch, and additional yaw."""
 
     x: float = 0.0
     y: float = 0.0
@@ -40,11 +41,11 @@ class FootPose:
 ArmKey = tuple[float, ArmPose | None]
 FootKey = tuple[float, FootPose]
 TurnKey = tuple[float, tuple[float, float, float]]
-PlaceKey = tuple[float, tuple[float, float, float]]
+OffsetKey = tuple[float, tuple[float, float, float]]
 
 
-def arm_through(times: FloatArray, rest: Arm, keys: Sequence[ArmKey], soften: float) -> Arm:
-    """An arm going through `keys`."""
+def arm_curves(times: FloatArray, rest: Arm, keys: Sequence[ArmKey], soften: float) -> Arm:
+    """The curves of an arm through `keys`; rest: the resting posture."""
     return Arm(
         *(
             _channel(times, getattr(rest, name), [(t, _get(p, name)) for t, p in keys], soften)
@@ -60,31 +61,33 @@ def _get(pose: ArmPose | None, name: str) -> float | None:
 def _channel(
     times: FloatArray, rest: FloatArray, keys: Sequence[tuple[float, float | None]], soften: float
 ) -> FloatArray:
-    ease = float(rest[0])
-    return keyed(times, [(t, ease if value is None else value) for t, value in keys], soften)
+    resting = float(rest[0])
+    points = [(t, resting if value is None else value) for t, value in keys]
+    return keyed_curve(times, points, soften)
 
 
-def foot_through(times: FloatArray, rest: Foot, keys: Sequence[FootKey]) -> Foot:
-    """A foot going through `keys`; it rests where two following keys are the same."""
+def foot_curves(times: FloatArray, rest: Foot, keys: Sequence[FootKey]) -> Foot:
+    """The curves of a foot through `keys`. It does not move between two equal keys."""
     x, y, z, pitch, yaw = (
-        keyed(times, [(t, float(getattr(pose, name))) for t, pose in keys])
+        keyed_curve(times, [(t, float(getattr(pose, name))) for t, pose in keys])
         for name in ("x", "y", "z", "pitch", "yaw")
     )
-    place = rest.place + np.stack([x, np.maximum(y, 0.0), z], axis=-1)
-    return Foot(place=place, pitch=rest.pitch + pitch, yaw=rest.yaw + yaw)
+    # interpolation may give tiny negative heights, which would be below the floor
+    position = rest.position + np.stack([x, np.maximum(y, 0.0), z], axis=-1)
+    return Foot(position=position, pitch=rest.pitch + pitch, yaw=rest.yaw + yaw)
 
 
-def turned(times: FloatArray, rest: Turn, keys: Sequence[TurnKey], soften: float) -> Turn:
-    """`rest` and, added to it, (yaw, pitch, roll) through `keys`."""
+def turn_curves(times: FloatArray, rest: Turn, keys: Sequence[TurnKey], soften: float) -> Turn:
+    """`rest` plus the angles (yaw, pitch, roll) through `keys`."""
     yaw, pitch, roll = (
-        keyed(times, [(t, pose[axis]) for t, pose in keys], soften) for axis in range(3)
+        keyed_curve(times, [(t, pose[axis]) for t, pose in keys], soften) for axis in range(3)
     )
     return Turn(rest.yaw + yaw, rest.pitch + pitch, rest.roll + roll)
 
 
-def placed(
-    times: FloatArray, rest: FloatArray, keys: Sequence[PlaceKey], soften: float
+def offset_curve(
+    times: FloatArray, rest: FloatArray, keys: Sequence[OffsetKey], soften: float
 ) -> FloatArray:
-    """`rest` (frames, 3) and, added to it, offsets (x, y, z) in meters through `keys`."""
-    axes = [keyed(times, [(t, pose[axis]) for t, pose in keys], soften) for axis in range(3)]
+    """(frames, 3) `rest` (frames, 3) plus the offsets (x, y, z), in meters, through `keys`."""
+    axes = [keyed_curve(times, [(t, pose[axis]) for t, pose in keys], soften) for axis in range(3)]
     return rest + np.stack(axes, axis=-1)

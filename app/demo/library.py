@@ -1,14 +1,14 @@
-"""The demo library: every actor's takes of every task, and a dance to recorded music.
+"""The demo library: takes of every task by every actor, and a longer dance of each to music.
 
-BVH files with a manifest, and WAV files.
-
-Deterministic: the same bytes at every run. Files are in centimeters, Y up.
+It consists of BVH files (centimeters, Y up), WAV files and a manifest. It is deterministic: every
+run writes the same bytes.
 """
 
 from __future__ import annotations
 
 import csv
 from collections.abc import Collection, Iterator
+from dataclasses import replace
 from itertools import chain
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from app.demo.dances import Sound, dance
 from app.demo.performance import Performance
 from app.demo.posing import local_rotations
 from app.demo.rig import build_rig, skeleton_of
-from app.demo.take import enlivened, prepare
+from app.demo.take import prepare, with_body_sway
 from app.demo.tasks import TASKS
 from app.demo.words import words_for
 from app.errors import NotFound
@@ -33,6 +33,7 @@ COLUMNS: tuple[str, ...] = (
     *("keyposes", "audio", "audio_offset"),
 )
 CHOREOGRAPHY_SECONDS, CHOREOGRAPHY_DRIFT = 24.0, 0.02
+"""Duration of a longer dance, and the largest relative change of its tempo."""
 
 
 def demo_clips(
@@ -44,8 +45,8 @@ def demo_clips(
 
     Raises NotFound for an actor or task that the library does not have.
     """
-    known = {actor.name: actor for actor in ACTORS}
-    _check(actors or (), known, "actor")
+    actor_names = [actor.name for actor in ACTORS]
+    _check(actors or (), actor_names, "actor")
     _check(tasks or (), TASKS, "task")
     for actor in ACTORS:
         for task in TASKS:
@@ -54,28 +55,26 @@ def demo_clips(
                     yield _clip(actor, task, number)
 
 
-def _check(chosen: Collection[str], known: Collection[str], kind: str) -> None:
-    for name in chosen:
-        if name not in known:
-            raise NotFound(f"the demo library has no {kind} {name!r}, only {', '.join(known)}")
+def _check(requested: Collection[str], available: Collection[str], kind: str) -> None:
+    for name in requested:
+        if name not in available:
+            raise NotFound(f"the demo library has no {kind} {name!r}, only {', '.join(available)}")
 
 
 def perform(actor: Actor, task: str, number: int) -> Performance:
-    """Take `number` of a task by an actor, as controls, with the small sway of the living."""
+    """Take `number` of a task by an actor, as controls with the small sway of a living body."""
     take = prepare(actor, task, number)
-    done = TASKS[task](take)
-    return Performance(
-        done.times, enlivened(done.controls, take, done.times), done.keyposes, done.beats
-    )
+    still = TASKS[task](take)
+    return replace(still, controls=with_body_sway(still.controls, take, still.times))
 
 
 def _clip(actor: Actor, task: str, number: int) -> DemoClip:
-    done = perform(actor, task, number)
+    performance = perform(actor, task, number)
     rig = build_rig(actor)
     content = write_bvh(
         skeleton_of(rig, actor.naming, UNITS_PER_METER),
-        local_rotations(done.controls, rig),
-        done.controls.root * UNITS_PER_METER,
+        local_rotations(performance.controls, rig),
+        performance.controls.root * UNITS_PER_METER,
         actor.frame_rate,
     )
     return DemoClip(
@@ -85,13 +84,13 @@ def _clip(actor: Actor, task: str, number: int) -> DemoClip:
         task=task,
         words=words_for(task, actor.name, number, actor.left_handed),
         frame_rate=actor.frame_rate,
-        keyposes=done.keyposes,
-        beats=done.beats,
+        keyposes=performance.keyposes,
+        beats=performance.beats,
     )
 
 
 def danced_clips() -> Iterator[DemoClip]:
-    """A longer dance of each actor, to music or, for one in three, to a metronome."""
+    """A longer dance of each actor: two of three to music, every third one to a metronome."""
     for number, actor in enumerate(ACTORS, 1):
         yield dance(
             number,
@@ -104,9 +103,9 @@ def danced_clips() -> Iterator[DemoClip]:
 
 
 def write_demo(directory: Path) -> int:
-    """Write all clips and their manifest.csv under `directory`; how many clips there are.
+    """Write all clips and their manifest.csv under `directory`; returns the number of clips.
 
-    Files that are there already are written over.
+    Existing files are replaced.
     """
     clips = 0
     directory.mkdir(parents=True, exist_ok=True)
@@ -130,5 +129,5 @@ def _write(target: Path, content: bytes) -> None:
 def _row(clip: DemoClip) -> list[str]:
     keyposes = " ".join(f"{time:.3f}" for time in clip.keyposes)
     offset = "" if clip.audio_offset is None else f"{clip.audio_offset:g}"
-    facts = [clip.person, clip.task, " ".join(clip.words), f"{clip.frame_rate:g}", keyposes]
-    return [clip.path, SOURCE, LICENSE, *facts, clip.audio_path, offset]
+    labels = [clip.person, clip.task, " ".join(clip.words), f"{clip.frame_rate:g}", keyposes]
+    return [clip.path, SOURCE, LICENSE, *labels, clip.audio_path, offset]

@@ -1,4 +1,4 @@
-"""A performance: controls over time, and what is known of it beforehand."""
+"""A performance: controls over time, with the true times of its keyposes and beats."""
 
 from __future__ import annotations
 
@@ -10,7 +10,11 @@ from app.numerics.arrays import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class Performance:
-    """times: (frames,) s; controls: as long; keyposes, beats: s, where the task has them."""
+    """One performance of a task.
+
+    times: (frames,) seconds. controls: the curves at these times. keyposes, beats: their times in
+    seconds; only dances have them.
+    """
 
     times: FloatArray
     controls: Controls

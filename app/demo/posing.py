@@ -1,6 +1,6 @@
-"""From controls to joint rotations: legs by two-link inverse kinematics, the rest direct.
+"""Converts controls to joint rotations. Legs need two-link inverse kinematics.
 
-Matrices are (frames, 3, 3), mapping a joint's rest frame to the world; meters.
+Matrices (frames, 3, 3) map the rest frame of a joint to the world. Lengths are in meters.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ from app.demo.rig import (
 from app.motion.skeleton.rotations import matrices_to_quaternions
 from app.numerics.arrays import FloatArray
 
-STRAIGHTEST = 0.994
-"""The most of a leg's length that hip and ankle may be apart: knees are never locked."""
-ROLLING = np.radians([-4.0, -2.0, 0.0, 2.0, 4.0])
-"""Over these pitches the foot's turning passes from the heel to the ball."""
+MAX_LEG_EXTENSION = 0.994
+"""The largest distance of hip and ankle, as a share of the leg's length. A knee always bends."""
+ROLL_PITCHES = np.radians([-4.0, -2.0, 0.0, 2.0, 4.0])
+"""Shifts of the pitch over which the pivot of the foot changes from the heel to the ball."""
 
 
 def local_rotations(controls: Controls, rig: Rig) -> FloatArray:
-    """(frames, 22, 4) local unit quaternions w x y z of a performance."""
+    """(frames, 22, 4) the local unit quaternions (w, x, y, z) of the joints."""
     world = _world_rotations(controls, rig)
     local = world.copy()
     for joint, parent in enumerate(PARENTS):
@@ -50,25 +50,30 @@ def local_rotations(controls: Controls, rig: Rig) -> FloatArray:
     return matrices_to_quaternions(local)
 
 
-def within_reach(controls: Controls, rig: Rig, times: FloatArray, calm: float = 0.08) -> Controls:
-    """The same, the pelvis lowered smoothly (over `calm` s) where a leg would not reach."""
-    excess = np.maximum(controls.root[:, 1] - highest_root(controls, rig), 0.0)
-    lowered = softened(_widened(excess, times, 2.0 * calm), times, calm)
+def lowered_to_reach(
+    controls: Controls, rig: Rig, times: FloatArray, calm: float = 0.08
+) -> Controls:
+    """`controls` with the pelvis lowered smoothly at the times when a leg does not reach its foot.
+
+    times: (frames,) s. calm: seconds of smoothing.
+    """
+    excess = np.maximum(controls.root[:, 1] - max_root_height(controls, rig), 0.0)
+    lowered = softened(_running_maximum(excess, times, 2.0 * calm), times, calm)
     return replace(controls, root=controls.root - lowered[:, None] * [0.0, 1.0, 0.0])
 
 
-def _widened(curve: FloatArray, times: FloatArray, seconds: float) -> FloatArray:
-    """Running maximum over `seconds` to either side, so that smoothing does not cut peaks."""
+def _running_maximum(curve: FloatArray, times: FloatArray, seconds: float) -> FloatArray:
+    """(frames,) the maximum within `seconds` of each frame. So later smoothing cuts no peak."""
     reach = round(seconds / float(times[1] - times[0]))
     padded = np.pad(curve, reach)
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1)
     return np.asarray(windows.max(axis=-1))
 
 
-def highest_root(controls: Controls, rig: Rig, reach: float = STRAIGHTEST) -> FloatArray:
-    """(frames,) greatest height of the pelvis at which both legs reach their feet.
+def max_root_height(controls: Controls, rig: Rig, reach: float = MAX_LEG_EXTENSION) -> FloatArray:
+    """(frames,) the largest height of the pelvis, in meters, at which both legs reach their feet.
 
-    reach: the most of a leg's length that hip and ankle may be apart.
+    reach: the largest distance of hip and ankle, as a share of the leg's length.
     """
     pelvis = _matrices(controls.pelvis)
     limits = []
@@ -82,21 +87,21 @@ def highest_root(controls: Controls, rig: Rig, reach: float = STRAIGHTEST) -> Fl
 
 
 def ankle_position(foot: Foot, rig: Rig) -> FloatArray:
-    """(frames, 3) world position of the ankle, the foot turning about its ball or its heel."""
-    # Averaged over a few degrees: the change of pivot at a flat foot would jolt the ankle.
-    spread = [_ankle_over_sole(foot.pitch + shift, rig) for shift in ROLLING]
-    forward, height = np.mean(spread, axis=0)
+    """(frames, 3) the position of the ankle in the world, meters."""
+    # The mean over a few degrees: without it, the ankle would jump when the pivot changes.
+    ankles = [_ankle_over_sole(foot.pitch + shift, rig) for shift in ROLL_PITCHES]
+    forward, height = np.mean(ankles, axis=0)
     offset = [np.sin(foot.yaw) * forward, height, np.cos(foot.yaw) * forward]
-    return np.asarray(foot.place + np.stack(offset, axis=-1))
+    return np.asarray(foot.position + np.stack(offset, axis=-1))
 
 
 def _ankle_over_sole(pitch: FloatArray, rig: Rig) -> FloatArray:
-    """(2, frames) forward position and height of the ankle, the sole's lowest point at 0."""
+    """(2, frames) forward position and height of the ankle above the sole's lowest point."""
     heel_up = pitch < 0.0
     pivot_height = np.where(heel_up, rig.ball_height, 0.0)
     pivot_ahead = np.where(heel_up, rig.ball, -rig.heel)
     up, ahead = rig.ankle - pivot_height, -pivot_ahead
-    c, s = np.cos(pitch), np.sin(pitch)
+    c, s = np.cos(pitch), np.sin(pitch)  # the vector from pivot to ankle is rotated by pitch
     return np.array([pivot_ahead + ahead * c - up * s, pivot_height + up * c + ahead * s])
 
 
@@ -104,8 +109,8 @@ def _world_rotations(controls: Controls, rig: Rig) -> FloatArray:
     world = np.zeros((controls.frames, len(PARENTS), 3, 3))
     world[:, HIPS] = _matrices(controls.pelvis)
     for joint in (SPINE, SPINE1, SPINE2):
-        world[:, joint] = world[:, joint - 1] @ _matrices(_third(controls.spine, 1 / 3))
-    half = _matrices(_third(controls.head, 1 / 2))
+        world[:, joint] = world[:, joint - 1] @ _matrices(_scaled_turn(controls.spine, 1 / 3))
+    half = _matrices(_scaled_turn(controls.head, 1 / 2))
     world[:, NECK] = world[:, SPINE2] @ half
     world[:, HEAD] = world[:, NECK] @ half
     for side in SIDES:
@@ -131,8 +136,9 @@ def _shoulder(arm: Arm, sign: float) -> FloatArray:
 
 
 def _shoulder_rise(arm: Arm) -> FloatArray:
-    """(frames,) rise of the clavicle with the arm: a quarter of the elevation beyond 40 deg."""
+    """(frames,) the rise of the clavicle: a quarter of the arm's elevation above 40 degrees."""
     elevation = np.arccos(np.clip(np.cos(arm.flex) * np.cos(arm.abduct), -1.0, 1.0))
+    # a smooth maximum of 0 and the elevation above 0.7 rad
     return np.asarray(0.25 * np.logaddexp(0.0, 6.0 * (elevation - 0.7)) / 6.0)
 
 
@@ -147,15 +153,16 @@ def _pose_leg(world: FloatArray, controls: Controls, rig: Rig, side: int) -> Non
 
 
 def _toe_pitch(foot: Foot, rig: Rig) -> FloatArray:
-    """(frames,) pitch of the toes: never deeper than the clearance of the sole allows."""
-    room = np.clip((foot.place[:, 1] + 0.5 * rig.ball_height) / rig.toes, 0.0, 1.0)
+    """(frames,) the pitch of the toes. They are bent up if they would enter the floor."""
+    room = np.clip((foot.position[:, 1] + 0.5 * rig.ball_height) / rig.toes, 0.0, 1.0)
     return np.asarray(np.maximum(foot.pitch, -np.arcsin(room)))
 
 
 def _two_links(away: FloatArray, hinge: FloatArray, rig: Rig) -> tuple[FloatArray, FloatArray]:
-    """World rotations of thigh and shin, so that the ankle stands `away` from the hip joint.
+    """World rotations of thigh and shin, by the law of cosines.
 
-    hinge: (frames, 3) axis about which the knee bends, made square to the leg.
+    away: (frames, 3) from the hip joint to the ankle. hinge: (frames, 3) the axis about which the
+    knee bends; its part along the leg is removed.
     """
     length = np.linalg.norm(away, axis=-1)
     reach = np.clip(length, 0.35 * rig.leg, 0.9999 * rig.leg)
@@ -173,7 +180,7 @@ def _sided(offset: FloatArray, side: int) -> FloatArray:
     return np.asarray(offset * np.array([SIGNS[side], 1.0, 1.0]))
 
 
-def _third(turn: Turn, share: float) -> Turn:
+def _scaled_turn(turn: Turn, share: float) -> Turn:
     return Turn(turn.yaw * share, turn.pitch * share, turn.roll * share)
 
 

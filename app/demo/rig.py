@@ -1,6 +1,6 @@
-"""The demo actors' skeleton: 22 joints and 5 end sites, meters, Y up, facing Z, left is X.
+"""The skeleton of the demo actors: 22 joints and 5 end sites. Meters, Y up, it faces Z, X is left.
 
-Segment lengths follow the fractions of stature of Drillis & Contini (in Winter 2009,
+The lengths of body segments are the shares of stature by Drillis & Contini (in Winter 2009,
 Biomechanics and Motor Control of Human Movement, fig. 4.1), slightly rounded.
 """
 
@@ -18,7 +18,7 @@ from app.numerics.arrays import FloatArray
 LEFT, RIGHT = 0, 1
 SIDES: tuple[int, int] = (LEFT, RIGHT)
 SIGNS: tuple[float, float] = (1.0, -1.0)
-"""The X direction of a side."""
+"""The sign of X on each side."""
 
 HIPS, SPINE, SPINE1, SPINE2, NECK, HEAD = 0, 1, 2, 3, 4, 5
 CLAVICLE, UPPER_ARM, FOREARM, HAND = (6, 10), (7, 11), (8, 12), (9, 13)
@@ -28,11 +28,13 @@ PARENTS = (-1, 0, 1, 2, 3, 4, 3, 6, 7, 8, 3, 10, 11, 12, 0, 14, 15, 16, 0, 18, 1
 
 @dataclass(frozen=True, slots=True)
 class Rig:
-    """Lengths in meters that posing needs, and the offsets of the whole skeleton.
+    """The skeleton of an actor, and the lengths that posing needs. All lengths are in meters.
 
-    offsets: (22, 3) from parent to joint at rest, meters; ends: (5, 3) of head, hands, toes;
-    hip_offset: (3,) from the hips to the left thigh; ball, heel: distances before and behind
-    the ankle; ankle, ball_height: heights of a flat foot's joints; toes: length of the toes.
+    offsets: (22, 3) from parent to joint in the rest pose. ends: (5, 3) the end sites of head,
+    hands and toes. arm_drop: the angle of the arms below the horizontal in the rest pose, rad.
+    thigh, shin: their lengths. hip_offset: (3,) from the hips to the left thigh. ball: its distance
+    before the ankle; heel: its distance behind the ankle. ankle, ball_height: heights of the joints
+    of a flat foot. toes: their length.
     """
 
     offsets: FloatArray
@@ -49,18 +51,19 @@ class Rig:
 
     @property
     def leg(self) -> float:
-        """Length of the straight leg from hip joint to ankle, meters."""
+        """The length of the straight leg from hip joint to ankle, meters."""
         return self.thigh + self.shin
 
     @property
-    def standing(self) -> float:
-        """Height of the hips (root) over the ground with straight legs, meters."""
+    def standing_height(self) -> float:
+        """The height of the hips (root) above the floor with straight legs, meters."""
         return self.leg + self.ankle - float(self.hip_offset[1])
 
 
 def build_rig(actor: Actor) -> Rig:
     """The rig of an actor's body."""
     body, unit = actor.body, actor.body.stature
+    # longer legs make a shorter trunk, so that the stature stays the same
     trunk = unit * (2.0 - body.legs)
     thigh, shin = 0.245 * unit * body.legs, 0.246 * unit * body.legs
     ankle, ball, ball_height = 0.042 * unit, 0.08 * unit, 0.014 * unit
@@ -98,14 +101,14 @@ def build_rig(actor: Actor) -> Rig:
 
 
 def _ends(offsets: FloatArray, unit: float) -> FloatArray:
-    """(5, 3) end sites: top of the head, left and right finger tips, left and right toe tips."""
+    """(5, 3) the end sites: top of the head, left and right fingertips, left and right toe tips."""
     hands = [0.55 * offsets[HAND[side]] for side in SIDES]
     toes = [np.array([0.0, 0.0, 0.04 * unit])] * 2
     return np.array([[0.0, 0.105 * unit, 0.0], *hands, *toes])
 
 
 def skeleton_of(rig: Rig, naming: Naming, units_per_meter: float = 100.0) -> Skeleton:
-    """The rig as a skeleton with the names of a convention, in centimeters by default."""
+    """The rig as a skeleton with the joint names of a convention, in centimeters by default."""
     ends = [HEAD, HAND[LEFT], HAND[RIGHT], TOES[LEFT], TOES[RIGHT]]
     return Skeleton(
         names=NAMES[naming],
@@ -135,4 +138,4 @@ NAMES: dict[Naming, tuple[str, ...]] = {
         *_both_sides("{}_l", "{}_r", ("thigh", "calf", "foot", "ball")),
     ),
 }
-"""(22,) joint names by convention, in the order of the indices above."""
+"""The 22 joint names of each convention, in the order of the indices above."""

@@ -1,4 +1,4 @@
-"""A take: one actor once more, a little different each time."""
+"""A take: one performance of a task by an actor. Takes differ a little from each other."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ GRAVITY = 9.81
 
 @dataclass(frozen=True, slots=True)
 class Take:
-    """What a task needs to be performed once.
+    """The parameters of one performance.
 
-    pace: factor on speed; size: factor on amplitude; phase: in [0, 1), where a cycle starts;
-    heading: rad; draw: the take's own random numbers, the same at every run.
+    draw: the random numbers of the take, the same at every run. pace: factor on speed. size: factor
+    on amplitude. phase: in [0, 1), the part of the cycle at the start. heading: rad.
     """
 
     actor: Actor
@@ -35,17 +35,17 @@ class Take:
     heading: float
 
     def clock(self, seconds: float) -> FloatArray:
-        """(frames,) times of the frames of `seconds`, s."""
+        """(frames,) the times of the frames of a motion of `seconds`, in seconds."""
         return np.arange(max(2, round(seconds * self.actor.frame_rate))) / self.actor.frame_rate
 
     def vary(self, spread: float) -> float:
-        """A factor around 1, never further away than `spread`."""
+        """A random factor from 1 - spread to 1 + spread."""
         return float(self.draw.uniform(1.0 - spread, 1.0 + spread))
 
 
 def prepare(actor: Actor, task: str, number: int) -> Take:
     """Take `number` (from 1) of a task by an actor."""
-    # crc32 and RandomState's stream are both frozen for good: the same draws everywhere.
+    # crc32 and the stream of RandomState never change, so all machines draw the same numbers.
     draw = np.random.RandomState(crc32(f"{actor.name}/{task}/{number}".encode()))
     return Take(
         actor=actor,
@@ -58,8 +58,8 @@ def prepare(actor: Actor, task: str, number: int) -> Take:
     )
 
 
-def enlivened(controls: Controls, take: Take, times: FloatArray) -> Controls:
-    """The same performance with breathing and the small sway of a living body."""
+def with_body_sway(controls: Controls, take: Take, times: FloatArray) -> Controls:
+    """`controls` with breathing and the small sway of a living body; times: (frames,) s."""
     draw, style = take.draw, take.actor.style
     sway = 0.006 * style.sway
     drift = np.stack(
@@ -71,7 +71,7 @@ def enlivened(controls: Controls, take: Take, times: FloatArray) -> Controls:
             arm,
             flex=arm.flex + wobble(times, draw, 0.025),
             abduct=arm.abduct + wobble(times, draw, 0.015),
-            # A straight elbow may bend a little more, never the wrong way.
+            # the elbow must not bend backward
             elbow=np.maximum(arm.elbow + wobble(times, draw, 0.03), 0.03),
         )
         for arm in controls.arms

@@ -1,10 +1,10 @@
-"""Words for a clip, as annotators would choose them: the same idea, not always the same word."""
+"""Words of a clip. As with real annotators, takes of a task do not all have the same words."""
 
 from __future__ import annotations
 
 from zlib import crc32
 
-SURE: dict[str, tuple[tuple[str, ...], ...]] = {
+WORD_CHOICES: dict[str, tuple[tuple[str, ...], ...]] = {
     "walk": (("walk", "stride"), ("walk", "forward"), ("walk", "step")),
     "run": (("run", "forward"), ("run", "jog"), ("run", "fast")),
     "jump": (("jump", "up"), ("jump", "hop"), ("jump", "leap")),
@@ -14,16 +14,16 @@ SURE: dict[str, tuple[tuple[str, ...], ...]] = {
     "bow": (("bow", "greet"), ("bow", "bend"), ("bow", "bend", "stand")),
     "dance": (("dance", "rhythm"), ("dance", "step"), ("dance", "music")),
 }
-"""For each task, what one annotator or another writes."""
-HANDED: dict[str, str] = {"wave": "hand", "kick": "leg", "punch": "hand"}
-"""Tasks with a side, and the limb that has it."""
+"""The alternative word lists of each task."""
+SIDED_LIMBS: dict[str, str] = {"wave": "hand", "kick": "leg", "punch": "hand"}
+"""Tasks that use one side, and their limb."""
 
 
 def words_for(task: str, actor: str, take: int, left_handed: bool) -> tuple[str, ...]:
-    """Two to four words for a take, the same at every call."""
-    choices = SURE[task]
+    """Two to four words of a take. Every call returns the same words."""
+    choices = WORD_CHOICES[task]
     words = choices[crc32(f"{actor}/{task}/{take}/words".encode()) % len(choices)]
-    if task in HANDED:
+    if task in SIDED_LIMBS:
         side = "left" if left_handed else "right"
-        words = (*words, f"{side}_{HANDED[task]}")
+        words = (*words, f"{side}_{SIDED_LIMBS[task]}")
     return words

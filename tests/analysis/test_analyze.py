@@ -1,4 +1,4 @@
-"""The analysis of a clip: names, shapes, types; the same each time; little motion too."""
+"""The arrays of an analysis: their names, shapes and types; also of very short motions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SEGMENT_TYPES = {
 
 
 @pytest.mark.parametrize("body", BODIES.values(), ids=BODIES.keys())
-def test_every_array_has_the_shape_that_comparisons_ask_for(body: FloatArray) -> None:
+def test_every_array_has_its_shape(body: FloatArray) -> None:
     arrays = analyze(motion_of(body)).arrays
     assert arrays.keys() == SHAPES.keys()
     for name, array in arrays.items():
@@ -31,7 +31,7 @@ def test_every_array_has_the_shape_that_comparisons_ask_for(body: FloatArray) ->
 
 
 @pytest.mark.parametrize("body", BODIES.values(), ids=BODIES.keys())
-def test_arrays_are_finite_and_of_the_promised_shapes_and_types(body: FloatArray) -> None:
+def test_arrays_are_finite_with_documented_shapes_and_types(body: FloatArray) -> None:
     arrays = dict(analyze(motion_of(body)).arrays)
     keyposes = arrays.pop("keypose_frames")
     beats = {name: arrays.pop(name) for name in BEAT_ARRAYS}
@@ -70,7 +70,7 @@ def test_the_same_motion_gives_the_same_bytes() -> None:
     assert all(one[name].tobytes() == other[name].tobytes() for name in one)
 
 
-def test_a_query_is_described_as_a_stored_clip_is() -> None:
+def test_a_query_has_the_same_arrays_as_a_stored_clip() -> None:
     stored = analyze(motion_of(BODIES["walk"])).arrays
     query = describe_for_search(motion_of(BODIES["walk"])).arrays
     assert set(stored) - set(query) == {
@@ -80,7 +80,7 @@ def test_a_query_is_described_as_a_stored_clip_is() -> None:
     assert all(stored[name].tobytes() == query[name].tobytes() for name in query)
 
 
-def test_a_query_is_described_by_the_named_arrays_alone() -> None:
+def test_only_the_requested_arrays_are_computed() -> None:
     motion = motion_of(BODIES["walk"])
     every = describe_for_search(motion).arrays
     for names in (("features_10hz",), ("motion_vector", "window_spans_1s"), tuple(every)):

@@ -1,4 +1,4 @@
-"""One library for all tests of the command line, made by the commands themselves."""
+"""One library for all tests of the command line. The commands create it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ABSENT = "absent.bvh"
 
 @dataclass(frozen=True)
 class Ended:
-    """How a command ended, and what it printed."""
+    """The exit code and the output of a command."""
 
     code: int
     out: str
@@ -40,7 +40,7 @@ Kinedex = Callable[..., Ended]
 
 
 def start(*words: str, **settings: object) -> subprocess.Popen[str]:
-    """The installed program, as a user starts it."""
+    """Start the installed program as a user does."""
     program = Path(sys.executable).with_name("kinedex")
     return subprocess.Popen(
         [str(program), *words],
@@ -52,13 +52,13 @@ def start(*words: str, **settings: object) -> subprocess.Popen[str]:
 
 
 def environment(**settings: object) -> dict[str, str]:
-    """Ours without any KINEDEX_*, but for these settings."""
+    """The environment of the tests with only these KINEDEX_* settings."""
     clean = {name: value for name, value in os.environ.items() if not name.startswith("KINEDEX_")}
     return clean | {f"KINEDEX_{name.upper()}": str(value) for name, value in settings.items()}
 
 
 def end(process: subprocess.Popen[str], seconds: float = 120.0) -> Ended:
-    """Wait for a program that was started."""
+    """Wait for the end of a program."""
     try:
         out, err = process.communicate(timeout=seconds)
     except subprocess.TimeoutExpired:
@@ -75,7 +75,7 @@ def clips() -> list[DemoClip]:
 
 @pytest.fixture(scope="session")
 def folder(tmp_path_factory: pytest.TempPathFactory, clips: list[DemoClip]) -> Path:
-    """A folder with a manifest: twelve clips, one that is broken, one that is not there."""
+    """A folder with a manifest of twelve clips, one damaged file and one missing file."""
     root = tmp_path_factory.mktemp("mocap")
     rows = [(c.path, c.person, c.task, " ".join(c.words)) for c in clips]
     for clip in clips:
@@ -96,7 +96,7 @@ def data_dir(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def imported(data_dir: Path, folder: Path) -> Ended:
-    """How the first import of the folder ended; the models are fitted by it."""
+    """The output of the first import of the folder, which also fits the models."""
     return end(start("import", str(folder), data_dir=data_dir))
 
 
@@ -107,7 +107,7 @@ def kinedex(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> Kinedex:
-    """The command line in this process, on the library that was imported: starts at once."""
+    """The command line in this process, on the imported library. It needs no start of Python."""
 
     def run(*words: str, **settings: object) -> Ended:
         with monkeypatch.context() as patched:

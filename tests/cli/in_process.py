@@ -1,4 +1,4 @@
-"""A command run in the tests' own process, on a library that is there already."""
+"""Runs a command in the process of the tests, on an existing library."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Run = Callable[..., Result]
 
 
 def running(command: str, lib: Library, folder: Path, patched: pytest.MonkeyPatch) -> Run:
-    """What runs `kinedex COMMAND ...` on the library, in `folder`."""
+    """A function that runs `kinedex COMMAND ...` on the library, in `folder`."""
     patched.chdir(folder)
     data_dir = str(lib.settings.data_dir)
 

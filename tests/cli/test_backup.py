@@ -1,4 +1,4 @@
-"""`kinedex backup`: a library that can be worked with, made of one that is in use."""
+"""`kinedex backup` copies a library that is in use; the copy is a complete library."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any
 
 import pytest
 
-from app.cli.backup import _ended_by_sigterm
+from app.cli.backup import exit_on_sigterm
 from app.demo import DemoClip
 from app.store.upkeep.backup import DATABASE, FILES
 from tests.cli.conftest import Kinedex
 from tests.live import serve, wait_until
 
 
-def test_a_copy_is_restored_by_running_on_it(kinedex: Kinedex, tmp_path: Path) -> None:
+def test_a_copy_is_a_complete_library(kinedex: Kinedex, tmp_path: Path) -> None:
     copy = tmp_path / "backups" / "monday"
     made = kinedex("backup", str(copy), "--json").json()
     assert made["path"] == str(copy)
@@ -33,7 +33,7 @@ def test_a_copy_is_restored_by_running_on_it(kinedex: Kinedex, tmp_path: Path) -
 
 
 @pytest.mark.parametrize("name", ["a?b", "a%20b", "100%"])
-def test_paths_may_hold_anything(kinedex: Kinedex, tmp_path: Path, name: str) -> None:
+def test_paths_may_contain_any_characters(kinedex: Kinedex, tmp_path: Path, name: str) -> None:
     data_dir, copy = tmp_path / f"d {name}", tmp_path / name
     assert kinedex("db", "upgrade", data_dir=data_dir).code == 0
     made = kinedex("backup", str(copy), "--json", data_dir=data_dir).json()
@@ -44,7 +44,7 @@ def test_paths_may_hold_anything(kinedex: Kinedex, tmp_path: Path, name: str) ->
     assert (again.code, "is at revision" in again.out) == (0, True)
 
 
-def test_what_cannot_be_copied_is_said(kinedex: Kinedex, tmp_path: Path) -> None:
+def test_wrong_paths_are_refused(kinedex: Kinedex, tmp_path: Path) -> None:
     again = kinedex("backup", str(tmp_path))
     assert (again.code, again.out) == (1, "")
     assert f"{tmp_path} is there already" in again.err
@@ -55,10 +55,10 @@ def test_what_cannot_be_copied_is_said(kinedex: Kinedex, tmp_path: Path) -> None
     assert kinedex("backup").code == 2
 
 
-def test_sigterm_ends_a_copy_as_a_failure_does() -> None:
-    """So that the half of it is removed; only SIGKILL leaves that to the next copy."""
+def test_sigterm_raises_an_exception() -> None:
+    """The exception removes an incomplete copy. After SIGKILL, the next copy removes it."""
     before = signal.getsignal(signal.SIGTERM)
-    with pytest.raises(SystemExit) as ended, _ended_by_sigterm():
+    with pytest.raises(SystemExit) as ended, exit_on_sigterm():
         signal.raise_signal(signal.SIGTERM)
     assert ended.value.code == 128 + signal.SIGTERM
     assert signal.getsignal(signal.SIGTERM) == before
@@ -81,7 +81,7 @@ def test_a_library_is_not_copied_into_itself(
     assert {path.name for path in data_dir.iterdir()} == before
 
 
-def test_a_library_is_copied_while_it_serves(
+def test_a_library_is_copied_while_the_api_runs(
     kinedex: Kinedex, clips: list[DemoClip], tmp_path: Path
 ) -> None:
     data_dir, copy = tmp_path / "data", tmp_path / "copy"
@@ -96,7 +96,7 @@ def test_a_library_is_copied_while_it_serves(
             found: list[dict[str, Any]] = client.get("/v1/clips?state=ready").json()["items"]
             return found if len(found) == 3 else []
 
-        told = wait_until(ready, 60.0)  # what waited in the library waits in its copy
+        restored = wait_until(ready, 60.0)  # clips that waited in the library wait in its copy
         assert client.get("/v1/clips?limit=100&state=queued").json()["items"] == []
-        contents = {client.get(f"/v1/clips/{clip['id']}/file").content for clip in told}
+        contents = {client.get(f"/v1/clips/{clip['id']}/file").content for clip in restored}
         assert contents == {clip.content for clip in clips[:3]}

@@ -1,4 +1,4 @@
-"""`kinedex export`: a file is written whole, or not at all."""
+"""`kinedex export` writes a complete file or nothing."""
 
 from __future__ import annotations
 
@@ -29,7 +29,9 @@ def walk(ready_clips: list[ClipRecord]) -> ClipRecord:  # noqa: F811
     return next(clip for clip in ready_clips if clip.task == "walk")
 
 
-def test_a_clip_is_written_by_its_name_here(run: Run, walk: ClipRecord, tmp_path: Path) -> None:
+def test_the_default_file_has_the_name_of_the_clip(
+    run: Run, walk: ClipRecord, tmp_path: Path
+) -> None:
     result = run(walk.id)
     assert result.exit_code == 0, result.output
     (file,) = tmp_path.iterdir()
@@ -38,17 +40,17 @@ def test_a_clip_is_written_by_its_name_here(run: Run, walk: ClipRecord, tmp_path
     assert len(read_recording(file.read_bytes()).positions) == walk.frames
 
 
-def test_the_ending_tells_the_format(run: Run, walk: ClipRecord, tmp_path: Path) -> None:
+def test_the_suffix_selects_the_format(run: Run, walk: ClipRecord, tmp_path: Path) -> None:
     result = run(walk.id, "-o", "out.NPZ", "--fps", "10", "--skeleton", "canonical", "--json")
-    told = json.loads(result.stdout)
+    result = json.loads(result.stdout)
     content = (tmp_path / "out.NPZ").read_bytes()
-    assert told == {"path": "out.NPZ", "format": "npz", "bytes": len(content)}
+    assert result == {"path": "out.NPZ", "format": "npz", "bytes": len(content)}
     recording = read_recording(content)
     assert (recording.frame_rate, len(recording.skeleton)) == (10, 18)
 
 
 @pytest.mark.parametrize("output", ["out.fbx", "out", "nowhere/out.bvh"])
-def test_what_cannot_be_written_leaves_nothing(
+def test_a_path_that_cannot_be_written_leaves_no_file(
     run: Run, walk: ClipRecord, tmp_path: Path, output: str
 ) -> None:
     result = run(walk.id, "-o", output)
@@ -57,7 +59,7 @@ def test_what_cannot_be_written_leaves_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_was_there_stays_when_a_clip_is_not(run: Run, tmp_path: Path) -> None:
+def test_an_older_file_stays_if_the_clip_does_not_exist(run: Run, tmp_path: Path) -> None:
     (tmp_path / "kept.csv").write_text("mine")
     result = run("clip_none", "-o", "kept.csv")
     assert result.exit_code != 0

@@ -1,4 +1,4 @@
-"""Searching, recognising, fitting: what people see, and JSON as the API answers it."""
+"""The commands that search, recognize and fit: their tables, and the same JSON as the API."""
 
 from __future__ import annotations
 
@@ -17,35 +17,37 @@ def _file(folder: Path, task: str) -> str:
     return str(folder / "ada" / f"{task}_01.bvh")
 
 
-def test_a_file_finds_itself_and_its_like(kinedex: Kinedex, folder: Path) -> None:
+def test_a_file_finds_itself_and_similar_clips(kinedex: Kinedex, folder: Path) -> None:
     found = kinedex("search", _file(folder, "kick"), "--limit", "3", "--json").json()
     assert MotionHits.model_validate(found).model_dump(mode="json") == found
     assert found["items"][0]["distance"] == 0.0
     assert [hit["clip"]["task"] for hit in found["items"]] == ["kick"] * 3
 
 
-def test_a_stored_clip_by_a_method_and_a_filter(kinedex: Kinedex, folder: Path) -> None:
+def test_a_stored_clip_is_searched_with_a_method_and_a_filter(
+    kinedex: Kinedex, folder: Path
+) -> None:
     found = kinedex("search", _file(folder, "kick"), "--limit", "1", "--json").json()
     clip = found["items"][0]["clip"]["id"]
-    wanted = '{"person": "bruno"}'
-    told = kinedex("search", clip, "--method", "dtw", "--filter", wanted, "--json").json()
-    assert told["method"] == "dtw"
-    assert {hit["clip"]["person"] for hit in told["items"]} == {"bruno"}
+    person = '{"person": "bruno"}'
+    hits = kinedex("search", clip, "--method", "dtw", "--filter", person, "--json").json()
+    assert hits["method"] == "dtw"
+    assert {hit["clip"]["person"] for hit in hits["items"]} == {"bruno"}
 
 
-def test_a_file_by_what_the_labels_taught(kinedex: Kinedex, folder: Path) -> None:
+def test_a_file_is_searched_with_learned_metrics(kinedex: Kinedex, folder: Path) -> None:
     assert kinedex("fit").code == 0
     for factor, label in (("task", "kick"), ("person", "ada")):
-        asked = ("search", _file(folder, "kick"), "--method", f"metric-{factor}", "--json")
-        told = kinedex(*asked).json()
-        assert told["method"] == f"metric-{factor}"
-        assert told["items"][0]["clip"][factor] == label
-        others = kinedex(*asked, "--filter", f'{{"not_{factor}": "{label}"}}').json()["items"]
+        arguments = ("search", _file(folder, "kick"), "--method", f"metric-{factor}", "--json")
+        hits = kinedex(*arguments).json()
+        assert hits["method"] == f"metric-{factor}"
+        assert hits["items"][0]["clip"][factor] == label
+        others = kinedex(*arguments, "--filter", f'{{"not_{factor}": "{label}"}}').json()["items"]
         assert others
         assert label not in {hit["clip"][factor] for hit in others}
 
 
-def test_hits_as_a_table(kinedex: Kinedex, folder: Path) -> None:
+def test_hits_are_printed_as_a_table(kinedex: Kinedex, folder: Path) -> None:
     ended = kinedex("search", _file(folder, "walk"), "--limit", "2")
     assert ended.code == 0
     lines = ended.out.splitlines()
@@ -56,37 +58,37 @@ def test_hits_as_a_table(kinedex: Kinedex, folder: Path) -> None:
 
 def test_parts_of_clips_are_found_with_their_bounds(kinedex: Kinedex, folder: Path) -> None:
     part = ("search", _file(folder, "kick"), "--start", "0.5", "--end", "2.0")
-    asked = (*part, "--scope", "windows", "--limit", "2")
-    found = kinedex(*asked, "--json").json()
+    arguments = (*part, "--scope", "windows", "--limit", "2")
+    found = kinedex(*arguments, "--json").json()
     assert MotionHits.model_validate(found).model_dump(mode="json") == found
     first = found["items"][0]
     assert (first["clip"]["person"], first["clip"]["task"]) == ("ada", "kick")
     assert [first["start"], first["end"]] == pytest.approx([0.5, 2.0], abs=0.11)
-    lines = kinedex(*asked).out.splitlines()
-    told = ["rank", "score", "start", "end", "name", "person", "task", "id"]
-    assert lines[0].split() == told
+    lines = kinedex(*arguments).out.splitlines()
+    columns = ["rank", "score", "start", "end", "name", "person", "task", "id"]
+    assert lines[0].split() == columns
     assert lines[1].split()[2:4] == [f"{first['start']:.3f}", f"{first['end']:.3f}"]
     assert "scope: " in _refused(kinedex, *part, "--scope", "frames")
     assert kinedex("search", "--words", "kick", "--scope", "windows").code == 2
 
 
-def test_words_find_clips_and_unknown_ones_are_told(kinedex: Kinedex) -> None:
+def test_words_find_clips_and_unknown_words_are_printed(kinedex: Kinedex) -> None:
     found = kinedex("search", "--words", "kick nosuchword", "--limit", "2", "--json").json()
     assert WordHits.model_validate(found).model_dump(mode="json") == found
     assert found["unknown_words"] == ["nosuchword"]
     assert found["items"][0]["clip"]["task"] == "kick"
     ended = kinedex("search", "--words", "kick", "--words", "nosuchword")
-    assert "No clip carries: nosuchword" in ended.err
+    assert "No clip has the words: nosuchword" in ended.err
 
 
-def test_recognition_says_who_and_what(kinedex: Kinedex, folder: Path) -> None:
+def test_recognition_prints_person_and_task(kinedex: Kinedex, folder: Path) -> None:
     found = kinedex("recognize", _file(folder, "kick"), "--json").json()
     assert Recognition.model_validate(found).model_dump(mode="json") == found
     assert (found["person"]["label"], found["task"]["label"]) == ("ada", "kick")
     ended = kinedex("recognize", _file(folder, "kick"))
-    told = [line.split()[:2] for line in ended.out.splitlines()]
-    assert ["person", "ada"] in told
-    assert ["task", "kick"] in told
+    rows = [line.split()[:2] for line in ended.out.splitlines()]
+    assert ["person", "ada"] in rows
+    assert ["task", "kick"] in rows
 
 
 def test_a_query_in_two_files_and_one_of_several_animations(
@@ -121,13 +123,13 @@ def test_a_fit_shows_the_held_out_figures_of_each_model(kinedex: Kinedex) -> Non
         "metric-task",
         "metric-person",
     }
-    told = [row[3:] for line in ended.out.splitlines() if (row := line.split())[0] == "recogniser"]
+    rows = [row[3:] for line in ended.out.splitlines() if (row := line.split())[0] == "recogniser"]
     for method in ("prior", "default"):
-        (share,) = [row[-1] for row in told if row[:-1] == ["held_out", method, "task"]]
+        (share,) = [row[-1] for row in rows if row[:-1] == ["held_out", method, "task"]]
         assert 0.0 <= float(share) <= 1.0
 
 
-def test_a_bad_question_is_told_in_words(kinedex: Kinedex, folder: Path) -> None:
+def test_a_wrong_query_gets_a_clear_message(kinedex: Kinedex, folder: Path) -> None:
     neither = "kinedex: There is no file 'missing.bvh', and no clip has that id.\n"
     for command in (("recognize",), ("search-pose", "--time", "0")):
         assert _refused(kinedex, *command, "missing.bvh") == neither

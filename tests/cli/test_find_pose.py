@@ -1,4 +1,4 @@
-"""Searches by pose from the command line."""
+"""`kinedex search-pose`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from app.api.schemas.pose import A_POSE, PoseHits
 from tests.cli.conftest import Kinedex
 
 
-def test_a_file_finds_its_pose_where_it_is(kinedex: Kinedex, folder: Path) -> None:
+def test_a_file_finds_its_pose_at_its_time(kinedex: Kinedex, folder: Path) -> None:
     file = str(folder / "ada" / "kick_01.bvh")
     found = kinedex("search-pose", file, "--time", "0.8", "--limit", "3", "--json").json()
     assert PoseHits.model_validate(found).model_dump(mode="json") == found
@@ -31,7 +31,7 @@ def test_positions_of_a_file_and_a_table(kinedex: Kinedex, tmp_path: Path) -> No
     assert len(lines) == 3
 
 
-def test_what_is_refused(kinedex: Kinedex, folder: Path, tmp_path: Path) -> None:
+def test_wrong_queries_are_refused(kinedex: Kinedex, folder: Path, tmp_path: Path) -> None:
     file = str(folder / "ada" / "kick_01.bvh")
     assert kinedex("search-pose").code == 2
     assert kinedex("search-pose", file).code == 2
@@ -40,7 +40,7 @@ def test_what_is_refused(kinedex: Kinedex, folder: Path, tmp_path: Path) -> None
     assert late.code == 1
     assert "time: must be from 0 to the duration" in late.err
     pose = tmp_path / "pose.json"
-    for text, told in (
+    for text, expected in (
         ("{", "positions: "),
         ("{}", "positions: "),
         ("[[0, 0, 0]]", "expected 13 points"),
@@ -49,4 +49,4 @@ def test_what_is_refused(kinedex: Kinedex, folder: Path, tmp_path: Path) -> None
         pose.write_text(text)
         ended = kinedex("search-pose", "--positions", str(pose))
         assert ended.code == 1
-        assert told in ended.err
+        assert expected in ended.err

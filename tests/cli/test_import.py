@@ -1,4 +1,4 @@
-"""Putting clips in: what is told of a bad file among good ones, and of what is there already."""
+"""`kinedex import`: good files, failed files, and files that the library already has."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from app.demo import DemoClip, demo_clips
 from tests.cli.conftest import ABSENT, BAD, Ended, Kinedex
 
 
-def test_good_files_enter_and_each_failure_is_told(
+def test_good_files_are_imported_and_each_failure_is_printed(
     imported: Ended, clips: list[DemoClip], folder: Path
 ) -> None:
     assert imported.code == 0
-    told = " ".join(imported.out.split())
+    printed = " ".join(imported.out.split())
     count = len(clips)
-    assert f"{count} of {count + 2} files are in the library ({count} new)." in told
-    assert f"{BAD} " in told
-    assert f"{ABSENT} The manifest names a file that is not there." in told
+    assert f"{count} of {count + 2} files are in the library ({count} new)." in printed
+    assert f"{BAD} " in printed
+    assert f"{ABSENT} The manifest names a file that is not there." in printed
     assert "Traceback" not in imported.err
 
 
 def test_the_reason_names_the_line_once(imported: Ended, clips: list[DemoClip]) -> None:
-    told = " ".join(imported.out.split())
-    reason = told.partition(BAD)[2].partition(ABSENT)[0]
+    printed = " ".join(imported.out.split())
+    reason = printed.partition(BAD)[2].partition(ABSENT)[0]
     assert reason.count("line ") == 1
 
 
@@ -36,8 +36,8 @@ def test_the_same_folder_again_adds_nothing(
     result = job["result"]
     counts = [result[name] for name in ("ready", "exists", "failed", "absent")]
     assert counts == [0, len(clips), 1, 1]
-    told = {f["path"]: f["outcome"] for f in result["files"] if f["outcome"] != "exists"}
-    assert told == {BAD: "failed", ABSENT: "absent"}
+    outcomes = {f["path"]: f["outcome"] for f in result["files"] if f["outcome"] != "exists"}
+    assert outcomes == {BAD: "failed", ABSENT: "absent"}
 
 
 def test_a_zip_and_a_single_file_are_imported_too(kinedex: Kinedex, tmp_path: Path) -> None:
@@ -52,13 +52,13 @@ def test_a_zip_and_a_single_file_are_imported_too(kinedex: Kinedex, tmp_path: Pa
     assert [f["outcome"] for f in job["result"]["files"]] == ["ready"]
 
 
-def test_no_such_path_is_told(kinedex: Kinedex) -> None:
+def test_a_missing_path_is_refused(kinedex: Kinedex) -> None:
     ended = kinedex("import", "no/such/folder")
     assert ended.code == 1
     assert "There is no file or folder no/such/folder." in ended.err
 
 
-def test_the_database_is_made_and_brought_up_to_date(kinedex: Kinedex, tmp_path: Path) -> None:
+def test_db_upgrade_creates_and_upgrades_the_database(kinedex: Kinedex, tmp_path: Path) -> None:
     for _ in range(2):
         ended = kinedex("--data-dir", str(tmp_path / "new"), "db", "upgrade")
         assert (ended.code, ended.err) == (0, "")

@@ -18,19 +18,19 @@ def test_a_key_is_shown_once_and_can_be_revoked(kinedex: Kinedex) -> None:
     assert again[made["id"]]["revoked_at"] is not None
 
 
-def test_the_key_alone_goes_to_standard_output(kinedex: Kinedex) -> None:
-    """So that a script can keep it: KEY=$(kinedex keys create)."""
+def test_only_the_key_goes_to_standard_output(kinedex: Kinedex) -> None:
+    """So a script can store it: KEY=$(kinedex keys create)."""
     ended = kinedex("keys", "create")
     assert len(ended.out.split()) == 1
     assert "not shown again" in ended.err
     assert ended.out.strip() not in ended.err
 
 
-def test_a_key_that_does_not_exist_is_told(kinedex: Kinedex) -> None:
+def test_a_missing_key_is_refused(kinedex: Kinedex) -> None:
     ended = kinedex("keys", "revoke", "key_of_nobody")
     assert ended.code == 1
     assert "key_of_nobody" in ended.err
 
 
-def test_roles_are_checked(kinedex: Kinedex) -> None:
+def test_unknown_roles_are_refused(kinedex: Kinedex) -> None:
     assert kinedex("keys", "create", "--role", "king").code == 2

@@ -1,14 +1,14 @@
-"""What is printed for people: others' names as they are, and nothing that a terminal obeys."""
+"""Output for people: names are unchanged, and control characters never reach the terminal."""
 
 from __future__ import annotations
 
 import pytest
 
-from app.cli.output import WIDEST, print_table, print_text
+from app.cli.output import MAX_WIDTH, print_table, print_text
 
 
 @pytest.mark.parametrize("name", ["[red]walk[/red].bvh", "root:x:0", "[/]", "日本", "a\\b"])
-def test_names_are_shown_as_they_are(capsys: pytest.CaptureFixture[str], name: str) -> None:
+def test_names_are_printed_unchanged(capsys: pytest.CaptureFixture[str], name: str) -> None:
     print_table(("name", "score"), [(name, 0.5), (None, 1.0)])
     printed = capsys.readouterr().out
     assert name in printed
@@ -22,10 +22,10 @@ def test_control_characters_do_not_reach_the_terminal(capsys: pytest.CaptureFixt
     assert "title" in printed
 
 
-def test_running_text_is_broken_between_words(capsys: pytest.CaptureFixture[str]) -> None:
+def test_long_text_is_wrapped_between_words(capsys: pytest.CaptureFixture[str]) -> None:
     print_text("\nshort\n" + "walk-left\x07 " * 40)
     empty, short, *long = capsys.readouterr().out.splitlines()
     assert (empty, short) == ("", "short")
     assert len(long) > 1
-    assert max(map(len, long)) <= WIDEST
+    assert max(map(len, long)) <= MAX_WIDTH
     assert set(" ".join(long).split()) == {"walk-left\N{REPLACEMENT CHARACTER}"}

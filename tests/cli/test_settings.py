@@ -1,4 +1,4 @@
-"""Starting: refusals that a user must understand, and settings that are wrong."""
+"""Starts that are refused, and wrong settings: the user must understand each message."""
 
 from __future__ import annotations
 
@@ -20,67 +20,67 @@ def test_serving_beyond_this_machine_needs_a_key(tmp_path: Path) -> None:
     assert "Traceback" not in refused.err
 
 
-def test_a_wrong_setting_is_named_and_not_shown(kinedex: Kinedex, tmp_path: Path) -> None:
-    told = kinedex("serve", port="hunter2", data_dir=tmp_path / "data")
-    assert told.code == 1
-    assert "KINEDEX_PORT" in told.err
-    assert "hunter2" not in told.err
+def test_the_message_names_a_wrong_setting_without_its_value(
+    kinedex: Kinedex, tmp_path: Path
+) -> None:
+    ended = kinedex("serve", port="hunter2", data_dir=tmp_path / "data")
+    assert ended.code == 1
+    assert "KINEDEX_PORT" in ended.err
+    assert "hunter2" not in ended.err
     assert not (tmp_path / "data").exists()
 
 
 @pytest.mark.parametrize("command", ["serve", "demo"])
-def test_a_port_that_is_taken_is_told_at_once(
-    kinedex: Kinedex, tmp_path: Path, command: str
-) -> None:
+def test_a_port_in_use_is_refused_at_once(kinedex: Kinedex, tmp_path: Path, command: str) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        told = kinedex(command, port=port, data_dir=tmp_path / "data")
-    assert told.code == 1
-    assert f"port {port}" in told.err
-    assert told.out == ""
+        ended = kinedex(command, port=port, data_dir=tmp_path / "data")
+    assert ended.code == 1
+    assert f"port {port}" in ended.err
+    assert ended.out == ""
 
 
 @pytest.mark.parametrize(
-    ("settings", "said"),
+    ("settings", "expected"),
     [
         ({"data_dir": "/dev/null/data"}, "/dev/null/data"),
         ({"database_url": "nonsense"}, "KINEDEX_DATABASE_URL"),
         ({"database_url": "nosuch://base"}, "nosuch"),
     ],
 )
-def test_what_cannot_be_opened_is_told_in_words(
-    kinedex: Kinedex, settings: dict[str, str], said: str
+def test_a_library_that_cannot_be_opened_gets_a_clear_message(
+    kinedex: Kinedex, settings: dict[str, str], expected: str
 ) -> None:
-    told = kinedex("keys", "list", **settings)
-    assert told.code == 1
-    assert said in told.err
-    assert "Traceback" not in told.err
+    ended = kinedex("keys", "list", **settings)
+    assert ended.code == 1
+    assert expected in ended.err
+    assert "Traceback" not in ended.err
 
 
-def test_a_file_that_is_no_database_is_told(kinedex: Kinedex, tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_database_is_refused(kinedex: Kinedex, tmp_path: Path) -> None:
     (tmp_path / "kinedex.sqlite3").write_bytes(b"no database at all, " * 100)
-    told = kinedex("keys", "list", data_dir=tmp_path)
-    assert told.code == 1
-    assert "not a database" in told.err
+    ended = kinedex("keys", "list", data_dir=tmp_path)
+    assert ended.code == 1
+    assert "not a database" in ended.err
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "expected"),
     [
         ("UPDATE alembic_version SET version_num = '9999'", "newer Kinedex"),
         ("DELETE FROM alembic_version", "no schema version"),
     ],
 )
-def test_a_database_that_cannot_be_upgraded_says_why(
-    kinedex: Kinedex, tmp_path: Path, change: str, said: str
+def test_a_failed_upgrade_prints_the_reason(
+    kinedex: Kinedex, tmp_path: Path, change: str, expected: str
 ) -> None:
     assert kinedex("db", "upgrade", data_dir=tmp_path).code == 0
     with closing(sqlite3.connect(tmp_path / "kinedex.sqlite3")) as database:
         database.execute(change)
         database.commit()
-    told = kinedex("db", "upgrade", data_dir=tmp_path)
-    assert (told.code, told.out) == (1, "")
-    assert said in told.err
+    ended = kinedex("db", "upgrade", data_dir=tmp_path)
+    assert (ended.code, ended.out) == (1, "")
+    assert expected in ended.err
     assert kinedex("keys", "list", data_dir=tmp_path).code == 1
 
 
@@ -91,13 +91,13 @@ def test_each_wrong_setting_is_named(kinedex: Kinedex) -> None:
     assert "KINEDEX_JOB_POLL_S" in ended.err
 
 
-def test_a_flag_wins_over_the_environment(kinedex: Kinedex, tmp_path: Path) -> None:
+def test_a_flag_has_priority_over_the_environment(kinedex: Kinedex, tmp_path: Path) -> None:
     ended = kinedex("--data-dir", str(tmp_path / "flag"), "keys", "list", "--json")
     assert ended.json() == []
     assert (tmp_path / "flag" / "kinedex.sqlite3").is_file()
 
 
-def test_the_version_and_the_commands_are_told(kinedex: Kinedex) -> None:
+def test_the_version_and_the_commands_are_printed(kinedex: Kinedex) -> None:
     assert kinedex("--version").out.startswith("kinedex ")
     listed = kinedex("--help").out
     for command in ("serve", "import", "search", "recognize", "fit", "evaluate", "keys", "db"):

@@ -1,4 +1,4 @@
-"""Commands start at once: what they import, and the CPU time that they take."""
+"""Commands start fast: the modules that they import, and their CPU time."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.commands import COMMANDS, EVALUATIONS
-from app.cli.lazy import CommandPlace
+from app.cli.lazy import CommandEntry
 from tests.cli.conftest import Kinedex, environment
 
 PROGRAM = """
@@ -30,12 +30,12 @@ PARTS = ("fft", "interpolate", "linalg", "ndimage", "optimize", "signal", "stats
 SCIENCE = {f"scipy.{part}" for part in PARTS} | {"sklearn", "hmmlearn", "matplotlib", "librosa"}
 """`import scipy` alone is quick: it imports each part when that is first used."""
 CHOICES_NEED_NUMPY = {"search-pose", "export"}
-"""Commands with an option whose choices stand in a module that needs NumPy."""
+"""Commands with an option whose choices are defined in a module that imports NumPy."""
 
 
 @dataclass(frozen=True)
 class Run:
-    """What one command printed, which modules it had imported, and its CPU time in seconds."""
+    """The output of one command, the modules that it imported, and its CPU time in seconds."""
 
     out: str
     modules: frozenset[str]
@@ -61,7 +61,7 @@ def run(*words: str, **settings: object) -> Run:
 
 
 @pytest.mark.parametrize("flag", ["--version", "--help"])
-def test_version_and_help_import_no_library_that_is_slow(flag: str) -> None:
+def test_version_and_help_import_no_slow_library(flag: str) -> None:
     found = run(flag)
     slow = DATABASE | WEB | SCIENCE | {"numpy", "scipy", "pydantic", "pydantic_settings"}
     assert found.imported(slow) == []
@@ -87,7 +87,7 @@ def test_help_of_a_command_imports_neither_scipy_nor_a_database(name: str) -> No
 @pytest.mark.parametrize(
     "words", [("{id}",), ("{id}", "--method", "vector"), ("--words", "kick")], ids="-".join
 )
-def test_a_search_imports_what_it_needs_and_no_more(
+def test_a_search_imports_only_what_it_needs(
     words: Sequence[str], kinedex: Kinedex, data_dir: Path
 ) -> None:
     clip = kinedex("search", "--words", "kick", "--limit", "1", "--json").json()["items"][0]["clip"]
@@ -99,9 +99,11 @@ def test_a_search_imports_what_it_needs_and_no_more(
 
 
 @pytest.mark.parametrize(
-    ("name", "place"), [*COMMANDS.items(), *((f"evaluate {n}", p) for n, p in EVALUATIONS.items())]
+    ("name", "entry"), [*COMMANDS.items(), *((f"evaluate {n}", p) for n, p in EVALUATIONS.items())]
 )
-def test_the_line_of_a_command_begins_its_own_help(name: str, place: CommandPlace) -> None:
-    command = place.load(name.split()[-1])
+def test_the_line_of_a_command_is_the_first_line_of_its_help(
+    name: str, entry: CommandEntry
+) -> None:
+    command = entry.load(name.split()[-1])
     assert isinstance(command.help, str)
-    assert inspect.cleandoc(command.help).split("\n\n")[0].replace("\n", " ") == place.help
+    assert inspect.cleandoc(command.help).split("\n\n")[0].replace("\n", " ") == entry.help

@@ -1,4 +1,4 @@
-"""`kinedex synthesize`: a BVH file, and what to expect of it."""
+"""`kinedex synthesize` writes a BVH file and reports its quality."""
 
 from __future__ import annotations
 
@@ -24,30 +24,30 @@ def run(
     return running("synthesize", ready_library, tmp_path, monkeypatch)
 
 
-def test_a_file_is_written_and_told_of(
+def test_the_file_is_written_and_reported_as_json(
     run: Run,
     ready_clips: list[ClipRecord],  # noqa: F811
     tmp_path: Path,
 ) -> None:
     walks = next(c for c in ready_clips if (c.person, c.task) == ("ada", "walk"))
     result = run("kick", "--clip", walks.id, "-o", "kick.bvh", "--json")
-    told = json.loads(result.stdout)
+    document = json.loads(result.stdout)
     content = (tmp_path / "kick.bvh").read_bytes()
-    assert (told["path"], told["bytes"]) == ("kick.bvh", len(content))
-    assert told["quality"]["kind"] == "new_person"
-    assert len(read_recording(content).positions) == told["clip"]["frames"]
-    assert "motion" not in told
+    assert (document["path"], document["bytes"]) == ("kick.bvh", len(content))
+    assert document["quality"]["kind"] == "new_person"
+    assert len(read_recording(content).positions) == document["clip"]["frames"]
+    assert "motion" not in document
 
 
-def test_people_are_told_what_to_expect(run: Run, tmp_path: Path) -> None:
+def test_the_quality_is_printed_as_a_table(run: Run, tmp_path: Path) -> None:
     result = run("bow", "--person", "ada")
     assert result.exit_code == 0, result.output
     assert [file.name for file in tmp_path.iterdir()] == ["ada bow (synthesized).bvh"]
-    assert "did record the task" in result.output
+    assert "did record this task" in result.output
     assert "not measured" in result.output
 
 
-def test_mistakes_are_told(run: Run) -> None:
+def test_wrong_arguments_are_refused(run: Run) -> None:
     assert run("walk").exit_code == 2
     assert run("walk", "--person", "ada", "--clip", "x").exit_code == 2
     unknown = run("walk", "--person", "nobody").exception

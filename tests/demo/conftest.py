@@ -1,4 +1,4 @@
-"""One take of everything in the demo library, made and read once for all its tests."""
+"""One take of each actor and task, generated and read once for all tests of this folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Dances by seed: deterministic, human, and at rest at the keyposes that they tell."""
+"""Random dances are deterministic and human, and the body rests at their keyposes."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ def made(seed: int) -> tuple[DemoClip, Motion]:
     return clip, canonicalize(read_recording(clip.content))
 
 
-def test_the_same_bytes_for_the_same_seed_and_others_for_another() -> None:
+def test_a_seed_determines_the_bytes() -> None:
     once, again, other = (dance(seed, seconds=6.0) for seed in (3, 3, 4))
     assert once == again
     assert other.content != once.content
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_a_dance_is_read_without_doubt(seed: int) -> None:
+def test_a_dance_is_read_without_cautions(seed: int) -> None:
     clip, motion = made(seed)
     assert motion.cautions == ()
     assert motion.missing_roles == ()
@@ -41,7 +41,7 @@ def test_a_dance_is_read_without_doubt(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_the_beats_keep_their_tempo(seed: int) -> None:
+def test_the_beats_have_the_requested_tempo(seed: int) -> None:
     clip, motion = made(seed)
     intervals = np.diff(clip.beats)
     nominal = 60.0 / SEEDS[seed]
@@ -66,7 +66,7 @@ def test_the_body_rests_at_keyposes_and_moves_between(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_keyposes_lie_on_beats_as_well_as_dancers_keep_them(seed: int) -> None:
+def test_keyposes_are_near_beats(seed: int) -> None:
     clip, _ = made(seed)
     beats = np.array(clip.beats)
     off = [np.abs(beats - keypose).min() for keypose in clip.keyposes]
@@ -75,15 +75,15 @@ def test_keyposes_lie_on_beats_as_well_as_dancers_keep_them(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_nobody_sinks_into_the_ground_or_leaves_the_stage(seed: int) -> None:
+def test_feet_stay_above_the_floor_and_near_the_start(seed: int) -> None:
     _, motion = made(seed)
     assert motion.positions[..., 1].min() > -0.02
-    places = motion.positions[..., [0, 2]]
-    assert np.abs(places - places[:1].mean(axis=1, keepdims=True)).max() < 2.5
+    floor = motion.positions[..., [0, 2]]
+    assert np.abs(floor - floor[:1].mean(axis=1, keepdims=True)).max() < 2.5
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_nothing_moves_faster_than_people_can(seed: int) -> None:
+def test_no_joint_is_faster_than_human_joints(seed: int) -> None:
     _, motion = made(seed)
     speeds = np.linalg.norm(np.diff(motion.positions, axis=0), axis=-1) * motion.frame_rate
     assert speeds.max() < 9.0
@@ -98,7 +98,7 @@ def test_passes_leave_beats_without_keyposes_and_freezes_hold_longer() -> None:
     assert np.median([b - a for a, b in frozen.holds]) > 0.55
 
 
-def test_noise_is_as_large_as_told() -> None:
+def test_noise_has_the_requested_size() -> None:
     clip, same = (dance(6, seconds=6.0, noise_mm=mm) for mm in (10.0, 1e-6))
     noisy, clean = (read_recording(c.content).positions for c in (clip, same))
     assert np.std(noisy - clean) == pytest.approx(0.01, rel=0.02)

@@ -1,4 +1,4 @@
-"""The demo library as files: complete, deterministic, and read like any other clip."""
+"""The files of the demo library are complete and deterministic, and are read like other clips."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_every_actor_does_every_task(clips: Clips) -> None:
     assert len(TASKS) == 8
 
 
-def test_the_same_bytes_at_every_run(clips: Clips) -> None:
+def test_every_run_gives_the_same_bytes(clips: Clips) -> None:
     def checksum(some: list[DemoClip]) -> str:
         return sha256(b"".join(clip.content for clip in some)).hexdigest()
 
@@ -38,7 +38,9 @@ def test_takes_differ() -> None:
     assert len(contents) == 6
 
 
-def test_clips_are_read_without_doubt(clips: Clips, motions: dict[tuple[str, str], Motion]) -> None:
+def test_clips_are_read_without_cautions(
+    clips: Clips, motions: dict[tuple[str, str], Motion]
+) -> None:
     rates = {actor.name: actor.frame_rate for actor in ACTORS}
     for key, motion in motions.items():
         assert set(motion.roles) == set(JointRole), key
@@ -49,13 +51,13 @@ def test_clips_are_read_without_doubt(clips: Clips, motions: dict[tuple[str, str
         assert 2.5 < motion.duration < 11.0, key
 
 
-def test_people_are_as_tall_as_they_should_be(motions: dict[tuple[str, str], Motion]) -> None:
+def test_people_have_their_stature(motions: dict[tuple[str, str], Motion]) -> None:
     for actor in ACTORS:
         head = motions[actor.name, "wave"].role_positions()[:, 10, 1]
         assert 0.8 < np.median(head) / actor.body.stature < 0.95
 
 
-def test_words_are_two_to_four_and_name_the_task(clips: Clips) -> None:
+def test_clips_have_two_to_four_words_with_the_task(clips: Clips) -> None:
     for clip in clips.values():
         assert 2 <= len(clip.words) <= 4
         assert clip.task in clip.words

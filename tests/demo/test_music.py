@@ -1,4 +1,4 @@
-"""Music for dances: as long as told, on its beats, no louder than a file can hold."""
+"""Music for dances has its length, is on its beats, and never exceeds full scale."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ def test_clicks_are_on_beats_only() -> None:
         assert loudness(samples, beat, beat + 0.02) > 20 * loudness(samples, beat - 0.1, beat)
 
 
-def test_levels_silence_parts() -> None:
+def test_a_level_of_0_is_silence() -> None:
     levels = np.ones(len(BEATS))
     levels[6:] = 0.0
     samples = music(np.random.RandomState(2), BEATS, 9.0, STYLES["rock"], levels)
     assert loudness(samples, BEATS[8], BEATS[11]) < 0.1 * loudness(samples, BEATS[0], BEATS[5])
 
 
-def test_a_wav_file_holds_the_samples() -> None:
+def test_a_wav_file_contains_the_samples() -> None:
     samples = np.array([0.0, 0.5, -1.0, 2.0])
     with wave.open(io.BytesIO(write_wav(samples, 8000))) as file:
         assert (file.getnchannels(), file.getsampwidth(), file.getframerate()) == (1, 2, 8000)

@@ -1,4 +1,4 @@
-"""What a body can do: the demo's people stand on the ground, fall freely and bend rightly."""
+"""The actors stand on the floor, fall freely, and bend their joints to the right side."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ def place(motion: Motion, role: str) -> np.ndarray:
 
 
 def runs(mask: np.ndarray) -> list[np.ndarray]:
-    """Frames of each stretch in which `mask` (frames,) holds."""
+    """The frames of each run in which `mask` (frames,) is true."""
     frames = np.flatnonzero(mask)
     return [part for part in np.split(frames, np.flatnonzero(np.diff(frames) > 1) + 1) if len(part)]
 
 
 def bend(motion: Motion, upper: str, middle: str, lower: str) -> tuple[np.ndarray, np.ndarray]:
-    """Angle (frames,) between two links in rad, and the axis (frames, 3) they bend about."""
+    """The angle (frames,) between two links in radians, and the axis (frames, 3) of the bend."""
     first = place(motion, middle) - place(motion, upper)
     second = place(motion, lower) - place(motion, middle)
     axis = np.cross(first, second)
@@ -51,7 +51,7 @@ def bend(motion: Motion, upper: str, middle: str, lower: str) -> tuple[np.ndarra
 
 
 @clips_of("walk", "run", "jump", "wave", "kick", "punch", "bow", "dance")
-def test_no_foot_goes_below_the_ground(motion: Motion) -> None:
+def test_no_foot_goes_below_the_floor(motion: Motion) -> None:
     feet = [place(motion, f"{s}_{part}")[:, 1] for s in BOTH for part in ("foot", "toes")]
     assert np.min(feet) > -0.01
 
@@ -67,7 +67,7 @@ def test_a_standing_foot_does_not_slide(motion: Motion) -> None:
 
 
 @clips_of("wave", "bow", "kick", "punch")
-def test_the_foot_that_carries_stays_where_it_is(motion: Motion, person: str) -> None:
+def test_the_standing_foot_does_not_move(motion: Motion, person: str) -> None:
     side = "right" if person in LEFT_HANDED else "left"
     ball = place(motion, f"{side}_toes")
     assert np.max(np.ptp(ball, axis=0)) < 0.01
@@ -106,7 +106,7 @@ def test_flight_is_free_fall(motion: Motion) -> None:
 
 
 @clips_of("jump")
-def test_a_jump_crouches_before_and_after(motion: Motion) -> None:
+def test_the_body_crouches_before_and_after_a_jump(motion: Motion) -> None:
     height = place(motion, "hips")[:, 1]
     apex = int(np.argmax(height))
     assert np.min(height[:apex]) < 0.85 * height[0]
@@ -115,7 +115,7 @@ def test_a_jump_crouches_before_and_after(motion: Motion) -> None:
 
 
 @clips_of("walk", "run")
-def test_walkers_keep_a_foot_down_and_runners_fly(motion: Motion, task: str) -> None:
+def test_a_walker_always_has_a_foot_down_and_a_runner_does_not(motion: Motion, task: str) -> None:
     toes = np.minimum(place(motion, "left_toes")[:, 1], place(motion, "right_toes")[:, 1])
     aloft = np.mean(toes > toes.min() + 0.012)
     if task == "walk":
@@ -125,7 +125,7 @@ def test_walkers_keep_a_foot_down_and_runners_fly(motion: Motion, task: str) -> 
 
 
 @clips_of("walk", "run")
-def test_steps_are_of_a_plausible_time(motion: Motion, task: str) -> None:
+def test_steps_have_a_plausible_duration(motion: Motion, task: str) -> None:
     ahead = place(motion, "left_foot") - place(motion, "right_foot")
     hips = place(motion, "hips")
     forward = hips[-1] - hips[0]
@@ -146,7 +146,9 @@ def test_arms_swing_against_the_legs(motion: Motion) -> None:
 
 
 @clips_of("wave", "kick")
-def test_the_stronger_side_acts(clip: DemoClip, motion: Motion, person: str, task: str) -> None:
+def test_the_stronger_side_performs_the_task(
+    clip: DemoClip, motion: Motion, person: str, task: str
+) -> None:
     part = "hand" if task == "wave" else "foot"
     strong, weak = BOTH if person in LEFT_HANDED else BOTH[::-1]
     strong_top, weak_top = (np.max(place(motion, f"{s}_{part}")[:, 1]) for s in (strong, weak))
@@ -162,7 +164,7 @@ def test_a_bow_brings_the_head_down_and_up_again(motion: Motion) -> None:
 
 
 @clips_of("dance")
-def test_a_dancer_stops_at_keyposes(clip: DemoClip, motion: Motion) -> None:
+def test_a_dancer_rests_at_keyposes(clip: DemoClip, motion: Motion) -> None:
     speed = np.linalg.norm(np.diff(motion.positions, axis=0), axis=-1).mean(axis=1)
     speed *= motion.frame_rate
     for here, after in pairwise(clip.keyposes):

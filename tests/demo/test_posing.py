@@ -1,4 +1,4 @@
-"""Controls and posing: mirrors, arcs and limbs that reach where they should."""
+"""Controls and posing: mirror images, arcs, and ankles at their positions."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.demo.actors import ACTORS, Actor
-from app.demo.controls import Controls, bent, mirrored, standing
+from app.demo.controls import Controls, along_arc, mirrored, standing_controls
 from app.demo.posing import ankle_position, local_rotations
 from app.demo.rig import FOOT, SIDES, Rig, build_rig, skeleton_of
 from app.motion.skeleton.kinematics import forward_kinematics, local_translations
@@ -23,12 +23,14 @@ def positions(controls: Controls, rig: Rig, actor: Actor) -> np.ndarray:
 
 
 def striding(actor: Actor, rig: Rig) -> Controls:
-    """Something lopsided: going ahead, turning, one foot forward and turned up."""
-    still = standing(actor, rig, FRAMES)
+    """An asymmetric motion: the body moves and turns, one foot is forward and up."""
+    still = standing_controls(actor, rig, FRAMES)
     ramp = np.linspace(0.0, 1.0, FRAMES)
     ahead = np.outer(ramp, [0.05, -0.02, 0.3])
     left = replace(
-        still.feet[0], place=still.feet[0].place + np.outer(ramp, [0.0, 0.1, 0.5]), pitch=-ramp
+        still.feet[0],
+        position=still.feet[0].position + np.outer(ramp, [0.0, 0.1, 0.5]),
+        pitch=-ramp,
     )
     return replace(
         still,
@@ -39,13 +41,13 @@ def striding(actor: Actor, rig: Rig) -> Controls:
 
 
 @pytest.mark.parametrize("actor", ACTORS, ids=lambda actor: actor.name)
-def test_ankles_stand_where_the_feet_are_told_to(actor: Actor) -> None:
+def test_ankles_are_at_the_positions_of_the_controls(actor: Actor) -> None:
     rig = build_rig(actor)
     controls = striding(actor, rig)
     world = positions(controls, rig, actor)
     for side in SIDES:
-        wanted = ankle_position(controls.feet[side], rig)
-        np.testing.assert_allclose(world[:, FOOT[side]], wanted, atol=1e-6)
+        expected = ankle_position(controls.feet[side], rig)
+        np.testing.assert_allclose(world[:, FOOT[side]], expected, atol=1e-6)
 
 
 @pytest.mark.parametrize("actor", ACTORS[:2], ids=lambda actor: actor.name)
@@ -59,16 +61,16 @@ def test_a_mirrored_performance_is_the_mirror_image(actor: Actor) -> None:
 
 
 @pytest.mark.parametrize("curvature", [0.0, 0.08, -0.3])
-def test_along_an_arc_a_planted_foot_stays_and_ways_keep_their_length(curvature: float) -> None:
+def test_along_an_arc_a_standing_foot_stays_and_distances_do_not_change(curvature: float) -> None:
     rig = build_rig(ACTORS[0])
     controls = striding(ACTORS[0], rig)
     controls = replace(controls, root=controls.root * [0.0, 1.0, 1.0])
-    arc = bent(controls, 0.4, curvature)
-    assert np.max(np.ptp(arc.feet[1].place, axis=0)) < 1e-12
+    arc = along_arc(controls, 0.4, curvature)
+    assert np.max(np.ptp(arc.feet[1].position, axis=0)) < 1e-12
 
-    def way(root: np.ndarray) -> float:
+    def distance(root: np.ndarray) -> float:
         return float(np.linalg.norm(np.diff(root, axis=0), axis=1).sum())
 
-    assert way(arc.root) == pytest.approx(way(controls.root), rel=1e-3)
+    assert distance(arc.root) == pytest.approx(distance(controls.root), rel=1e-3)
     heading = np.arctan2(*(arc.root[-1] - arc.root[-2])[[0, 2]])
     assert heading == pytest.approx(arc.pelvis.yaw[-1], abs=0.01)

@@ -1,4 +1,4 @@
-"""The demo's skeletons are understood by their shape alone, whatever their joints are called."""
+"""The roles of the joints are found from the shape of the skeleton, without the names."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.motion.roles.roles import find_roles
 
 
 @pytest.mark.parametrize("actor", [actor.name for actor in ACTORS])
-def test_names_that_are_stripped_change_no_role(actor: str) -> None:
+def test_removing_the_names_changes_no_role(actor: str) -> None:
     (clip,) = demo_clips(actors=[actor], tasks=["walk"], takes=1)
     recording = read_recording(clip.content)
     skeleton, positions = recording.skeleton, recording.positions

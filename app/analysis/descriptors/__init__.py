@@ -1,1 +1,1 @@
-"""One vector, or a few, for each clip: what clips are compared by."""
+"""Descriptors: the vectors by which clips, windows and poses are compared."""

@@ -1,4 +1,4 @@
-"""What the body does in each frame, independent of place, heading, size, unit and frame rate.
+"""The features of each frame. They do not depend on position, heading, size, unit and frame rate.
 
 82 features at 30 Hz: positions of Sun's 13 joints in the body frame (39, body lengths),
 their velocities (39, change in 1/3 s, halved), the hips' velocity in the body frame
@@ -32,10 +32,10 @@ TRAVEL = slice(78, 82)
 
 def frame_features(track: BodyTrack) -> FloatArray:
     """(n, 82) float64 features of each frame of `track`, in the order and units of the module."""
-    places = track.local.reshape(track.frames, -1)
-    changes = np.asarray(np.gradient(places, axis=0))
+    positions = track.local.reshape(track.frames, -1)
+    changes = np.asarray(np.gradient(positions, axis=0))
     changes *= track.rate * VELOCITY_STEP * VELOCITY_WEIGHT
-    return np.hstack([places, changes, track.velocity(), track.yaw_rate()[:, None]])
+    return np.hstack([positions, changes, track.velocity(), track.yaw_rate()[:, None]])
 
 
 def features_at_10hz(features: FloatArray, rate: float) -> FloatArray:

@@ -26,7 +26,7 @@ from app.numerics.arrays import BoolArray, FloatArray
 CUT_OFF = 6.0
 """Hz: the frequency at which the filter halves the power."""
 
-PASSES = 2
+FILTER_PASSES = 2
 """Forward and backward, so that there is no delay. The filter's order doubles from 2 to 4."""
 
 PADDING = 0.75
@@ -35,7 +35,7 @@ PADDING = 0.75
 MIN_BEND = np.radians(12.0)
 """Radians. With a smaller bend of elbow or knee, the plane of the limb is noise."""
 
-SHORTEST = 1e-3
+MIN_LIMB_LENGTH = 1e-3
 """Meters. A limb that is not longer has no direction, and its angles are 0."""
 
 _TINY = 1e-9
@@ -92,13 +92,13 @@ def joint_angles(positions: FloatArray, rate: float) -> FloatArray:
     rate: frames per second. The angles are finite for all finite positions. They do not depend on
     the place, the heading or the size of the body.
     """
-    places = np.asarray(positions, dtype=np.float64)
-    trunk, heading = _trunk_frame(places), _heading_frame(places)
-    spine = _seen_from(heading, _limb(places, (_R.HIPS,), (_R.NECK,)))
-    head = _seen_from(trunk, _limb(places, (_R.NECK,), (_R.HEAD,)))
+    points = np.asarray(positions, dtype=np.float64)
+    trunk, heading = _trunk_frame(points), _heading_frame(points)
+    spine = _in_frame(heading, _limb(points, (_R.HIPS,), (_R.NECK,)))
+    head = _in_frame(trunk, _limb(points, (_R.NECK,), (_R.HEAD,)))
     starts, middles, ends = zip(*((b.start, b.middle, b.end) for b in _BALLS), strict=True)
-    upper = _seen_from(trunk, _limb(places, starts, middles))
-    lower = _seen_from(trunk, _limb(places, middles, ends))
+    upper = _in_frame(trunk, _limb(points, starts, middles))
+    lower = _in_frame(trunk, _limb(points, middles, ends))
     balls = _ball_angles(upper, lower, max(1, round(MAX_GAP * rate)))
     swings = [_swing(limb, _UP, _LEFT)[0] for limb in (spine, head)]
     return np.hstack([*swings, *balls])
@@ -111,7 +111,7 @@ def filtered(samples: FloatArray, rate: float) -> FloatArray:
     together halve the power at CUT_OFF. If the rate is too low to contain such frequencies, or
     there is only one frame, the samples are returned unchanged.
     """
-    cut_off = CUT_OFF / (2.0 ** (1.0 / PASSES) - 1.0) ** 0.25
+    cut_off = CUT_OFF / (2.0 ** (1.0 / FILTER_PASSES) - 1.0) ** 0.25
     if cut_off >= rate / 2 or len(samples) < 2:
         return samples
     sections = scipy.signal.butter(2, cut_off, fs=rate, output="sos")
@@ -121,12 +121,12 @@ def filtered(samples: FloatArray, rate: float) -> FloatArray:
     return np.asarray(scipy.signal.sosfiltfilt(sections, padded, axis=0, padlen=0)[width:-width])
 
 
-def spanned(values: FloatArray, seen: BoolArray, longest: int) -> FloatArray:
+def with_gaps_filled(values: FloatArray, seen: BoolArray, max_gap: int) -> FloatArray:
     """`values` (frames,) with the frames that are not `seen` (frames,) filled from the others.
 
-    Gaps of at most `longest` frames are filled by a cubic spline, longer ones by a straight line,
-    because a spline would overshoot there. Gaps at the ends get the nearest seen value. If nothing
-    is seen, all values are 0.
+    Gaps of at most `max_gap` frames are filled by a cubic spline, longer ones by a straight line,
+    because a spline would overshoot. Gaps at the ends get the nearest seen value. If nothing is
+    seen, all values are 0.
     """
     at = np.flatnonzero(seen)
     if not len(at):
@@ -136,7 +136,7 @@ def spanned(values: FloatArray, seen: BoolArray, longest: int) -> FloatArray:
     short = [
         np.arange(start, stop)
         for start, stop in runs(~seen)
-        if start > 0 and stop < len(values) and stop - start <= longest
+        if start > 0 and stop < len(values) and stop - start <= max_gap
     ]
     if short and len(at) >= 4:
         gaps = np.concatenate(short)
@@ -144,21 +144,19 @@ def spanned(values: FloatArray, seen: BoolArray, longest: int) -> FloatArray:
     return np.asarray(filled)
 
 
-def _ball_angles(upper: FloatArray, lower: FloatArray, longest: int) -> FloatArray:
+def _ball_angles(upper: FloatArray, lower: FloatArray, max_gap: int) -> FloatArray:
     """(4, n, 4) for each of _BALLS the flexion, aside and turn, and the bend of the next joint.
 
     upper, lower: (4, n, 3) the directions of both limbs in the trunk's frame.
     """
     axis = np.cross(upper, lower)
     sine, cosine = np.linalg.norm(axis, axis=-1), (upper * lower).sum(axis=-1)
-    there = _has_direction(upper) & _has_direction(lower)
-    carried = _carried(_HINGES, _RESTS, upper)
-    turns = np.arctan2(
-        (np.cross(carried, axis) * upper).sum(axis=-1), (carried * axis).sum(axis=-1)
-    )
-    seen = there & (sine > np.sin(MIN_BEND))
-    turns = np.stack([spanned(*each, longest) for each in zip(turns, seen, strict=True)])
-    bends = np.arctan2(sine, cosine) * there
+    has_length = _has_direction(upper) & _has_direction(lower)
+    hinges = _rotated_with(_HINGES, _RESTS, upper)
+    turns = np.arctan2((np.cross(hinges, axis) * upper).sum(axis=-1), (hinges * axis).sum(axis=-1))
+    seen = has_length & (sine > np.sin(MIN_BEND))
+    turns = np.stack([with_gaps_filled(*each, max_gap) for each in zip(turns, seen, strict=True)])
+    bends = np.arctan2(sine, cosine) * has_length
     swings = _swing(upper, _RESTS, _HINGES)
     return np.concatenate([swings, turns[..., None], bends[..., None]], axis=-1)
 
@@ -177,7 +175,7 @@ def _swing(limbs: FloatArray, rest: FloatArray, about: FloatArray) -> FloatArray
     return np.stack([forward * scale, aside * scale], axis=-1)
 
 
-def _carried(vectors: FloatArray, starts: FloatArray, ends: FloatArray) -> FloatArray:
+def _rotated_with(vectors: FloatArray, starts: FloatArray, ends: FloatArray) -> FloatArray:
     """(k, n, 3) `vectors` (k, 1, 3) turned by the smallest rotations that bring `starts`
     (k, 1, 3) to `ends` (k, n, 3)."""
     axis = np.cross(starts, ends)
@@ -193,7 +191,9 @@ def _limb(
     first, last = ([SUN_ROLES.index(role) for role in roles] for roles in (starts, ends))
     line = np.moveaxis(positions[:, last] - positions[:, first], 1, 0)
     length = np.linalg.norm(line, axis=-1, keepdims=True)
-    return np.asarray(np.where(length > SHORTEST, line / np.maximum(length, SHORTEST), 0.0))
+    return np.asarray(
+        np.where(length > MIN_LIMB_LENGTH, line / np.maximum(length, MIN_LIMB_LENGTH), 0.0)
+    )
 
 
 def _has_direction(limbs: FloatArray) -> BoolArray:
@@ -211,7 +211,7 @@ def _heading_frame(positions: FloatArray) -> FloatArray:
 
 
 def _left(positions: FloatArray) -> FloatArray:
-    """(n, 3) the shoulders' line; the knees' where there is no shoulder."""
+    """(n, 3) the shoulders' line; the knees' if there is no shoulder."""
     right, left = (_R.RIGHT_SHOULDER, _R.RIGHT_KNEE), (_R.LEFT_SHOULDER, _R.LEFT_KNEE)
     shoulders, knees = _limb(positions, right, left)
     return np.asarray(np.where(_has_direction(shoulders)[:, None], shoulders, knees))
@@ -227,6 +227,6 @@ def _unit(vectors: FloatArray, otherwise: FloatArray) -> FloatArray:
     return np.asarray(np.where(length > _TINY, vectors / np.maximum(length, _TINY), otherwise))
 
 
-def _seen_from(frame: FloatArray, directions: FloatArray) -> FloatArray:
+def _in_frame(frame: FloatArray, directions: FloatArray) -> FloatArray:
     """(k, n, 3) `directions` (k, n, 3) in the coordinates of `frame` (n, 3, 3)."""
     return np.asarray(np.einsum("nij,knj->kni", frame, directions))

@@ -17,7 +17,7 @@ from app.numerics.arrays import FloatArray
 SAMPLES = 32
 """The number of poses in a sample."""
 
-AROUND = 12
+MARGIN_FRAMES = 12
 """Frames that are kept on both sides of a cycle. The low-pass filter needs fewer."""
 
 SAMPLE_LENGTH = SAMPLES * 13 * 3 + 2
@@ -62,6 +62,6 @@ def mean_over_cycles(values: FloatArray, cycles: list[tuple[float, float]]) -> F
 def _phases(values: FloatArray, start: float, end: float) -> FloatArray:
     """(33, ...) `values` (n, ...) at 33 phases from `start` to `end`, in frames."""
     # to filter the whole clip for each cycle would take time in proportion to clip and cycles
-    first = max(0, int(start) - AROUND)
-    smooth = low_pass(values[first : int(end) + AROUND + 1], (end - start) / SAMPLES)
+    first = max(0, int(start) - MARGIN_FRAMES)
+    smooth = low_pass(values[first : int(end) + MARGIN_FRAMES + 1], (end - start) / SAMPLES)
     return sample_at(smooth, start - first + (end - start) * np.arange(SAMPLES + 1) / SAMPLES)

@@ -2,8 +2,8 @@
 
 The first part describes what people have in common when they do the same, whatever their style:
 - how the body is held (means);
-- how far each joint moves around its slowly changing place, for example in a wave;
-- how this place changes, for example when an arm is raised;
+- how far each joint moves around its slowly changing mean position, for example in a wave;
+- how this mean position changes, for example when an arm is raised;
 - the order of events (the first two cosines over the clip);
 - how the body travels, sways and turns.
 
@@ -38,13 +38,13 @@ RIDGE = 1e-3
 COVARIANCE_SCALE = 1 / 20
 """The weight of the logarithm's entries."""
 
-SLOW = 1.0
-"""Seconds (standard deviation). Slower changes are changes of place, faster ones movement."""
+SLOW_SECONDS = 1.0
+"""Seconds (standard deviation). Slower changes belong to the mean position, others to movement."""
 
-PLACE_WEIGHT = 0.75
+POSITION_WEIGHT = 0.75
 MOVEMENT_WEIGHT = 1.3
-WANDERING_WEIGHT = 2.5
-"""The weights of mean places, of movement around them, and of their change, per body length."""
+DRIFT_WEIGHT = 2.5
+"""The weights of mean positions, of movement around them, and of their change, per body length."""
 
 TRAVEL_WEIGHTS = (2.0, 1.0, 1.0)
 """The weights of the mean velocity to the left, up and forward. People walk forward at many
@@ -53,7 +53,7 @@ speeds, but sideways only on purpose."""
 SWAY_WEIGHT = 0.7
 """The weight of the velocity's standard deviation."""
 
-TURNING = 0.3
+TURN_SCALE = 0.3
 """Radians per second. Below, a mean yaw rate counts linearly; above, by its logarithm."""
 
 TURNS_WEIGHT = 0.5
@@ -62,10 +62,10 @@ TURNS_WEIGHT = 0.5
 SEED = 20111
 """The seed of the projections. If it changes, every stored vector changes."""
 
-PLACES, VELOCITY, YAW_RATE = slice(0, 39), slice(78, 81), 81
+POSITIONS, VELOCITY, YAW_RATE = slice(0, 39), slice(78, 81), 81
 """Columns of the frame features."""
 
-DESCRIBED = 5 * 39 + 3 + 3 + 1 + 1 + FEATURES * (FEATURES + 1) // 2
+DESCRIPTION_LENGTH = 5 * 39 + 3 + 3 + 1 + 1 + FEATURES * (FEATURES + 1) // 2
 """How many numbers describe a motion before the projection: 3606."""
 
 
@@ -94,24 +94,24 @@ def course(features: FloatArray) -> FloatArray:
 
     features: (n, 82). The module describes these numbers.
     """
-    places, velocity, yaw = features[:, PLACES], features[:, VELOCITY], features[:, YAW_RATE]
-    slow = _slowly(places)
-    about = np.sqrt(np.maximum(_slowly(np.square(places - slow)), 0.0))
+    positions, velocity, yaw = features[:, POSITIONS], features[:, VELOCITY], features[:, YAW_RATE]
+    slow = _slowly(positions)
+    about = np.sqrt(np.maximum(_slowly(np.square(positions - slow)), 0.0))
     return np.concatenate(
         [
-            PLACE_WEIGHT * places.mean(axis=0),
+            POSITION_WEIGHT * positions.mean(axis=0),
             MOVEMENT_WEIGHT * about.mean(axis=0),
-            WANDERING_WEIGHT * slow.std(axis=0),
-            *_first_cosines(places),
+            DRIFT_WEIGHT * slow.std(axis=0),
+            *_first_cosines(positions),
             velocity.mean(axis=0) * TRAVEL_WEIGHTS,
             SWAY_WEIGHT * velocity.std(axis=0),
-            [np.arcsinh(yaw.mean() / TURNING)],
-            [TURNS_WEIGHT * _slowly(yaw, SLOW / 2).std()],
+            [np.arcsinh(yaw.mean() / TURN_SCALE)],
+            [TURNS_WEIGHT * _slowly(yaw, SLOW_SECONDS / 2).std()],
         ]
     )
 
 
-def _slowly(values: FloatArray, seconds: float = SLOW) -> FloatArray:
+def _slowly(values: FloatArray, seconds: float = SLOW_SECONDS) -> FloatArray:
     """`values` (n, ...) at ANALYSIS_RATE, smoothed; beyond the ends they are constant.
 
     Three running means over 2 `seconds` have nearly the shape, and the standard deviation, of a
@@ -162,6 +162,8 @@ def projection(dimensions: int = DIMENSIONS) -> FloatArray:
     numpy guarantees that the stream of `RandomState` never changes; that of `Generator` may.
     """
     stream = np.random.RandomState(SEED)
-    drawn: FloatArray = stream.standard_normal((DESCRIBED, dimensions)) / np.sqrt(dimensions)
+    drawn: FloatArray = stream.standard_normal((DESCRIPTION_LENGTH, dimensions)) / np.sqrt(
+        dimensions
+    )
     drawn.setflags(write=False)
     return drawn

@@ -21,10 +21,10 @@ from app.numerics.arrays import FloatArray, IntArray
 POSITIONS = slice(0, 3 * len(SUN_ROLES))
 """The columns of the joints' positions in the frame features."""
 
-LEVELS = np.r_[POSITIONS, TRAVEL]
+MEAN_FEATURES = np.r_[POSITIONS, TRAVEL]
 """The features whose means are used. The mean velocity of a joint is near 0 for all motions."""
 
-WIDTH = len(LEVELS) + FEATURES
+WIDTH = len(MEAN_FEATURES) + FEATURES
 """The length of a window vector: 125."""
 
 RIDGE = 1e-3
@@ -107,7 +107,7 @@ class RunningSums:
         variances = (self._squares[stop] - self._squares[first]) / counts - means**2
         # only rounding makes variances negative
         logarithms = np.log(np.maximum(variances, 0.0) + RIDGE) * VARIANCE_SCALE
-        return np.hstack([means[:, LEVELS], logarithms]).astype(np.float16)
+        return np.hstack([means[:, MEAN_FEATURES], logarithms]).astype(np.float16)
 
 
 def _running(values: FloatArray) -> FloatArray:

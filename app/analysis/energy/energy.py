@@ -1,4 +1,4 @@
-"""How much a body moves, seen from the floor and from the waist (Perera 2009, section 3.1).
+"""The energy of a motion: how fast the joints move (Perera 2009, section 3.1).
 
 Global energy uses the joints' velocities in the world, local energy those in the body frame. Both
 are in body lengths per second, so thresholds do not depend on the body's size. All joints have the
@@ -21,19 +21,19 @@ from app.motion.canonical.centre_of_mass import ROLE_MASSES
 from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray
 
-SMOOTHING = 1 / 30
+MIN_SMOOTHING = 1 / 30
 """Seconds (standard deviation): the weakest smoothing."""
 
 MAX_SMOOTHING = 3 / 30
 """Seconds: the strongest smoothing. More would merge neighboring minima of a dance."""
 
-NOISE_SHARE = 0.05
+MAX_NOISE_SHARE = 0.05
 """Smoothing grows until the noise adds at most this share of the high energies."""
 
-UNSURE = 0.1
+MIN_ENERGY_TO_NOISE = 0.1
 """The smallest energy, as a share of the noise. Smaller values of a noisy motion mean nothing."""
 
-HIGH = 0.9
+HIGH_QUANTILE = 0.9
 """The quantile of an energy over time that counts as high."""
 
 
@@ -72,21 +72,20 @@ class EnergyCurve:
 
 @dataclass(frozen=True, slots=True)
 class Energies:
-    """The energies of a motion in the world (whole, F^G of the paper) and in the body frame
-    (own, F^L)."""
+    """The energies of a motion: in the world (F^G of the paper) and in the body frame (F^L)."""
 
-    whole: EnergyCurve
-    own: EnergyCurve
+    global_curve: EnergyCurve
+    local_curve: EnergyCurve
 
     @property
     def global_energy(self) -> FloatArray:
         """(n,) body lengths per second, in the world."""
-        return self.whole.values
+        return self.global_curve.values
 
     @property
     def local_energy(self) -> FloatArray:
         """(n,) body lengths per second, in the body frame."""
-        return self.own.values
+        return self.local_curve.values
 
 
 def energies(
@@ -98,6 +97,7 @@ def energies(
 
     method: how velocities become one number. weights: of the joints.
     """
+    # relative to the first frame, so that rounding does not depend on the position in the world
     world = (track.positions - track.origin[:1, None]) / track.body_length
     shares = _shares(weights, world.shape[1])
     curve = _printed if method is EnergyMethod.PRINTED else _rms
@@ -109,35 +109,36 @@ def _shares(weights: Weights, joints: int) -> FloatArray:
 
 
 def _printed(positions: FloatArray, rate: float, shares: FloatArray) -> EnergyCurve:
-    sums = np.einsum("j,njx->nx", shares, velocities(positions, rate, SMOOTHING))
-    return EnergyCurve(np.linalg.norm(sums, axis=-1), 0.0, SMOOTHING)
+    sums = np.einsum("j,njx->nx", shares, velocities(positions, rate, MIN_SMOOTHING))
+    return EnergyCurve(np.linalg.norm(sums, axis=-1), 0.0, MIN_SMOOTHING)
 
 
 def _rms(positions: FloatArray, rate: float, shares: FloatArray) -> EnergyCurve:
     noise = noise_power(positions, shares)
-    lightly = _above_noise(positions, rate, shares, noise, SMOOTHING)
-    smoothing = _smoothing(lightly)
-    if smoothing == SMOOTHING:
-        return lightly
+    light_curve = _above_noise(positions, rate, shares, noise, MIN_SMOOTHING)
+    smoothing = _smoothing(light_curve)
+    if smoothing == MIN_SMOOTHING:
+        return light_curve
     return _above_noise(positions, rate, shares, noise, smoothing)
 
 
-def _smoothing(lightly: EnergyCurve) -> float:
-    """The seconds of smoothing that the noise requires; lightly: the curve with the weakest."""
-    high = float(np.quantile(lightly.values, HIGH))
-    if not lightly.noise > NOISE_SHARE * high:
-        return SMOOTHING
+def _smoothing(light_curve: EnergyCurve) -> float:
+    """The seconds of smoothing that the noise requires; light_curve: with the weakest."""
+    high = float(np.quantile(light_curve.values, HIGH_QUANTILE))
+    if not light_curve.noise > MAX_NOISE_SHARE * high:
+        return MIN_SMOOTHING
     # The noise of a speed falls with the power -3/2 of the smoothing.
-    factor = (lightly.noise / (NOISE_SHARE * high)) ** (2 / 3) if high > 0 else np.inf
-    return float(min(SMOOTHING * factor, MAX_SMOOTHING))
+    factor = (light_curve.noise / (MAX_NOISE_SHARE * high)) ** (2 / 3) if high > 0 else np.inf
+    return float(min(MIN_SMOOTHING * factor, MAX_SMOOTHING))
 
 
 def _above_noise(
     positions: FloatArray, rate: float, shares: FloatArray, noise: float, smoothing: float
 ) -> EnergyCurve:
+    # (n,) the weighted mean of squared speeds; squared noise adds to squared speeds
     squares = np.square(velocities(positions, rate, smoothing)).sum(axis=-1) @ shares
     added = noise * noise_of_speed(smoothing * rate) * rate**2
-    values = np.sqrt(np.maximum(squares - added, UNSURE**2 * added))
+    values = np.sqrt(np.maximum(squares - added, MIN_ENERGY_TO_NOISE**2 * added))
     return EnergyCurve(values, float(np.sqrt(added)), smoothing)
 
 
@@ -150,7 +151,7 @@ def velocities(positions: FloatArray, rate: float, smoothing: float) -> FloatArr
 
 
 def _smoothed(positions: FloatArray, spread: float) -> FloatArray:
-    """`positions` smoothed by a Gaussian of `spread` frames.
+    """`positions` (n, joints, 3) smoothed by a Gaussian of `spread` frames.
 
     Both ends are continued by point reflection, so that they keep their speed.
     """

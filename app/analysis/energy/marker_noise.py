@@ -14,29 +14,29 @@ import scipy
 
 from app.numerics.arrays import FloatArray
 
-BAND = (8 / 15, 12 / 15)
+NOISE_BAND = (8 / 15, 12 / 15)
 """As shares of half the frame rate: 8 to 12 Hz at 30 frames per second."""
 
-TAPS = 25
+FILTER_FRAMES = 25
 """Length of the filter in frames: long enough to exclude movement, shorter than a usual rest."""
 
-MIN_FRAMES = 2 * TAPS
+MIN_FRAMES = 2 * FILTER_FRAMES
 """The fewest frames. Shorter clips have no quiet moments; their noise counts as 0."""
 
-QUIET = 0.2
+QUIET_QUANTILE = 0.2
 """The quantile over time of the power that counts as quiet."""
 
-AROUND = 5
+AVERAGED_FRAMES = 5
 """Frames over which the power is averaged before."""
 
-QUIET_PER_MEAN = 0.84
+QUIET_TO_MEAN = 0.84
 """That quantile as a share of the mean, for white noise on 13 joints."""
 
 
 @cache
 def _band_pass() -> FloatArray:
-    """(TAPS,) the filter; made by the first call, because scipy.signal is slow to import."""
-    taps = scipy.signal.firwin(TAPS, BAND, pass_zero=False, window="blackman")
+    """(FILTER_FRAMES,) the filter. It is made at the first call: scipy.signal imports slowly."""
+    taps = scipy.signal.firwin(FILTER_FRAMES, NOISE_BAND, pass_zero=False, window="blackman")
     return np.asarray(taps - taps.mean())  # a still joint must give exactly 0
 
 
@@ -48,13 +48,14 @@ def noise_power(positions: FloatArray, weights: FloatArray) -> float:
     """
     if len(positions) < MIN_FRAMES:
         return 0.0
-    reach = TAPS // 2
+    margin = FILTER_FRAMES // 2
     band_pass = _band_pass()
-    shaking = scipy.ndimage.convolve1d(positions, band_pass, axis=0)[reach:-reach]
-    power = np.square(shaking).sum(axis=-1) @ weights
-    around = scipy.ndimage.convolve1d(power, np.full(AROUND, 1 / AROUND))
+    noise = scipy.ndimage.convolve1d(positions, band_pass, axis=0)[margin:-margin]
+    # (n,) the squared amplitude in the band, averaged over joints
+    power = np.square(noise).sum(axis=-1) @ weights
+    smooth_power = scipy.ndimage.convolve1d(power, np.full(AVERAGED_FRAMES, 1 / AVERAGED_FRAMES))
     gain = float(np.square(band_pass).sum())
-    return float(np.quantile(around, QUIET) / (gain * QUIET_PER_MEAN))
+    return float(np.quantile(smooth_power, QUIET_QUANTILE) / (gain * QUIET_TO_MEAN))
 
 
 def noise_of_speed(spread: float) -> float:

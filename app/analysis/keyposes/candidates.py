@@ -11,39 +11,39 @@ from enum import StrEnum
 
 import numpy as np
 
-from app.analysis.keyposes.energy_minima import SURE_MINIMUM, EnergyMinimum, usual_length
+from app.analysis.keyposes.energy_minima import CERTAIN_ENERGY, EnergyMinimum, usual_length
 from app.numerics.arrays import FloatArray
 
-REACH = 0.35
+MAX_BEAT_DISTANCE = 0.35
 """How far from its beat a minimum may be, in beats."""
 
-ALMOST = 0.4
-"""A share of REACH. A minimum that begins at most this much after a beat still belongs to it."""
+SAME_BEAT_MARGIN = 0.4
+"""A share of MAX_BEAT_DISTANCE. A minimum that begins this much later still belongs to a beat."""
 
 MAX_BEAT_INTERVAL = 1.5
 """In median intervals. If two beats are farther apart, beats are missing between them."""
 
-LONE_BEAT = 15.0
+DEFAULT_BEAT_INTERVAL = 15.0
 """Frames: the interval that is assumed if only one beat is given."""
 
-ASIDE = 0.5
-"""Units of energy. A minimum at the far end of its beat's reach counts as this much higher."""
+DISTANCE_PENALTY = 0.5
+"""Units of energy that are added to a minimum at the largest distance from its beat."""
 
-LONG = 2.5
+FREEZE_LENGTH = 2.5
 """In usual lengths. A longer minimum is a freeze: its keypose is at its start, not its middle."""
 
-FIRST_POSE = 7.0
+MIN_FIRST_LENGTH = 7.0
 """Frames. If a clip begins with a shorter minimum, that is no pose, but the start of the clip."""
 
-NUDGE = 5.0
+MAX_BEAT_SHIFT = 5.0
 """Frames by which an estimated beat may move a keypose from the middle of its minimum."""
 
-AGREEING = 0.85
+MIN_AGREEMENT = 0.85
 """The share of the certain minima that must contain a beat; else estimated beats are ignored."""
 
 
 class Scope(StrEnum):
-    """Which energy has the minimum."""
+    """The energy that has the minimum."""
 
     GLOBAL = "global"
     """The global energy: the whole body comes to rest."""
@@ -79,12 +79,14 @@ def at_beats(
     for minimum in minima:
         early = np.maximum(beats - minimum.last, 0.0) / before
         late = np.maximum(minimum.first - beats, 0.0) / after
-        aside = float((early + late).min())
-        lasting = np.flatnonzero(early + late <= aside + ALMOST)
+        distance = float((early + late).min())
+        lasting = np.flatnonzero(early + late <= distance + SAME_BEAT_MARGIN)
         nearest = int(lasting[-1] if minimum.at_start else lasting[0])
-        aside = float((early + late)[nearest])
-        if aside <= 1.0:
-            around.setdefault(nearest, []).append((minimum.energy + ASIDE * aside, minimum))
+        distance = float((early + late)[nearest])
+        if distance <= 1.0:
+            around.setdefault(nearest, []).append(
+                (minimum.energy + DISTANCE_PENALTY * distance, minimum)
+            )
     lowest = {beat: min(found, key=lambda each: each[0])[1] for beat, found in around.items()}
     return tuple(
         Candidate(
@@ -97,12 +99,12 @@ def at_beats(
 def _reaches(beats: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Two arrays (b,): how many frames before and after each beat belong to it."""
     if len(beats) < 2:
-        alone = np.full(len(beats), REACH * LONE_BEAT)
+        alone = np.full(len(beats), MAX_BEAT_DISTANCE * DEFAULT_BEAT_INTERVAL)
         return alone, alone
     intervals = np.diff(beats)
     intervals = np.minimum(intervals, MAX_BEAT_INTERVAL * float(np.median(intervals)))
-    before = REACH * np.concatenate([intervals[:1], intervals])
-    return before, REACH * np.concatenate([intervals, intervals[-1:]])
+    before = MAX_BEAT_DISTANCE * np.concatenate([intervals[:1], intervals])
+    return before, MAX_BEAT_DISTANCE * np.concatenate([intervals, intervals[-1:]])
 
 
 def at_energy_minima(
@@ -116,14 +118,14 @@ def at_energy_minima(
     """
     usual = usual_length(minima)
     beats = beats if _agree(minima, beats) else beats[:0]
-    poses = (r for r in minima if not (r.at_start and (r.at_end or r.length < FIRST_POSE)))
+    poses = (r for r in minima if not (r.at_start and (r.at_end or r.length < MIN_FIRST_LENGTH)))
     return tuple(Candidate(round(_moment(r, usual, beats)), None, scope, r) for r in poses)
 
 
 def _agree(minima: tuple[EnergyMinimum, ...], beats: FloatArray) -> bool:
-    sure = [minimum for minimum in minima if minimum.energy < SURE_MINIMUM]
-    held = sum(len(_within(minimum, beats)) > 0 for minimum in sure)
-    return held >= AGREEING * len(sure)
+    certain = [minimum for minimum in minima if minimum.energy < CERTAIN_ENERGY]
+    with_beat = sum(len(_within(minimum, beats)) > 0 for minimum in certain)
+    return with_beat >= MIN_AGREEMENT * len(certain)
 
 
 def _within(minimum: EnergyMinimum, beats: FloatArray) -> FloatArray:
@@ -141,13 +143,13 @@ def _moment(minimum: EnergyMinimum, usual: float, beats: FloatArray) -> float:
         return middle
     nearest = min(within, key=lambda beat: abs(beat - middle))
     if not minimum.at_start:
-        nearest = min(max(nearest, middle - NUDGE), middle + NUDGE)
+        nearest = min(max(nearest, middle - MAX_BEAT_SHIFT), middle + MAX_BEAT_SHIFT)
     return float(min(max(nearest, minimum.first), minimum.last))
 
 
 def _middle(minimum: EnergyMinimum, usual: float) -> float:
     if minimum.at_start:
         return max(minimum.last - usual / 2, 0.0)
-    if minimum.at_end or minimum.length > LONG * usual:
+    if minimum.at_end or minimum.length > FREEZE_LENGTH * usual:
         return min(minimum.first + usual / 2, minimum.last)
     return 0.5 * (minimum.first + minimum.last)

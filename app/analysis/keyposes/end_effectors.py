@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.energy.energy import SMOOTHING, EnergyCurve, velocities
+from app.analysis.energy.energy import MIN_SMOOTHING, EnergyCurve, velocities
 from app.analysis.keyposes.candidates import Candidate, Scope, at_beats, at_energy_minima
 from app.analysis.keyposes.energy_minima import EnergyMinimum, find_energy_minima
-from app.analysis.keyposes.keyposes import MIN_SEPARATION, T1, T2, are_law, passes
+from app.analysis.keyposes.keyposes import MIN_SEPARATION, T1, T2, are_independent, passes
 from app.analysis.rhythm.beats import Beats
 from app.motion.frame.body_frame import BodyTrack
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
@@ -24,7 +24,7 @@ from app.numerics.arrays import FloatArray, IntArray
 HANDS = [SUN_ROLES.index(role) for role in (JointRole.LEFT_HAND, JointRole.RIGHT_HAND)]
 FEET = [SUN_ROLES.index(role) for role in (JointRole.LEFT_FOOT, JointRole.RIGHT_FOOT)]
 
-TOGETHER = 6.0
+MAX_FRAMES_APART = 6.0
 """Frames by which the minima of hands and feet may be apart."""
 
 
@@ -50,7 +50,9 @@ class EndEffectorCandidates:
             moment.frame
             for moment in self.moments
             if passes(moment.minimum, t1, t2)
-            and (not self.standing or any(_holds(minimum, moment.frame) for minimum in planted))
+            and (
+                not self.standing or any(_is_standing(minimum, moment.frame) for minimum in planted)
+            )
         ]
         return _apart(frames, MIN_SEPARATION * self.rate) / self.rate
 
@@ -59,8 +61,8 @@ def end_effector_candidates(track: BodyTrack, beats: Beats | None) -> EndEffecto
     """The candidates of `track`. beats: the known beats; None if there are none."""
     hands, feet = end_effector_speeds(track)
     times = np.zeros(0) if beats is None else beats.times * track.rate
-    look = at_beats if beats is not None and are_law(beats) else at_energy_minima
-    moments = look(find_energy_minima(hands), times, Scope.LOCAL)
+    find = at_beats if beats is not None and are_independent(beats) else at_energy_minima
+    moments = find(find_energy_minima(hands), times, Scope.LOCAL)
     return EndEffectorCandidates(track.rate, moments, find_energy_minima(feet))
 
 
@@ -74,17 +76,17 @@ def end_effector_speeds(track: BodyTrack) -> tuple[EnergyCurve, EnergyCurve]:
 
 
 def _speed(positions: FloatArray, rate: float) -> EnergyCurve:
-    speeds = np.linalg.norm(velocities(positions, rate, SMOOTHING), axis=-1)
-    return EnergyCurve(speeds.mean(axis=1), 0.0, SMOOTHING)
+    speeds = np.linalg.norm(velocities(positions, rate, MIN_SMOOTHING), axis=-1)
+    return EnergyCurve(speeds.mean(axis=1), 0.0, MIN_SMOOTHING)
 
 
-def _holds(minimum: EnergyMinimum, frame: int) -> bool:
-    return minimum.first - TOGETHER <= frame <= minimum.last + TOGETHER
+def _is_standing(minimum: EnergyMinimum, frame: int) -> bool:
+    return minimum.first - MAX_FRAMES_APART <= frame <= minimum.last + MAX_FRAMES_APART
 
 
-def _apart(frames: list[int], least: float) -> IntArray:
-    kept: list[int] = []
+def _apart(frames: list[int], min_separation: float) -> IntArray:
+    selected: list[int] = []
     for frame in sorted(frames):
-        if not kept or frame - kept[-1] >= least:
-            kept.append(frame)
-    return np.array(kept, dtype=np.int64)
+        if not selected or frame - selected[-1] >= min_separation:
+            selected.append(frame)
+    return np.array(selected, dtype=np.int64)

@@ -16,29 +16,29 @@ import scipy
 from app.analysis.energy.energy import EnergyCurve
 from app.numerics.arrays import FloatArray
 
-STANDS_OUT = 0.25
+MIN_PROMINENCE = 0.25
 """Units by which a maximum must rise above the minima on both sides to separate them."""
 
-HIGH = 0.9
+HIGH_QUANTILE = 0.9
 """The quantile of a curve that is its unit until its median maximum is known."""
 
-NEAR_MINIMUM = 0.045
+MINIMUM_MARGIN = 0.045
 """Units above the least energy that still belong to the minimum."""
 
-NOISE_NEAR_MINIMUM = 0.6
+NOISE_MARGIN = 0.6
 """The share of the subtracted noise that may still be in the curve."""
 
-END_OF_CLIP = 0.35
+END_MARGIN = 0.35
 """Units. If the energy between an end of the clip and a minimum is lower, the minimum reaches to
 that end."""
 
-STILL = 0.03
+MIN_MAXIMUM = 0.03
 """Body lengths per second. A body whose maxima are lower only breathes and sways."""
 
-SURE_MINIMUM = 0.25
+CERTAIN_ENERGY = 0.25
 """Units. A minimum with a lower energy certainly is a rest of the body."""
 
-USUAL_LENGTH = 4.0
+DEFAULT_LENGTH = 4.0
 """Frames: the usual length if no minimum is certain."""
 
 
@@ -69,11 +69,11 @@ def find_energy_minima(curve: EnergyCurve) -> tuple[EnergyMinimum, ...]:
     """The minima of an energy curve in order of time; none if the body does not move."""
     values = curve.values
     unit, maxima = median_maximum(values)
-    if not len(maxima) or unit < max(STILL, curve.noise):
+    if not len(maxima) or unit < max(MIN_MAXIMUM, curve.noise):
         return ()
-    near = max(NEAR_MINIMUM * unit, NOISE_NEAR_MINIMUM * curve.noise)
-    walls = [None, *(int(frame) for frame in maxima), None]
-    return tuple(_minimum(values, left, right, near, unit) for left, right in pairwise(walls))
+    near = max(MINIMUM_MARGIN * unit, NOISE_MARGIN * curve.noise)
+    bounds = [None, *(int(frame) for frame in maxima), None]
+    return tuple(_minimum(values, left, right, near, unit) for left, right in pairwise(bounds))
 
 
 def median_maximum(values: FloatArray) -> tuple[float, FloatArray]:
@@ -81,12 +81,12 @@ def median_maximum(values: FloatArray) -> tuple[float, FloatArray]:
 
     Without a clear maximum, the largest value and no frames are returned.
     """
-    high = float(np.quantile(values, HIGH))
-    maxima, _ = scipy.signal.find_peaks(values, prominence=max(STANDS_OUT * high, 1e-12))
+    high = float(np.quantile(values, HIGH_QUANTILE))
+    maxima, _ = scipy.signal.find_peaks(values, prominence=max(MIN_PROMINENCE * high, 1e-12))
     if not len(maxima):
         return float(values.max()), maxima
     unit = float(np.median(values[maxima]))
-    standing, _ = scipy.signal.find_peaks(values, prominence=STANDS_OUT * unit)
+    standing, _ = scipy.signal.find_peaks(values, prominence=MIN_PROMINENCE * unit)
     return unit, standing
 
 
@@ -95,9 +95,9 @@ def usual_length(minima: tuple[EnergyMinimum, ...]) -> float:
     lengths = [
         minimum.length
         for minimum in minima
-        if minimum.energy < SURE_MINIMUM and not minimum.at_start and not minimum.at_end
+        if minimum.energy < CERTAIN_ENERGY and not minimum.at_start and not minimum.at_end
     ]
-    return float(np.median(lengths)) if lengths else USUAL_LENGTH
+    return float(np.median(lengths)) if lengths else DEFAULT_LENGTH
 
 
 def _minimum(
@@ -112,16 +112,16 @@ def _minimum(
     least = float(values[lowest])
     low = start + np.flatnonzero(values[start:stop] <= least + near)
     first, last = int(low[0]), int(low[-1])
-    quiet = least + max(near, END_OF_CLIP * unit)
+    quiet = least + max(near, END_MARGIN * unit)
     at_start = left is None and bool(values[:first].max(initial=0.0) <= quiet)
     at_end = right is None and bool(values[last:].max(initial=0.0) <= quiet)
-    beside = min(float(values[wall]) for wall in (left, right) if wall is not None)
+    lower_maximum = min(float(values[maximum]) for maximum in (left, right) if maximum is not None)
     return EnergyMinimum(
         lowest=lowest,
         first=0 if at_start else first,
         last=len(values) - 1 if at_end else last,
         energy=least / unit,
-        drop=(beside - least) / unit,
+        drop=(lower_maximum - least) / unit,
         at_start=at_start,
         at_end=at_end,
     )

@@ -34,19 +34,19 @@ maximum."""
 MIN_SEPARATION = 0.2
 """Seconds: the smallest time between two keyposes."""
 
-GOES_ON = 2.0
+MAX_PAUSE = 2.0
 """Seconds. After this time without a keypose, slow poses count too."""
 
-SLOWEST = 2.4
+SLOW_FACTOR = 2.4
 """Slow poses have a local energy below T1 times this factor."""
 
-REPEATED = 2
+MIN_SLOW_POSES = 2
 """The fewest slow poses between two keyposes. One alone may be chance."""
 
-KNOWN = frozenset({BeatSource.GIVEN, BeatSource.TEMPO, BeatSource.AUDIO})
+INDEPENDENT_SOURCES = frozenset({BeatSource.GIVEN, BeatSource.TEMPO, BeatSource.AUDIO})
 """Sources of beats that are independent of the motion. With these, keyposes are only on beats."""
 
-OVERLAP = 3
+MAX_GAP = 3
 """Frames. Minima of both energies that are at most this far apart count as the same one."""
 
 
@@ -104,30 +104,30 @@ class Candidates:
         """
         chosen: list[Candidate] = []
         for scope in Scope:
-            fresh = [c for c in self.found if c.scope is scope and passes(c.minimum, t1, t2)]
-            chosen += _not_there_yet(fresh, chosen)
+            new = [c for c in self.found if c.scope is scope and passes(c.minimum, t1, t2)]
+            chosen += _without_duplicates(new, chosen)
         if not self.on_beats:
-            chosen += self._where_it_goes_on(chosen, SLOWEST * t1)
+            chosen += self._slow_poses(chosen, SLOW_FACTOR * t1)
         return _apart(chosen, MIN_SEPARATION * self.rate)
 
     def times(self, t1: float = T1, t2: float = T2) -> FloatArray:
         """(k,) the times, in seconds, of the keyposes for these thresholds."""
         return np.array([candidate.frame for candidate in self.select(t1, t2)]) / self.rate
 
-    def _where_it_goes_on(self, chosen: list[Candidate], slow: float) -> list[Candidate]:
-        """The slow poses between keyposes that are farther apart than GOES_ON.
+    def _slow_poses(self, chosen: list[Candidate], slow: float) -> list[Candidate]:
+        """The slow poses between keyposes that are farther apart than MAX_PAUSE.
 
         slow: the largest local energy of a slow pose.
         """
         last = len(self.energies.local_energy) - 1
-        walls = [0, *sorted(c.frame for c in chosen), last]
+        bounds = [0, *sorted(c.frame for c in chosen), last]
         local = [c for c in self.found if c.scope is Scope.LOCAL and c.minimum.energy < slow]
         found: list[Candidate] = []
-        for left, right in pairwise(walls):
+        for left, right in pairwise(bounds):
             between = [c for c in local if left < c.frame < right]
-            long = right - left >= GOES_ON * self.rate or not chosen
-            found += between if long and len(between) >= REPEATED else []
-        return _not_there_yet(found, chosen)
+            long = right - left >= MAX_PAUSE * self.rate or not chosen
+            found += between if long and len(between) >= MIN_SLOW_POSES else []
+        return _without_duplicates(found, chosen)
 
 
 def find_keyposes(
@@ -138,18 +138,20 @@ def find_keyposes(
     t1: float = T1,
     t2: float = T2,
     beats: Beats | FloatArray | None = None,
-    plain: Energies | None = None,
+    rms_energies: Energies | None = None,
 ) -> Keyposes:
     """The keyposes of `track`.
 
     method, weights: how the energies are computed. t1, t2: thresholds in units of the median
     local maximum of each energy curve. beats: the known beats, as (b,) seconds or as `Beats`; an
-    empty array says that there are none; None estimates them from the motion. plain:
-    `energies(track)`, if the caller has them. Raises ValueError for an unknown method or unknown
-    weights.
+    empty array says that there are none; None estimates them from the motion. rms_energies:
+    `energies(track)`, if the caller has them. Raises ValueError for an unknown method or
+    unknown weights.
     """
     method, weights = EnergyMethod(method), Weights(weights)
-    candidates = find_candidates(track, method=method, weights=weights, beats=beats, plain=plain)
+    candidates = find_candidates(
+        track, method=method, weights=weights, beats=beats, rms_energies=rms_energies
+    )
     chosen = candidates.select(t1, t2)
     frames = np.array([candidate.frame for candidate in chosen], dtype=np.int64)
     return Keyposes(
@@ -171,33 +173,33 @@ def find_candidates(
     method: EnergyMethod = EnergyMethod.RMS,
     weights: Weights = Weights.UNIFORM,
     beats: Beats | FloatArray | None = None,
-    plain: Energies | None = None,
+    rms_energies: Energies | None = None,
 ) -> Candidates:
     """The candidates from which `find_keyposes` selects; the parameters are the same."""
     if (method, weights) == (EnergyMethod.RMS, Weights.UNIFORM):
-        curves = plain = plain or energies(track)
+        curves = rms_energies = rms_energies or energies(track)
     else:
         curves = energies(track, method, weights)
-    # Beats are always estimated from the plain energy, whatever the method of the keyposes.
-    used = _used(beats) or find_beats((plain or energies(track)).global_energy, track.rate)
-    look = at_beats if are_law(used) else at_energy_minima
+    # Beats are always estimated from the RMS energy, whatever the method of the keyposes.
+    used = _given(beats) or find_beats((rms_energies or energies(track)).global_energy, track.rate)
+    find = at_beats if are_independent(used) else at_energy_minima
     found = (
         candidate
-        for curve, scope in ((curves.whole, Scope.GLOBAL), (curves.own, Scope.LOCAL))
-        for candidate in look(find_energy_minima(curve), used.times * track.rate, scope)
+        for curve, scope in ((curves.global_curve, Scope.GLOBAL), (curves.local_curve, Scope.LOCAL))
+        for candidate in find(find_energy_minima(curve), used.times * track.rate, scope)
     )
     return Candidates(track.rate, curves, used, tuple(found))
 
 
-def _used(beats: Beats | FloatArray | None) -> Beats | None:
+def _given(beats: Beats | FloatArray | None) -> Beats | None:
     if beats is None or isinstance(beats, Beats):
         return beats
     return given_beats(np.unique(np.asarray(beats, dtype=np.float64)))
 
 
-def are_law(beats: Beats) -> bool:
-    """Whether keyposes must be on these beats: there are some, and their source is KNOWN."""
-    return beats.source in KNOWN and len(beats.times) > 0
+def are_independent(beats: Beats) -> bool:
+    """Whether there are beats that do not come from the motion. Then keyposes must be on beats."""
+    return beats.source in INDEPENDENT_SOURCES and len(beats.times) > 0
 
 
 def passes(minimum: EnergyMinimum, t1: float, t2: float) -> bool:
@@ -205,30 +207,30 @@ def passes(minimum: EnergyMinimum, t1: float, t2: float) -> bool:
     return minimum.energy < t1 or minimum.drop > t2
 
 
-def _not_there_yet(fresh: list[Candidate], chosen: list[Candidate]) -> list[Candidate]:
-    """The candidates of `fresh` whose beat is not chosen yet, or, without beats, their minimum."""
+def _without_duplicates(new: list[Candidate], chosen: list[Candidate]) -> list[Candidate]:
+    """The candidates of `new` whose beat is not chosen yet, or, without beats, their minimum."""
     beats = {candidate.beat for candidate in chosen} - {None}
     minima = [candidate.minimum for candidate in chosen if candidate.beat is None]
-    starts = [minimum.first - OVERLAP for minimum in minima]
+    starts = [minimum.first - MAX_GAP for minimum in minima]
 
     def overlaps(minimum: EnergyMinimum) -> bool:
         # The minima of a curve are in order and do not overlap. So only the last one that
         # starts before `minimum` ends can overlap it.
         before = bisect_right(starts, minimum.last)
-        return before > 0 and minima[before - 1].last + OVERLAP >= minimum.first
+        return before > 0 and minima[before - 1].last + MAX_GAP >= minimum.first
 
-    return [each for each in fresh if each.beat not in beats and not overlaps(each.minimum)]
+    return [each for each in new if each.beat not in beats and not overlaps(each.minimum)]
 
 
-def _apart(chosen: Iterable[Candidate], least: float) -> tuple[Candidate, ...]:
-    """The candidates in order, at least `least` frames apart.
+def _apart(chosen: Iterable[Candidate], min_separation: float) -> tuple[Candidate, ...]:
+    """The candidates in order of time, at least `min_separation` frames apart.
 
     Of two that are closer, the one with less energy stays.
     """
-    kept: list[Candidate] = []
+    apart: list[Candidate] = []
     for candidate in sorted(chosen, key=lambda each: each.frame):
-        if kept and candidate.frame - kept[-1].frame < least:
-            kept[-1] = min(kept[-1], candidate, key=lambda each: each.minimum.energy)
+        if apart and candidate.frame - apart[-1].frame < min_separation:
+            apart[-1] = min(apart[-1], candidate, key=lambda each: each.minimum.energy)
         else:
-            kept.append(candidate)
-    return tuple(kept)
+            apart.append(candidate)
+    return tuple(apart)

@@ -18,7 +18,7 @@ from app.motion.frame.body_frame import BodyTrack, turned
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.signs import fix_signs
 
-SHOWN = 3
+PAPER_DIMENSIONS = 3
 """The axes of the space in which Perera draws poses and motions (figs 7 to 9). It is also K' of
 most of the paper's motions."""
 

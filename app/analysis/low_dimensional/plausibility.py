@@ -1,19 +1,20 @@
-"""Poses that no body takes (Perera 2009, figs 13 and 14): a joint beyond its range, a hand
-inside the trunk.
+"""Finds poses that no body can take (Perera 2009, figs 13 and 14).
 
-Joint positions alone leave a limb's turn about its own length open. So only what is certain
-is called implausible, with limits that recorded people keep (chosen on half of the real clips;
-`tests/bench/test_low_dimensional.py` counts how many frames of the other half pass them):
+Joint positions do not show the turn of a limb about its own length. So a pose is implausible only
+if it is certainly impossible. The limits were chosen on half of the real clips, so that recorded
+people stay within them; `tests/bench/test_low_dimensional.py` counts the frames of the other half
+that exceed them. The faults are:
 
-- a knee folded beyond what thigh and calf leave room for, or bent forward;
-- an elbow folded beyond that, or bent backward: its forearm within 60 degrees of straight
-  away from where it would bend if the upper arm were swung there by the shortest way from
-  hanging. An arm raised above the shoulder can turn so far that nothing is said of it;
-- a head turned away from the line of the trunk beyond the neck's range;
-- a hand within the trunk: near the line from hips to neck, its ends left out, since hands
-  are laid on neck and hips.
+- a knee that is bent more than thigh and calf allow, or bent forward;
+- an elbow that is bent more than the arm allows, or bent backward: its forearm is within 60 degrees
+  of the direction opposite to its usual bend. The usual bend is that of an arm which swung from
+  hanging to its position by the shortest path. An arm that is raised above the shoulder can turn
+  too far to be judged;
+- a head that is turned away from the line of the trunk beyond the range of the neck;
+- a hand inside the trunk: near the line from hips to neck. The ends of this line do not count,
+  because people put their hands on neck and hips.
 
-Front, left and up are the trunk's own, so that who lies or stands on hands is judged alike.
+Front, left and up are axes of the trunk, so the judgment of a person who lies is the same.
 """
 
 from __future__ import annotations
@@ -28,42 +29,46 @@ from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import BoolArray, FloatArray
 
 FOLDED_LIMIT = 160.0
-"""Degrees between the directions of a limb's two bones."""
+"""Degrees: the largest angle between the directions of the two bones of a limb."""
 KNEE_BACKWARD_LIMIT = 10.0
-"""Degrees that a knee is bent forward, as lax joints are."""
+"""Degrees by which flexible knees may bend forward."""
 ELBOW_BACKWARD_LIMIT = 25.0
-"""Degrees that an elbow is bent backward."""
-BACKWARD_CONE = np.cos(np.radians(60.0))
-RAISED = np.cos(np.radians(120.0))
-"""Of the angle of an upper arm from hanging, beyond which elbows are not judged."""
+"""Degrees by which flexible elbows may bend backward."""
+BACKWARD_COSINE = np.cos(np.radians(60.0))
+"""The cosine of the largest angle between the bend of an elbow and the backward direction."""
+RAISED_COSINE = np.cos(np.radians(120.0))
+"""The cosine of the angle of an upper arm from hanging above which elbows are not judged."""
 HEAD_LIMIT = 70.0
-"""Degrees between the neck and the line of the trunk."""
+"""Degrees: the largest angle between the neck and the line of the trunk."""
 TRUNK_RADIUS = 0.07
 """Body lengths (7 cm of a person of 1.7 m) around the line from hips to neck."""
 TRUNK_ENDS = 0.15
-"""Share of the line from hips to neck that is left out at each end."""
+"""The share of the line from hips to neck that does not count at each end."""
 
 _R = JointRole
-_SMALLEST = 1e-9
+_MIN_LENGTH = 1e-9
 
 
 class Fault(StrEnum):
-    """What a body does not do."""
+    """The kinds of impossible poses."""
 
     FOLDED = "folded"
     """A knee or elbow is folded beyond its range."""
     BENT_BACKWARD = "bent_backward"
     """A knee or elbow is bent to the wrong side."""
     TURNED_AWAY = "turned_away"
-    """The head leaves the neck's range."""
+    """The head is turned beyond the range of the neck."""
     IN_TRUNK = "in_trunk"
     """A hand is inside the trunk."""
 
 
 @dataclass(frozen=True, slots=True)
 class Implausible:
-    """Frames first..last in which a joint is at fault without a break, the worst of them, and
-    by how much that one passes the limit: degrees, or body lengths for IN_TRUNK."""
+    """A run of frames, first to last, in which a joint has a fault.
+
+    worst: the frame with the largest fault. beyond: how far this frame exceeds the limit, in
+    degrees, or in body lengths for IN_TRUNK.
+    """
 
     fault: Fault
     joint: JointRole
@@ -75,19 +80,25 @@ class Implausible:
 
 @dataclass(frozen=True, slots=True)
 class Plausibility:
-    """What was found in n frames: the runs of faults by time, and (n,) whether a frame has any."""
+    """The faults of n frames.
+
+    faults: the runs, in order of time. implausible: (n,) whether a frame has a fault.
+    """
 
     faults: tuple[Implausible, ...]
     implausible: BoolArray
 
     @property
     def count(self) -> int:
-        """Frames with a fault."""
+        """The number of frames with a fault."""
         return int(self.implausible.sum())
 
 
 def judge_poses(poses: FloatArray) -> Plausibility:
-    """Judge poses (n, 13, 3) in SUN_ROLES order, in body lengths, Y up, as `BodyTrack.local`."""
+    """Find the faults of `poses` (n, 13, 3), in the body frame and in body lengths.
+
+    The joints are in the order of SUN_ROLES, Y up, as in `BodyTrack.local`.
+    """
     body = _Body(poses.astype(np.float64))
     found: list[Implausible] = []
     implausible = np.zeros(len(poses), dtype=bool)
@@ -100,7 +111,7 @@ def judge_poses(poses: FloatArray) -> Plausibility:
 
 
 class _Body:
-    """Poses with the trunk's own axes, (n, 3) unit vectors."""
+    """Poses, and the axes of the trunk: up, left and front, (n, 3) unit vectors."""
 
     def __init__(self, poses: FloatArray) -> None:
         self._poses = poses
@@ -110,7 +121,7 @@ class _Body:
         self.front = np.cross(self.left, self.up)
 
     def bone(self, start: JointRole, end: JointRole) -> FloatArray:
-        """(n, 3) from one joint to another."""
+        """(n, 3) the vectors from one joint to another."""
         column = SUN_ROLES.index
         return np.asarray(self._poses[:, column(end)] - self._poses[:, column(start)])
 
@@ -129,7 +140,7 @@ def _knee_backward(limb: _Limb) -> _Check:
 
     def check(body: _Body) -> FloatArray:
         thigh, shank = body.bone(upper, middle), body.bone(middle, end)
-        # A knee that bends as knees do turns the shank about the body's left.
+        # the axis of a knee that bends in the bend_direction way points to the left
         side = np.sum(_unit(np.cross(thigh, shank)) * body.left, axis=-1)
         return np.asarray(-side * _angle(thigh, shank) - KNEE_BACKWARD_LIMIT)
 
@@ -141,10 +152,10 @@ def _elbow_backward(limb: _Limb) -> _Check:
 
     def check(body: _Body) -> FloatArray:
         arm, forearm = _unit(body.bone(upper, middle)), body.bone(middle, end)
-        usual, hanging = _swung_front(body, arm)
+        bend_direction, hanging = _usual_bend(body, arm)
         bend = _unit(forearm - _along(forearm, arm))
-        backward = -np.sum(bend * usual, axis=-1)
-        judged = (backward > BACKWARD_CONE) & (hanging > RAISED)
+        backward = -np.sum(bend * bend_direction, axis=-1)
+        judged = (backward > BACKWARD_COSINE) & (hanging > RAISED_COSINE)
         return np.where(judged, _angle(arm, forearm), 0.0) - ELBOW_BACKWARD_LIMIT
 
     return check
@@ -157,7 +168,7 @@ def _turned_away(body: _Body) -> FloatArray:
 def _in_trunk(hand: JointRole) -> _Check:
     def check(body: _Body) -> FloatArray:
         trunk, arm = body.bone(_R.HIPS, _R.NECK), body.bone(_R.HIPS, hand)
-        length = np.maximum(np.sum(trunk * trunk, axis=-1), _SMALLEST)
+        length = np.maximum(np.sum(trunk * trunk, axis=-1), _MIN_LENGTH)
         share = np.clip(np.sum(arm * trunk, axis=-1) / length, TRUNK_ENDS, 1 - TRUNK_ENDS)
         return np.asarray(TRUNK_RADIUS - np.linalg.norm(arm - share[:, None] * trunk, axis=-1))
 
@@ -182,7 +193,7 @@ _CHECKS: tuple[tuple[Fault, JointRole, _Check], ...] = (
 
 
 def _runs(fault: Fault, joint: JointRole, beyond: FloatArray) -> list[Implausible]:
-    """The unbroken runs of frames in which `beyond` (n,) is above 0."""
+    """The runs of consecutive frames in which `beyond` (n,) is above 0."""
     edges = np.diff((beyond > 0).astype(np.int8), prepend=0, append=0)
     found = []
     for first, stop in zip(np.flatnonzero(edges > 0), np.flatnonzero(edges < 0), strict=True):
@@ -193,19 +204,22 @@ def _runs(fault: Fault, joint: JointRole, beyond: FloatArray) -> list[Implausibl
     return found
 
 
-def _swung_front(body: _Body, arm: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The trunk's front (n, 3) after the shortest turn from hanging to `arm` (n, 3, unit),
-    and (n,) the cosine of that turn."""
+def _usual_bend(body: _Body, arm: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(n, 3) the usual direction of an elbow's bend, and (n,) the cosine of the arm from hanging.
+
+    arm: (n, 3) unit vectors. The direction is the front of the trunk after the shortest rotation
+    from hanging to `arm` (Rodrigues' formula).
+    """
     down = -body.up
     cos = np.sum(down * arm, axis=-1)
     axis = np.cross(down, arm)
     once = np.cross(axis, body.front)
-    twice = np.cross(axis, once) / np.maximum(1 + cos, _SMALLEST)[:, None]
+    twice = np.cross(axis, once) / np.maximum(1 + cos, _MIN_LENGTH)[:, None]
     return body.front + once + twice, cos
 
 
 def _angle(one: FloatArray, other: FloatArray) -> FloatArray:
-    """(n,) degrees between vectors; 0 where either has no length."""
+    """(n,) the degrees between vectors (n, 3); 0 if one of them has no length."""
     across = np.linalg.norm(np.cross(one, other), axis=-1)
     return np.asarray(np.degrees(np.arctan2(across, np.sum(one * other, axis=-1))))
 
@@ -215,6 +229,6 @@ def _along(vectors: FloatArray, units: FloatArray) -> FloatArray:
 
 
 def _unit(vectors: FloatArray) -> FloatArray:
-    """Unit vectors; 0 stays 0."""
+    """(n, 3) unit vectors; a vector of length 0 stays 0."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.maximum(lengths, _SMALLEST))
+    return np.asarray(vectors / np.maximum(lengths, _MIN_LENGTH))

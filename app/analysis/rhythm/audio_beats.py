@@ -24,29 +24,29 @@ from app.analysis.rhythm.beats import Beats, BeatSource, no_beats
 from app.analysis.rhythm.onsets import RATE, Onsets
 from app.numerics.arrays import FloatArray, IntArray
 
-SLOWEST, FASTEST = 40.0, 220.0
+MIN_TEMPO, MAX_TEMPO = 40.0, 220.0
 """Beats per minute."""
 
 TIGHTNESS = 100.0
 """The tightness of `track`; onset strength is in units of its standard deviation."""
 
-CANDIDATES = 4
+MAX_PERIODS = 4
 """How many of the strongest periods of the onsets are used to derive tempi."""
 
-USUAL = 112.0
+USUAL_TEMPO = 112.0
 """Beats per minute of most music (McKinney & Moelants 2006: 100 to 140)."""
 
-UNUSUAL, ALIKE, BASS_ALIKE, PULSE = -2.4, 2.8, -1.25, 4.8
-"""Weights: of the squared distance from USUAL in octaves; of the similarity of the rise at odd and
-even beats, and of the bass there (natural logarithms of the ratios); and of the pulse. They come
-from a multinomial logit on 280 pieces of the demo's music. With each style left out in turn, it
-reached F .95."""
+TEMPO_WEIGHT, RISE_WEIGHT, BASS_WEIGHT, PULSE_WEIGHT = -2.4, 2.8, -1.25, 4.8
+"""Weights: of the squared distance from USUAL_TEMPO in octaves; of the similarity of the rise at
+odd and even beats, and of the bass there (natural logarithms of the ratios); and of the pulse. They
+come from a multinomial logit on 280 pieces of the demo's music. With each style left out in turn,
+it reached F .95."""
 
-NEAR = 3
+MAX_ONSET_DISTANCE = 3
 """Frames around a beat in which its onset may be."""
 
-CHOSEN_FROM = 90.0
-"""Seconds in the middle of the recording from which the tempo is chosen."""
+MAX_SECONDS = 90.0
+"""The tempo is chosen from at most this long a part in the middle of the recording."""
 
 WINDOW = 8.0
 """Seconds: the windows in which the pulse is measured. They overlap by half."""
@@ -54,11 +54,11 @@ WINDOW = 8.0
 DRIFT = 0.04
 """The largest relative difference of a period from the beat within a window."""
 
-CHANCE = (0.06, 0.2)
+CHANCE_PULSE = (0.06, 0.2)
 """The largest pulse of recordings without a beat: a constant, and a part that falls with the
 square root of the number of windows."""
 
-CLEAR = 0.16
+CLEAR_PULSE = 0.16
 """If the pulse is above chance by this, the confidence is 1."""
 
 MIN_CONFIDENCE = 0.5
@@ -70,7 +70,7 @@ def find_audio_beats(onsets: Onsets, tempo: float | None = None) -> Beats:
 
     tempo: beats per minute, if it is known; then only the times of the beats are searched.
     """
-    period, confidence = (60.0 * RATE / tempo, 1.0) if tempo else _choose(onsets)
+    period, confidence = (60.0 * RATE / tempo, 1.0) if tempo else _choose_period(onsets)
     if confidence < MIN_CONFIDENCE:
         return no_beats(confidence)
     beats = _tracked(onsets.strength, period)
@@ -81,28 +81,28 @@ def find_audio_beats(onsets: Onsets, tempo: float | None = None) -> Beats:
     return Beats(beats / RATE, tempo or found, confidence, source)
 
 
-def _choose(onsets: Onsets) -> tuple[float, float]:
+def _choose_period(onsets: Onsets) -> tuple[float, float]:
     """The period of the beat in frames, and the confidence, 0..1, that there is a beat."""
     part = _middle(onsets)
-    hearing = _Hearing.of(part.strength)
+    correlations = _WindowCorrelations.of(part.strength)
     best, found = (0.0, 0.0), -np.inf
-    shortest, longest = 60.0 * RATE / FASTEST, 60.0 * RATE / SLOWEST
-    for period in likely_periods(part.strength, shortest, longest, CANDIDATES):
+    shortest, longest = 60.0 * RATE / MAX_TEMPO, 60.0 * RATE / MIN_TEMPO
+    for period in likely_periods(part.strength, shortest, longest, MAX_PERIODS):
         beats = _tracked(part.strength, period)
         if len(beats) < MIN_BEATS:
             continue
-        pulse = hearing.pulse(beats)
-        score = PULSE * pulse + _plausibility(part, beats)
+        pulse = correlations.pulse(beats)
+        score = PULSE_WEIGHT * pulse + _plausibility(part, beats)
         if score > found:
             best, found = (period, pulse), score
     period, pulse = best
-    chance = CHANCE[0] + CHANCE[1] / np.sqrt(max(len(hearing.windows), 1))
-    return period, float(np.clip((pulse - chance) / CLEAR, 0.0, 1.0))
+    chance = CHANCE_PULSE[0] + CHANCE_PULSE[1] / np.sqrt(max(len(correlations.windows), 1))
+    return period, float(np.clip((pulse - chance) / CLEAR_PULSE, 0.0, 1.0))
 
 
 def _middle(onsets: Onsets) -> Onsets:
     """The part from which the tempo is chosen."""
-    spare = max(0, len(onsets.strength) - round(CHOSEN_FROM * RATE)) // 2
+    spare = max(0, len(onsets.strength) - round(MAX_SECONDS * RATE)) // 2
     part = slice(spare, len(onsets.strength) - spare)
     return replace(
         onsets, strength=onsets.strength[part], rise=onsets.rise[part], bass=onsets.bass[part]
@@ -110,13 +110,13 @@ def _middle(onsets: Onsets) -> Onsets:
 
 
 @dataclass(frozen=True, slots=True)
-class _Hearing:
+class _WindowCorrelations:
     """For each window its first frame and the autocorrelation (lags,) of the onsets in it."""
 
     windows: tuple[tuple[int, FloatArray], ...]
 
     @classmethod
-    def of(cls, strength: FloatArray) -> _Hearing:
+    def of(cls, strength: FloatArray) -> _WindowCorrelations:
         width = round(WINDOW * RATE)
         starts = range(0, max(1, len(strength) - width // 2), width // 2)
         parts = ((start, strength[start : start + width]) for start in starts)
@@ -128,12 +128,12 @@ class _Hearing:
         beats: frames.
         """
         width = round(WINDOW * RATE)
-        heard: list[float] = []
+        pulses: list[float] = []
         for start, correlation in self.windows:
             inside = beats[(beats >= start) & (beats < start + width)]
             if len(inside) > 2:
-                heard.append(_repetition(correlation, float(np.median(np.diff(inside)))))
-        return float(np.median(heard)) if heard else 0.0
+                pulses.append(_repetition(correlation, float(np.median(np.diff(inside)))))
+        return float(np.median(pulses)) if pulses else 0.0
 
 
 def _repetition(correlation: FloatArray, period: float) -> float:
@@ -150,25 +150,27 @@ def _tracked(strength: FloatArray, period: float) -> IntArray:
 
 
 def _trimmed(beats: IntArray, strength: FloatArray) -> IntArray:
-    """Without the beats before the first onset and after the last one."""
+    """`beats` without those before the first onset and after the last one."""
     if not len(beats):
         return beats
-    heard = np.flatnonzero(_at(strength, beats) > 0.5 * strength.std())
-    return beats[heard[0] : heard[-1] + 1] if len(heard) else beats[:0]
+    pulses = np.flatnonzero(_at(strength, beats) > 0.5 * strength.std())
+    return beats[pulses[0] : pulses[-1] + 1] if len(pulses) else beats[:0]
 
 
 def _at(curve: FloatArray, beats: IntArray) -> FloatArray:
-    """The curve's largest value near each beat."""
-    return np.asarray(scipy.ndimage.maximum_filter1d(curve, 2 * NEAR + 1)[beats])
+    """(b,) the largest value of the curve near each of `beats` (b,)."""
+    return np.asarray(scipy.ndimage.maximum_filter1d(curve, 2 * MAX_ONSET_DISTANCE + 1)[beats])
 
 
 def _plausibility(onsets: Onsets, beats: IntArray) -> float:
-    octaves = np.log2(60.0 * RATE / float(np.median(np.diff(beats))) / USUAL)
-    alike = ALIKE * _likeness(onsets.rise, beats) + BASS_ALIKE * _likeness(onsets.bass, beats)
-    return float(UNUSUAL * octaves**2 + alike)
+    octaves = np.log2(60.0 * RATE / float(np.median(np.diff(beats))) / USUAL_TEMPO)
+    similarity = RISE_WEIGHT * _similarity(onsets.rise, beats) + BASS_WEIGHT * _similarity(
+        onsets.bass, beats
+    )
+    return float(TEMPO_WEIGHT * octaves**2 + similarity)
 
 
-def _likeness(curve: FloatArray, beats: IntArray) -> float:
+def _similarity(curve: FloatArray, beats: IntArray) -> float:
     """The logarithm of the ratio of the weaker to the stronger of odd and even beats; 0 if equal.
 
     curve: (n,). beats: frames.

@@ -1,9 +1,10 @@
-"""Estimates when in a motion its recording begins: then the stops coincide with the beats.
+"""Estimates the time of a motion at which its audio recording begins.
 
-A steady beat gives the offset only up to whole beats. Three weak clues show which beat it is. If
-the tempo drifts, the stops fit the right beats best. A recording usually covers the whole motion.
-And the music is fullest while somebody dances. The result says with which probability the number of
-whole beats is right. The beats of the clip are right in both cases.
+With the right offset, the stops of the motion coincide with the beats. A steady beat gives the
+offset only up to whole beats. Three weak clues show which beat it is: if the tempo drifts, the
+stops fit the right beats best; a recording usually covers the whole motion; and the music is
+loudest while somebody dances. The result has the probability that the number of whole beats is
+right. The beats of the clip are right in both cases.
 """
 
 from __future__ import annotations
@@ -13,17 +14,23 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from app.analysis.rhythm.beats import FINE, WIDTH, Stops
+from app.analysis.rhythm.beats import STOP_RATE, WIDTH, Stops
 from app.analysis.rhythm.onsets import RATE, Onsets
 from app.numerics.arrays import FloatArray, IntArray
 
 MIN_COVERED = 0.6
 """The share of the shorter one of motion and recording that both must have in common."""
 
-AS_GOOD = 0.35
+MAX_SHARE_DIFFERENCE = 0.35
 """A lag is tried if the share of stops that coincide with beats is below the best by less."""
 
-MET, FITTING, COVERED, FULLER, PER_SECOND = 18.0, 0.15, 13.0, 6.8, -0.05
+COINCIDENCE_WEIGHT, LIKELIHOOD_WEIGHT, COVERAGE_WEIGHT, FULLNESS_WEIGHT, SECONDS_WEIGHT = (
+    18.0,
+    0.15,
+    13.0,
+    6.8,
+    -0.05,
+)
 """Weights: of the share of stops that coincide with beats; of how closely they do (log
 likelihood); of the share of the motion that is recorded; of how much fuller the music is during the
 motion than before and after it; and of each second from 0. They come from a multinomial logit on
@@ -33,13 +40,13 @@ that does not change."""
 MIN_SPREAD = 0.015
 """Seconds: the smallest standard deviation of dancers' stops from their beats."""
 
-NEAR = 0.3
+MAX_STOP_OFFSET = 0.3
 """In beats. A stop that is at most this far from a beat belongs to it."""
 
-SMOOTH = 0.75
+SMOOTHING = 0.75
 """Beats (standard deviation) over which the fullness of the music is smoothed."""
 
-TRIALS = 10.0
+PHASES_TRIED = 10.0
 """About how many independent phases of a beat are tried: each can fit the stops by chance."""
 
 MIN_CONFIDENCE = 0.9
@@ -71,52 +78,66 @@ def estimate_offset(stops: Stops, beats: FloatArray, onsets: Onsets) -> Offset |
     """
     if len(beats) < 2 or not len(stops.times):
         return None
-    met = _met(stops, beats, onsets.duration)
-    if not len(met.lags):
+    coincidences = _coincidences(stops, beats, onsets.duration)
+    if not len(coincidences.lags):
         return None
     beat = float(np.median(np.diff(beats)))
-    score = MET * met.share + PER_SECOND * np.abs(met.lags) / FINE
-    score += FITTING * np.array([_fit(stops, beats + lag / FINE, beat) for lag in met.lags])
-    score += COVERED * met.covered + FULLER * _fuller(met, onsets, beat)
-    likely = np.exp(score - score.max())
+    score = (
+        COINCIDENCE_WEIGHT * coincidences.share
+        + SECONDS_WEIGHT * np.abs(coincidences.lags) / STOP_RATE
+    )
+    score += LIKELIHOOD_WEIGHT * np.array(
+        [_fit(stops, beats + lag / STOP_RATE, beat) for lag in coincidences.lags]
+    )
+    score += COVERAGE_WEIGHT * coincidences.covered + FULLNESS_WEIGHT * _fullness_contrast(
+        coincidences, onsets, beat
+    )
+    likelihood = np.exp(score - score.max())
     best = int(score.argmax())
-    same = np.abs(met.lags - met.lags[best]) < 0.5 * beat * FINE
-    seconds = round(float(met.lags[best] / FINE), 3)
+    same = np.abs(coincidences.lags - coincidences.lags[best]) < 0.5 * beat * STOP_RATE
+    seconds = round(float(coincidences.lags[best] / STOP_RATE), 3)
     confidence = _confidence(stops, beats + seconds)
     if confidence < MIN_CONFIDENCE:
         return None
-    return Offset(seconds, confidence, False, beat, float(likely[same].sum() / likely.sum()))
+    return Offset(
+        seconds, confidence, False, beat, float(likelihood[same].sum() / likelihood.sum())
+    )
 
 
 @dataclass(frozen=True, slots=True)
-class _Met:
+class _Coincidences:
     """The lags of the recording at which many stops coincide with beats.
 
-    lags: (c,) in frames at FINE Hz. share: (c,) of the stops that coincide. covered: (c,) the
-    share of the motion that is recorded. moved, heard: frames of the motion and the recording.
+    lags: (c,) in frames at STOP_RATE Hz. share: (c,) of the stops that coincide. covered: (c,) the
+    share of the motion that is recorded. moved, recorded: frames of the motion and the recording.
     """
 
     lags: IntArray
     share: FloatArray
     covered: FloatArray
     moved: int
-    heard: int
+    recorded: int
 
 
-def _met(stops: Stops, beats: FloatArray, duration: float) -> _Met:
-    heard, moved = _humps(beats, int(duration * FINE) + 1), stops.curve
-    share = scipy.signal.fftconvolve(moved, heard[::-1]) / max(float(np.square(moved).sum()), 1e-9)
-    lags = np.arange(-len(heard) + 1, len(moved))
-    shared = np.minimum(len(moved), lags + len(heard)) - np.maximum(0, lags)
-    share[shared < MIN_COVERED * min(len(moved), len(heard))] = 0.0
+def _coincidences(stops: Stops, beats: FloatArray, duration: float) -> _Coincidences:
+    recorded, moved = _humps(beats, int(duration * STOP_RATE) + 1), stops.curve
+    # the correlation of both curves gives the share of coinciding stops for every lag at once
+    share = scipy.signal.fftconvolve(moved, recorded[::-1]) / max(
+        float(np.square(moved).sum()), 1e-9
+    )
+    lags = np.arange(-len(recorded) + 1, len(moved))
+    shared = np.minimum(len(moved), lags + len(recorded)) - np.maximum(0, lags)
+    share[shared < MIN_COVERED * min(len(moved), len(recorded))] = 0.0
     inner = (share[1:-1] >= share[:-2]) & (share[1:-1] > share[2:])
     tops = np.flatnonzero(inner) + 1
-    tops = tops[share[tops] > max(float(share.max()) - AS_GOOD, 0.0)]
-    return _Met(lags[tops], share[tops], shared[tops] / len(moved), len(moved), len(heard))
+    tops = tops[share[tops] > max(float(share.max()) - MAX_SHARE_DIFFERENCE, 0.0)]
+    return _Coincidences(
+        lags[tops], share[tops], shared[tops] / len(moved), len(moved), len(recorded)
+    )
 
 
 def _humps(times: FloatArray, count: int) -> FloatArray:
-    grid = np.arange(count) / FINE
+    grid = np.arange(count) / STOP_RATE
     near = np.abs(grid - times[_nearest(grid, times)])
     return np.asarray(np.exp(-0.5 * np.square(near / WIDTH)))
 
@@ -134,7 +155,7 @@ def _fit(stops: Stops, beats: FloatArray, beat: float) -> float:
     """
     within = (stops.times > beats[0] - beat) & (stops.times < beats[-1] + beat)
     off = stops.times[within] - beats[_nearest(stops.times[within], beats)]
-    near = np.abs(off) < NEAR * beat
+    near = np.abs(off) < MAX_STOP_OFFSET * beat
     off, weights = off[near], stops.weights[within][near]
     if not len(off):
         return 0.0
@@ -142,21 +163,23 @@ def _fit(stops: Stops, beats: FloatArray, beat: float) -> float:
     return -0.5 * max(float(weights.sum()), 1.0) * float(np.log(spread + MIN_SPREAD**2))
 
 
-def _fuller(met: _Met, onsets: Onsets, beat: float) -> FloatArray:
+def _fullness_contrast(coincidences: _Coincidences, onsets: Onsets, beat: float) -> FloatArray:
     """(c,) how much fuller the music is during the motion than outside, about -1..1.
 
     This is the correlation of the music's fullness with being within the motion.
     """
-    smooth = scipy.ndimage.gaussian_filter1d(onsets.rise, SMOOTH * beat * RATE)
-    full = np.interp(np.arange(met.heard) / FINE, np.arange(len(smooth)) / RATE, smooth)
+    smooth = scipy.ndimage.gaussian_filter1d(onsets.rise, SMOOTHING * beat * RATE)
+    full = np.interp(
+        np.arange(coincidences.recorded) / STOP_RATE, np.arange(len(smooth)) / RATE, smooth
+    )
     sums = np.concatenate([[0.0], np.cumsum(full)])
-    first = np.maximum(0, -met.lags)
-    stop = np.minimum(met.moved - met.lags, met.heard)
+    first = np.maximum(0, -coincidences.lags)
+    stop = np.minimum(coincidences.moved - coincidences.lags, coincidences.recorded)
     count = stop - first
-    inside, outside = sums[stop] - sums[first], met.heard - count
+    inside, outside = sums[stop] - sums[first], coincidences.recorded - count
     apart = inside / count - (sums[-1] - inside) / np.maximum(outside, 1)
     spread = float(full.std()) + 0.1 * float(full.mean()) + 1e-12
-    return np.asarray(apart * np.sqrt(count * outside) / met.heard / spread)
+    return np.asarray(apart * np.sqrt(count * outside) / coincidences.recorded / spread)
 
 
 def _confidence(stops: Stops, beats: FloatArray) -> float:
@@ -170,5 +193,5 @@ def _confidence(stops: Stops, beats: FloatArray) -> float:
         return 0.0
     times, weights = stops.times[within], stops.weights[within]
     phases = np.exp(2j * np.pi * (times - beats[_nearest(times, beats)]) / beat)
-    together = float(np.abs((weights * phases).sum()) / weights.sum())
-    return float(np.clip(1.0 - TRIALS * np.exp(-len(times) * together**2), 0.0, 1.0))
+    phase_length = float(np.abs((weights * phases).sum()) / weights.sum())
+    return float(np.clip(1.0 - PHASES_TRIED * np.exp(-len(times) * phase_length**2), 0.0, 1.0))

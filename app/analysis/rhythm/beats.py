@@ -1,4 +1,4 @@
-"""The beats of a motion, estimated from its energy; and what beats are.
+"""The type of beats, and the beats of a motion, estimated from its energy.
 
 Dancers come to rest on beats, though not on every beat. In the logarithm of the energy, rests are
 as strong as bursts. If its deep minima repeat, their period is the beat or a simple ratio of it.
@@ -19,40 +19,40 @@ from numpy.polynomial.legendre import legvander
 from app.analysis.rhythm.beat_tracking import MIN_BEATS, likely_periods, track
 from app.numerics.arrays import FloatArray
 
-SLOWEST, FASTEST = 40.0, 200.0
+MIN_TEMPO, MAX_TEMPO = 40.0, 200.0
 """Beats per minute."""
 
-CANDIDATES = 10
+MAX_PERIODS = 10
 """How many of the strongest periods of the stops are used to derive tempi."""
 
 TREND = 2.0
 """Seconds (standard deviation). Slower changes of the energy are not rhythm."""
 
-FLOOR = 0.05
+ENERGY_FLOOR = 0.05
 """Added to the energy, as a share of its median, so that the logarithm is finite."""
 
-DEEP = 0.8
+MIN_PROMINENCE = 0.8
 """The smallest prominence of a stop, in standard deviations of the log energy."""
 
-DEEPEST = 2.0
+FULL_PROMINENCE = 2.0
 """The prominence, in the same unit, from which the weight of a stop is 1."""
 
-BOTTOM = 0.3
+BOTTOM_SHARE = 0.3
 """The share of its prominence up to which a minimum is one stop. Its middle is the stop's time."""
 
-FINE = 60.0
+STOP_RATE = 60.0
 """Hz: the rate of the curve of stops."""
 
 WIDTH = 0.05
 """Seconds (standard deviation): the width of one stop in that curve."""
 
-HUMP = 39 * WIDTH
+MAX_STOP_DISTANCE = 39 * WIDTH
 """Seconds beyond which a stop adds nothing: exp(-39^2 / 2) is 0 in floating point."""
 
-HEIGHT, TIGHTNESS = 4.0, 300.0
+STOP_HEIGHT, TIGHTNESS = 4.0, 300.0
 """The height of a stop of weight 1 in that curve; the tightness of `beat_tracking.track`."""
 
-REACH = 1.25
+MAX_INTERVAL_RATIO = 1.25
 """The largest factor between an interval and the beat. A larger one would cost more than a stop
 gains."""
 
@@ -62,18 +62,18 @@ BEATS_PER_BEND, MAX_BENDS = 12, 5
 STIFFNESS = 0.3
 """The penalty of each coefficient of a higher degree, in stops."""
 
-NEAR = 0.15
+MAX_STOP_OFFSET = 0.15
 """In beats. A stop that is at most this far from a beat is on it."""
 
-USUAL, UNUSUAL = 95.0, -1.9
+USUAL_TEMPO, TEMPO_WEIGHT = 95.0, -1.9
 """Beats per minute of most dances, and the weight of the squared distance from it in octaves."""
 
-RESTED, EXPLAINED, TOGETHER = 3.5, 3.9, 5.4
+STOP_SHARE_WEIGHT, BEAT_SHARE_WEIGHT, PHASE_WEIGHT = 3.5, 3.9, 5.4
 """Weights in the choice of a tempo: of the share of beats that have a stop, of the share of stops
 that are on a beat, and of the length of the stops' mean phase vector. They come from a multinomial
 logit on 160 of the demo's dances, with noise of up to 25 mm."""
 
-CONFIDENCE = (5.9, 0.7, 5.2, 0.6, -12.0)
+CONFIDENCE_WEIGHTS = (5.9, 0.7, 5.2, 0.6, -12.0)
 """The coefficients of a logit: of these three numbers, of Rayleigh's statistic (the number of
 stops, at most MAX_STOPS, times the squared length of the vector), and of 1. It was fitted on the
 same dances and parts of them, against 600 motions that stop at random, wander or tremble; both
@@ -86,7 +86,7 @@ motions that stop at random, and 97 % of dances."""
 
 
 class BeatSource(StrEnum):
-    """How the beats of a clip are known."""
+    """The source of the beats of a clip."""
 
     GIVEN = "given"
     """A client listed their times."""
@@ -133,15 +133,15 @@ def given_beats(times: FloatArray) -> Beats:
 def find_beats(energy: FloatArray, rate: float) -> Beats:
     """The beats of an energy curve (n,) at `rate` Hz; none if its stops have no common beat."""
     stops = find_stops(energy, rate)
-    shortest, longest = 60.0 * FINE / FASTEST, 60.0 * FINE / SLOWEST
+    shortest, longest = 60.0 * STOP_RATE / MAX_TEMPO, 60.0 * STOP_RATE / MIN_TEMPO
     best, found = None, -np.inf
-    for period in likely_periods(stops.curve, shortest, longest, CANDIDATES):
-        followed = _follow(stops, period)
-        if followed is not None and followed.plausibility > found:
-            best, found = followed, followed.plausibility
+    for period in likely_periods(stops.curve, shortest, longest, MAX_PERIODS):
+        candidate = _track_tempo(stops, period)
+        if candidate is not None and candidate.plausibility > found:
+            best, found = candidate, candidate.plausibility
     if best is None or best.confidence < MIN_CONFIDENCE:
         return no_beats(0.0 if best is None else best.confidence)
-    times = through(best.beats, stops.duration)
+    times = continued(best.beats, stops.duration)
     return Beats(times, best.tempo, best.confidence, BeatSource.MOTION)
 
 
@@ -152,19 +152,19 @@ def beats_of_tempo(energy: FloatArray, rate: float, tempo: float) -> Beats:
     The confidence is that of the times of the beats.
     """
     stops = find_stops(energy, rate)
-    followed = _follow(stops, 60.0 * FINE / tempo)
-    if followed is None:
+    candidate = _track_tempo(stops, 60.0 * STOP_RATE / tempo)
+    if candidate is None:
         times = np.arange(0.0, max(stops.duration, 1e-9), 60.0 / tempo)
         return Beats(times, tempo, 0.0, BeatSource.TEMPO)
-    times = through(followed.beats, stops.duration)
-    return Beats(times, tempo, followed.confidence, BeatSource.TEMPO)
+    times = continued(candidate.beats, stops.duration)
+    return Beats(times, tempo, candidate.confidence, BeatSource.TEMPO)
 
 
 @dataclass(frozen=True, slots=True)
 class Stops:
     """The stops of a motion: the deep minima of its energy.
 
-    times: (r,) seconds. weights: (r,) 0..1, larger for deeper minima. curve: (m,) at FINE Hz,
+    times: (r,) seconds. weights: (r,) 0..1, larger for deeper minima. curve: (m,) at STOP_RATE Hz,
     with a hump at each stop. duration: of the motion, in seconds.
     """
 
@@ -179,16 +179,21 @@ def find_stops(energy: FloatArray, rate: float) -> Stops:
     level = _log_energy(energy, rate)
     spread = float(level.std()) if len(level) else 0.0
     duration = max(len(energy) - 1, 0) / rate
-    grid = np.arange(int(duration * FINE) + 1) / FINE
+    grid = np.arange(int(duration * STOP_RATE) + 1) / STOP_RATE
     if not spread > 0:
         return Stops(np.zeros(0), np.zeros(0), np.zeros(len(grid)), duration)
-    minima, found = scipy.signal.find_peaks(-level, prominence=DEEP * spread, plateau_size=1)
+    minima, found = scipy.signal.find_peaks(
+        -level, prominence=MIN_PROMINENCE * spread, plateau_size=1
+    )
     depths = found["prominences"]
     middles = [_middle(level, m, d) for m, d in zip(minima, depths, strict=True)]
-    times, weights = np.array(middles) / rate, np.minimum(depths / (DEEPEST * spread), 1.0)
+    times, weights = np.array(middles) / rate, np.minimum(depths / (FULL_PROMINENCE * spread), 1.0)
     curve = np.zeros(len(grid))
     for time, weight in zip(times, weights, strict=True):
-        near = slice(max(0, int((time - HUMP) * FINE)), int((time + HUMP) * FINE) + 2)
+        near = slice(
+            max(0, int((time - MAX_STOP_DISTANCE) * STOP_RATE)),
+            int((time + MAX_STOP_DISTANCE) * STOP_RATE) + 2,
+        )
         hump = weight * np.exp(-0.5 * np.square((grid[near] - time) / WIDTH))
         curve[near] = np.maximum(curve[near], hump)
     return Stops(times, weights, curve, duration)
@@ -199,7 +204,7 @@ def _log_energy(energy: FloatArray, rate: float) -> FloatArray:
     highest = float(energy.max(initial=0.0))
     if not highest > 0:
         return np.zeros(len(energy))
-    level = np.log(energy + max(FLOOR * float(np.median(energy)), 1e-6 * highest))
+    level = np.log(energy + max(ENERGY_FLOOR * float(np.median(energy)), 1e-6 * highest))
     return np.asarray(level - scipy.ndimage.gaussian_filter1d(level, TREND * rate, mode="reflect"))
 
 
@@ -208,7 +213,7 @@ def _middle(level: FloatArray, minimum: int, depth: float) -> float:
 
     level: (n,) log energy. minimum: a frame. depth: its prominence.
     """
-    low = level <= level[minimum] + BOTTOM * depth
+    low = level <= level[minimum] + BOTTOM_SHARE * depth
     before = np.flatnonzero(~low[:minimum])
     after = np.flatnonzero(~low[minimum:])
     first = before[-1] + 1 if len(before) else 0
@@ -217,7 +222,7 @@ def _middle(level: FloatArray, minimum: int, depth: float) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class _Followed:
+class _TempoTrack:
     """The beats for one tempo.
 
     beats: (b,) seconds, rising, between the first and the last stop. plausibility: the tempo with
@@ -233,31 +238,39 @@ class _Followed:
         return 60.0 / float(np.median(np.diff(self.beats)))
 
 
-def _follow(stops: Stops, period: float) -> _Followed | None:
+def _track_tempo(stops: Stops, period: float) -> _TempoTrack | None:
     """The beats whose interval is about `period` frames of `stops.curve`; None if too few."""
-    tracked = track(HEIGHT * stops.curve, period, TIGHTNESS, REACH) / FINE
+    tracked = track(STOP_HEIGHT * stops.curve, period, TIGHTNESS, MAX_INTERVAL_RATIO) / STOP_RATE
     if len(stops.times) < MIN_BEATS or len(tracked) < MIN_BEATS:
         return None
-    beats = _evened(tracked, stops)
+    beats = _smoothed(tracked, stops)
     if not (np.diff(beats) > 0).all():
         return None
     beat = float(np.median(np.diff(beats)))
     off = (stops.times[:, None] - beats) / beat
     nearest = off[np.arange(len(off)), np.abs(off).argmin(axis=1)]
     weights, total = stops.weights, float(stops.weights.sum())
-    rested = float((weights[:, None] * (np.abs(off) < NEAR)).max(axis=0).mean())
-    explained = float(weights[np.abs(nearest) < NEAR].sum()) / total
-    together = float(np.abs((weights * np.exp(2j * np.pi * nearest)).sum())) / total
-    octaves = np.log2(60.0 / beat / USUAL)
-    plausibility = RESTED * rested + EXPLAINED * explained + TOGETHER * together
-    evidence = (rested, explained, together, min(len(weights), MAX_STOPS) * together**2, 1.0)
-    logit = float(np.dot(CONFIDENCE, evidence))
-    return _Followed(
-        beats, float(plausibility + UNUSUAL * octaves**2), float(1.0 / (1.0 + np.exp(-logit)))
+    with_stop = float((weights[:, None] * (np.abs(off) < MAX_STOP_OFFSET)).max(axis=0).mean())
+    on_beat = float(weights[np.abs(nearest) < MAX_STOP_OFFSET].sum()) / total
+    phase_length = float(np.abs((weights * np.exp(2j * np.pi * nearest)).sum())) / total
+    octaves = np.log2(60.0 / beat / USUAL_TEMPO)
+    plausibility = (
+        STOP_SHARE_WEIGHT * with_stop + BEAT_SHARE_WEIGHT * on_beat + PHASE_WEIGHT * phase_length
+    )
+    evidence = (
+        with_stop,
+        on_beat,
+        phase_length,
+        min(len(weights), MAX_STOPS) * phase_length**2,
+        1.0,
+    )
+    logit = float(np.dot(CONFIDENCE_WEIGHTS, evidence))
+    return _TempoTrack(
+        beats, float(plausibility + TEMPO_WEIGHT * octaves**2), float(1.0 / (1.0 + np.exp(-logit)))
     )
 
 
-def _evened(beats: FloatArray, stops: Stops) -> FloatArray:
+def _smoothed(beats: FloatArray, stops: Stops) -> FloatArray:
     """(b,) `beats` (b,), in seconds, moved to a smooth curve through the stops near them.
 
     The tempo of musicians drifts, but does not jump. The curve is a polynomial of low degree over
@@ -277,7 +290,7 @@ def _evened(beats: FloatArray, stops: Stops) -> FloatArray:
     return np.asarray(legvander(numbers, degree) @ np.linalg.solve(left, right))
 
 
-def through(beats: FloatArray, duration: float) -> FloatArray:
+def continued(beats: FloatArray, duration: float) -> FloatArray:
     """`beats` (b,), b >= 2, continued evenly to both ends of a clip of `duration` seconds.
 
     Beats outside the clip are left out.

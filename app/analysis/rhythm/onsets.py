@@ -23,16 +23,16 @@ WINDOW = 0.046
 """Seconds of sound in one spectrum."""
 
 BANDS = 60
-LOWEST, HIGHEST = 30.0, 10_000.0
+MIN_FREQUENCY, MAX_FREQUENCY = 30.0, 10_000.0
 """Hz: the range of the BANDS, which are evenly spaced in mel."""
 
-BEFORE = 2
-"""A level is compared with that of so many frames before."""
+COMPARED_FRAMES = 2
+"""The level of a band is compared with the level this many frames earlier."""
 
-QUIETEST = 60.0
+SILENCE_LEVEL = 60.0
 """dB below the loudest moment. Everything quieter counts as silence."""
 
-PARTS: tuple[tuple[float, float], ...] = ((200.0, 1.5), (2000.0, 1.0), (np.inf, 0.6))
+BAND_WEIGHTS: tuple[tuple[float, float], ...] = ((200.0, 1.5), (2000.0, 1.0), (np.inf, 0.6))
 """The upper edge in Hz and the weight of each part. Drums and bass mark beats; cymbals also sound
 between them."""
 
@@ -40,7 +40,7 @@ MIN_RISE = 5.0
 """dB, weighted. If the 98th percentile of the rise is lower, the recording has no onsets. Held
 chords and humming machines stay below it."""
 
-LEVELLED = 1.0
+MEAN_SECONDS = 1.0
 """Seconds over which the mean is taken that is subtracted from the strength."""
 
 FRAMES_AT_ONCE = 512
@@ -66,10 +66,10 @@ class Onsets:
 def find_onsets(samples: FloatArray, rate: float) -> Onsets:
     """The onsets of a mono recording; samples: (samples,) at `rate` Hz."""
     centers, power = _band_power(samples, rate)
-    loudest, bass = float(power.max(initial=0.0)), centers < PARTS[0][0]
+    loudest, bass = float(power.max(initial=0.0)), centers < BAND_WEIGHTS[0][0]
     curves = np.zeros((4, len(power)))
     for first in range(0, len(power), FRAMES_AT_ONCE):
-        start = max(0, first - BEFORE)
+        start = max(0, first - COMPARED_FRAMES)
         some = power[start : first + FRAMES_AT_ONCE].astype(np.float64)
         rise = _rise(np.sqrt(some))
         found = [_flux(some, loudest) @ _weights(centers), rise.sum(axis=1)]
@@ -101,7 +101,9 @@ def _filters(rate: float, width: int) -> tuple[FloatArray, FloatArray]:
     samples at `rate` Hz.
     """
     lines = np.fft.rfftfreq(width, 1.0 / rate)
-    edges = _hertz(np.linspace(_mel(LOWEST), _mel(min(HIGHEST, 0.475 * rate)), BANDS + 2))
+    edges = _hertz(
+        np.linspace(_mel(MIN_FREQUENCY), _mel(min(MAX_FREQUENCY, 0.475 * rate)), BANDS + 2)
+    )
     # A low band can be narrower than the distance of two lines. Each band gets at least one line.
     half = np.maximum(np.diff(edges), lines[1])
     up = (lines - edges[:-2, None]) / half[:-1, None]
@@ -121,27 +123,29 @@ def _hertz(mel: FloatArray) -> FloatArray:
 
 
 def _rise(level: FloatArray) -> FloatArray:
-    """(frames, BANDS) the rise of `level` since BEFORE frames ago; 0 in the first frames."""
+    """(frames, BANDS) the rise of `level` in COMPARED_FRAMES frames; 0 in the first frames."""
     rise = np.zeros_like(level)
-    rise[BEFORE:] = np.maximum(level[BEFORE:] - level[:-BEFORE], 0.0)
+    rise[COMPARED_FRAMES:] = np.maximum(level[COMPARED_FRAMES:] - level[:-COMPARED_FRAMES], 0.0)
     return rise
 
 
 def _flux(power: FloatArray, loudest: float) -> FloatArray:
-    """(frames, BANDS) the rise, in dB, above the loudest neighboring band BEFORE frames ago."""
+    """(frames, BANDS) the rise, in dB, above the loudest neighboring band a moment before."""
     flux: FloatArray = np.zeros_like(power)
     if loudest > 0:
-        level = 10.0 * np.log10(np.maximum(power / loudest, 10.0 ** (-QUIETEST / 10.0)))
+        level = 10.0 * np.log10(np.maximum(power / loudest, 10.0 ** (-SILENCE_LEVEL / 10.0)))
         earlier = scipy.ndimage.maximum_filter1d(level, 3, axis=1)
-        flux[BEFORE:] = np.maximum(level[BEFORE:] - earlier[:-BEFORE], 0.0)
+        flux[COMPARED_FRAMES:] = np.maximum(
+            level[COMPARED_FRAMES:] - earlier[:-COMPARED_FRAMES], 0.0
+        )
     return flux
 
 
 def _weights(centers: FloatArray) -> FloatArray:
-    """(BANDS,) weights such that the bands of each of PARTS together have its weight."""
-    part = np.searchsorted([upper for upper, _ in PARTS], centers, side="right")
-    counts = np.bincount(part, minlength=len(PARTS))
-    return np.array([PARTS[index][1] / counts[index] for index in part])
+    """(BANDS,) weights such that the bands of each of BAND_WEIGHTS together have its weight."""
+    part = np.searchsorted([upper for upper, _ in BAND_WEIGHTS], centers, side="right")
+    counts = np.bincount(part, minlength=len(BAND_WEIGHTS))
+    return np.array([BAND_WEIGHTS[index][1] / counts[index] for index in part])
 
 
 def _levelled(curve: FloatArray) -> FloatArray:
@@ -149,5 +153,7 @@ def _levelled(curve: FloatArray) -> FloatArray:
     if len(curve) < RATE or float(np.percentile(curve, 98)) < MIN_RISE:
         return np.zeros(len(curve))
     smooth = scipy.ndimage.gaussian_filter1d(curve, 1.0)
-    above = np.maximum(smooth - scipy.ndimage.uniform_filter1d(smooth, round(LEVELLED * RATE)), 0.0)
+    above = np.maximum(
+        smooth - scipy.ndimage.uniform_filter1d(smooth, round(MEAN_SECONDS * RATE)), 0.0
+    )
     return np.asarray(above / max(float(above.std()), 1e-9))

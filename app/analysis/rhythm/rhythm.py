@@ -21,11 +21,11 @@ from app.analysis.rhythm.beats import (
     Beats,
     BeatSource,
     beats_of_tempo,
+    continued,
     find_beats,
     find_stops,
     given_beats,
     no_beats,
-    through,
 )
 from app.analysis.rhythm.onsets import Onsets
 from app.motion.frame.body_frame import BodyTrack
@@ -49,7 +49,7 @@ class RhythmInput:
     audio_offset: float | None = None
 
 
-NOTHING_GIVEN = RhythmInput()
+NO_RHYTHM_INPUT = RhythmInput()
 
 BEAT_ARRAYS = ("beat_times", "beat_facts")
 
@@ -69,30 +69,32 @@ class Rhythm:
 
 def find_rhythm(
     track: BodyTrack,
-    given: RhythmInput = NOTHING_GIVEN,
+    given: RhythmInput = NO_RHYTHM_INPUT,
     onsets: Onsets | None = None,
-    plain: Energies | None = None,
+    rms_energies: Energies | None = None,
 ) -> Rhythm:
     """Find the beats of `track`.
 
     given: what a client says about them. onsets: those of the recording, None without one.
-    plain: `energies(track)`, if the caller has them.
+    rms_energies: `energies(track)`, if the caller has them.
     """
-    energy = (plain or energies(track)).global_energy
+    energy = (rms_energies or energies(track)).global_energy
     duration = (len(energy) - 1) / track.rate
-    heard, offset = no_beats(), None
+    audio_beats, offset = no_beats(), None
     if onsets is not None:
-        heard = find_audio_beats(onsets, given.tempo)
+        audio_beats = find_audio_beats(onsets, given.tempo)
         # The offset needs every beat: a given tempo may be half of that at which people stop.
-        free = find_audio_beats(onsets) if given.tempo and given.audio_offset is None else heard
-        offset = _offset(given, energy, track.rate, free, onsets)
-    shifted = None if offset is None else _shifted(heard, offset, duration)
-    cautions = [] if onsets is None else _doubts(given, heard, offset, shifted)
+        beats_at_any_tempo = (
+            find_audio_beats(onsets) if given.tempo and given.audio_offset is None else audio_beats
+        )
+        offset = _offset(given, energy, track.rate, beats_at_any_tempo, onsets)
+    shifted = None if offset is None else _shifted(audio_beats, offset, duration)
+    cautions = [] if onsets is None else _cautions_of(given, audio_beats, offset, shifted)
     if given.beats and not _within(given.beats, duration):
         detail = f"None of the beats that were given lies within the {duration:.2f} s of motion."
         cautions.append(Caution("beats_outside_motion", detail))
         given = replace(given, beats=None)
-    return Rhythm(_first(given, energy, track.rate, shifted), offset, tuple(cautions))
+    return Rhythm(_beats_by_priority(given, energy, track.rate, shifted), offset, tuple(cautions))
 
 
 def _within(times: Sequence[float] | FloatArray, duration: float) -> bool:
@@ -100,7 +102,10 @@ def _within(times: Sequence[float] | FloatArray, duration: float) -> bool:
     return any(0.0 <= time <= duration for time in times)
 
 
-def _first(given: RhythmInput, energy: FloatArray, rate: float, shifted: Beats | None) -> Beats:
+def _beats_by_priority(
+    given: RhythmInput, energy: FloatArray, rate: float, shifted: Beats | None
+) -> Beats:
+    """The beats from the best source: the client, the recording, a given tempo, the motion."""
     if given.beats:
         return given_beats(np.array(given.beats))
     if shifted is not None:
@@ -111,34 +116,34 @@ def _first(given: RhythmInput, energy: FloatArray, rate: float, shifted: Beats |
 
 
 def _offset(
-    given: RhythmInput, energy: FloatArray, rate: float, heard: Beats, onsets: Onsets
+    given: RhythmInput, energy: FloatArray, rate: float, audio_beats: Beats, onsets: Onsets
 ) -> Offset | None:
     if given.audio_offset is not None:
         return Offset(given.audio_offset, 1.0, True, 0.0, 1.0)
-    return estimate_offset(find_stops(energy, rate), heard.times, onsets)
+    return estimate_offset(find_stops(energy, rate), audio_beats.times, onsets)
 
 
-def _shifted(heard: Beats, offset: Offset, duration: float) -> Beats | None:
+def _shifted(audio_beats: Beats, offset: Offset, duration: float) -> Beats | None:
     """The beats of the recording in the time of the motion, continued evenly to both ends.
 
-    None if fewer than two beats were heard, or none falls into the motion.
+    None if the recording has fewer than two beats, or none is within the motion.
     """
-    times = heard.times + offset.seconds
+    times = audio_beats.times + offset.seconds
     if len(times) < 2 or not _within(times, duration):
         return None
-    is_tempo_given = heard.source is BeatSource.TEMPO
+    is_tempo_given = audio_beats.source is BeatSource.TEMPO
     return Beats(
-        through(times, duration),
-        heard.tempo,
-        min(heard.confidence, offset.confidence),
+        continued(times, duration),
+        audio_beats.tempo,
+        min(audio_beats.confidence, offset.confidence),
         BeatSource.TEMPO if is_tempo_given else BeatSource.AUDIO,
     )
 
 
-def _doubts(
-    given: RhythmInput, heard: Beats, offset: Offset | None, shifted: Beats | None
+def _cautions_of(
+    given: RhythmInput, audio_beats: Beats, offset: Offset | None, shifted: Beats | None
 ) -> list[Caution]:
-    if not len(heard.times):
+    if not len(audio_beats.times):
         return [Caution("audio_without_beats", "No beat was heard in the recording.")]
     if offset is None:
         detail = "The motion does not show when the recording begins. Send audio_offset."
@@ -164,8 +169,8 @@ def rhythm_arrays(rhythm: Rhythm) -> dict[str, NDArray[Any]]:
     beats per minute (0 if none), and the confidence.
     """
     beats = rhythm.beats
-    facts = [SOURCES.index(beats.source), beats.tempo or 0.0, beats.confidence]
-    return {"beat_times": beats.times, "beat_facts": np.array(facts, dtype=np.float64)}
+    values = [SOURCES.index(beats.source), beats.tempo or 0.0, beats.confidence]
+    return {"beat_times": beats.times, "beat_facts": np.array(values, dtype=np.float64)}
 
 
 def beats_of(arrays: dict[str, NDArray[Any]]) -> Beats:

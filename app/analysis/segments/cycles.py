@@ -3,7 +3,8 @@
 A cycle begins and ends at keyposes, and a similar one follows it. Two parts are compared at
 equally many, evenly spaced times. So the tempo does not matter, and a missed keypose within a part
 does no harm. Their similarity is Lin's concordance (1989): 1 minus the mean squared
-distance divided by the sum of both variances. So a body that holds still or shakes repeats nothing.
+distance divided by the sum of both variances. So a body that stands still or shakes has no
+cycles.
 
 Of all runs of such parts, the one with the largest sum of duration times concordance is taken
 first; its first cycle does not count. So two steps danced four times are four cycles, not two
@@ -33,10 +34,11 @@ common."""
 MAX_STRETCH = 1.3
 """The largest ratio of the durations of a cycle and the next one."""
 
-MISSED = 1
-"""A cycle may have so many segments more or fewer than the one before."""
+MAX_LENGTH_DIFFERENCE = 1
+"""The largest difference of the numbers of segments of a cycle and the next one. It allows for a
+missed keypose."""
 
-_SMALLEST = 1e-6
+_MIN_VARIANCE = 1e-6
 """Squared body lengths: smaller variances are only rounding errors."""
 
 
@@ -60,7 +62,7 @@ def find_cycles(poses: FloatArray, bounds: FloatArray) -> tuple[Cycle, ...]:
     """
     if len(bounds) < 3 or len(poses) < 2:
         return ()
-    links = _linked(poses.astype(np.float32), bounds)
+    links = _links(poses.astype(np.float32), bounds)
     return tuple(
         Cycle(first, stop, number)
         for number, run in enumerate(sorted(_runs(links, bounds)))
@@ -76,29 +78,31 @@ _Part = tuple[int, int]
 class _Link:
     """A link from a part to the most similar part that follows it directly.
 
-    length: the number of segments of that part. worth: its duration times its concordance.
+    length: the number of segments of that part. score: its duration times its concordance.
     """
 
     length: int
-    worth: float
+    score: float
 
 
-def _linked(poses: FloatArray, bounds: FloatArray) -> dict[_Part, _Link]:
+def _links(poses: FloatArray, bounds: FloatArray) -> dict[_Part, _Link]:
     """The link of each part that has one."""
     longest = min(MAX_SEGMENTS, len(bounds) - 2)
     links: dict[_Part, _Link] = {}
     near: dict[int, _Parts] = {}
     for length in range(1, longest + 1):
-        others = range(max(length - MISSED, 1), min(length + MISSED, longest) + 1)
+        others = range(
+            max(length - MAX_LENGTH_DIFFERENCE, 1), min(length + MAX_LENGTH_DIFFERENCE, longest) + 1
+        )
         # only parts of about this length are kept in memory, because all together are large
         near = {other: near.get(other) or _Parts(poses, bounds, other) for other in others}
         best = np.full(len(bounds), MIN_CONCORDANCE)
         for other in others:
-            likeness = near[length].concordance(near[other])
-            for first in np.flatnonzero(likeness > best[: len(likeness)]):
-                best[first] = likeness[first]
-                lasts = near[other].durations[first + length]
-                links[int(first), length] = _Link(other, float(lasts * likeness[first]))
+            concordance = near[length].concordance(near[other])
+            for first in np.flatnonzero(concordance > best[: len(concordance)]):
+                best[first] = concordance[first]
+                duration = near[other].durations[first + length]
+                links[int(first), length] = _Link(other, float(duration * concordance[first]))
     return links
 
 
@@ -109,6 +113,7 @@ class _Parts:
         self.length = length
         starts, ends = bounds[:-length], bounds[length:]
         at = starts[:, None] + (ends - starts)[:, None] * np.linspace(0.0, 1.0, SAMPLES)
+        # (c, SAMPLES) times in frames; linear interpolation between the two nearest poses
         at = np.clip(at, 0, len(poses) - 1)
         left = np.minimum(at.astype(np.int64), len(poses) - 2)
         share = (at - left).astype(np.float32)[..., None]
@@ -124,10 +129,10 @@ class _Parts:
         count = max(len(other.poses) - self.length, 0)
         one, two = slice(0, count), slice(self.length, self.length + count)
         apart = _mean_squares(self.poses[one] - other.poses[two])
-        both = self.variances[one] + other.variances[two]
+        variances = self.variances[one] + other.variances[two]
         stretch = other.durations[two] / self.durations[one]
-        near = (stretch <= MAX_STRETCH) & (stretch >= 1 / MAX_STRETCH) & (both > _SMALLEST)
-        return np.where(near, 1 - apart / np.maximum(both, _SMALLEST), -1.0)
+        near = (stretch <= MAX_STRETCH) & (stretch >= 1 / MAX_STRETCH) & (variances > _MIN_VARIANCE)
+        return np.where(near, 1 - apart / np.maximum(variances, _MIN_VARIANCE), -1.0)
 
 
 def _mean_squares(lines: FloatArray) -> FloatArray:
@@ -136,12 +141,12 @@ def _mean_squares(lines: FloatArray) -> FloatArray:
 
 
 def _runs(links: dict[_Part, _Link], bounds: FloatArray) -> list[list[int]]:
-    """The bounds of the cycles of each run, the run of the largest worth first.
+    """The bounds of the cycles of each run, the run of the largest score first.
 
     No two runs share a segment.
     """
-    # of two runs of equal worth, the earlier one, then the one with shorter cycles comes first
-    queue = [(-worth, *part, end) for part, (worth, end) in _ends(links).items()]
+    # of two runs of equal score, the earlier one, then the one with shorter cycles comes first
+    queue = [(-score, *part, end) for part, (score, end) in _ends(links).items()]
     heapify(queue)
     taken = np.zeros(len(bounds) - 1, dtype=bool)
     runs: list[list[int]] = []
@@ -150,32 +155,32 @@ def _runs(links: dict[_Part, _Link], bounds: FloatArray) -> list[list[int]]:
         if taken[first]:
             continue
         blocked = np.flatnonzero(taken[first:end])
-        high = first + int(blocked[0]) if len(blocked) else end
-        worth, run = _followed(links, (first, length), high)
+        last_bound = first + int(blocked[0]) if len(blocked) else end
+        score, run = _run_from(links, (first, length), last_bound)
         if run[-1] == end:
             taken[first:end] = True
             runs.append(run)
         elif len(run) > 2:
-            heappush(queue, (-worth, first, length, run[-1]))
+            heappush(queue, (-score, first, length, run[-1]))
     return runs
 
 
 def _ends(links: dict[_Part, _Link]) -> dict[_Part, tuple[float, int]]:
-    """For each part, the worth of the run that begins with it, and the bound where it ends."""
+    """For each part, the score of the run that begins with it, and the bound where it ends."""
     ends: dict[_Part, tuple[float, int]] = {}
     for part in sorted(links, reverse=True):
         link, first = links[part], sum(part)
-        worth, end = ends.get((first, link.length), (0.0, first + link.length))
-        ends[part] = link.worth + worth, end
+        score, end = ends.get((first, link.length), (0.0, first + link.length))
+        ends[part] = link.score + score, end
     return ends
 
 
-def _followed(links: dict[_Part, _Link], part: _Part, high: int) -> tuple[float, list[int]]:
-    """The worth of a run and the bounds of its cycles, up to the bound `high`."""
-    worth, run = 0.0, [part[0], sum(part)]
+def _run_from(links: dict[_Part, _Link], part: _Part, last_bound: int) -> tuple[float, list[int]]:
+    """The score of a run and the bounds of its cycles, up to the bound `last_bound`."""
+    score, run = 0.0, [part[0], sum(part)]
     while link := links.get((run[-2], run[-1] - run[-2])):
-        if run[-1] + link.length > high:
+        if run[-1] + link.length > last_bound:
             break
-        worth += link.worth
+        score += link.score
         run.append(run[-1] + link.length)
-    return worth, run
+    return score, run

@@ -63,11 +63,12 @@ def symbol_motion(symbol: GaussianHMM, track: BodyTrack) -> SymbolMotion:
 
     weights = occupancy(symbol, symbol_features(track))
     poses = _means_by_state(track.local.reshape(track.frames, -1), weights)
-    times, frames = _middles(symbol)
-    scaled = _led(times, symbol.means * CHANNEL_SCALES, frames)
-    spreads = _led(times, np.sqrt(symbol.variances) * CHANNEL_SCALES, frames)
-    local = _with_lengths(_led(times, poses, frames).reshape(frames, -1, 3), track.local)
-    positions = _in_the_world(local, scaled, track.body_length, track.rate)
+    times, frames = _state_middles(symbol)
+    # the means are in units of CHANNEL_SCALES
+    scaled = _interpolated(times, symbol.means * CHANNEL_SCALES, frames)
+    spreads = _interpolated(times, np.sqrt(symbol.variances) * CHANNEL_SCALES, frames)
+    local = _with_lengths(_interpolated(times, poses, frames).reshape(frames, -1, 3), track.local)
+    positions = _world_positions(local, scaled, track.body_length, track.rate)
     return SymbolMotion(scaled, spreads, positions, track.rate)
 
 
@@ -81,14 +82,14 @@ def _means_by_state(rows: FloatArray, weights: FloatArray) -> FloatArray:
     return np.where(visited[:, None] > 1e-6, share.T @ rows, rows.mean(axis=0))
 
 
-def _middles(symbol: GaussianHMM) -> tuple[FloatArray, int]:
+def _state_middles(symbol: GaussianHMM) -> tuple[FloatArray, int]:
     """(K,) the middle frame of each state on the expected path, and the length of the path."""
-    lasting = np.bincount(symbol.expected_path(), minlength=symbol.states)
-    ends = np.cumsum(lasting)
-    return ends - (lasting + 1) / 2, int(ends[-1])
+    frames_of_state = np.bincount(symbol.expected_path(), minlength=symbol.states)
+    ends = np.cumsum(frames_of_state)
+    return ends - (frames_of_state + 1) / 2, int(ends[-1])
 
 
-def _led(times: FloatArray, values: FloatArray, frames: int) -> FloatArray:
+def _interpolated(times: FloatArray, values: FloatArray, frames: int) -> FloatArray:
     """(frames, d) monotone cubics through `values` (K, d) at `times` (K,), constant outside."""
     if len(times) == 1:
         return np.repeat(values, frames, axis=0)
@@ -98,17 +99,17 @@ def _led(times: FloatArray, values: FloatArray, frames: int) -> FloatArray:
 
 def _with_lengths(poses: FloatArray, like: FloatArray) -> FloatArray:
     """(n, 13, 3) `poses` with the length of each limb set to its median in `like` (m, 13, 3)."""
-    mended = poses.copy()
+    result = poses.copy()
     for joint in _OUTWARD:
         parent = SUN_PARENTS[joint]
         length = float(np.median(np.linalg.norm(like[:, joint] - like[:, parent], axis=1)))
         line = poses[:, joint] - poses[:, parent]
         reach = np.maximum(np.linalg.norm(line, axis=1, keepdims=True), 1e-6)
-        mended[:, joint] = mended[:, parent] + line * (length / reach)
-    return mended
+        result[:, joint] = result[:, parent] + line * (length / reach)
+    return result
 
 
-def _in_the_world(
+def _world_positions(
     local: FloatArray, channels: FloatArray, body_length: float, rate: float
 ) -> FloatArray:
     """(n, 13, 3) the body-frame poses `local` in the world, meters.
@@ -116,11 +117,11 @@ def _in_the_world(
     channels: (n, 26) give the speeds, the yaw rate and the height.
     """
     heading = _summed(channels[:, _YAW]) / rate
-    sideways = np.zeros(len(channels))
-    speeds = np.stack([channels[:, _LEFT], sideways, channels[:, _FORWARD]], axis=1)
-    place = _summed(turned(speeds[:, None], heading)[:, 0]) / rate
-    place[:, 1] = channels[:, _HEIGHT]
-    return (turned(local, heading) + place[:, None]) * body_length
+    zero = np.zeros(len(channels))
+    speeds = np.stack([channels[:, _LEFT], zero, channels[:, _FORWARD]], axis=1)
+    position = _summed(turned(speeds[:, None], heading)[:, 0]) / rate
+    position[:, 1] = channels[:, _HEIGHT]
+    return (turned(local, heading) + position[:, None]) * body_length
 
 
 def _summed(rates: FloatArray) -> FloatArray:

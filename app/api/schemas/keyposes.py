@@ -103,7 +103,8 @@ class Keyposes(Outgoing):
     def of(cls, view: KeyposesView) -> Keyposes:
         """The keyposes as the API shows them."""
         detected, used = view.found, view.thresholds
-        whole, own = detected.energies.whole, detected.energies.own
+        curves = detected.energies
+        global_energy, local_energy = curves.global_curve, curves.local_curve
         return cls(
             method=detected.method.value,
             weights=detected.weights.value,
@@ -124,8 +125,10 @@ class Keyposes(Outgoing):
             chosen_by=[scope.value for scope in detected.chosen_by],
             roles=[role.value for role in SUN_ROLES],
             poses=plain(view.poses),
-            energy=Energy(**{"global": plain(whole.values)}, local=plain(own.values)),
-            noise=EnergyNoise(**{"global": whole.noise}, local=own.noise),
+            energy=Energy(
+                **{"global": plain(global_energy.values)}, local=plain(local_energy.values)
+            ),
+            noise=EnergyNoise(**{"global": global_energy.noise}, local=local_energy.noise),
             annotated=None if view.named is None else list(view.named),
         )
 

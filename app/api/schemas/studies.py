@@ -6,7 +6,7 @@ from datetime import datetime
 
 from pydantic import ConfigDict, Field
 
-from app.analysis.low_dimensional.eigen_motion import SHOWN
+from app.analysis.low_dimensional.eigen_motion import PAPER_DIMENSIONS
 from app.api.schemas.base import Cursor, Fps, Id, Incoming, Limit, Outgoing
 from app.services.views import studies
 from app.services.views.low_dimensional import MAX_MODEL_CLIPS
@@ -21,7 +21,7 @@ class NewPair(Incoming):
 
     clip_id: Id
     dimensions: int = Field(
-        SHOWN,
+        PAPER_DIMENSIONS,
         ge=1,
         le=10**6,
         description="Dimensions of both versions, up to the number of poses of the model.",

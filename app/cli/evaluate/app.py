@@ -1,4 +1,4 @@
-"""Figures of the methods on the library's own labels."""
+"""The group of commands that measure the methods on the labels of the library."""
 
 from __future__ import annotations
 
@@ -8,5 +8,7 @@ from app.cli.commands import EVALUATIONS
 from app.cli.lazy import lazy_group
 
 program = typer.Typer(
-    cls=lazy_group(EVALUATIONS), help="Figures on your own library.", no_args_is_help=True
+    cls=lazy_group(EVALUATIONS),
+    help="Measure the methods on your own library.",
+    no_args_is_help=True,
 )

@@ -7,37 +7,39 @@ from collections.abc import Sequence
 import numpy as np
 import typer
 
-from app.cli.output import WIDEST, print_table
+from app.cli.output import MAX_WIDTH, print_table
 from app.evaluate import charts as pictures
 from app.numerics.arrays import FloatArray
 
 MAX_PAIRS = 25
-MIN_SHOWN = 0.005
-"""Smallest share that rounds to one percent."""
+"""Largest number of printed confusions."""
+MIN_SHARE = 0.005
+"""The smallest share that is printed: it rounds to one percent."""
 
 
 def print_confusion(classes: Sequence[str], shares: FloatArray) -> None:
-    """Print `shares` (C, C), 0..1, in percent; a row is a true class, columns have its number.
+    """Print `shares` (C, C), 0..1, in percent. Each row is a true class, each column an answer.
 
-    If the table would be wider than WIDEST, print the most frequent confusions instead.
+    The columns have the numbers of the classes. If the table would be wider than MAX_WIDTH, the
+    most frequent confusions are printed instead.
     """
     names = [f"{number:>2} {pictures.shown(name)}" for number, name in enumerate(classes, 1)]
     width = max(map(len, names), default=0)
-    if width + 4 * len(names) > WIDEST:
+    if width + 4 * len(names) > MAX_WIDTH:
         _print_largest(classes, shares)
         return
     typer.echo(" " * width + "".join(f"{number:>4}" for number in range(1, len(names) + 1)))
     for name, row in zip(names, shares, strict=True):
-        cells = [f"{100 * share:>4.0f}" if share >= MIN_SHOWN else "   ." for share in row]
+        cells = [f"{100 * share:>4.0f}" if share >= MIN_SHARE else "   ." for share in row]
         typer.echo(f"{name:<{width}}" + "".join(cells))
 
 
 def _print_largest(classes: Sequence[str], shares: FloatArray) -> None:
-    """The pairs of confused classes, the most frequent first."""
+    """Print the pairs of confused classes, the most frequent first."""
     confused = shares * ~np.eye(len(classes), dtype=bool)
     order = np.argsort(-confused, axis=None, kind="stable")
-    pairs = [divmod(int(place), len(classes)) for place in order]
-    confusions = [pair for pair in pairs if confused[pair] >= MIN_SHOWN]
+    pairs = [divmod(int(index), len(classes)) for index in order]
+    confusions = [pair for pair in pairs if confused[pair] >= MIN_SHARE]
     shown = confusions[:MAX_PAIRS]
     if shown:
         print_table(
@@ -45,14 +47,14 @@ def _print_largest(classes: Sequence[str], shares: FloatArray) -> None:
         )
         typer.echo("")
     typer.echo(
-        f"{len(classes)} classes, {_how_many(len(shown), len(confusions))};"
+        f"{len(classes)} classes, {_count_text(len(shown), len(confusions))};"
         " --json and --pictures have the whole matrix."
     )
 
 
-def _how_many(shown: int, confusions: int) -> str:
+def _count_text(shown: int, confusions: int) -> str:
     if not confusions:
-        return "none of which is taken for another"
+        return "no confusion"
     return (
         f"all {confusions} confusions"
         if shown == confusions

@@ -1,5 +1,7 @@
-"""The picture files of an evaluation. Their paths are checked before the work, which may take
-minutes."""
+"""The picture files of an evaluation.
+
+Their paths are checked before the evaluation, because that may take minutes.
+"""
 
 from __future__ import annotations
 
@@ -18,8 +20,11 @@ from app.services import fields
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """file: path of one picture, with its format as ending; folder: path for several pictures in
-    `folder_format`. None: no such pictures."""
+    """The paths of the pictures.
+
+    file: path of one picture; its suffix is the format. folder: path for several pictures, in
+    `folder_format`. None: these pictures are not drawn.
+    """
 
     file: Path | None
     folder: Path | None
@@ -29,7 +34,7 @@ class Drawing:
     def prepared(
         cls, file: Path | None = None, folder: Path | None = None, picture_format: str = "svg"
     ) -> Drawing:
-        """Check the paths of the options. Leaves no files behind.
+        """Check the paths of the options. No file or folder remains.
 
         Raises BadField for an unknown format or an unwritable path, and ExtraNeeded without
         matplotlib.
@@ -45,13 +50,13 @@ class Drawing:
         return cls(file, folder, folder_format)
 
     def draw_one(self, draw: Callable[[Format], bytes]) -> None:
-        """Draw the picture into the file, if there is one."""
+        """Draw the picture into the file; does nothing without a file."""
         if self.file is not None:
             self.file.parent.mkdir(parents=True, exist_ok=True)
             write_whole(self.file, [draw(pictures.format_of(self.file))])
 
     def draw_all(self, draw: Callable[[Format], Iterable[tuple[str, bytes]]]) -> None:
-        """Draw pictures, by file name, into the folder, if there is one."""
+        """Draw pictures, by file name, into the folder; does nothing without a folder."""
         if self.folder is not None:
             self.folder.mkdir(parents=True, exist_ok=True)
             for name, content in draw(self.folder_format):
@@ -71,10 +76,11 @@ def _check_file(file: Path) -> None:
 def _check_folder(option: str, folder: Path) -> None:
     """Check that files can be created in the folder.
 
-    This needs a trial: permissions do not decide for virtual folders or for privileged users.
+    A file is created for this: permissions alone say nothing about virtual folders and about
+    privileged users.
     """
     try:
-        made = [place for place in (folder, *folder.parents) if not place.exists()]
+        created = [path for path in (folder, *folder.parents) if not path.exists()]
     except OSError as problem:
         raise _unwritable(option, folder, problem) from None
     try:
@@ -84,9 +90,9 @@ def _check_folder(option: str, folder: Path) -> None:
     except OSError as problem:
         raise _unwritable(option, folder, problem) from None
     finally:
-        for place in made:
+        for path in created:
             with suppress(OSError):
-                place.rmdir()
+                path.rmdir()
 
 
 def _unwritable(option: str, folder: Path, problem: OSError) -> BadField:

@@ -1,4 +1,4 @@
-"""`kinedex evaluate keyposes`: Table 1 and figures 3 to 6 of Perera 2009 for one's own library."""
+"""`kinedex evaluate keyposes`: Table 1 and figures 3 to 6 of Perera 2009 for your own library."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ Pictures = Annotated[
         help="Draw energies, beats and keyposes of every clip, annotated or not, into this folder.",
     ),
 ]
-TOLD_EVERY = 2
-"""Every second value of a curve is printed, so that a line has room for all."""
+PRINTED_STEP = 2
+"""Every second value of a curve is printed, so that all fit in one line."""
 
 
 def keyposes(
@@ -51,7 +51,7 @@ def keyposes(
     picture_format: PictureFormat = "svg",
     as_json: AsJson = False,
 ) -> None:
-    """Keyposes found against those that people named (Perera 2009, table 1, figs 3 to 6)."""
+    """Compare found keyposes with annotated ones (Perera 2009, table 1, figs 3 to 6)."""
     filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(picture, pictures_dir, picture_format)
     with open_library(context) as lib:
@@ -162,5 +162,5 @@ def _print_curve(title: str, name: str, curve: ThresholdCurve) -> None:
         ("precision", 100 * curve.precision, "{:5.0f}"),
         ("recall", 100 * curve.recall, "{:5.0f}"),
     ):
-        typer.echo(f"{label:<10}" + "".join(form.format(v) for v in values[::TOLD_EVERY]))
+        typer.echo(f"{label:<10}" + "".join(form.format(v) for v in values[::PRINTED_STEP]))
     typer.echo("")

@@ -1,4 +1,4 @@
-"""`kinedex evaluate low-dimensional`: section 4 of Perera 2009 for one's own library."""
+"""`kinedex evaluate low-dimensional`: section 4 of Perera 2009 for your own library."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def low_dimensional(
     picture_format: PictureFormat = "svg",
     as_json: AsJson = False,
 ) -> None:
-    """Motions drawn from few dimensions of keyposes, and of uniform poses (Perera 2009)."""
+    """Compare keyposes with uniform poses as basis of low-dimensional motion (Perera 2009)."""
     filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
-    with judging(context, "drawing") as (lib, progress):
+    with judging(context, "reducing") as (lib, progress):
         found = evaluate.judge_low_dimensional(lib, filter, progress)
     if as_json:
         print_json(_document(found))

@@ -1,4 +1,4 @@
-"""`kinedex evaluate recognition`: who does what, held out, for one's own library."""
+"""`kinedex evaluate recognition`: held-out persons and tasks of your own library."""
 
 from __future__ import annotations
 
@@ -27,12 +27,14 @@ Rate = Annotated[
     float | None,
     typer.Option(
         "--false-accept-rate",
-        help="For default and perera, 0..1: how often something new may be called known.",
+        help="For default and perera, 0..1: how often new persons and tasks may be called known.",
     ),
 ]
 Pictures = Annotated[
     Path | None,
-    typer.Option("--pictures", help="Draw confusions and curves of the unknown into this folder."),
+    typer.Option(
+        "--pictures", help="Draw confusion matrices and curves of unknown labels into this folder."
+    ),
 ]
 
 
@@ -45,10 +47,10 @@ def recognition(
     picture_format: PictureFormat = "svg",
     as_json: AsJson = False,
 ) -> None:
-    """Person and task, held out by take, person, task and source (Vasilescu; Perera, 5)."""
+    """Recognize held-out takes, persons, tasks and sources (Vasilescu; Perera, section 5)."""
     filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
-    with judging(context, "asking") as (lib, progress):
+    with judging(context, "recognizing") as (lib, progress):
         found = evaluate.judge_recognition(
             lib,
             filter,

@@ -16,20 +16,20 @@ from app.evaluate.recognition.results import HeldOut, Judged, LabelGiven
 from app.evaluate.recognition.rounds import DRAWS, LeftOut
 from app.evaluate.recognition.shares import Recognized, Share, Unknown
 
-_WAYS = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
+_LEFT_OUT_FACTORS = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
 MAX_SHOWN = 40
 """Largest number of labels in a printed table; --json has all."""
 
 
 def print_tables(found: RecognitionEvaluation) -> None:
-    """Print the tables, the confusions of the first method, and what could not be judged."""
+    """Print the tables, the confusions of the first method, and the parts that were not judged."""
     clips = found.clips
     kinds = {"person": clips.persons, "task": clips.tasks, "source": clips.sources}
     counted = ", ".join(_counted(len(names_of(labels)), kind) for kind, labels in kinds.items())
     typer.echo(f"{len(clips)} clips: {counted}. No method has seen the clips that it is judged on.")
     _print_recognized(found)
     _print_label_given(found.label_given)
-    for way, factor in _WAYS.items():
+    for way, factor in _LEFT_OUT_FACTORS.items():
         if way in found.held_out:
             _print_new(found.held_out[way], factor)
     if LeftOut.SOURCE in found.held_out:
@@ -72,7 +72,7 @@ def _print_label_given(judged: Sequence[LabelGiven]) -> None:
         return
     typer.echo("\nEach recording left out; the other label is given or not (Vasilescu, 5):\n")
     print_table(
-        ["method", "task", "person told", "person", "task told"],
+        ["method", "task", "person given", "person", "task given"],
         [
             [
                 one.method,
@@ -87,13 +87,15 @@ def _print_label_given(judged: Sequence[LabelGiven]) -> None:
 
 
 def _print_new(held: HeldOut, factor: str) -> None:
-    """Print, for left-out persons (tasks), their tasks (persons), and whether they are called
-    new."""
+    """Print the figures of left-out persons (or tasks).
+
+    These are the share of right tasks (or persons), and how often new labels are called new.
+    """
     other = "task" if factor == "person" else "person"
     typer.echo(
-        f"\nA {factor} left out, {held.rounds} in turn: which {other} it is, whether the {factor} "
-        "is\ncalled new, and known ones known meanwhile (together: of a person at a task of "
-        "theirs):\n"
+        f"\nEach {factor} left out in turn, in {held.rounds} rounds. {other}: right answers. new: "
+        f"the left-out\n{factor} is called new. known: other clips are called known (together: a "
+        "person at a\ntask that was learned):\n"
     )
     print_table(
         ["method", other, "new", "known", "together", "balanced", "AUC", "EER", "worst"],
@@ -123,11 +125,11 @@ def _new_row(judged: Judged, factor: str, other: str) -> list[object]:
 
 
 def _print_categories(method: str, found: Unknown, factor: str) -> None:
-    """Print the labels one by one, the worst first."""
+    """Print a row for each label, the worst first."""
     ordered = sorted(found.categories, key=lambda one: (one.balanced_accuracy or 0.0, one.label))
-    typer.echo(f"\nOne by one, by {method}, the worst first:\n")
+    typer.echo(f"\nEach {factor}, by {method}, the worst first:\n")
     print_table(
-        [f"{factor} left out", "clips", "called new", "balanced", "else taken for"],
+        [f"{factor} left out", "clips", "called new", "balanced", "taken for"],
         [
             [one.label, one.refused.of, one.refused.value, one.balanced_accuracy, one.taken_for]
             for one in ordered[:MAX_SHOWN]

@@ -1,4 +1,4 @@
-"""`kinedex evaluate retrieval`: the tables and figures of Sun 2011 for one's own library."""
+"""`kinedex evaluate retrieval`: the tables and figures of Sun 2011 for your own library."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from app.search.example.methods import Method
 
 Classes = Annotated[
     str | None,
-    typer.Option(help="Tasks of table 1, as walk,run,jump,kick; default: the four largest."),
+    typer.Option(help="Tasks of table 1, like walk,run,jump,kick; default: the four largest."),
 ]
 Methods = Annotated[
     list[Method] | None, typer.Option("--method", help="Judge this method; may be repeated.")
@@ -59,11 +59,11 @@ def retrieval(
     picture_format: PictureFormat = "svg",
     as_json: AsJson = False,
 ) -> None:
-    """Each clip is a query; clips with the same task are relevant (Sun 2011)."""
+    """Search with each clip as the query; clips of the same task are relevant (Sun 2011)."""
     filter = parsed_filter(filter_json)
     names = None if classes is None else [name.strip() for name in classes.split(",")]
     drawing = Drawing.prepared(picture, pictures_dir, picture_format)
-    with judging(context, "asking") as (lib, progress):
+    with judging(context, "searching") as (lib, progress):
         found = evaluate.judge_retrieval(
             lib,
             filter,
@@ -71,7 +71,7 @@ def retrieval(
             classes=names,
             k=k,
             threshold=eta,
-            most_queries=queries,
+            max_queries=queries,
             progress=progress,
         )
         volumes = evaluate.judge_volumes(lib, filter, classes=names, threshold=eta)

@@ -1,4 +1,4 @@
-"""The common start of evaluations: the filter, and the library with a progress bar."""
+"""Common parts of the evaluation commands: the filter, and the library with a progress bar."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ Progress = Callable[[int, int], None]
 
 
 def parsed_filter(filter_json: str | None) -> ClipFilter:
-    """The filter of `--filter`; without it, all clips pass. Raises BadField."""
+    """The filter of the option `--filter`. Without it, all clips pass. Raises BadField."""
     return parse_filter(filter_of(filter_json))
 
 
 @contextmanager
-def judging(context: typer.Context, doing: str) -> Iterator[tuple[Library, Progress]]:
-    """The library of the settings, and a function that moves a progress bar."""
+def judging(context: typer.Context, label: str) -> Iterator[tuple[Library, Progress]]:
+    """Open the library; also give a function that moves a progress bar with the text `label`."""
     with open_library(context) as lib, progress_bar() as bar:
-        task = bar.add_task(doing, total=None)
+        task = bar.add_task(label, total=None)
         yield lib, lambda done, total: bar.update(task, completed=done, total=total)

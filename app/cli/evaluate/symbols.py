@@ -1,4 +1,4 @@
-"""`kinedex evaluate symbols`: the motion symbol space of one's own library (Takano, fig. 3)."""
+"""`kinedex evaluate symbols`: the motion symbol space of your own library (Takano, fig. 3)."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def symbols(
     picture: Picture = None,
     as_json: AsJson = False,
 ) -> None:
-    """How many dimensions motion symbols need, and how well new ones are placed (Takano)."""
+    """Measure the errors of the motion symbol space by its dimensions (Takano)."""
     filter, drawing = parsed_filter(filter_json), Drawing.prepared(picture)
     with open_library(context) as lib:
         found = evaluate.judge_symbols(lib, filter)

@@ -1,4 +1,4 @@
-"""`kinedex evaluate words`: the tables and figures of Takano for one's own library."""
+"""`kinedex evaluate words`: the tables and figures of Takano for your own library."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def words(
     picture: Picture = None,
     as_json: AsJson = False,
 ) -> None:
-    """Words for clips and clips for words, held out and in-sample, and by frequency."""
+    """Find words for clips and clips for words, held out and in-sample."""
     filter, drawing = parsed_filter(filter_json), Drawing.prepared(picture)
     with open_library(context) as lib:
         found = evaluate.judge_words(lib, filter)
@@ -103,10 +103,10 @@ def _print_figures(figures: Sequence[WordFigures]) -> None:
 
 
 def _print_curves(figures: Sequence[WordFigures]) -> None:
-    places = range(2, len(RECALLS), 2)
+    columns = range(2, len(RECALLS), 2)  # every second recall, so that a line fits
     print_table(
-        ["method", *(f"{RECALLS[place]:.1f}" for place in places)],
-        [[one.method, *(one.precision[place] for place in places)] for one in figures],
+        ["method", *(f"{RECALLS[column]:.1f}" for column in columns)],
+        [[one.method, *(one.precision[column] for column in columns)] for one in figures],
     )
 
 

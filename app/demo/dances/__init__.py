@@ -1,4 +1,4 @@
-"""Dances with known beats, keyposes and music: the ground truth for what analysis finds."""
+"""Dances with known beats, keyposes and music: the ground truth for tests of the analysis."""
 
 from app.demo.dances.dance import dance
 from app.demo.dances.sound import Sound

@@ -1,7 +1,7 @@
-"""When a dance's poses are struck: beats that may drift, and what is done on each.
+"""The beats of a dance, whose tempo may drift, and the poses on them.
 
-A beat is struck (a keypose is reached, held and left), passed (the limbs run through a pose
-without stopping, or through none), or part of a freeze (a keypose held over the next beat).
+On a beat, a keypose is reached, held and left; or the limbs move through a pose without a stop; or
+there is no pose; or a freeze goes on (a keypose that is held over the next beat).
 """
 
 from __future__ import annotations
@@ -13,24 +13,34 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 
 RHYTHMS: tuple[tuple[int, ...], ...] = ((1,), (1, 1, 2), (1, 1, 1, 2), (2, 1, 1), (1, 2, 1))
-"""Beats from one keypose to the next, repeated."""
+"""The numbers of beats from one keypose to the next. Each rhythm is repeated."""
 
 HOLD = (0.1, 0.4)
-"""Share of a beat, around it, for which a pose is held."""
+"""The range of the share of a beat interval for which a pose is held, centered on the beat."""
 
-TIMING = 0.015
+TIMING_ERROR = 0.015
 """Seconds (standard deviation) by which dancers miss a beat."""
 
-SOONEST = 0.65
-"""Seconds from the first frame to the first beat. A recording does not begin within a movement."""
+MAX_TIMING_ERROR = 0.04
+"""Seconds."""
 
-THROUGH_A_POSE = 0.5
-"""How often a passed beat has a pose of its own, through which the limbs run."""
+MIN_FIRST_BEAT = 0.65
+"""The smallest time from the first frame to the first beat, in seconds.
+
+So a recording does not begin within a movement.
+"""
+
+PASSING_POSE_PROBABILITY = 0.5
+"""The probability that the limbs move through a pose on a beat without a stop."""
 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """A pose in time, s: reached, meant, left. All are the same where it is only passed."""
+    """A pose of the dance, and its times in seconds.
+
+    beat: the index of its beat. arrive, leave: the body rests between them. time: the time of the
+    pose. All three are equal if the body does not stop.
+    """
 
     beat: int
     arrive: float
@@ -39,13 +49,16 @@ class Moment:
 
     @property
     def is_held(self) -> bool:
-        """Whether the body comes to rest: a keypose."""
+        """Whether the body rests, so that the pose is a keypose."""
         return self.leave > self.arrive
 
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """beats: (b,) s, rising; moments: poses held or passed, rising; interval: s, nominal."""
+    """The beats and poses of a dance.
+
+    beats: (b,) s, rising. moments: the poses in order of time. interval: the nominal beat, s.
+    """
 
     beats: FloatArray
     moments: tuple[Moment, ...]
@@ -53,11 +66,14 @@ class Counts:
 
     @property
     def held(self) -> tuple[Moment, ...]:
-        """The keyposes."""
+        """The keyposes, in order of time."""
         return tuple(moment for moment in self.moments if moment.is_held)
 
     def phase(self, times: FloatArray) -> FloatArray:
-        """(frames,) beats since the first one, going on evenly before and after them."""
+        """(frames,) the number of beats since the first one, at `times` (frames,) in seconds.
+
+        Before the first and after the last beat, the beat continues evenly.
+        """
         at = np.arange(len(self.beats))
         inside = np.interp(times, self.beats, at)
         before = np.minimum(times - self.beats[0], 0.0) / (self.beats[1] - self.beats[0])
@@ -65,7 +81,7 @@ class Counts:
         return np.asarray(inside + before + after)
 
 
-def counted(
+def make_counts(
     draw: np.random.RandomState,
     bpm: float,
     seconds: float,
@@ -74,17 +90,17 @@ def counted(
     passes: float,
     freezes: float,
 ) -> Counts:
-    """Beats of about `bpm` for `seconds`, and the moments on them.
+    """Beats of about `bpm` (per minute) for `seconds`, and the poses on them.
 
-    drift: greatest relative departure of the tempo from `bpm`; passes: share of the other
-    beats, beyond the rhythm's own, that are passed; freezes: share that is held for longer.
+    drift: the largest relative difference of the tempo from `bpm`. passes: the share of keyposes
+    after which an additional beat has no stop. freezes: the share of keyposes that are held longer.
     """
     beats = _beats(draw, bpm, seconds, drift)
     return Counts(beats, tuple(_moments(draw, beats, passes, freezes)), 60.0 / bpm)
 
 
 def _beats(draw: np.random.RandomState, bpm: float, seconds: float, drift: float) -> FloatArray:
-    """Times of beats; the tempo wanders slowly, or changes steadily in one direction."""
+    """(b,) the times of the beats, s. The tempo varies slowly, or changes in one direction."""
     interval = 60.0 / bpm
     count = max(4, int((seconds - interval) / interval))
     at = np.linspace(0.0, 1.0, count)
@@ -92,7 +108,7 @@ def _beats(draw: np.random.RandomState, bpm: float, seconds: float, drift: float
     steady = draw.choice([-1.0, 1.0]) * (2.0 * at - 1.0)
     course = steady if draw.rand() < 0.4 else np.sin(2.0 * np.pi * turns * at + start)
     intervals = interval * np.exp(drift * course)
-    first = max(interval * draw.uniform(0.6, 1.0), SOONEST)
+    first = max(interval * draw.uniform(0.6, 1.0), MIN_FIRST_BEAT)
     return np.asarray(first + np.cumsum(intervals) - intervals[0])
 
 
@@ -101,32 +117,35 @@ def _moments(
 ) -> list[Moment]:
     rhythm = RHYTHMS[draw.randint(len(RHYTHMS))]
     hold = draw.uniform(*HOLD)
-    found: list[Moment] = []
+    moments: list[Moment] = []
     beat, count = 0, 0
     while beat < len(beats):
         gap = rhythm[count % len(rhythm)] + int(draw.rand() < passes)
         frozen = draw.rand() < freezes and beat + 1 < len(beats)
         gap = max(gap, 2) if frozen else gap
-        found.append(_struck(draw, beats, beat, hold, frozen))
+        moments.append(_keypose(draw, beats, beat, hold, frozen))
         for passed in range(beat + 1 + frozen, min(beat + gap, len(beats))):
-            if draw.rand() < THROUGH_A_POSE:
+            if draw.rand() < PASSING_POSE_PROBABILITY:
                 time = float(beats[passed])
-                found.append(Moment(passed, time, time, time))
+                moments.append(Moment(passed, time, time, time))
         beat, count = beat + gap, count + 1
-    return _ending_at_rest(found)
+    return _until_last_keypose(moments)
 
 
-def _struck(
+def _keypose(
     draw: np.random.RandomState, beats: FloatArray, beat: int, hold: float, frozen: bool
 ) -> Moment:
     near = beats[min(beat, len(beats) - 2) : min(beat, len(beats) - 2) + 2]
     length = float(near[1] - near[0])
     half = 0.5 * hold * draw.uniform(0.7, 1.3) * length
-    time = float(beats[beat] + np.clip(TIMING * draw.randn(), -0.04, 0.04))
+    time = float(
+        beats[beat] + np.clip(TIMING_ERROR * draw.randn(), -MAX_TIMING_ERROR, MAX_TIMING_ERROR)
+    )
     return Moment(beat, time - half, time, time + half + (length if frozen else 0.0))
 
 
-def _ending_at_rest(moments: list[Moment]) -> list[Moment]:
+def _until_last_keypose(moments: list[Moment]) -> list[Moment]:
+    """The moments without the poses after the last keypose: a dance ends at rest."""
     while not moments[-1].is_held:
         moments.pop()
     return moments

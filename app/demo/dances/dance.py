@@ -1,8 +1,8 @@
-"""Dances by seed: a dancer, beats, keyposes on them, and a recording of what was danced to.
+"""Random dances: a dancer, beats, keyposes on beats, and the music.
 
-The demo's task `dance` has few figures and a steady tempo. For these dances, everything is drawn
-anew for each seed: dancer, poses, rhythm, drift of the tempo, beats without a stop, freezes,
-ornaments and noise. The intended beats and keyposes come with the clip.
+The task `dance` of the demo has few figures and a steady tempo. Here, a seed determines everything:
+the dancer, poses, rhythm, drift of the tempo, beats without a stop, freezes, ornaments and noise.
+The clip contains the true beats and keyposes.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ import numpy as np
 
 from app.demo.actors import ACTORS, Actor
 from app.demo.clip import DemoClip
-from app.demo.controls import Arm, Controls, Turn, bent, standing
-from app.demo.dances.counts import Counts, counted
-from app.demo.dances.ornaments import ornamented
+from app.demo.controls import Arm, Controls, Turn, along_arc, standing_controls
+from app.demo.dances.counts import Counts, make_counts
+from app.demo.dances.ornaments import with_ornaments
 from app.demo.dances.poses import (
     CROUCH,
     HEAD,
@@ -25,14 +25,14 @@ from app.demo.dances.poses import (
     RIGHT_ARM,
     TRUNK,
     draw_poses,
-    loosened,
     weights,
+    with_part_lag,
 )
 from app.demo.dances.sound import Sound, record
-from app.demo.dances.steps import footwork, stepped
-from app.demo.posing import local_rotations, within_reach
+from app.demo.dances.steps import foot_curves, footwork
+from app.demo.posing import local_rotations, lowered_to_reach
 from app.demo.rig import SIDES, build_rig, skeleton_of
-from app.demo.take import Take, enlivened
+from app.demo.take import Take, with_body_sway
 from app.demo.words import words_for
 from app.formats.bvh.writer import write_bvh
 from app.formats.npz.writer import write_npz
@@ -40,11 +40,11 @@ from app.motion.skeleton.kinematics import forward_kinematics, local_translation
 from app.numerics.arrays import FloatArray
 
 UNITS_PER_METER = 100.0
-AFTERWARDS = 0.7
-"""How many beats follow after the last keypose."""
+BEATS_AT_END = 0.7
+"""The time from the end of the last keypose to the end of the clip, in beats."""
 
 LAGS = {"hips": -0.02, "trunk": 0.0, "head": -0.04, "left": 0.015, "right": 0.015}
-"""About how many seconds parts of the body follow the trunk."""
+"""Seconds by which parts of the body move later than the trunk; negative: earlier."""
 
 
 def dance(
@@ -61,25 +61,27 @@ def dance(
     sound: Sound | None = None,
     audio_offset: float | None = None,
 ) -> DemoClip:
-    """A dance of about `seconds`, the same for the same arguments.
+    """A dance of about `seconds`. The same arguments give the same dance.
 
-    noise_mm: standard deviation of white noise on every coordinate of every joint; then the
-    clip is an NPZ file of positions, else BVH. drift: greatest relative departure of the
-    tempo from `bpm`; passes, freezes: share of beats without a stop, or with a long one;
-    ornaments: factor on what is danced beside the poses. sound: what is recorded with it,
-    from `audio_offset` s of the motion on (drawn where None); it changes nothing else.
+    bpm: beats per minute. noise_mm: standard deviation of white noise on each coordinate of each
+    joint; with noise, the clip is an NPZ file of positions, else a BVH file. drift: the largest
+    relative difference of the tempo from `bpm`. passes, freezes: the share of keyposes that are
+    followed by a beat without a stop, and of those that are held longer. ornaments: factor on
+    their number and size. actor: None draws one. sound: the kind of the recording; it does not
+    change the motion. audio_offset: the time of the motion, in seconds, at which the recording
+    begins; None draws one.
     """
     draw = np.random.RandomState(seed)
-    dancer = actor or _dancer(draw)
+    dancer = actor or _random_dancer(draw)
     take = _take(draw, dancer)
-    counts = counted(draw, bpm, seconds, drift=drift, passes=passes, freezes=freezes)
-    last = counts.moments[-1].leave + AFTERWARDS * counts.interval
+    counts = make_counts(draw, bpm, seconds, drift=drift, passes=passes, freezes=freezes)
+    last = counts.moments[-1].leave + BEATS_AT_END * counts.interval
     times = take.clock(last)
     counts = replace(counts, beats=counts.beats[counts.beats < times[-1]])
     controls = _performed(draw, take, counts, times)
-    controls = ornamented(controls, times, counts, draw, ornaments)
-    controls = within_reach(enlivened(controls, take, times), take.rig, times)
-    controls = bent(controls, take.heading, 0.0)
+    controls = with_ornaments(controls, times, counts, draw, ornaments)
+    controls = lowered_to_reach(with_body_sway(controls, take, times), take.rig, times)
+    controls = along_arc(controls, take.heading, 0.0)
     stem = f"{dancer.name}/choreography_{seed:02d}"
     audio, start = b"", None
     if sound is not None:
@@ -100,8 +102,8 @@ def dance(
     )
 
 
-def _dancer(draw: np.random.RandomState) -> Actor:
-    """One of the demo's people, somewhat changed, recorded at some usual rate."""
+def _random_dancer(draw: np.random.RandomState) -> Actor:
+    """One of the demo's actors with slightly changed body and style, at a usual frame rate."""
     actor = ACTORS[draw.randint(len(ACTORS))]
     body = replace(actor.body, stature=actor.body.stature * draw.uniform(0.95, 1.05))
     style = replace(actor.style, energy=actor.style.energy * draw.uniform(0.85, 1.15))
@@ -124,14 +126,14 @@ def _take(draw: np.random.RandomState, actor: Actor) -> Take:
 def _performed(
     draw: np.random.RandomState, take: Take, counts: Counts, times: FloatArray
 ) -> Controls:
-    """Poses and steps over time, each part of the body with its own small lag."""
-    rest, leg = standing(take.actor, take.rig, len(times)), take.rig.leg
+    """The poses and steps over time. Each part of the body has its own small lag."""
+    rest, leg = standing_controls(take.actor, take.rig, len(times)), take.rig.leg
     turning = float(draw.choice([0.0, radians(12), radians(30)]))
     feet = footwork(draw, counts.moments, take.actor.style.stance, turning)
     size = float(np.clip(0.55 + 0.45 * take.size, 0.8, 1.05))
     poses = draw_poses(draw, counts.moments, rest.arms[0], size)
     curves = {
-        part: weights(times, loosened(counts.moments, draw, lag)) for part, lag in LAGS.items()
+        part: weights(times, with_part_lag(counts.moments, draw, lag)) for part, lag in LAGS.items()
     }
     center = curves["hips"] @ feet.centers
     hips, trunk = curves["hips"] @ poses[:, HIPS], curves["trunk"] @ poses[:, TRUNK]
@@ -143,7 +145,7 @@ def _performed(
         _arm(curves[part] @ poses[:, channels])
         for part, channels in (("left", LEFT_ARM), ("right", RIGHT_ARM))
     ]
-    placed = [stepped(times, rest.feet[side], side, feet.steps, leg) for side in SIDES]
+    stepping = [foot_curves(times, rest.feet[side], side, feet.steps, leg) for side in SIDES]
     return replace(
         rest,
         root=root,
@@ -151,7 +153,7 @@ def _performed(
         spine=_plus(rest.spine, trunk[:, 0], trunk[:, 1], trunk[:, 2]),
         head=_plus(rest.head, head, -0.5 * trunk[:, 1], 0.15 * head),
         arms=(arms[0], arms[1]),
-        feet=(placed[0], placed[1]),
+        feet=(stepping[0], stepping[1]),
     )
 
 
@@ -160,13 +162,16 @@ def _plus(turn: Turn, yaw: FloatArray, pitch: FloatArray, roll: FloatArray) -> T
 
 
 def _arm(curves: FloatArray) -> Arm:
-    """An arm of curves (frames, 5); what overshoots never bends the elbow the wrong way."""
+    """An arm with `curves` (frames, 5). The elbow must not bend backward if a curve overshoots."""
     flex, abduct, twist, elbow, wrist = curves.T
     return Arm(flex, abduct, twist, np.maximum(elbow, 0.03), wrist)
 
 
 def _content(draw: np.random.RandomState, take: Take, controls: Controls, noise_mm: float) -> bytes:
-    """BVH in centimeters; with noise, which no skeleton has, positions in meters."""
+    """BVH in centimeters; with noise, NPZ with positions in meters.
+
+    Noise changes the lengths of bones, and BVH has constant lengths.
+    """
     rotations, rate = local_rotations(controls, take.rig), take.actor.frame_rate
     if not noise_mm:
         skeleton = skeleton_of(take.rig, take.actor.naming, UNITS_PER_METER)

@@ -1,8 +1,8 @@
-"""Music for a dance: drums, bass, chords and a tune on given beats, or a metronome's clicks.
+"""Music for a dance: drums, bass, chords and a tune on given beats, or clicks of a metronome.
 
-Beats may drift; everything between them is placed by fractions of a beat. Styles differ in
-what marks the beat: some have every beat drummed, some only every other, some nothing but
-chords and bass.
+The tempo may drift; the times of notes between two beats are fractions of the interval. Styles mark
+the beat in different ways: with a drum on each beat, on every second beat, or only with chords and
+bass.
 """
 
 from __future__ import annotations
@@ -16,13 +16,16 @@ from app.demo.dances.sounds import SAMPLE_RATE, note, put
 from app.numerics.arrays import FloatArray
 
 Pattern = tuple[tuple[float, float], ...]
-"""(beat within the bar, gain)."""
+"""Pairs of a beat within the bar and a gain."""
 
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """bar: beats; when drums, bass and chords sound; swing: lateness of the second half beat, in
-    beats; attack: seconds in which chords swell."""
+    """A style of music: the patterns of the instruments.
+
+    bar: its beats. swing: the delay of the second half of a beat, in beats. attack: seconds in
+    which chords become loud.
+    """
 
     bar: int
     kicks: Pattern
@@ -35,7 +38,7 @@ class Style:
 
 
 def every(step: float, bar: int = 4, gain: float = 1.0, start: float = 0.0) -> Pattern:
-    """A note each `step` beats of a bar, from `start` on."""
+    """A pattern with a note every `step` beats of a bar, from the beat `start` on."""
     return tuple((float(at), gain) for at in np.arange(start, bar, step))
 
 
@@ -70,18 +73,20 @@ STYLES: dict[str, Style] = {
 }  # fmt: skip
 
 PROGRESSIONS: tuple[tuple[int, ...], ...] = ((0, -3, 5, 7), (0, 5, 7, 0), (0, 7, -3, 5))
-"""Semitones of the chords' roots above the key, a bar each."""
+"""The roots of the chords, one for each bar, in semitones above the key."""
 
 SCALE = (0, 2, 4, 7, 9, 12)
-"""Semitones of the tune."""
+"""The notes of the tune, in semitones above the key."""
 
-LOUDEST = 0.8
-HISS = 0.002
+PEAK_LEVEL = 0.8
+"""The loudest sample, as a share of full scale."""
+
+NOISE_LEVEL = 0.002
 """The noise of a recording, as a share of full scale."""
 
 
 def clicks(draw: np.random.RandomState, beats: FloatArray, seconds: float) -> FloatArray:
-    """(samples,) a metronome on `beats` (b,) s; every fourth click may be higher."""
+    """(samples,) clicks of a metronome on `beats` (b,) s; every fourth click may be higher."""
     track = np.zeros(round(seconds * SAMPLE_RATE))
     accented = draw.rand() < 0.5
     for number, beat in enumerate(beats):
@@ -97,23 +102,22 @@ def music(
     style: Style,
     levels: FloatArray | None = None,
 ) -> FloatArray:
-    """(samples,) a piece on `beats` (b,) s.
+    """(samples,) a piece of music on `beats` (b,) s, of `seconds`.
 
-    levels: (b,) 0..1, how full the band is from each beat on: 0 is silence, below a half there
-    are no drums.
+    levels: (b,) 0..1, the loudness from each beat on. 0 is silence; below 0.5 there are no drums.
     """
     track = np.zeros(round(seconds * SAMPLE_RATE))
-    full = np.ones(len(beats)) if levels is None else levels
-    _drums(draw, track, beats, full, style)
-    _tones(draw, track, beats, full, style)
+    levels = np.ones(len(beats)) if levels is None else levels
+    _add_drums(draw, track, beats, levels, style)
+    _add_tones(draw, track, beats, levels, style)
     return _mastered(draw, track)
 
 
-def _drums(
+def _add_drums(
     draw: np.random.RandomState,
     track: FloatArray,
     beats: FloatArray,
-    full: FloatArray,
+    levels: FloatArray,
     style: Style,
 ) -> None:
     kit = (
@@ -123,41 +127,41 @@ def _drums(
     )
     for pattern, sound, loud in kit:
         for number, at, gain in _played(pattern, style, len(beats)):
-            if full[number] >= 0.5:
-                touch = loud * gain * draw.uniform(0.85, 1.0) * full[number]
+            if levels[number] >= 0.5:
+                touch = loud * gain * draw.uniform(0.85, 1.0) * levels[number]
                 put(track, sound, _time(beats, at, style.swing) + 0.004 * draw.randn(), touch)
 
 
-def _tones(
+def _add_tones(
     draw: np.random.RandomState,
     track: FloatArray,
     beats: FloatArray,
-    full: FloatArray,
+    levels: FloatArray,
     style: Style,
 ) -> None:
-    """Bass, chords, and a tune that rests now and then."""
+    """Add bass, chords, and a tune with pauses."""
     key, roots = 45 + draw.randint(8), PROGRESSIONS[draw.randint(len(PROGRESSIONS))]
     beat = float(np.median(np.diff(beats)))
     third = draw.choice([3, 4])
     for number, at, gain in _played(style.bass, style, len(beats)):
         pitch = note(key - 12 + roots[number // style.bar % len(roots)])
         sound = sounds.tone(pitch, 0.8 * beat, attack=0.01, decay=0.4, bright=5)
-        put(track, sound, _time(beats, at, style.swing), 0.5 * gain * full[number])
+        put(track, sound, _time(beats, at, style.swing), 0.5 * gain * levels[number])
     for number, at, gain in _played(style.chords, style, len(beats)):
         root = key + 12 + roots[number // style.bar % len(roots)]
         for step in (0, third, 7):
             pitch, held = note(root + step), 1.1 * beat
             sound = sounds.tone(pitch, held, attack=style.attack, decay=0.5, bright=4)
-            put(track, sound, _time(beats, at, style.swing), 0.16 * gain * full[number])
+            put(track, sound, _time(beats, at, style.swing), 0.16 * gain * levels[number])
     for half in range(2 * len(beats)):
         if draw.rand() < 0.35:
             pitch = note(key + 24 + SCALE[draw.randint(len(SCALE))])
             sound = sounds.tone(pitch, 0.7 * beat, attack=0.03, decay=0.3, bright=3)
-            put(track, sound, _time(beats, 0.5 * half, style.swing), 0.2 * full[half // 2])
+            put(track, sound, _time(beats, 0.5 * half, style.swing), 0.2 * levels[half // 2])
 
 
 def _played(pattern: Pattern, style: Style, beats: int) -> list[tuple[int, float, float]]:
-    """(beat's number, time in beats, gain) of all that a pattern plays on that many beats."""
+    """The notes of a pattern in `beats` beats: index of the beat, time in beats, gain."""
     notes = []
     for bar in range(0, beats, style.bar):
         for at, gain in pattern:
@@ -167,7 +171,7 @@ def _played(pattern: Pattern, style: Style, beats: int) -> list[tuple[int, float
 
 
 def _time(beats: FloatArray, at: float, swing: float) -> float:
-    """Seconds of a moment in beats; the second half of a beat comes later by `swing`."""
+    """The time in seconds of a time in beats; the second half of a beat is later by `swing`."""
     late = swing if at % 1.0 == 0.5 else 0.0
     numbers = np.arange(len(beats) + 1)
     ends = np.append(beats, 2 * beats[-1] - beats[-2])
@@ -176,4 +180,7 @@ def _time(beats: FloatArray, at: float, swing: float) -> float:
 
 def _mastered(draw: np.random.RandomState, track: FloatArray) -> FloatArray:
     peak = float(np.abs(track).max(initial=1e-9))
-    return np.asarray(np.tanh(1.2 * track / peak) * LOUDEST + HISS * draw.randn(len(track)))
+    # tanh compresses the peaks, as a recording does
+    return np.asarray(
+        np.tanh(1.2 * track / peak) * PEAK_LEVEL + NOISE_LEVEL * draw.randn(len(track))
+    )

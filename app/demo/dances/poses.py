@@ -1,6 +1,6 @@
-"""The poses of a dance: arms, hips, trunk and head, drawn around some that people strike.
+"""The poses of a dance: random variations of typical poses of arms, hips, trunk and head.
 
-A pose is one row of CHANNELS; a dance is a matrix of rows and their weights over time.
+A pose is a row of CHANNELS numbers. A dance is a matrix of such rows, and their weights over time.
 """
 
 from __future__ import annotations
@@ -32,36 +32,40 @@ ARMS: tuple[ArmPose, ...] = (
     ArmPose(2.0, 0.6, 0.0, 1.3),
     ArmPose(-0.6, 0.3, 0.1, 0.35),
 )
-"""Arms before, aside, crossed, up, akimbo, pointing, low, like goals, folded, ahead, ..."""
+"""Typical poses of an arm: before the chest, aside, crossed, up, on the hip, pointing, low, ..."""
 
 CHANNELS = 18
 LEFT_ARM, RIGHT_ARM = slice(0, 5), slice(5, 10)
 HIPS, TRUNK = slice(10, 13), slice(13, 16)
 HEAD, CROUCH = 16, 17
-"""flex, abduct, twist, elbow, wrist of each arm; yaw, pitch, roll of hips and of trunk; yaw of
-the head; lowering of the pelvis in leg lengths."""
+"""The columns: flex, abduct, twist, elbow, wrist of each arm; yaw, pitch, roll of hips and of the
+trunk; yaw of the head; lowering of the pelvis in leg lengths."""
 
-SYMMETRIC = 0.4
-JITTER = 0.12
-"""rad (standard deviation), so that no pose is struck twice alike."""
+SYMMETRY_PROBABILITY = 0.4
+"""The probability that both arms take the same pose."""
 
-HIGHEST_FLEX, HIGHEST_ABDUCT = 2.9, 2.5
+VARIATION = 0.12
+"""Radians (standard deviation) by which poses vary, so that no pose occurs twice."""
+
+MAX_FLEX, MAX_ABDUCT = 2.9, 2.5
+"""Radians."""
+
 FULL_MOVE = 0.5
-"""Seconds. A pose with less time is danced smaller."""
+"""Seconds. With less time, the body moves only a part of the way to the pose."""
 
-LOOSE = 0.02
-"""Seconds (standard deviation) by which parts of the body arrive and leave apart."""
+PART_DELAY = 0.02
+"""Seconds (standard deviation) of random delays between parts of the body."""
 
-SHORTEST = 0.02
-"""Seconds for which a part rests at least."""
+MIN_REST = 0.02
+"""Seconds: the shortest rest of a part."""
 
 
 def draw_poses(
     draw: np.random.RandomState, moments: tuple[Moment, ...], rest: Arm, size: float
 ) -> FloatArray:
-    """(moments + 1, CHANNELS): the pose at ease, then one for each moment.
+    """(moments + 1, CHANNELS) the resting pose, then one pose for each moment.
 
-    size: factor on how far poses are from ease.
+    rest: the resting pose of an arm. size: factor on the difference of poses from the resting pose.
     """
     ease = np.zeros(CHANNELS)
     for side in (LEFT_ARM, RIGHT_ARM):
@@ -70,28 +74,28 @@ def draw_poses(
     arms, left = (-1, -1), moments[0].arrive - FULL_MOVE
     for moment in moments:
         arms = _other_arms(draw, arms)
-        wanted = ease + size * (_figure(draw, arms) - ease)
+        target = ease + size * (_random_pose(draw, arms) - ease)
         share = np.clip((moment.arrive - left) / FULL_MOVE, 0.45, 1.0)
-        poses.append(_possible(poses[-1] + share * (wanted - poses[-1])))
+        poses.append(_within_limits(poses[-1] + share * (target - poses[-1])))
         left = moment.leave
     return np.array(poses)
 
 
 def _other_arms(draw: np.random.RandomState, before: tuple[int, int]) -> tuple[int, int]:
-    """Poses of both arms, at least one of them another than before."""
+    """The indices of the poses of both arms; each arm changes its pose."""
     while True:
         left = int(draw.randint(len(ARMS)))
-        right = left if draw.rand() < SYMMETRIC else int(draw.randint(len(ARMS)))
+        right = left if draw.rand() < SYMMETRY_PROBABILITY else int(draw.randint(len(ARMS)))
         if left != before[0] and right != before[1]:
             return left, right
 
 
-def _figure(draw: np.random.RandomState, arms: tuple[int, int]) -> FloatArray:
+def _random_pose(draw: np.random.RandomState, arms: tuple[int, int]) -> FloatArray:
     row = np.zeros(CHANNELS)
     for side, index in zip((LEFT_ARM, RIGHT_ARM), arms, strict=True):
         pose = ARMS[index]
         row[side] = [pose.flex, pose.abduct, pose.twist, pose.elbow, pose.wrist]
-        row[side] += JITTER * draw.randn(5)
+        row[side] += VARIATION * draw.randn(5)
     row[HIPS] = draw.uniform([-0.25, -0.05, -0.1], [0.25, 0.15, 0.1])
     row[TRUNK] = draw.uniform([-0.35, -0.1, -0.2], [0.35, 0.3, 0.2])
     row[HEAD] = draw.uniform(-0.5, 0.5)
@@ -99,19 +103,21 @@ def _figure(draw: np.random.RandomState, arms: tuple[int, int]) -> FloatArray:
     return row
 
 
-def _possible(row: FloatArray) -> FloatArray:
+def _within_limits(row: FloatArray) -> FloatArray:
+    """`row` (CHANNELS,) with the arms limited to angles that a body can reach. Changes `row`."""
     for side in (LEFT_ARM, RIGHT_ARM):
         lowest = [-0.9, -0.15, -0.5, 0.05, -0.4]
-        highest = [HIGHEST_FLEX, HIGHEST_ABDUCT, 1.2, 2.2, 0.7]
+        highest = [MAX_FLEX, MAX_ABDUCT, 1.2, 2.2, 0.7]
         row[side] = np.clip(row[side], lowest, highest)
     return row
 
 
 def weights(times: FloatArray, moments: tuple[Moment, ...]) -> FloatArray:
-    """(frames, moments + 1) share of each pose, summing to 1; the first one is at ease.
+    """(frames, moments + 1) the weight of each pose at `times` (frames,) s; weights sum to 1.
 
-    Between two held poses the course of least jerk, through the poses that are passed
-    (Flash & Hogan 1985: quintic between via points, smooth in four derivatives).
+    The first pose is the resting pose. Between two keyposes, the weights follow the curve of least
+    jerk through the other poses (Flash & Hogan 1985: quintic pieces that are smooth in four
+    derivatives).
     """
     shares = np.zeros((len(times), len(moments) + 1))
     shares[times < moments[0].arrive, 0] = 1.0
@@ -130,22 +136,25 @@ def weights(times: FloatArray, moments: tuple[Moment, ...]) -> FloatArray:
     return shares
 
 
-def loosened(
+def with_part_lag(
     moments: tuple[Moment, ...], draw: np.random.RandomState, lag: float
 ) -> tuple[Moment, ...]:
-    """The moments of one part of the body: `lag` s later, and never quite together with others."""
-    found = []
+    """The moments of one part of the body: `lag` seconds later, plus small random delays."""
+    delayed = []
     for moment in moments:
-        late, longer = lag + np.clip(LOOSE * draw.randn(2), -2 * LOOSE, 2 * LOOSE)
-        leave = max(moment.leave + longer, moment.arrive + late + SHORTEST)
+        late, longer = lag + np.clip(PART_DELAY * draw.randn(2), -2 * PART_DELAY, 2 * PART_DELAY)
+        leave = max(moment.leave + longer, moment.arrive + late + MIN_REST)
         if not moment.is_held:
             leave = moment.leave + late
-        found.append(replace(moment, arrive=moment.arrive + late, leave=leave))
-    return tuple(found)
+        delayed.append(replace(moment, arrive=moment.arrive + late, leave=leave))
+    return tuple(delayed)
 
 
 def _course(knots: FloatArray) -> Callable[[FloatArray], FloatArray]:
-    """(t,) -> (t, knots): the weight of each knot's pose, at rest at both ends."""
+    """A function from times (t,) to the weights (t, knots) of the poses at `knots`, in seconds.
+
+    Velocity and acceleration are 0 at both ends.
+    """
     at_rest = [(1, np.zeros(len(knots))), (2, np.zeros(len(knots)))]
     course: Callable[[FloatArray], FloatArray] = make_interp_spline(
         knots, np.eye(len(knots)), k=5, bc_type=(at_rest, at_rest)

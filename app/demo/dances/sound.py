@@ -1,7 +1,7 @@
-"""The recording of what a dance is danced to, with the time at which it begins in the motion.
+"""The audio recording of a dance, and the time of the motion at which it begins.
 
-Music is arranged as for a stage: an introduction until the dance begins, a band that falls
-back where the dancer freezes, an end with the dance. A metronome just goes on.
+Music has a quiet introduction before the dance, is quiet when the dancer freezes, and ends with the
+dance. A metronome has the same loudness all the time.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from app.demo.dances.sounds import SAMPLE_RATE
 from app.demo.dances.wav import write_wav
 from app.numerics.arrays import FloatArray
 
-EARLIEST, LATEST = -5.0, 1.0
-"""Seconds of the motion at which a recording begins."""
+MIN_START, MAX_START = -5.0, 1.0
+"""The range of the time of the motion, in seconds, at which a recording begins."""
 
-AFTERWARDS = (0.5, 3.0)
-"""Seconds that it goes on after the motion."""
+SECONDS_AFTER = (0.5, 3.0)
+"""The range of the time for which it continues after the motion."""
 
-INTRODUCTION, BREAK = 0.45, 0.3
-"""How full the band is; see `music`."""
+INTRODUCTION_LEVEL, FREEZE_LEVEL = 0.45, 0.3
+"""The loudness, 0..1; see `music`."""
 
 
 class Sound(StrEnum):
-    """What there is to dance to."""
+    """The kind of a recording."""
 
     CLICKS = "clicks"
     MUSIC = "music"
@@ -36,15 +36,15 @@ class Sound(StrEnum):
 def record(
     seed: int, sound: Sound, counts: Counts, duration: float, offset: float | None
 ) -> tuple[bytes, float]:
-    """A WAV file, and the time of the motion (s) at which it begins, drawn where None.
+    """A WAV file, and the time of the motion, in seconds, at which it begins.
 
-    duration: of the motion, s.
+    duration: that of the motion, s. offset: the beginning; None draws one.
     """
     draw = np.random.RandomState(seed + 500_000)
-    drawn, after = draw.uniform(EARLIEST, LATEST), draw.uniform(*AFTERWARDS)
+    drawn, after = draw.uniform(MIN_START, MAX_START), draw.uniform(*SECONDS_AFTER)
     start = float(round(drawn, 3)) if offset is None else offset
     seconds = duration + after - start
-    beats = _throughout(counts, start, start + seconds)
+    beats = _all_beats(counts, start, start + seconds)
     if sound is Sound.CLICKS:
         samples = clicks(draw, beats - start, seconds)
     else:
@@ -53,8 +53,11 @@ def record(
     return write_wav(samples, SAMPLE_RATE), start
 
 
-def _throughout(counts: Counts, start: float, stop: float) -> FloatArray:
-    """All beats from `start` to `stop`, going on evenly on both sides of the dance's."""
+def _all_beats(counts: Counts, start: float, stop: float) -> FloatArray:
+    """(b,) all beats from `start` to `stop`, in seconds.
+
+    They continue evenly before and after the dance.
+    """
     first, last = np.diff(counts.beats)[[0, -1]]
     before = np.arange(counts.beats[0] - first, start, -first)[::-1]
     after = np.arange(counts.beats[-1] + last, stop, last)
@@ -63,12 +66,12 @@ def _throughout(counts: Counts, start: float, stop: float) -> FloatArray:
 
 
 def _levels(counts: Counts, beats: FloatArray) -> FloatArray:
-    """(b,) how full the band is from each beat on."""
+    """(b,) the loudness of the music from each of `beats` (b,) s on."""
     held = counts.held
-    levels = np.where(beats < held[0].time - 0.5 * counts.interval, INTRODUCTION, 1.0)
+    levels = np.where(beats < held[0].time - 0.5 * counts.interval, INTRODUCTION_LEVEL, 1.0)
     levels[beats > held[-1].time + 0.5 * counts.interval] = 0.0
     for moment in held[:-1]:
         if moment.leave - moment.arrive > counts.interval:
             within = (beats > moment.arrive) & (beats < moment.leave)
-            levels[within] = BREAK
+            levels[within] = FREEZE_LEVEL
     return np.asarray(levels)

@@ -1,6 +1,6 @@
-"""Where a dancer's feet go: one at a time, never crossing, not far from where they began.
+"""The steps of a dancer: one foot at a time, never crossed, near the starting position.
 
-Places are in leg lengths on the ground, (x to the left, z ahead); yaw in rad.
+Positions on the floor are in leg lengths: x to the left, z forward. Yaw is in radians.
 """
 
 from __future__ import annotations
@@ -15,26 +15,31 @@ from app.demo.dances.counts import Moment
 from app.demo.rig import SIDES, SIGNS
 from app.numerics.arrays import FloatArray
 
-STEPPING = 0.8
-"""How often a foot is moved from one moment to the next."""
+STEP_PROBABILITY = 0.8
+"""The probability of a step between two poses."""
 
-OFTENEST_ALTERNATING = 0.85
+ALTERNATION_PROBABILITY = 0.85
+"""The probability that a step is made by the other foot than the last one."""
+
 WIDTH, AHEAD = (0.2, 0.48), (-0.26, 0.3)
-"""Where a foot may be put beside the other one, leg lengths."""
+"""The ranges of the position beside and before the standing foot, leg lengths."""
 
-LONGEST = 1.3
-"""Leg lengths a second that a foot may go."""
+MAX_SPEED = 1.3
+"""Leg lengths per second: the largest mean speed of a foot in a step."""
 
 LIFT = 0.16
-"""Height of a step, of its length."""
+"""The height of a step, as a share of its length."""
 
-BEARING = 0.3
-"""How far the pelvis goes toward the foot that stays, of half the feet's distance."""
+WEIGHT_SHIFT = 0.3
+"""The shift of the pelvis toward the standing foot, as a share of its distance."""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One foot's way from one moment to another: `start`, `end` s; to (x, z, yaw)."""
+    """One step of a foot.
+
+    side: its side. start, end: s. to: (3,) x, z and yaw of the new position.
+    """
 
     side: int
     start: float
@@ -44,7 +49,11 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Footwork:
-    """steps: in time; centers: (moments + 1, 3) x, z, yaw between the feet, the start first."""
+    """The steps of a dance.
+
+    steps: in order of time. centers: (moments + 1, 3) x, z and yaw of the pelvis on the floor, at
+    the start and at each moment.
+    """
 
     steps: tuple[Step, ...]
     centers: FloatArray
@@ -53,9 +62,10 @@ class Footwork:
 def footwork(
     draw: np.random.RandomState, moments: tuple[Moment, ...], stance: float, turning: float
 ) -> Footwork:
-    """Steps that end shortly before moments.
+    """Random steps that end at or shortly before the moments.
 
-    stance: half distance of the feet at ease; turning: rad that a step may turn the body.
+    stance: half the distance of the feet at the start. turning: the largest turn of the body in one
+    step, rad.
     """
     feet = np.array([[SIGNS[side] * stance, 0.0, 0.0] for side in SIDES])
     steps: list[Step] = []
@@ -63,11 +73,11 @@ def footwork(
     left, last = max(moments[0].arrive - 0.6, 0.0), int(draw.randint(2))
     for moment in moments:
         mover = None
-        if draw.rand() < STEPPING:
-            mover = 1 - last if draw.rand() < OFTENEST_ALTERNATING else last
-            start, end = _window(draw, left, moment.arrive)
+        if draw.rand() < STEP_PROBABILITY:
+            mover = 1 - last if draw.rand() < ALTERNATION_PROBABILITY else last
+            start, end = _step_times(draw, left, moment.arrive)
             feet = feet.copy()
-            feet[mover] = _put(draw, feet, mover, turning, LONGEST * (end - start))
+            feet[mover] = _new_position(draw, feet, mover, turning, MAX_SPEED * (end - start))
             steps.append(Step(mover, start, end, feet[mover].copy()))
             last = mover
         standings.append(feet)
@@ -76,43 +86,56 @@ def footwork(
     return Footwork(tuple(steps), _centers(standings, movers))
 
 
-def _window(draw: np.random.RandomState, left: float, arrive: float) -> tuple[float, float]:
+def _step_times(draw: np.random.RandomState, left: float, arrive: float) -> tuple[float, float]:
     end = arrive - draw.uniform(0.0, 0.1) * (arrive - left)
     return end - min(0.85 * (end - left), 0.55), end
 
 
-def _put(
-    draw: np.random.RandomState, feet: FloatArray, mover: int, turning: float, furthest: float
+def _new_position(
+    draw: np.random.RandomState,
+    feet: FloatArray,
+    mover: int,
+    turning: float,
+    max_distance: float,
 ) -> FloatArray:
-    """A new place beside the standing foot; of a few, the one nearest to the origin."""
+    """(3,) x, z, yaw: a new position beside the standing foot.
+
+    Of three random positions, the one nearest to the origin is used, so that the dancer does not
+    leave the stage.
+    """
     standing = feet[1 - mover]
     yaw = float(feet[:, 2].mean() + draw.uniform(-turning, turning))
-    places = []
+    positions = []
     for _ in range(3):
         aside, ahead = SIGNS[mover] * draw.uniform(*WIDTH), draw.uniform(*AHEAD)
         x = standing[0] + aside * np.cos(yaw) + ahead * np.sin(yaw)
         z = standing[1] - aside * np.sin(yaw) + ahead * np.cos(yaw)
         way = np.array([x, z]) - feet[mover, :2]
-        share = min(1.0, furthest / max(float(np.linalg.norm(way)), 1e-9))
-        places.append(np.array([*(feet[mover, :2] + share * way), yaw]))
-    return min(places, key=lambda place: float(np.hypot(place[0], place[1])))
+        share = min(1.0, max_distance / max(float(np.linalg.norm(way)), 1e-9))
+        positions.append(np.array([*(feet[mover, :2] + share * way), yaw]))
+    return min(positions, key=lambda position: float(np.hypot(position[0], position[1])))
 
 
 def _centers(standings: list[FloatArray], movers: list[int | None]) -> FloatArray:
-    """Between the feet, toward the one that stays when the next step is made."""
+    """(moments + 1, 3) x, z, yaw between the feet, shifted to the foot that stands next."""
     centers = []
     for feet, mover in zip(standings, [*movers, None], strict=True):
         middle = feet.mean(axis=0)
         if mover is not None:
-            middle[:2] += BEARING * (feet[1 - mover, :2] - middle[:2])
+            middle[:2] += WEIGHT_SHIFT * (feet[1 - mover, :2] - middle[:2])
         centers.append(middle)
     return np.array(centers)
 
 
-def stepped(times: FloatArray, rest: Foot, side: int, steps: tuple[Step, ...], leg: float) -> Foot:
-    """One foot's curves: planted but while it steps; `rest` is where it stands at ease."""
+def foot_curves(
+    times: FloatArray, rest: Foot, side: int, steps: tuple[Step, ...], leg: float
+) -> Foot:
+    """The curves of the foot `side`, which moves only in its steps.
+
+    times: (frames,) s. rest: the foot in the resting posture. leg: its length, m.
+    """
     own = [step for step in steps if step.side == side]
-    at = np.array([rest.place[0, 0] / leg, rest.place[0, 2] / leg, 0.0])
+    at = np.array([rest.position[0, 0] / leg, rest.position[0, 2] / leg, 0.0])
     path = np.tile(at, (len(times), 1))
     lift = np.zeros(len(times))
     for step in own:
@@ -120,5 +143,5 @@ def stepped(times: FloatArray, rest: Foot, side: int, steps: tuple[Step, ...], l
         path += done[:, None] * (step.to - at)
         lift += LIFT * (0.15 + float(np.linalg.norm((step.to - at)[:2]))) * 4 * done * (1 - done)
         at = step.to
-    place = np.stack([path[:, 0] * leg, lift * leg, path[:, 1] * leg], axis=-1)
-    return replace(rest, place=place, yaw=rest.yaw + path[:, 2])
+    position = np.stack([path[:, 0] * leg, lift * leg, path[:, 1] * leg], axis=-1)
+    return replace(rest, position=position, yaw=rest.yaw + path[:, 2])

@@ -1,4 +1,4 @@
-"""Writes WAV files without the audio library, because the demo must work without it."""
+"""Writes WAV files with the standard library, because the demo must work without soundfile."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from app.numerics.arrays import FloatArray
 
 
 def write_wav(samples: FloatArray, sample_rate: int) -> bytes:
-    """Mono WAV, 16 bits, of `samples` (n,) within -1..1; what is beyond is cut off."""
+    """A mono WAV file of 16 bits with `samples` (n,) from -1 to 1; larger values are cut off."""
     file = io.BytesIO()
     with wave.open(file, "wb") as out:
         out.setnchannels(1)

@@ -1,4 +1,4 @@
-"""What the demo actors do, by name; each task performs one take."""
+"""The tasks of the demo actors by name. Each function performs one take."""
 
 from __future__ import annotations
 
@@ -23,4 +23,4 @@ TASKS: dict[str, Callable[[Take], Performance]] = {
     "bow": bow,
     "dance": dance,
 }
-"""Task name -> performance of a take."""
+"""The function of each task, by its name."""

@@ -1,7 +1,7 @@
-"""Dancing on a beat: keyposes struck and held at beats, one foot moved at a time.
+"""Dancing to a beat: keyposes are reached and held on beats; one foot moves at a time.
 
-The beats and the times of the keyposes are known, so that the results of the analysis can be
-compared with them.
+The true times of beats and keyposes are part of the result, so that tests can compare the analysis
+with them.
 """
 
 from __future__ import annotations
@@ -12,28 +12,29 @@ from math import pi
 
 import numpy as np
 
-from app.demo.controls import Arm, Controls, Foot, Turn, bent, mirrored, standing
+from app.demo.controls import Arm, Controls, Foot, Turn, standing_controls
 from app.demo.curves import ease
 from app.demo.keys import ArmPose, FootPose
 from app.demo.performance import Performance
-from app.demo.posing import within_reach
 from app.demo.rig import LEFT, RIGHT, SIDES
 from app.demo.take import Take
+from app.demo.tasks.standing_tasks import standing_performance
 from app.numerics.arrays import FloatArray
 
 HOLD = 0.3
-"""Share of a beat, around the beat, for which a keypose is held."""
+"""The share of a beat interval for which a keypose is held, centered on its beat."""
 SECONDS = 9.5
+"""The mean duration."""
 RHYTHMS: tuple[tuple[int, ...], ...] = ((1, 1, 2), (1, 1, 1, 1, 2), (2, 1, 1))
-"""Beats from one keypose to the next, repeated."""
+"""The numbers of beats from one keypose to the next. Each rhythm is repeated."""
 
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """One keypose; lengths in leg lengths, angles in rad.
+    """One keypose; lengths are in leg lengths, angles in radians.
 
-    shift: (x, down) of the pelvis; hips, trunk: (yaw, pitch, roll); left, right: arms and
-    feet; turn: yaw of the head.
+    shift: of the pelvis, to the left and down. hips, trunk: (yaw, pitch, roll). arms, feet: left
+    and right. turn: yaw of the head.
     """
 
     shift: tuple[float, float]
@@ -59,7 +60,7 @@ _GOAL = ArmPose(1.5, 1.5, 0.0, 1.5)
 _FOLDED = ArmPose(0.35, 0.5, 0.5, 2.1)
 _HOME = FootPose()
 _TAP = (0.24, 0.35)
-"""(z of a heel tap, pitch of the foot)."""
+"""A heel tap: z of the foot, and its pitch."""
 
 
 def _foot(x: float, tapping: bool = False) -> FootPose:
@@ -111,54 +112,56 @@ FIGURES: tuple[Figure, ...] = (
 
 
 def dance(take: Take) -> Performance:
-    """Keyposes on beats of the actor's own tempo, about 10 s."""
+    """A dance with keyposes on beats at the tempo of the actor, about 10 s."""
     beat = 60.0 / (take.actor.beats_per_minute * take.vary(0.03))
     first = beat * float(take.draw.uniform(0.7, 1.0))
     times = take.clock(SECONDS * take.vary(0.05))
     beats = np.arange(first, times[-1], beat)
-    struck = _struck(take, len(beats))
+    keypose_beats = _keypose_beats(take, len(beats))
     start = int(take.draw.randint(len(FIGURES)))
-    figures = [FIGURES[(start + k) % len(FIGURES)] for k in range(len(struck) + 1)]
-    weights = _weights(times, first + beat * np.array(struck), beat)
-    controls = _figured(standing(take.actor, take.rig, len(times)), take, figures, weights)
-    controls = within_reach(controls, take.rig, times)
-    if take.actor.left_handed:
-        controls = mirrored(controls)
-    keyposes = tuple(float(first + beat * k) for k in struck)
-    return Performance(
-        times, bent(controls, take.heading, 0.0), keyposes, tuple(float(b) for b in beats)
+    figures = [FIGURES[(start + k) % len(FIGURES)] for k in range(len(keypose_beats) + 1)]
+    weights = _weights(times, first + beat * np.array(keypose_beats), beat)
+    rest = standing_controls(take.actor, take.rig, len(times))
+    return standing_performance(
+        take,
+        times,
+        _with_figures(rest, take, figures, weights),
+        keyposes=tuple(float(first + beat * k) for k in keypose_beats),
+        beats=tuple(float(b) for b in beats),
     )
 
 
-def _struck(take: Take, beats: int) -> list[int]:
-    """Indices of the beats at which a keypose is struck."""
+def _keypose_beats(take: Take, beats: int) -> list[int]:
+    """The indices of the beats that have a keypose."""
     rhythm = RHYTHMS[take.draw.randint(len(RHYTHMS))]
-    struck, at = [], 0
-    while at < beats:
-        struck.append(at)
-        at += rhythm[len(struck) % len(rhythm)]
-    return struck
+    indices, beat = [], 0
+    while beat < beats:
+        indices.append(beat)
+        beat += rhythm[len(indices) % len(rhythm)]
+    return indices
 
 
-def _weights(times: FloatArray, struck: FloatArray, beat: float) -> FloatArray:
-    """(figures, frames) share of each figure, summing to 1; figure 0 is where it starts.
+def _weights(times: FloatArray, keyposes: FloatArray, beat: float) -> FloatArray:
+    """(figures, frames) the weight of each figure; weights sum to 1. Figure 0 is at the start.
 
-    A transition takes all that the holds leave, so that slow steps are slow, and nobody
-    stands like a statue; it ends half a hold before the beat.
+    keyposes: (k,) s. beat: the interval in s. A transition takes all the time between two holds,
+    so that slow steps are slow. It ends half a hold before the beat.
     """
-    moves = np.diff(struck, prepend=struck[0] - beat) - HOLD * beat
-    ends = struck - 0.5 * HOLD * beat
+    moves = np.diff(keyposes, prepend=keyposes[0] - beat) - HOLD * beat
+    ends = keyposes - 0.5 * HOLD * beat
     done: list[FloatArray] = [np.ones(len(times))]
     done += [ease((times - end) / move + 1.0) for end, move in zip(ends, moves, strict=True)]
     done.append(np.zeros(len(times)))
+    # a figure has weight from the end of its transition to the end of the next one
     return np.array([here - after for here, after in pairwise(done)])
 
 
-def _figured(
+def _with_figures(
     controls: Controls, take: Take, figures: list[Figure], weights: FloatArray
 ) -> Controls:
-    """The figures in their shares, in the actor's style."""
+    """`controls` with the weighted sum of the figures, in the style of the actor."""
     style, leg, size = take.actor.style, take.rig.leg, float(np.clip(take.size, 0.7, 1.25))
+    # 0 during a hold, 1 in the middle of a transition
     moving = 4.0 * np.max(weights * (1.0 - weights), axis=0)
     shift = np.array([figure.shift for figure in figures]).T @ weights
     root = controls.root.copy()
@@ -187,24 +190,24 @@ def _plus(turn: Turn, angles: FloatArray, factors: tuple[float, float, float]) -
 
 
 def _arm(rest: Arm, take: Take, poses: list[ArmPose], weights: FloatArray) -> Arm:
-    """Arms: large for the energetic, close to the actor's own carriage for the tired."""
-    will = float(np.clip(0.6 + 0.4 * take.size, 0.7, 1.04))
+    """The weighted poses of an arm; a tired actor stays closer to the resting posture."""
+    strength = float(np.clip(0.6 + 0.4 * take.size, 0.7, 1.04))
 
     def mix(name: str, limit: float = pi) -> FloatArray:
-        ease_at = float(getattr(rest, name)[0])
-        wanted = [ease_at + will * (float(getattr(pose, name)) - ease_at) for pose in poses]
-        return np.asarray(np.minimum(wanted, limit) @ weights)
+        at_rest = float(getattr(rest, name)[0])
+        targets = [at_rest + strength * (float(getattr(p, name)) - at_rest) for p in poses]
+        return np.asarray(np.minimum(targets, limit) @ weights)
 
     return Arm(mix("flex", 2.9), mix("abduct", 2.6), mix("twist"), mix("elbow"), mix("wrist"))
 
 
 def _feet(rest: Foot, leg: float, poses: list[FootPose], weights: FloatArray) -> Foot:
-    """A foot: lifted while it goes from one place to another, planted else."""
+    """The weighted poses of a foot. It is lifted while it moves and stands still otherwise."""
     spots = np.array([[pose.x, 0.0, pose.z] for pose in poses]) * leg
-    place = rest.place + weights.T @ spots
+    position = rest.position + weights.T @ spots
     for k in range(len(poses) - 1):
-        way = float(np.linalg.norm(spots[k + 1] - spots[k]))
+        distance = float(np.linalg.norm(spots[k + 1] - spots[k]))
         between = np.minimum(4.0 * weights[k] * weights[k + 1], 1.0)
-        place[:, 1] += 0.3 * way * between
+        position[:, 1] += 0.3 * distance * between
     pitch = np.array([pose.pitch for pose in poses]) @ weights
-    return replace(rest, place=place, pitch=rest.pitch + pitch)
+    return replace(rest, position=position, pitch=rest.pitch + pitch)

@@ -1,8 +1,8 @@
-"""Walking and running: feet planted in the world, the body carried over them.
+"""Walking and running: the feet stand still on the floor, and the body moves over them.
 
-Phase is in strides; the left foot strikes at phase 0, the right half a stride later. Ordinary
-step lengths, duty factors and joint courses are those of Winter 2009 (walking) and
-Novacheck 1998, The biomechanics of running (Gait & Posture 7).
+The phase is in strides. The left foot strikes at phase 0, the right foot half a stride later. Usual
+step lengths, duty factors and joint angles are from Winter 2009 (walking) and Novacheck 1998, The
+biomechanics of running (Gait & Posture 7).
 """
 
 from __future__ import annotations
@@ -12,26 +12,27 @@ from math import pi, radians
 
 import numpy as np
 
-from app.demo.controls import Controls, Foot, Turn, bent, standing
-from app.demo.curves import Key, keyed, periodic, softened
+from app.demo.controls import Controls, Foot, Turn, along_arc, standing_controls
+from app.demo.curves import Key, keyed_curve, periodic_curve, softened
 from app.demo.performance import Performance
-from app.demo.posing import highest_root
+from app.demo.posing import max_root_height
 from app.demo.rig import LEFT, RIGHT, SIDES
 from app.demo.take import GRAVITY, Take
 from app.numerics.arrays import FloatArray
 
-NEARLY_STRAIGHT = 0.9985
-"""The most of a leg's length that is used in going: knees stretch further than at ease."""
+MAX_GAIT_LEG_EXTENSION = 0.9985
+"""The largest distance of hip and ankle in gait, as a share of the leg's length."""
 
 
 @dataclass(frozen=True, slots=True)
 class Gait:
-    """One way of going; times in s, lengths in leg lengths, angles in rad.
+    """One kind of gait; times are in s, lengths in leg lengths, angles in rad.
 
-    stride_time of an average leg; stride: length; duty: share of the stride that a foot
-    stands; ahead: share of that way at which it lands before the hips; pitch: keys over the
-    stride (0 strike, duty toe-off); travel: keys (share of swing, share of way); lift: keys
-    (share of swing, clearance); elbow: (base, swing); swing: arm amplitude; lean: trunk.
+    stride_time: for an average leg. stride: its length. duty: the share of the stride for which a
+    foot stands. ahead: the distance before the hips at which it lands, as a share of the distance
+    that the hips move while it stands. pitch: keys over the stride (0: strike, duty: toe-off).
+    travel: keys (share of the swing, share of the distance). lift: keys (share of the swing,
+    height). elbow: (bend at rest, its swing). swing: amplitude of the arms. lean: of the trunk.
     """
 
     stride_time: float
@@ -117,29 +118,29 @@ RUN = Gait(
 
 
 def walk(take: Take) -> Performance:
-    """Walking ahead on a gentle arc, 4 to 5 s."""
-    return _go(take, WALK, seconds=4.6 * take.vary(0.12))
+    """Walking forward on a slight arc, 4 to 5 s."""
+    return _perform(take, WALK, seconds=4.6 * take.vary(0.12))
 
 
 def run(take: Take) -> Performance:
-    """Running ahead with a flight between the steps, 3 to 4 s."""
-    return _go(take, RUN, seconds=3.4 * take.vary(0.12))
+    """Running forward with a flight phase between the steps, 3 to 4 s."""
+    return _perform(take, RUN, seconds=3.4 * take.vary(0.12))
 
 
-def _go(take: Take, gait: Gait, seconds: float) -> Performance:
+def _perform(take: Take, gait: Gait, seconds: float) -> Performance:
     times, style, rig = take.clock(seconds), take.actor.style, take.rig
-    # Froude: the time of a stride grows with the square root of the leg.
+    # by Froude's law, the time of a stride grows with the square root of the leg's length
     stride_time = gait.stride_time * np.sqrt(rig.leg / 0.85) / take.pace**0.6
     stride = gait.stride * rig.leg * style.step * take.size**0.35
     phase = take.phase + times / stride_time
-    still = standing(take.actor, rig, len(times))
+    still = standing_controls(take.actor, rig, len(times))
     feet = [_foot(take, gait, still.feet[s], times, phase + 0.5 * s, s, stride) for s in SIDES]
     controls = replace(still, feet=(feet[LEFT], feet[RIGHT]))
     controls = _trunk(controls, take, gait, phase)
     controls = _arms(controls, take, gait, phase)
-    controls = _carried(controls, take, gait, phase, stride, stride_time)
+    controls = _with_root(controls, take, gait, phase, stride, stride_time)
     curvature = float(take.draw.uniform(-0.06, 0.06))
-    return Performance(times, bent(controls, take.heading, curvature))
+    return Performance(times, along_arc(controls, take.heading, curvature))
 
 
 def _foot(
@@ -151,32 +152,32 @@ def _foot(
     side: int,
     stride: float,
 ) -> Foot:
-    """A foot that stands still for `duty` of each stride and then swings to the next place."""
+    """A foot that stands still for the share `duty` of each stride and then swings forward."""
     style = take.actor.style
     count, within = np.divmod(phase, 1.0)
     swing = np.clip((within - gait.duty) / (1.0 - gait.duty), 0.0, 1.0)
     landing = (count - 0.5 * side + gait.ahead * gait.duty) * stride
-    place = still.place.copy()
-    place[:, 0] *= _narrowing(gait)
-    # A run lifts the feet high anyway; there is less room for style before the thigh is met.
+    position = still.position.copy()
+    position[:, 0] *= _narrowing(gait)
+    # running lifts the feet high already, so the style may change the height only a little
     eager = (style.knee_lift * take.size) ** (0.7 if gait is WALK else 0.3)
-    place[:, 1] = keyed(swing, gait.lift) * take.rig.leg * eager
-    place[:, 2] = landing + stride * keyed(swing, gait.travel)
-    pitch = periodic(within, gait.pitch) * (0.55 + 0.45 * min(style.energy, 1.1))
+    position[:, 1] = keyed_curve(swing, gait.lift) * take.rig.leg * eager
+    position[:, 2] = landing + stride * keyed_curve(swing, gait.travel)
+    pitch = periodic_curve(within, gait.pitch) * (0.55 + 0.45 * min(style.energy, 1.1))
     pitch = softened(pitch, times, 0.015)
-    return Foot(place=place, pitch=pitch, yaw=still.yaw * (0.8 if gait is WALK else 0.4))
+    return Foot(position=position, pitch=pitch, yaw=still.yaw * (0.8 if gait is WALK else 0.4))
 
 
 def _narrowing(gait: Gait) -> float:
-    """How much closer to the middle line the feet come than when standing."""
+    """The distance of the feet from the middle line, as a share of that in standing."""
     return 0.6 if gait is WALK else 0.3
 
 
 def _trunk(controls: Controls, take: Take, gait: Gait, phase: FloatArray) -> Controls:
-    """Pelvis and shoulders turn against each other; the head looks ahead."""
+    """Pelvis and shoulders turn in opposite directions; the head looks forward."""
     style = take.actor.style
     turn = 2.0 * pi * (phase if gait is WALK else phase + 0.08)
-    # At the left foot's strike (phase 0) the left hip is ahead: the pelvis is turned right.
+    # when the left foot strikes (phase 0), the left hip is in front: the pelvis is turned right
     yaw = -radians(5) * style.twist * np.cos(turn)
     roll = radians(3.2) * style.sway**0.7 * np.cos(turn - 2.0 * pi * 0.18)
     nod = radians(1.5) * style.bounce * np.cos(2.0 * turn)
@@ -190,10 +191,10 @@ def _trunk(controls: Controls, take: Take, gait: Gait, phase: FloatArray) -> Con
 
 
 def _arms(controls: Controls, take: Take, gait: Gait, phase: FloatArray) -> Controls:
-    """Each arm swings with the other side's leg, the elbow bending on the way forward."""
+    """Each arm swings with the leg of the other side. The elbow bends on the way forward."""
     style = take.actor.style
     base, bend = gait.elbow
-    # A runner's feet are furthest apart in the air, some way before the strike.
+    # a runner's feet are farthest apart in the air, some time before the strike
     early = 0.0 if gait is WALK else 0.12
     arms = []
     for side in SIDES:
@@ -215,7 +216,7 @@ def _arms(controls: Controls, take: Take, gait: Gait, phase: FloatArray) -> Cont
     return replace(controls, arms=(arms[LEFT], arms[RIGHT]))
 
 
-def _carried(
+def _with_root(
     controls: Controls,
     take: Take,
     gait: Gait,
@@ -223,31 +224,34 @@ def _carried(
     stride: float,
     stride_time: float,
 ) -> Controls:
-    """The pelvis moves on, over the standing foot, and up and down with the steps."""
+    """The pelvis moves forward, sideways over the standing foot, and up and down with each step."""
     style, rig = take.actor.style, take.rig
     over = (gait.duty * 0.5, 0.02 * style.sway * (1.0 if gait is WALK else 0.4))
     root = controls.root.copy()
     root[:, 0] += over[1] * np.cos(2.0 * pi * (phase - over[0]))
     root[:, 2] += phase * stride + 0.004 * np.sin(4.0 * pi * (phase - 0.1)) * stride
     if gait is WALK:
-        root[:, 1] = _vault(phase, gait) * style.bounce * rig.leg
+        root[:, 1] = _walking_height(phase, gait) * style.bounce * rig.leg
     else:
-        root[:, 1] = _bound(phase, gait, stride_time)
+        root[:, 1] = _running_height(phase, gait, stride_time)
     trial = replace(controls, root=root)
-    room = np.min(highest_root(trial, rig, NEARLY_STRAIGHT) - root[:, 1])
-    low = np.min(rig.standing - 0.6 * style.crouch * rig.leg - np.max(root[:, 1]))
-    # The small sway that is added later must not stretch a leg beyond its reach.
+    room = np.min(max_root_height(trial, rig, MAX_GAIT_LEG_EXTENSION) - root[:, 1])
+    low = np.min(rig.standing_height - 0.6 * style.crouch * rig.leg - np.max(root[:, 1]))
+    # a margin, because the small sway that is added later must not stretch a leg too far
     root[:, 1] += min(room - 0.004 * rig.leg, low)
     return replace(controls, root=root)
 
 
-def _vault(phase: FloatArray, gait: Gait) -> FloatArray:
-    """Walking: highest over the middle of each stance, about 4 cm from low to high; leg lengths."""
+def _walking_height(phase: FloatArray, gait: Gait) -> FloatArray:
+    """(frames,) the height in walking, in leg lengths: highest in the middle of each stance.
+
+    The range is about 4 cm.
+    """
     return np.asarray(0.024 * np.cos(4.0 * pi * (phase - 0.5 * gait.duty)))
 
 
-def _bound(phase: FloatArray, gait: Gait, stride_time: float) -> FloatArray:
-    """Running: free fall while no foot stands, a sine below it while one does, meters."""
+def _running_height(phase: FloatArray, gait: Gait, stride_time: float) -> FloatArray:
+    """(frames,) the height in running, m: free fall in the air, a sine while a foot stands."""
     within = np.mod(phase, 0.5) * stride_time
     stand = gait.duty * stride_time
     flight = (0.5 - gait.duty) * stride_time

@@ -1,4 +1,4 @@
-"""Waving and bowing, standing in one place; waving is written for the right hand."""
+"""Waving with the right hand, and bowing. Both are done on one spot."""
 
 from __future__ import annotations
 
@@ -7,42 +7,39 @@ from math import pi
 
 import numpy as np
 
-from app.demo.controls import Arm, Controls, bent, mirrored, standing
+from app.demo.controls import Arm, Controls, standing_controls
 from app.demo.curves import ease, softened
-from app.demo.keys import ArmKey, ArmPose, arm_through
+from app.demo.keys import ArmKey, ArmPose, arm_curves
 from app.demo.performance import Performance
-from app.demo.posing import within_reach
 from app.demo.rig import LEFT, RIGHT
 from app.demo.take import Take
+from app.demo.tasks.standing_tasks import standing_performance
 from app.numerics.arrays import FloatArray
 
 
 def wave(take: Take) -> Performance:
-    """One hand up, waved from side to side, down again; 4 to 5 s."""
+    """One hand goes up, waves from side to side, and goes down; 4 to 5 s."""
     begin, slow = 0.45 * take.vary(0.5), 1.0 / take.pace
     up = begin + 0.6 * slow
     down = up + 2.3 * take.vary(0.15)
     times = take.clock(down + 0.7 * slow + 0.5 * take.vary(0.5))
-    controls = standing(take.actor, take.rig, len(times))
+    controls = standing_controls(take.actor, take.rig, len(times))
     weight = ease((times - begin) / (0.7 * slow)) - ease((times - down) / (0.7 * slow))
-    controls = _leaning(controls, take, weight)
+    controls = _with_lean(controls, take, weight)
     arm = _waving_arm(times, controls.arms[RIGHT], take, (begin, up, down, down + 0.65 * slow))
     controls = replace(controls, arms=(controls.arms[LEFT], arm))
-    controls = within_reach(controls, take.rig, times)
-    if take.actor.left_handed:
-        controls = mirrored(controls)
-    return Performance(times, bent(controls, take.heading, 0.0))
+    return standing_performance(take, times, controls)
 
 
 def _waving_arm(
     times: FloatArray, rest: Arm, take: Take, moments: tuple[float, float, float, float]
 ) -> Arm:
-    """The upper arm out and up, the forearm upright and swinging from the elbow."""
+    """The upper arm goes out and up; the upright forearm swings about the elbow."""
     begin, up, down, end = moments
     raised = 1.05 + 0.45 * np.clip(take.size, 0.6, 1.4)
     held = ArmPose(1.4, float(raised), 0.0, 1.5, 0.0)
     keys: list[ArmKey] = [(begin, None), (up, held), (down, held), (end, None)]
-    arm = arm_through(times, rest, keys, 0.05)
+    arm = arm_curves(times, rest, keys, 0.05)
     strength = ease((times - up + 0.2) / 0.35) - ease((times - down + 0.15) / 0.3)
     rate = 1.75 * take.pace**0.8
     beat = 2.0 * pi * (rate * (times - up) + 0.5 * take.phase)
@@ -56,8 +53,8 @@ def _waving_arm(
     )
 
 
-def _leaning(controls: Controls, take: Take, weight: FloatArray) -> Controls:
-    """Weight onto the other leg, the trunk giving way a little, the head to the greeted one."""
+def _with_lean(controls: Controls, take: Take, weight: FloatArray) -> Controls:
+    """The weight shifts to the other leg, the trunk leans, and the head tilts."""
     style = take.actor.style
     shift = 0.025 * style.sway * weight
     root = controls.root + np.stack([shift, -0.2 * shift, 0.0 * shift], axis=-1)
@@ -76,27 +73,27 @@ def _leaning(controls: Controls, take: Take, weight: FloatArray) -> Controls:
 
 
 def bow(take: Take) -> Performance:
-    """A bow from the hips, held, and up again; 4 to 6 s."""
+    """A bow from the hips, which is held for a moment; 4 to 6 s."""
     slow = 1.0 / take.pace
     begin = 0.45 * take.vary(0.4)
     low = begin + 0.95 * slow
     held = low + 0.55 * slow * take.vary(0.3)
     up = held + 1.1 * slow
     times = take.clock(up + 0.6 * take.vary(0.4))
-    controls = standing(take.actor, take.rig, len(times))
+    controls = standing_controls(take.actor, take.rig, len(times))
     depth = ease((times - begin) / (low - begin)) - ease((times - held) / (up - held))
     lag = softened(depth, times, 0.07)
-    controls = _folded(controls, take, depth, lag)
-    controls = within_reach(controls, take.rig, times)
-    return Performance(times, bent(controls, take.heading, 0.0))
+    controls = _with_bow(controls, take, depth, lag)
+    # both sides do the same, and a mirrored bow would also mirror the posture of the actor
+    return standing_performance(take, times, controls, is_one_sided=False)
 
 
-def _folded(controls: Controls, take: Take, depth: FloatArray, lag: FloatArray) -> Controls:
-    """Hips fold and go back, spine and neck follow, the arms hang or slide to the thighs."""
+def _with_bow(controls: Controls, take: Take, depth: FloatArray, lag: FloatArray) -> Controls:
+    """The hips bend and go back, spine and neck follow, and the arms hang down."""
     size, leg = np.clip(take.size, 0.75, 1.25), take.rig.leg
     hips, back = 0.72 * size * depth, 0.42 * size * lag
     root = controls.root + np.stack([0.0 * depth, -0.03 * depth, -0.17 * leg * hips], axis=-1)
-    # Hanging arms stay about upright in space while the trunk folds, then slide forward.
+    # arms that hang stay nearly vertical in the world while the trunk bends
     drop = hips + back
     arms = [
         replace(

@@ -7,30 +7,34 @@ from math import radians, sqrt
 
 import numpy as np
 
-from app.demo.controls import Controls, Foot, bent, standing
-from app.demo.curves import driven, keyed
-from app.demo.keys import ArmKey, ArmPose, TurnKey, arm_through, turned
+from app.demo.controls import Controls, Foot, along_arc, standing_controls
+from app.demo.curves import keyed_curve, quintic_curve
+from app.demo.keys import ArmKey, ArmPose, TurnKey
 from app.demo.performance import Performance
-from app.demo.posing import highest_root
+from app.demo.posing import max_root_height
 from app.demo.rig import SIDES
 from app.demo.take import GRAVITY, Take
+from app.demo.tasks.standing_tasks import Smoothing, UpperBodyKeys, with_upper_body
 from app.numerics.arrays import FloatArray
 
+SMOOTHING = Smoothing(pelvis=0.03, spine=0.03, head=0.05, arms=0.03)
 ON_TOES = radians(-48)
-"""Pitch of the feet as they leave the ground."""
+"""The pitch of the feet when they leave the floor."""
 SPARE = 0.03
-"""Share of the leg's length that is left to stretch after take-off."""
+"""The share of the leg's length by which the legs can still stretch after take-off."""
 STRETCH = 0.05
-"""How far, in leg lengths, the feet hang lower in the air than at take-off."""
+"""Leg lengths by which the feet hang lower in the air than at take-off."""
 POINTED = radians(-14)
-"""Further pitch of the feet when they hang."""
+"""The pitch that is added to feet that hang."""
 
 
 @dataclass(frozen=True, slots=True)
 class Jump:
-    """One jump's moments in s: begin, lowest, take-off, landing, absorbed, upright again.
+    """The moments of one jump, s.
 
-    speed: of the pelvis at take-off, m/s; forward: distance jumped, m.
+    lowest: the deepest crouch. off: take-off. down: landing. absorbed: the deepest crouch after
+    it. upright: the actor stands again. speed: of the pelvis at take-off, m/s. forward: the
+    length of the jump, m.
     """
 
     begin: float
@@ -44,14 +48,14 @@ class Jump:
 
 
 def jump(take: Take) -> Performance:
-    """Two jumps with both arms swung, 4 to 6 s."""
+    """Two jumps with both arms swinging, 4 to 6 s."""
     jumps = _plan(take)
     times = take.clock(jumps[-1].upright + 0.45 * take.vary(0.3))
-    controls = standing(take.actor, take.rig, len(times))
+    controls = standing_controls(take.actor, take.rig, len(times))
     heels = _heel_lift(times, jumps)
     aloft_height = _take_off_height(controls, take)
     height = _height(times, controls, take, jumps, aloft_height)
-    controls = _bent_and_swung(times, controls, take, jumps)
+    controls = with_upper_body(times, controls, _upper_body(take, jumps), SMOOTHING)
     root = controls.root.copy()
     root[:, 1] = height
     root[:, 2] += _forward(times, jumps) + _counterweight(times, take, jumps)
@@ -59,7 +63,7 @@ def jump(take: Take) -> Performance:
     above = (height - aloft_height) / leg
     feet = [_foot(times, controls.feet[s], jumps, above, heels, leg) for s in SIDES]
     controls = replace(controls, root=root, feet=(feet[0], feet[1]))
-    return Performance(times, bent(controls, take.heading, 0.0))
+    return Performance(times, along_arc(controls, take.heading, 0.0))
 
 
 def _plan(take: Take) -> list[Jump]:
@@ -80,16 +84,16 @@ def _plan(take: Take) -> list[Jump]:
 
 
 def _take_off_height(controls: Controls, take: Take) -> float:
-    """Height of the pelvis with the legs as good as straight and only the balls down."""
+    """The height of the pelvis, m, with nearly straight legs and the heels up."""
     feet = [replace(foot, pitch=foot.pitch + ON_TOES) for foot in controls.feet]
-    reach = np.min(highest_root(replace(controls, feet=(feet[0], feet[1])), take.rig))
+    reach = np.min(max_root_height(replace(controls, feet=(feet[0], feet[1])), take.rig))
     return float(reach - SPARE * take.rig.leg)
 
 
 def _height(
     times: FloatArray, controls: Controls, take: Take, jumps: list[Jump], top: float
 ) -> FloatArray:
-    """(frames,) height of the pelvis: quintic while feet push, exact free fall in flight."""
+    """(frames,) the height of the pelvis, m: quintic curves on the floor, free fall in the air."""
     rest, leg = float(controls.root[0, 1]), take.rig.leg
     states = [(0.0, rest, 0.0, 0.0)]
     for one in jumps:
@@ -103,7 +107,7 @@ def _height(
             (one.upright, rest, 0.0, 0.0),
         ]
     states.append((max(float(times[-1]), states[-1][0]) + 1.0, rest, 0.0, 0.0))
-    return driven(times, states)
+    return quintic_curve(times, states)
 
 
 def _foot(
@@ -114,10 +118,10 @@ def _foot(
     pitch: FloatArray,
     leg: float,
 ) -> Foot:
-    """Both feet leave and land together; in the air they hang below the pelvis.
+    """One foot. Both feet leave and land together, and hang below the pelvis in the air.
 
-    above: (frames,) height of the pelvis over that at take-off, in leg lengths. The legs
-    stretch out as the feet leave the ground, else the feet would start with a jolt.
+    above: (frames,) the height of the pelvis above that at take-off, in leg lengths. The legs
+    stretch gradually when the feet leave the floor, so that the feet do not start with a jump.
     """
     aloft = np.zeros(len(times))
     hanging = np.zeros(len(times))
@@ -128,22 +132,22 @@ def _foot(
         hang = 1.0 - np.exp(-high / STRETCH)
         aloft += high - STRETCH * hang + 0.03 * np.sin(np.pi * u) ** 4
         hanging += hang
-    place = still.place.copy()
-    place[:, 1] += aloft * leg
-    place[:, 2] += _forward(times, jumps)
-    return replace(still, place=place, pitch=still.pitch + pitch + POINTED * hanging)
+    position = still.position.copy()
+    position[:, 1] += aloft * leg
+    position[:, 2] += _forward(times, jumps)
+    return replace(still, position=position, pitch=still.pitch + pitch + POINTED * hanging)
 
 
 def _forward(times: FloatArray, jumps: list[Jump]) -> FloatArray:
-    """(frames,) way forward: at constant speed in the air, none on the ground."""
-    way = np.zeros(len(times))
+    """(frames,) the forward position, m: constant speed in the air, no change on the floor."""
+    position = np.zeros(len(times))
     for one in jumps:
-        way += one.forward * np.clip((times - one.off) / (one.down - one.off), 0.0, 1.0)
-    return way
+        position += one.forward * np.clip((times - one.off) / (one.down - one.off), 0.0, 1.0)
+    return position
 
 
 def _heel_lift(times: FloatArray, jumps: list[Jump]) -> FloatArray:
-    """(frames,) pitch of the feet: up on the toes at the push, flat soon after landing."""
+    """(frames,) the pitch of the feet: on the toes at take-off, flat soon after landing."""
     keys = [(0.0, 0.0)]
     for one in jumps:
         push = one.off - one.lowest
@@ -154,22 +158,21 @@ def _heel_lift(times: FloatArray, jumps: list[Jump]) -> FloatArray:
             (one.down, ON_TOES),
             (one.down + 0.09, 0.0),
         ]
-    return keyed(times, keys)
+    return keyed_curve(times, keys)
 
 
 def _counterweight(times: FloatArray, take: Take, jumps: list[Jump]) -> FloatArray:
-    """(frames,) the pelvis goes back when the trunk goes forward, so that nobody falls."""
+    """(frames,) z of the pelvis, m: it goes back when the trunk bends forward, for balance."""
     back = -0.1 * take.rig.leg
     keys = [(0.0, 0.0)]
     for one in jumps:
         keys += [(one.begin, 0.0), (one.lowest, 1.3 * back), (one.off, 0.0), (one.down, 0.0)]
         keys += [(one.absorbed, back), (one.upright, 0.0)]
-    return keyed(times, keys, 0.02)
+    return keyed_curve(times, keys, 0.02)
 
 
-def _bent_and_swung(
-    times: FloatArray, controls: Controls, take: Take, jumps: list[Jump]
-) -> Controls:
+def _upper_body(take: Take, jumps: list[Jump]) -> UpperBodyKeys:
+    """The trunk bends in each crouch, and both arms swing up at take-off."""
     style = take.actor.style
     swing = style.arm_swing**0.5 * take.size**0.5
     behind = ArmPose(-0.65 * swing, style.arms_out + 0.15, 0.1, 0.35 + 0.3 * style.elbows)
@@ -181,7 +184,7 @@ def _bent_and_swung(
     for one in jumps:
         apex = 0.5 * (one.off + one.down)
         arm += [(one.begin, None), (one.lowest - 0.14, behind), (one.off + 0.02, above)]
-        # Still arms in the air: then the hips fall as the center of mass does.
+        # the arms do not move in the air, so that the hips fall like the center of mass
         arm += [(0.4 * apex + 0.6 * one.down, above), (one.absorbed, balance)]
         arm += [(one.upright + 0.1, None)]
         for keys, size in ((pelvis, 0.5), (spine, 0.42), (head, -0.45)):
@@ -193,11 +196,4 @@ def _bent_and_swung(
                 (one.absorbed, (0.0, 0.8 * size, 0.0)),
                 (one.upright, (0.0, 0.0, 0.0)),
             ]
-    arms = [arm_through(times, rest, arm, 0.03) for rest in controls.arms]
-    return replace(
-        controls,
-        pelvis=turned(times, controls.pelvis, pelvis, 0.03),
-        spine=turned(times, controls.spine, spine, 0.03),
-        head=turned(times, controls.head, head, 0.05),
-        arms=(arms[0], arms[1]),
-    )
+    return UpperBodyKeys(pelvis, spine, head, (arm, arm))

@@ -1,36 +1,28 @@
-"""Punching from a guard, one fist after the other; written for a right-hander."""
+"""Punching from a guard, one fist after the other. The left fist is the leading one."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import radians
 
-from app.demo.controls import Controls, bent, mirrored, standing
-from app.demo.keys import (
-    ArmKey,
-    ArmPose,
-    FootKey,
-    FootPose,
-    PlaceKey,
-    TurnKey,
-    arm_through,
-    foot_through,
-    placed,
-    turned,
-)
+from app.demo.keys import ArmKey, ArmPose, FootKey, FootPose, OffsetKey, TurnKey
 from app.demo.performance import Performance
-from app.demo.posing import within_reach
 from app.demo.rig import LEFT, RIGHT
 from app.demo.take import Take
-from app.numerics.arrays import FloatArray
+from app.demo.tasks.standing_tasks import BodyKeys, Smoothing, UpperBodyKeys, keyed_performance
+
+SMOOTHING = Smoothing(root=0.04, pelvis=0.035, spine=0.04, head=0.05, arms=0.022)
 
 COMBINATIONS: tuple[str, ...] = ("jccj", "jcjc", "cjcc")
-"""Jabs with the leading and crosses with the rear fist."""
+"""j: a jab with the leading fist. c: a cross with the rear fist."""
+
+RAISED_SHOULDERS = 0.06
+"""Radians by which the clavicles rise in a guard."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Blow:
-    """One blow: `fist` side, moments in s."""
+    """One blow; fist: its side. begin, hit, back: its moments, s."""
 
     fist: int
     begin: float
@@ -39,24 +31,20 @@ class _Blow:
 
 
 def punch(take: Take) -> Performance:
-    """Four blows out of a guard, 4 to 6 s."""
+    """Four blows from a guard, 4 to 6 s."""
     blows = _plan(take)
     times = take.clock(blows[-1].back + 0.6 * take.vary(0.3))
-    controls = standing(take.actor, take.rig, len(times))
-    feet = (
-        foot_through(times, controls.feet[LEFT], [(0.0, _leading(take))]),
-        foot_through(times, controls.feet[RIGHT], _rear_foot(take, blows)),
+    pelvis, spine, head = _trunk_keys(take, blows)
+    keys = BodyKeys(
+        root=_root_keys(take, blows),
+        feet=([(0.0, _leading_foot(take))], _rear_foot_keys(take, blows)),
+        upper_body=UpperBodyKeys(pelvis, spine, head, _arm_keys(take, blows), RAISED_SHOULDERS),
     )
-    controls = replace(
-        controls, feet=feet, root=placed(times, controls.root, _weight(take, blows), 0.04)
-    )
-    controls = within_reach(_upper_body(times, controls, take, blows), take.rig, times)
-    if take.actor.left_handed:
-        controls = mirrored(controls)
-    return Performance(times, bent(controls, take.heading, 0.0))
+    return keyed_performance(take, times, keys, SMOOTHING)
 
 
 def _plan(take: Take) -> list[_Blow]:
+    """The blows of a random combination; a slower actor has longer intervals between them."""
     slow = 1.0 / take.pace
     blows, now = [], 0.6 * take.vary(0.3)
     for letter in COMBINATIONS[take.draw.randint(len(COMBINATIONS))]:
@@ -67,12 +55,12 @@ def _plan(take: Take) -> list[_Blow]:
     return blows
 
 
-def _leading(take: Take) -> FootPose:
+def _leading_foot(take: Take) -> FootPose:
     return FootPose(z=0.17 * take.rig.leg, yaw=radians(-12))
 
 
-def _rear_foot(take: Take, blows: list[_Blow]) -> list[FootKey]:
-    """The rear foot turns on its ball and lifts its heel under each cross."""
+def _rear_foot_keys(take: Take, blows: list[_Blow]) -> list[FootKey]:
+    """The rear foot turns on its ball and lifts its heel at each cross."""
     rest = FootPose(
         x=-0.04 * take.rig.leg, z=-0.22 * take.rig.leg, pitch=radians(-8), yaw=radians(-28)
     )
@@ -84,42 +72,27 @@ def _rear_foot(take: Take, blows: list[_Blow]) -> list[FootKey]:
     return keys
 
 
-def _weight(take: Take, blows: list[_Blow]) -> list[PlaceKey]:
-    """Knees bent; the weight goes into each blow and back."""
+def _root_keys(take: Take, blows: list[_Blow]) -> list[OffsetKey]:
+    """The knees are bent; the pelvis moves forward with each blow and back again."""
     leg, size = take.rig.leg, take.size
     low = -0.045 * leg
     rest = (0.0, low, -0.03 * leg)
-    keys: list[PlaceKey] = [(0.0, rest)]
+    keys: list[OffsetKey] = [(0.0, rest)]
     for blow in blows:
-        deep = (0.01 if blow.fist == LEFT else -0.005) * leg
-        into = (deep, low - 0.03 * leg * size, (0.07 if blow.fist == RIGHT else 0.05) * leg)
-        keys += [(blow.begin, rest), (blow.hit, into), (blow.back, rest)]
+        sideways = (0.01 if blow.fist == LEFT else -0.005) * leg
+        forward = (0.07 if blow.fist == RIGHT else 0.05) * leg
+        hit = (sideways, low - 0.03 * leg * size, forward)
+        keys += [(blow.begin, rest), (blow.hit, hit), (blow.back, rest)]
     return keys
 
 
-def _upper_body(times: FloatArray, controls: Controls, take: Take, blows: list[_Blow]) -> Controls:
-    arms = _fists(take, blows)
-    pelvis, spine, head = _turning(take, blows)
-    return replace(
-        controls,
-        pelvis=turned(times, controls.pelvis, pelvis, 0.035),
-        spine=turned(times, controls.spine, spine, 0.04),
-        head=turned(times, controls.head, head, 0.05),
-        arms=(
-            arm_through(times, controls.arms[LEFT], arms[LEFT], 0.022),
-            arm_through(times, controls.arms[RIGHT], arms[RIGHT], 0.022),
-        ),
-        shrug=controls.shrug + 0.06,
-    )
-
-
-def _fists(take: Take, blows: list[_Blow]) -> tuple[list[ArmKey], list[ArmKey]]:
-    """Both fists in the guard; one goes out and back, the other covers meanwhile."""
+def _arm_keys(take: Take, blows: list[_Blow]) -> tuple[list[ArmKey], list[ArmKey]]:
+    """Both fists are in the guard. One goes out and back, while the other one covers the head."""
     style = take.actor.style
     spread = 0.5 * style.arms_out
     guard = ArmPose(0.42, 0.12 + spread, 0.3, 2.15 + 0.15 * style.elbows, 0.0)
     cover = replace(guard, elbow=guard.elbow + 0.1, flex=guard.flex + 0.1)
-    # The fist at the height of the shoulder, whatever the trunk's lean; tired ones punch low.
+    # the fist hits at the height of the shoulder for any lean of the trunk, lower if tired
     level = 1.5 + 0.3 + style.stoop - 0.25 * max(0.0, 1.0 - take.size)
     hit = ArmPose(level, 0.3 * spread, 0.6, 0.14, 0.0)
     arms: tuple[list[ArmKey], list[ArmKey]] = ([(0.0, guard)], [(0.0, guard)])
@@ -131,15 +104,18 @@ def _fists(take: Take, blows: list[_Blow]) -> tuple[list[ArmKey], list[ArmKey]]:
     return arms
 
 
-def _turning(take: Take, blows: list[_Blow]) -> tuple[list[TurnKey], list[TurnKey], list[TurnKey]]:
-    """Keys of pelvis, spine and head: the trunk turns into each blow, the eyes stay ahead."""
-    will = take.actor.style.twist**0.5 * take.size**0.5
+def _trunk_keys(
+    take: Take, blows: list[_Blow]
+) -> tuple[list[TurnKey], list[TurnKey], list[TurnKey]]:
+    """Keys of pelvis, spine and head: the trunk turns into each blow, the eyes look ahead."""
+    strength = take.actor.style.twist**0.5 * take.size**0.5
     stance, coiled = (-0.32, 0.02, 0.0), (-0.12, 0.14, 0.0)
-    moments: list[tuple[float, float]] = [(0.0, 0.0)]
+    turns: list[tuple[float, float]] = [(0.0, 0.0)]
     for blow in blows:
-        turn = (0.55 if blow.fist == RIGHT else -0.18) * will
-        moments += [(blow.begin, 0.0), (blow.hit, turn), (blow.back, 0.0)]
-    pelvis = [(t, (stance[0] + w, stance[1] + 0.04 * (w != 0.0), 0.0)) for t, w in moments]
-    spine = [(t, (coiled[0] + 0.9 * w, coiled[1] + 0.03 * (w != 0.0), 0.0)) for t, w in moments]
-    head = [(t, (-(stance[0] + coiled[0] + 1.9 * w), 0.03, 0.0)) for t, w in moments]
+        turn = (0.55 if blow.fist == RIGHT else -0.18) * strength
+        turns += [(blow.begin, 0.0), (blow.hit, turn), (blow.back, 0.0)]
+    pelvis = [(t, (stance[0] + w, stance[1] + 0.04 * (w != 0.0), 0.0)) for t, w in turns]
+    spine = [(t, (coiled[0] + 0.9 * w, coiled[1] + 0.03 * (w != 0.0), 0.0)) for t, w in turns]
+    # the head turns back by the turn of pelvis and spine together
+    head = [(t, (-(stance[0] + coiled[0] + 1.9 * w), 0.03, 0.0)) for t, w in turns]
     return pelvis, spine, head

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.evaluate.charts.drawing import MAX_INCHES, Format, drawn, shown
+from app.evaluate.charts.drawing import MAX_INCHES, Format, rendered, shown
 from app.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -61,14 +61,14 @@ def confusions_picture(
     letters = min(USUAL_LETTERS, LETTERS_A_CELL * fitting * side / count)
 
     def draw(figure: Figure) -> None:
-        for place, (title, shares) in enumerate(by_title.items(), 1):
-            axes = figure.add_subplot(1, len(by_title), place)
-            axes.set(title=title, xlabel=columns, ylabel=rows if place == 1 else "")
-            mesh = _fill(axes, shares, classes, letters, with_rows=place == 1)
+        for column, (title, shares) in enumerate(by_title.items(), 1):
+            axes = figure.add_subplot(1, len(by_title), column)
+            axes.set(title=title, xlabel=columns, ylabel=rows if column == 1 else "")
+            mesh = _fill(axes, shares, classes, letters, with_rows=column == 1)
         bar = figure.colorbar(mesh, ax=axes, shrink=0.6, aspect=25, pad=0.02, label="share")
         bar.outline.set_visible(False)
 
-    return drawn(draw, (width, fitting * side + 1.6), form)
+    return rendered(draw, (width, fitting * side + 1.6), form)
 
 
 def _fill(

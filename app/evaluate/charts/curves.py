@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.evaluate.charts.drawing import Format, add_legend, color, dashes, drawn, shown
+from app.evaluate.charts.drawing import Format, add_legend, color, dashes, rendered, shown
 from app.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 PANEL = (4.6, 3.4)
 """Inches of a panel: width, height."""
-MANY = 8
+MAX_BOLD_CURVES = 8
 """If a group has more curves, they are thin and transparent."""
 
 
@@ -63,12 +63,12 @@ def curves_picture(
     def draw(figure: Figure) -> None:
         figure.suptitle(title)
         handles: dict[str, Line2D] = {}
-        for place, panel in enumerate(panels, 1):
-            handles |= _draw(figure.add_subplot(down, across, place), panel, groups)
+        for position, panel in enumerate(panels, 1):
+            handles |= _draw(figure.add_subplot(down, across, position), panel, groups)
         add_legend(figure, list(handles.values()), list(handles))
 
     legend = 1.8 if any(groups) else 0.0
-    return drawn(draw, (PANEL[0] * across + legend, PANEL[1] * down + 0.3), form)
+    return rendered(draw, (PANEL[0] * across + legend, PANEL[1] * down + 0.3), form)
 
 
 def _draw(axes: Axes, panel: Panel, groups: Sequence[str]) -> dict[str, Line2D]:
@@ -88,7 +88,7 @@ def _draw(axes: Axes, panel: Panel, groups: Sequence[str]) -> dict[str, Line2D]:
     members = [curve.group for curve in panel.curves]
     handles: dict[str, Line2D] = {}
     for curve in panel.curves:
-        number, crowded = groups.index(curve.group), members.count(curve.group) > MANY
+        number, crowded = groups.index(curve.group), members.count(curve.group) > MAX_BOLD_CURVES
         (line,) = axes.plot(
             curve.x,
             curve.y,

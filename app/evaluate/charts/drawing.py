@@ -79,7 +79,7 @@ def need_plots() -> None:
         ) from missing
 
 
-def drawn(draw: Callable[[Figure], None], inches: tuple[float, float], form: Format) -> bytes:
+def rendered(draw: Callable[[Figure], None], inches: tuple[float, float], form: Format) -> bytes:
     """The bytes of a figure of `inches` (width, height) that `draw` fills."""
     need_plots()
     import matplotlib as mpl

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from app.evaluate.charts.drawing import Format, add_legend, color, dashes, drawn, marker, shown
+from app.evaluate.charts.drawing import Format, add_legend, color, dashes, marker, rendered, shown
 from app.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def scatter_picture(
         if equal:
             frame.set_aspect("equal", adjustable="datalim" if dimension == 2 else "box")
 
-    return drawn(draw, (7.4, 5.4), form)
+    return rendered(draw, (7.4, 5.4), form)
 
 
 def _fill(figure: Figure, frame: Any, clouds: Sequence[Cloud]) -> None:

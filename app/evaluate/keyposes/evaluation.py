@@ -30,9 +30,9 @@ from app.store.clips.filter import ClipFilter
 
 END_EFFECTORS = "end-effectors"
 JUDGED_KEYPOSES = (*(method.value for method in EnergyMethod), END_EFFECTORS)
-"""The energy methods, and the method with which Perera compares them."""
+"""The energy methods, and the method by hands and feet."""
 
-HOW = (
+NO_ANNOTATIONS = (
     f"{NOBODY} Name some with PUT /v1/clips/{{id}}/keyposes, or in the column `keyposes` of a "
     "manifest."
 )
@@ -89,13 +89,12 @@ def judge_keyposes(
         raise fields.bad_field("tolerance", "must be above 0 and at most 1 s")
     annotated = read_annotated(lib.store, filter)
     if not annotated:
-        raise NotEnoughLabels(HOW)
+        raise NotEnoughLabels(NO_ANNOTATIONS)
     groups = [clip.group for clip in annotated]
     examples = {method: _examples(annotated, method) for method in JUDGED_KEYPOSES}
-    lessons = {method: threshold_grid(some, tolerance) for method, some in examples.items()}
+    grids = {method: threshold_grid(some, tolerance) for method, some in examples.items()}
     counts = {
-        method: [found for _, found in taught.held_out(groups)]
-        for method, taught in lessons.items()
+        method: [found for _, found in grid.held_out(groups)] for method, grid in grids.items()
     }
     return KeyposeEvaluation(
         tolerance=tolerance,
@@ -106,12 +105,12 @@ def judge_keyposes(
                 name=clip.clip.name,
                 task=clip.clip.task,
                 true=len(clip.true),
-                counts={method: counts[method][place] for method in JUDGED_KEYPOSES},
+                counts={method: counts[method][index] for method in JUDGED_KEYPOSES},
             )
-            for place, clip in enumerate(annotated)
+            for index, clip in enumerate(annotated)
         ),
         methods=tuple(
-            _judged(method, some, total(counts[method]), lessons[method].learned(), tolerance)
+            _judged(method, some, total(counts[method]), grids[method].learned(), tolerance)
             for method, some in examples.items()
         ),
     )

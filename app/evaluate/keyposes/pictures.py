@@ -8,7 +8,7 @@ import numpy as np
 
 from app.analysis.keyposes.candidates import Scope
 from app.evaluate.charts import Curve, Format, Panel, curves_picture, shown
-from app.evaluate.charts.drawing import drawn
+from app.evaluate.charts.drawing import rendered
 from app.evaluate.keyposes.evaluation import KeyposeEvaluation
 from app.motion.frame.body_frame import turned
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
@@ -28,15 +28,15 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 COLORS = {Scope.GLOBAL: "#D55E00", Scope.LOCAL: "#009E73"}
-NAMED = "#0072B2"
+ANNOTATED = "#0072B2"
 BEAT = "#888888"
 INCHES_PER_SECOND = 0.9
-WIDTH = (7.0, 36.0)
-"""Smallest and largest width in inches."""
+WIDTH_RANGE = (7.0, 36.0)
+"""Smallest and largest width of a picture, in inches."""
 FIGURES_PER_INCH = 1.4
-ASIDE = 0.6
-"""Radians by which figures are rotated from the front, so that arms before the body are visible."""
-STEP = 1.3
+VIEW_ANGLE = 0.6
+"""Radians from the front, so that arms before the body are visible."""
+FIGURE_DISTANCE = 1.3
 """Distance between two stick figures in meters."""
 
 _LIMBS = [
@@ -83,8 +83,8 @@ def keypose_figure(seen: KeyposesView, name: str, form: Format) -> bytes:
     """A clip's energies over time with its beats and keyposes, and the poses below."""
     found = seen.found
     seconds = len(found.global_energy) / seen.frame_rate
-    across = float(np.clip(INCHES_PER_SECOND * seconds, *WIDTH))
-    most = int(FIGURES_PER_INCH * across)
+    width = float(np.clip(INCHES_PER_SECOND * seconds, *WIDTH_RANGE))
+    max_figures = int(FIGURES_PER_INCH * width)
 
     def draw(figure: Figure) -> None:
         tempo = "no beat" if found.beats.tempo is None else f"{found.beats.tempo:.0f} bpm"
@@ -100,9 +100,9 @@ def keypose_figure(seen: KeyposesView, name: str, form: Format) -> bytes:
         rows[0].legend(
             lines.values(), lines, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=len(lines)
         )
-        _draw_poses(rows[2], seen, most)
+        _draw_poses(rows[2], seen, max_figures)
 
-    return drawn(draw, (across, 6.0), form)
+    return rendered(draw, (width, 6.0), form)
 
 
 def _legend(seen: KeyposesView) -> dict[str, Line2D]:
@@ -113,7 +113,7 @@ def _legend(seen: KeyposesView) -> dict[str, Line2D]:
         for scope, color in COLORS.items()
     }
     if seen.named is not None:
-        lines["named keypose"] = Line2D([], [], color=NAMED, linestyle=(0, (6, 2)))
+        lines["named keypose"] = Line2D([], [], color=ANNOTATED, linestyle=(0, (6, 2)))
     if len(seen.found.beats.times):
         lines["beat"] = Line2D([], [], color=BEAT, linestyle=":")
     return lines
@@ -130,24 +130,30 @@ def _draw_energy(axes: Axes, seen: KeyposesView, values: FloatArray, scope: Scop
     for time, by in zip(seen.found.times, seen.found.chosen_by, strict=True):
         axes.axvline(time, color=COLORS[by], linewidth=1.8 if by is scope else 0.8)
     for time in seen.named or ():
-        axes.axvline(time, color=NAMED, linestyle=(0, (6, 2)), linewidth=1.2)
+        axes.axvline(time, color=ANNOTATED, linestyle=(0, (6, 2)), linewidth=1.2)
 
 
-def _draw_poses(axes: Axes, seen: KeyposesView, most: int) -> None:
-    """Stick figures of the keyposes; at most `most`, evenly chosen."""
+def _draw_poses(axes: Axes, seen: KeyposesView, max_figures: int) -> None:
+    """Stick figures of the keyposes; at most `max_figures`, evenly chosen."""
     axes.set_axis_off()
     axes.set_aspect("equal")
     count = len(seen.found.frames)
-    chosen = np.unique(np.linspace(0, max(count - 1, 0), min(most, count)).astype(int))
-    for place, index in enumerate(chosen):
+    chosen = np.unique(np.linspace(0, max(count - 1, 0), min(max_figures, count)).astype(int))
+    for column, index in enumerate(chosen):
         pose = seen.poses[index] - seen.poses[index][SUN_ROLES.index(JointRole.HIPS)]
-        pose = turned(pose[None], np.array([ASIDE - _heading(pose)]))[0]
+        pose = turned(pose[None], np.array([VIEW_ANGLE - _heading(pose)]))[0]
         for end, start in _LIMBS:
             role = SUN_ROLES[end].value
             ink = LEFT if role.startswith("left") else RIGHT if role.startswith("right") else TRUNK
-            x, y = pose[[end, start], 0] + STEP * place, pose[[end, start], 1]
+            x, y = pose[[end, start], 0] + FIGURE_DISTANCE * column, pose[[end, start], 1]
             axes.plot(x, y, color=ink, linewidth=1.4)
-        axes.text(STEP * place, -1.25, f"{seen.found.times[index]:.1f} s", ha="center", va="top")
+        axes.text(
+            FIGURE_DISTANCE * column,
+            -1.25,
+            f"{seen.found.times[index]:.1f} s",
+            ha="center",
+            va="top",
+        )
 
 
 def _heading(pose: FloatArray) -> float:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.low_dimensional.eigen_motion import (
-    SHOWN,
+    PAPER_DIMENSIONS,
     Basis,
     EigenModel,
     eigen_model,
@@ -38,7 +38,7 @@ from app.store.clips.record import ClipRecord
 
 MAX_DIMENSIONS = 10
 """Number of rows of the table."""
-MIN_KEYPOSES = SHOWN + 1
+MIN_KEYPOSES = PAPER_DIMENSIONS + 1
 """Keyposes that a judged clip needs: fewer span less than the three dimensions of the paper."""
 ORIGINAL = "original"
 
@@ -163,20 +163,20 @@ def judge_low_dimensional(
     silhouettes = {basis: [_silhouette(one, basis) for one in judged] for basis in Basis}
     pairs = list(zip(silhouettes[Basis.KEYPOSE], silhouettes[Basis.UNIFORM], strict=True))
     originals = [judge_poses(one.track.local) for one in judged]
-    drawn = {basis: [_drawn(one, basis) for one in judged] for basis in Basis}
+    reductions = {basis: [_judged_reduction(one, basis) for one in judged] for basis in Basis}
     return LowDimensionalEvaluation(
         clips=len(judged),
         left_out=len(ready) - len(judged),
         dimensions=tuple(_dimension_rows(judged)),
         poses=(
             _pose_row(ORIGINAL, originals, None),
-            *(_pose_row(b.value, drawn[b], float(np.mean(silhouettes[b]))) for b in Basis),
+            *(_pose_row(b.value, reductions[b], float(np.mean(silhouettes[b]))) for b in Basis),
         ),
         more_clustered=float(np.mean([keyposes > uniform for keyposes, uniform in pairs])),
         groups=tuple(_group_row(task, clips) for task, clips in groups.items()),
         shown=max(judged, key=lambda one: len(one.keyposes)),
         shown_group=max(groups.values(), key=len, default=()),
-        worst=_worst(judged, originals, drawn),
+        worst=_worst(judged, originals, reductions),
     )
 
 
@@ -206,27 +206,27 @@ def _dimension_rows(judged: Sequence[JudgedClip]) -> Iterator[DimensionRow]:
     }
     best = [1000 * reconstruction_errors(eigen_model(o.track.local), o.track) for o in judged]
     for row in range(MAX_DIMENSIONS):
-        there = [i for i, one in enumerate(judged) if len(one.keyposes) > row]
-        if not there:
+        with_row = [i for i, one in enumerate(judged) if len(one.keyposes) > row]
+        if not with_row:
             return
-        by_keyposes, by_uniform = (np.array([errors[b][i][row] for i in there]) for b in Basis)
+        by_keyposes, by_uniform = (np.array([errors[b][i][row] for i in with_row]) for b in Basis)
         yield DimensionRow(
             dimensions=row + 1,
-            clips=len(there),
+            clips=len(with_row),
             variance={
-                b.value: float(np.mean([variances[b][i][row] for i in there])) for b in Basis
+                b.value: float(np.mean([variances[b][i][row] for i in with_row])) for b in Basis
             },
             error={
                 Basis.KEYPOSE.value: float(by_keyposes.mean()),
                 Basis.UNIFORM.value: float(by_uniform.mean()),
             },
-            best=float(np.mean([best[i][row] for i in there])),
+            best=float(np.mean([best[i][row] for i in with_row])),
             keypose_better=float(np.mean(by_keyposes < by_uniform)),
         )
 
 
-def _drawn(one: JudgedClip, basis: Basis) -> Plausibility:
-    return judge_poses(low_dimensional(one.models[basis], one.track, SHOWN).local)
+def _judged_reduction(one: JudgedClip, basis: Basis) -> Plausibility:
+    return judge_poses(low_dimensional(one.models[basis], one.track, PAPER_DIMENSIONS).local)
 
 
 def _pose_row(name: str, found: Sequence[Plausibility], silhouette: float | None) -> PoseRow:
@@ -246,11 +246,11 @@ def _pose_row(name: str, found: Sequence[Plausibility], silhouette: float | None
 def _worst(
     judged: Sequence[JudgedClip],
     originals: Sequence[Plausibility],
-    drawn: Mapping[Basis, Sequence[Plausibility]],
+    reductions: Mapping[Basis, Sequence[Plausibility]],
 ) -> WorstPose | None:
     found = [
         WorstPose(one, basis, fault)
-        for basis, plausibilities in drawn.items()
+        for basis, plausibilities in reductions.items()
         for one, original, plausibility in zip(judged, originals, plausibilities, strict=True)
         for fault in plausibility.faults
         if not original.implausible[fault.worst]
@@ -260,7 +260,7 @@ def _worst(
 
 def _silhouette(one: JudgedClip, basis: Basis) -> float:
     """The silhouette of the poses; 0 if they do not differ."""
-    found = best_clusters(one.models[basis].coordinates(one.poses(basis), SHOWN))
+    found = best_clusters(one.models[basis].coordinates(one.poses(basis), PAPER_DIMENSIONS))
     return 0.0 if found is None else found.silhouette
 
 
@@ -278,12 +278,12 @@ def _groups(judged: Sequence[JudgedClip]) -> dict[str, tuple[JudgedClip, ...]]:
 def _group_row(task: str, clips: Sequence[JudgedClip]) -> GroupRow:
     poses = {b: np.concatenate([one.poses(b) for one in clips]) for b in Basis}
     models = {b: eigen_model(poses[b]) for b in Basis}
-    shown = {b: clusteredness(models[b].coordinates(poses[b], SHOWN)) for b in Basis}
+    shown = {b: clusteredness(models[b].coordinates(poses[b], PAPER_DIMENSIONS)) for b in Basis}
     return GroupRow(
         task=task,
         persons=len(clips),
         poses=models[Basis.KEYPOSE].poses,
-        variance={b.value: float(models[b].variance_kept()[SHOWN - 1]) for b in Basis},
+        variance={b.value: float(models[b].variance_kept()[PAPER_DIMENSIONS - 1]) for b in Basis},
         error={b.value: 1000 * _joint_error(models[b], clips) for b in Basis},
         silhouette={b.value: c.clusters.silhouette if c else None for b, c in shown.items()},
         gap={b.value: c.gap if c else None for b, c in shown.items()},
@@ -293,6 +293,7 @@ def _group_row(task: str, clips: Sequence[JudgedClip]) -> GroupRow:
 def _joint_error(model: EigenModel, clips: Sequence[JudgedClip]) -> float:
     """The error in meters over all frames of all clips."""
     squares = [
-        one.track.frames * reconstruction_errors(model, one.track)[SHOWN - 1] ** 2 for one in clips
+        one.track.frames * reconstruction_errors(model, one.track)[PAPER_DIMENSIONS - 1] ** 2
+        for one in clips
     ]
     return float(np.sqrt(sum(squares) / sum(one.track.frames for one in clips)))

@@ -1,5 +1,5 @@
 """The figures of Perera 2009, section 4, for a library: variance and error (11), eigen poses
-(7, 8), eigen motion (9), motions of few dimensions (10), a pose that no body takes (13, 14)."""
+(7, 8), eigen motion (9), motions of few dimensions (10), an impossible pose (13, 14)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.analysis.low_dimensional.eigen_motion import SHOWN, Basis, eigen_model, low_dimensional
+from app.analysis.low_dimensional.eigen_motion import (
+    PAPER_DIMENSIONS,
+    Basis,
+    eigen_model,
+    low_dimensional,
+)
 from app.evaluate.charts import Cloud, Curve, Format, Panel, curves_picture, scatter_picture, shown
 from app.evaluate.low_dimensional.evaluation import JudgedClip, LowDimensionalEvaluation, WorstPose
 from app.motion.frame.body_frame import BodyTrack
@@ -17,7 +22,7 @@ from app.services.figures.animated_figure import animated_svg
 from app.services.views.animations import role_figure
 
 AXES = ("first axis", "second axis", "third axis")
-PLAYED = (1, 2, 3, 4)
+PLAYED_DIMENSIONS = (1, 2, 3, 4)
 """Dimensions of the motions in figure 10."""
 MAX_PLAYED_FRAMES = 40 * 30
 """Largest number of frames of an animated motion: 40 s."""
@@ -41,19 +46,19 @@ def variance_figure(found: LowDimensionalEvaluation, form: Format) -> bytes:
     """Figure 11, and beside it the errors of the motions, which the paper does not show."""
     rows = found.dimensions
     at = np.array([row.dimensions for row in rows])
-    kept = [
+    variances = [
         Curve(at, np.array([row.variance[basis.value] for row in rows]), basis.value)
         for basis in Basis
     ]
-    off = [
+    errors = [
         Curve(at, np.array([row.error[basis.value] for row in rows]), basis.value)
         for basis in Basis
     ]
     least = Curve(at, np.array([row.best for row in rows]), "all frames")
     return curves_picture(
         [
-            Panel(kept, "of the model's own poses", "dimensions", "variance kept"),
-            Panel([*off, least], "of the whole motion", "dimensions", "error, mm"),
+            Panel(variances, "of the model's own poses", "dimensions", "variance kept"),
+            Panel([*errors, least], "of the whole motion", "dimensions", "error, mm"),
         ],
         form,
         title=f"Means over {found.clips} clips",
@@ -63,7 +68,7 @@ def variance_figure(found: LowDimensionalEvaluation, form: Format) -> bytes:
 def eigen_poses_figure(clips: Sequence[JudgedClip], basis: Basis, form: Format) -> bytes:
     """Figure 7 or 8: the poses of all clips along the first axes; colors show clusters."""
     poses = np.concatenate([one.poses(basis) for one in clips])
-    points = eigen_model(poses).coordinates(poses, SHOWN)
+    points = eigen_model(poses).coordinates(poses, PAPER_DIMENSIONS)
     found = best_clusters(points)
     name = clips[0].clip.task if len(clips) > 1 else clips[0].clip.name
     kind = "keyposes" if basis is Basis.KEYPOSE else "uniform poses"
@@ -82,8 +87,8 @@ def eigen_motion_figure(one: JudgedClip, form: Format) -> bytes:
     """Figure 9: a motion as a curve through its keyposes."""
     model = one.models[Basis.KEYPOSE]
     clouds = [
-        Cloud(model.coordinates(one.track.local, SHOWN), "motion", joined=True),
-        Cloud(model.coordinates(one.poses(Basis.KEYPOSE), SHOWN), "keyposes"),
+        Cloud(model.coordinates(one.track.local, PAPER_DIMENSIONS), "motion", joined=True),
+        Cloud(model.coordinates(one.poses(Basis.KEYPOSE), PAPER_DIMENSIONS), "keyposes"),
     ]
     return scatter_picture(clouds, form, title=shown(one.clip.name), axes=AXES)
 
@@ -94,7 +99,7 @@ def dimensions_figure(one: JudgedClip) -> bytes:
     model = one.models[Basis.KEYPOSE]
     figures = [
         role_figure(low_dimensional(model, track, count).positions, _counted(count))
-        for count in PLAYED
+        for count in PLAYED_DIMENSIONS
         if count <= model.poses
     ]
     figures.append(role_figure(track.positions, "original"))
@@ -106,17 +111,17 @@ def implausible_figure(worst: WorstPose) -> bytes:
     one, frame = worst.judged, worst.fault.worst
     moment = one.track.part(frame, frame + 1)
     figures = [
-        role_figure(_drawn(one, Basis.KEYPOSE, moment), Basis.KEYPOSE.value),
+        role_figure(_reduced_positions(one, Basis.KEYPOSE, moment), Basis.KEYPOSE.value),
         role_figure(moment.positions, "original"),
-        role_figure(_drawn(one, Basis.UNIFORM, moment), Basis.UNIFORM.value),
+        role_figure(_reduced_positions(one, Basis.UNIFORM, moment), Basis.UNIFORM.value),
     ]
     fault = worst.fault
     title = f"{one.clip.name} at {frame / one.track.rate:.2f} s: {worst.basis}, {fault.joint}"
     return animated_svg(figures, one.track.rate, f"{title} {fault.fault}").encode()
 
 
-def _drawn(one: JudgedClip, basis: Basis, track: BodyTrack) -> FloatArray:
-    return low_dimensional(one.models[basis], track, SHOWN).positions
+def _reduced_positions(one: JudgedClip, basis: Basis, track: BodyTrack) -> FloatArray:
+    return low_dimensional(one.models[basis], track, PAPER_DIMENSIONS).positions
 
 
 def _counted(dimensions: int) -> str:

@@ -26,9 +26,9 @@ from app.evaluate.recognition.results import (
     HeldOut,
     Judged,
     LabelGiven,
-    Made,
     RecognitionEvaluation,
     Seconds,
+    SynthesisRows,
 )
 from app.evaluate.recognition.rounds import (
     LeftOut,
@@ -89,8 +89,8 @@ def judge_recognition(
     return replace(found, perera=perera, made=made, not_judged=reasons)
 
 
-def _judge_made(lib: Library, filter: ClipFilter | None) -> Made:
-    figures: Made = fit_on(lib.store, read_training(lib, filter))[1]["held_out"]
+def _judge_made(lib: Library, filter: ClipFilter | None) -> SynthesisRows:
+    figures: SynthesisRows = fit_on(lib.store, read_training(lib, filter))[1]["held_out"]
     return figures
 
 
@@ -115,19 +115,23 @@ def judge_clips(
     held = {way: plan(way.value, partial(rounds, clips, way)) for way in LeftOut}
     takes = {n: plan(takes_key(n), partial(rounds_by_takes, clips, n)) for n in TAKES}
     by_recording = plan(LABEL_GIVEN, partial(rounds_by_recording, clips))
-    counted = (*held.values(), *takes.values(), by_recording)
-    asking = _Asking(clips, methods, sum(map(len, counted)) * len(methods), progress, reasons)
+    all_rounds = (*held.values(), *takes.values(), by_recording)
+    runner = _MethodRunner(
+        clips, methods, sum(map(len, all_rounds)) * len(methods), progress, reasons
+    )
     return RecognitionEvaluation(
         clips=clips,
-        held_out=_judged_ones({w: asking.held_out(w.value, found) for w, found in held.items()}),
-        takes=_judged_ones({n: asking.held_out(takes_key(n), found) for n, found in takes.items()}),
-        label_given=asking.label_given(by_recording),
-        seconds=asking.seconds(),
-        not_judged=asking.reasons,
+        held_out=_without_empty({w: runner.held_out(w.value, found) for w, found in held.items()}),
+        takes=_without_empty(
+            {n: runner.held_out(takes_key(n), found) for n, found in takes.items()}
+        ),
+        label_given=runner.label_given(by_recording),
+        seconds=runner.seconds(),
+        not_judged=runner.reasons,
     )
 
 
-def _judged_ones(found: Mapping[Key, HeldOut]) -> dict[Key, HeldOut]:
+def _without_empty(found: Mapping[Key, HeldOut]) -> dict[Key, HeldOut]:
     return {key: held for key, held in found.items() if held.methods}
 
 
@@ -144,7 +148,7 @@ def _check(methods: Sequence[str], false_accept_rate: float | None) -> None:
         raise fields.bad_field("false_accept_rate", "must be above 0 and below 1")
 
 
-class _Asking:
+class _MethodRunner:
     """Runs all methods and counts the steps."""
 
     def __init__(
@@ -162,21 +166,21 @@ class _Asking:
 
     def held_out(self, name: str, found: Sequence[Round]) -> HeldOut:
         trials: dict[str, tuple[Trial, ...]] = {}
-        quickly = name not in set(_NEW) | {LeftOut.SOURCE}
-        for method, learn, watch in self._learners(quickly=quickly) if found else ():
+        ranking_only = name not in set(_FACTOR_OF) | {LeftOut.SOURCE}
+        for method, learn, watch in self._learners(ranking_only=ranking_only) if found else ():
             try:
-                trials[method] = run(learn, self._seen_by(method), found, watch, self._step)
+                trials[method] = run(learn, self._clips_for(method), found, watch, self._step)
             except NotEnoughLabels as reason:
                 self.reasons[f"{name}, {method}"] = reason.detail
-        every = next(iter(trials.values()), ())
+        trials_of_first = next(iter(trials.values()), ())
         judged = tuple(_judged(method, some, name) for method, some in trials.items())
-        return HeldOut(len(found), judged, chance(every))
+        return HeldOut(len(found), judged, chance(trials_of_first))
 
     def label_given(self, found: Sequence[Round]) -> tuple[LabelGiven, ...]:
         judged = []
-        for method, learn, watch in self._learners(quickly=True) if found else ():
+        for method, learn, watch in self._learners(ranking_only=True) if found else ():
             try:
-                clips = self._seen_by(method)
+                clips = self._clips_for(method)
                 neither, given = run_with_label(learn, clips, found, watch, self._step)
             except NotEnoughLabels as reason:
                 self.reasons[f"{LABEL_GIVEN}, {method}"] = reason.detail
@@ -184,15 +188,19 @@ class _Asking:
                 judged.append(LabelGiven(method, recognized(neither), recognized(given)))
         return tuple(judged)
 
-    def _seen_by(self, method: str) -> JudgedClips:
+    def _clips_for(self, method: str) -> JudgedClips:
         if method == DEFAULT:
             return self._clips.in_full()
         return self._clips.in_angles() if method == SIGNATURES else self._clips
 
-    def _learners(self, *, quickly: bool) -> Iterator[tuple[str, Method, Stopwatch]]:
-        """The methods; quickly: only the best candidates are needed. Such fits are not timed."""
+    def _learners(self, *, ranking_only: bool) -> Iterator[tuple[str, Method, Stopwatch]]:
+        """The methods.
+
+        ranking_only: use the faster versions, which give only the best candidates; their time is
+        not measured.
+        """
         for name, method in self._methods.items():
-            if quickly and name in RANKING:
+            if ranking_only and name in RANKING:
                 yield name, RANKING[name], Stopwatch()
             else:
                 yield name, method, self._watches[name]
@@ -210,12 +218,12 @@ class _Asking:
             self._progress(self._done, self._steps)
 
 
-_NEW: dict[str, str] = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
+_FACTOR_OF: dict[str, str] = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
 """The factor whose labels are left out as a whole."""
 
 
 def _judged(method: str, trials: Sequence[Trial], way: str) -> Judged:
-    factor = _NEW.get(way)
+    factor = _FACTOR_OF.get(way)
     of_new: list[Trial] = []
     if factor is not None:
         # a label that only the held-out takes carry is new too, but it was not left out
@@ -233,15 +241,14 @@ def _judged(method: str, trials: Sequence[Trial], way: str) -> Judged:
 
 def _unknown(trials: Sequence[Trial], way: str) -> dict[str, Unknown]:
     """The figures by factor, if whole labels of it, or whole sources, were left out."""
-    factors = FACTORS if way == LeftOut.SOURCE else [_NEW[way]] if way in _NEW else []
+    factors = FACTORS if way == LeftOut.SOURCE else [_FACTOR_OF[way]] if way in _FACTOR_OF else []
     found = {name: unknown(trials, name) for name in factors}
     return {name: one for name, one in found.items() if one is not None}
 
 
 def _by_left_out(trials: Sequence[Trial]) -> dict[str, Recognized]:
     """Shares by the labels that were left out, joined by commas."""
-    parties = sorted({trial.left_out for trial in trials if trial.left_out})
+    groups = sorted({trial.left_out for trial in trials if trial.left_out})
     return {
-        ", ".join(party): recognized([t for t in trials if t.left_out == party])
-        for party in parties
+        ", ".join(group): recognized([t for t in trials if t.left_out == group]) for group in groups
     }

@@ -7,14 +7,14 @@ from app.evaluate.charts import Curve, Format, Panel, confusion_picture, curves_
 from app.evaluate.recognition.results import HeldOut, Judged, RecognitionEvaluation
 from app.evaluate.recognition.rounds import LeftOut
 
-GUESSED = ("prior",)
+METHODS_WITHOUT_MOTION = ("prior",)
 """Methods that do not look at the motion. They are not drawn."""
 
 
 def all_figures(found: RecognitionEvaluation, form: Format) -> dict[str, bytes]:
     """Every picture by file name: confusions by factor and method, and the curves."""
     pictures = {}
-    for judged in _drawn(found.held_out.get(LeftOut.TAKE)):
+    for judged in _methods_to_draw(found.held_out.get(LeftOut.TAKE)):
         for factor in judged.confusion:
             content = confusion_figure(judged, factor, form)
             if content is not None:
@@ -48,7 +48,7 @@ def unknown_figure(found: RecognitionEvaluation, form: Format) -> bytes | None:
                 judged.unknown[factor].curve[:, 1],
                 judged.method,
             )
-            for judged in _drawn(found.held_out.get(way))
+            for judged in _methods_to_draw(found.held_out.get(way))
             if factor in judged.unknown
         ]
         if curves:
@@ -63,8 +63,8 @@ def unknown_figure(found: RecognitionEvaluation, form: Format) -> bytes | None:
             )
     if not panels:
         return None
-    return curves_picture(panels, form, title="What is new, at every threshold")
+    return curves_picture(panels, form, title="Detection of new labels at every threshold")
 
 
-def _drawn(held: HeldOut | None) -> list[Judged]:
-    return [one for one in held.methods if one.method not in GUESSED] if held else []
+def _methods_to_draw(held: HeldOut | None) -> list[Judged]:
+    return [one for one in held.methods if one.method not in METHODS_WITHOUT_MOTION] if held else []

@@ -12,8 +12,8 @@ from app.evaluate.recognition.rounds import LeftOut
 from app.evaluate.recognition.shares import Recognized, Unknown
 from app.numerics.arrays import FloatArray
 
-Made = Mapping[str, Sequence[Mapping[str, Any]]]
-"""Rows by kind, "new_task" and "new_person"."""
+SynthesisRows = Mapping[str, Sequence[Mapping[str, Any]]]
+"""The figures of synthesized motions by kind, "new_task" and "new_person"."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,4 +85,4 @@ class RecognitionEvaluation:
     seconds: Mapping[str, Seconds]
     not_judged: dict[str, str]
     perera: PereraEvaluation | None = None
-    made: Made | None = None
+    made: SynthesisRows | None = None

@@ -58,7 +58,7 @@ def rounds(clips: JudgedClips, left_out: LeftOut) -> list[Round]:
         LeftOut.TASK: lambda: _by_label(clips, "task"),
         LeftOut.SOURCE: lambda: _by_source(clips),
     }[left_out]()
-    return _fit_to_judge(found)
+    return _usable(found)
 
 
 def rounds_by_recording(clips: JudgedClips) -> list[Round]:
@@ -66,13 +66,13 @@ def rounds_by_recording(clips: JudgedClips) -> list[Round]:
 
     Raises NotEnoughLabels if no cell has a second take.
     """
-    both = _both(clips)
-    folds = min(MAX_ROUNDS, len({clips.groups[i] for i in both}))
+    labeled = _with_both_labels(clips)
+    folds = min(MAX_ROUNDS, len({clips.groups[i] for i in labeled}))
     found = [
-        Round((), np.intersect1d(one.train, both), np.intersect1d(one.probe, both))
+        Round((), np.intersect1d(one.train, labeled), np.intersect1d(one.probe, labeled))
         for one in _by_fold(clips, max(folds, 1))
     ]
-    return _fit_to_judge(found)
+    return _usable(found)
 
 
 def rounds_by_takes(clips: JudgedClips, takes: int) -> list[Round]:
@@ -91,7 +91,7 @@ def rounds_by_takes(clips: JudgedClips, takes: int) -> list[Round]:
     return [_drawn(cells, takes, seed) for seed in range(DRAWS)]
 
 
-def _both(clips: JudgedClips) -> IntArray:
+def _with_both_labels(clips: JudgedClips) -> IntArray:
     pairs = enumerate(zip(clips.persons, clips.tasks, strict=True))
     return np.array([i for i, labels in pairs if all(labels)], dtype=np.int64)
 
@@ -99,7 +99,7 @@ def _both(clips: JudgedClips) -> IntArray:
 def _takes(clips: JudgedClips) -> dict[tuple[str, str], list[list[int]]]:
     """The takes by person and task, sorted by name; a take is a list of clip indices."""
     cells: dict[tuple[str, str], dict[str, list[int]]] = defaultdict(lambda: defaultdict(list))
-    for i in _both(clips).tolist():
+    for i in _with_both_labels(clips).tolist():
         cell = clips.persons[i] or "", clips.tasks[i] or ""
         cells[cell][clips.groups[i]].append(i)
     return {cell: [some[name] for name in sorted(some)] for cell, some in sorted(cells.items())}
@@ -110,8 +110,8 @@ def _drawn(cells: dict[tuple[str, str], list[list[int]]], takes: int, seed: int)
     train, probe = [], []
     for some in cells.values():
         order = rng.permutation(len(some)).tolist()
-        train += [clip for place in order[:takes] for clip in some[place]]
-        probe += [clip for place in order[takes:] for clip in some[place]]
+        train += [clip for index in order[:takes] for clip in some[index]]
+        probe += [clip for index in order[takes:] for clip in some[index]]
     return Round((), np.sort(train), np.sort(probe))
 
 
@@ -122,13 +122,13 @@ def _by_fold(clips: JudgedClips, folds: int) -> Iterator[Round]:
 
 
 def _folds(clips: JudgedClips, folds: int) -> IntArray:
-    """(N,) fold of each clip. The recordings of a task, and of a cell, are dealt out in turn, so
-    that no fold has all recordings of a cell with several."""
+    """(N,) fold of each clip. Recordings of a task, and of a cell, go to the folds in turn. So
+    no fold has all recordings of a cell that has several."""
     keys = sorted(
         set(zip(_or_empty(clips.tasks), _or_empty(clips.persons), clips.groups, strict=True))
     )
-    place = {group: number % folds for number, (_, _, group) in enumerate(keys)}
-    return np.array([place[group] for group in clips.groups], dtype=np.int64)
+    fold_of = {group: number % folds for number, (_, _, group) in enumerate(keys)}
+    return np.array([fold_of[group] for group in clips.groups], dtype=np.int64)
 
 
 def _or_empty(labels: Labels) -> list[str]:
@@ -144,10 +144,10 @@ def _by_label(clips: JudgedClips, factor: str) -> Iterator[Round]:
             f"{MIN_LABELS} {factor}s are needed to leave one out; there are {len(names)}."
         )
     fold = _folds(clips, FOLDS)
-    for number, party in enumerate(_parties(names)):
-        new = np.array([label in party for label in labels])
+    for number, group in enumerate(_label_groups(names)):
+        new = np.array([label in group for label in labels])
         held = fold == number % FOLDS
-        yield Round(tuple(party), np.flatnonzero(~(new | held)), np.flatnonzero(new | held))
+        yield Round(tuple(group), np.flatnonzero(~(new | held)), np.flatnonzero(new | held))
 
 
 def _by_source(clips: JudgedClips) -> Iterator[Round]:
@@ -156,18 +156,18 @@ def _by_source(clips: JudgedClips) -> Iterator[Round]:
         raise NotEnoughLabels(
             f"Two sources are needed to leave one out; the clips come from {len(names)}."
         )
-    for party in _parties(names):
-        new = np.array([source in party for source in clips.sources])
-        yield Round(tuple(party), np.flatnonzero(~new), np.flatnonzero(new))
+    for group in _label_groups(names):
+        new = np.array([source in group for source in clips.sources])
+        yield Round(tuple(group), np.flatnonzero(~new), np.flatnonzero(new))
 
 
-def _parties(names: Sequence[str]) -> list[list[str]]:
+def _label_groups(names: Sequence[str]) -> list[list[str]]:
     """Groups of names: each name alone, or several together if there are over MAX_ROUNDS."""
     count = min(len(names), MAX_ROUNDS)
-    return [list(names[place::count]) for place in range(count)]
+    return [list(names[index::count]) for index in range(count)]
 
 
-def _fit_to_judge(found: Iterator[Round] | Sequence[Round]) -> list[Round]:
+def _usable(found: Iterator[Round] | Sequence[Round]) -> list[Round]:
     usable = [one for one in found if len(one.train) >= 2 and len(one.probe)]
     if not usable:
         raise NotEnoughLabels("There are too few recordings to hold any out.")

@@ -14,29 +14,29 @@ from app.numerics.arrays import FloatArray
 from app.numerics.binomial import wilson_interval
 
 CURVE_POINTS = 101
-"""Of the curve of false acceptance against false rejection."""
+"""The number of points of a curve of false acceptance and false rejection."""
 
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """`right` of `of` trials."""
+    """A share of trials: `right` of `of`."""
 
     right: int
     of: int
 
     @property
     def value(self) -> float | None:
-        """0..1, None of no trials."""
+        """The share, 0..1; None without trials."""
         return self.right / self.of if self.of else None
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Where the share of all such clips lies, with 95 % confidence (Wilson)."""
+        """The 95 % confidence interval of the share (Wilson)."""
         return wilson_interval(self.right, self.of)
 
     @classmethod
     def that(cls, hits: Iterable[bool]) -> Share:
-        """Of some yes and no."""
+        """The share of `hits` that are true."""
         every = list(hits)
         return cls(sum(every), len(every))
 
@@ -69,7 +69,7 @@ class Category:
 
     @property
     def balanced_accuracy(self) -> float | None:
-        """Mean of the two shares."""
+        """The mean of both shares; None without trials."""
         values = self.refused.value, self.accepted.value
         return None if None in values else sum(filter(None, values)) / 2
 
@@ -94,24 +94,24 @@ class Unknown:
 
     @property
     def false_acceptance(self) -> float:
-        """Share of new ones called known."""
+        """The share of new clips that were called known."""
         return 1.0 - (self.refused.value or 0.0)
 
     @property
     def false_rejection(self) -> float:
-        """Share of known ones called new."""
+        """The share of known clips that were called new."""
         return 1.0 - (self.accepted.value or 0.0)
 
     @property
     def balanced_accuracy(self) -> float:
-        """One half is chance."""
+        """The mean of the shares of right answers for new and known clips; 0.5 is chance."""
         return 1.0 - (self.false_acceptance + self.false_rejection) / 2
 
     @property
     def equal_error_rate(self) -> float:
         """The error at the threshold where false acceptance and false rejection are equal."""
-        place = int(np.argmin(np.abs(self.curve[:, 0] - self.curve[:, 1])))
-        return float(self.curve[place].mean())
+        index = int(np.argmin(np.abs(self.curve[:, 0] - self.curve[:, 1])))
+        return float(self.curve[index].mean())
 
     @property
     def worst(self) -> Category | None:
@@ -121,7 +121,7 @@ class Unknown:
 
 
 def recognized(trials: Iterable[Trial]) -> Recognized:
-    """Closed-set shares of trials."""
+    """The shares of right best candidates, of the trials with a label that the method has seen."""
     judged = list(trials)
     both = [t for t in judged if _is_judged(t.person) and _is_judged(t.task)]
     return Recognized(
@@ -145,7 +145,10 @@ def chance(trials: Iterable[Trial]) -> tuple[float | None, float | None, float |
 
 
 def unknown(trials: Sequence[Trial], factor: str) -> Unknown | None:
-    """None unless there are new ones and known ones of the factor "person" or "task"."""
+    """The figures for new labels of the factor "person" or "task".
+
+    None unless there are both new and known clips.
+    """
     pairs = [(trial, trial.of(factor)) for trial in trials if trial.of(factor).truth]
     new = [result for _, result in pairs if result.new]
     known = [result for _, result in pairs if not result.new]
@@ -208,25 +211,28 @@ def _category(name: str, pairs: Sequence[tuple[Trial, FactorResult]]) -> Categor
     rounds = {trial.left_out for trial, _ in own}
     known = [result for trial, result in pairs if not result.new and trial.left_out in rounds]
     answers = [result for _, result in own]
-    return Category(name, _refused(answers), _accepted(known), _mostly_taken_for(answers))
+    return Category(name, _refused(answers), _accepted(known), _most_frequent_answer(answers))
 
 
-def _mostly_taken_for(new: Iterable[FactorResult]) -> str | None:
-    """The label that most of the new ones got that were called known; the first of several."""
+def _most_frequent_answer(new: Iterable[FactorResult]) -> str | None:
+    """The most frequent answer for new clips that were called known; the first one of equals."""
     labels = sorted(result.guess.label or "" for result in new if result.guess.known)
     return Counter(labels).most_common(1)[0][0] if labels else None
 
 
 def _novelty(some: Iterable[FactorResult]) -> FloatArray:
-    """(n,) how new the method took each to be."""
+    """(n,) the novelty of each answer."""
     return np.array([result.guess.novelty for result in some])
 
 
 def _curve(known: FloatArray, new: FloatArray) -> FloatArray:
-    """(P, 2) false acceptance and false rejection by rising threshold."""
+    """(P, 2) false acceptance and false rejection at P rising thresholds of novelty.
+
+    known, new: (n,) and (m,) novelties.
+    """
     every = np.unique(np.concatenate([known, new]))
     cuts = np.concatenate([[every[0] - 1.0], every])
-    places = np.unique(np.linspace(0, len(cuts) - 1, CURVE_POINTS).round().astype(int))
-    accepted = np.searchsorted(np.sort(new), cuts[places], side="right") / len(new)
-    rejected = 1 - np.searchsorted(np.sort(known), cuts[places], side="right") / len(known)
+    indices = np.unique(np.linspace(0, len(cuts) - 1, CURVE_POINTS).round().astype(int))
+    accepted = np.searchsorted(np.sort(new), cuts[indices], side="right") / len(new)
+    rejected = 1 - np.searchsorted(np.sort(known), cuts[indices], side="right") / len(known)
     return np.stack([accepted, rejected], axis=1)

@@ -112,7 +112,7 @@ def run_with_label(
     for one in rounds:
         train = clips.part(one.train)
         known = [i for i in one.probe.tolist() if _is_known(clips, i, train)]
-        judge = _learned(method, train, watch) if known else None
+        judge = _fitted(method, train, watch) if known else None
         if judge is not None:
             guesses = judge(clips.samples[known])
             neither += _trials(clips, one, train, known, guesses)
@@ -126,7 +126,7 @@ def run_with_label(
     return tuple(neither), tuple(either)
 
 
-def _learned(method: Method, train: Clips, watch: Stopwatch) -> Judge | None:
+def _fitted(method: Method, train: Clips, watch: Stopwatch) -> Judge | None:
     """The fitted method, None if these clips are too few for it."""
     start = time.perf_counter()
     try:

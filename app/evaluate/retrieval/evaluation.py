@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.evaluate.retrieval.labelled import LabeledClips, read_labeled
+from app.evaluate.retrieval.labeled import LabeledClips, read_labeled
 from app.evaluate.retrieval.rankings import Ranker, Volumes, by_method
 from app.models.held_out.class_rankings import JudgedRanking, confusion_matrix, true_positive_rates
 from app.numerics.arrays import FloatArray
@@ -22,7 +22,7 @@ K = 20
 """Number of nearest clips in the paper's figures."""
 HIDDEN_CLASSES = 4
 """Number of classes in the paper's experiment 1: walk, run, jump, kick."""
-SUNS = (Method.MSV_DTW, Method.MSV_XCORR)
+SUN_METHODS = (Method.MSV_DTW, Method.MSV_XCORR)
 JUDGED = tuple(method for method in Method if not method.value.startswith("metric-"))
 """All methods except the metrics, which are learned from the same labels."""
 MAX_QUERIES = 1000
@@ -94,7 +94,7 @@ def judge_retrieval(
     classes: Sequence[str] | None = None,
     k: int = K,
     threshold: float = 0.0,
-    most_queries: int = MAX_QUERIES,
+    max_queries: int = MAX_QUERIES,
     progress: Progress | None = None,
 ) -> RetrievalEvaluation:
     """Judge each method with the clips that pass the filter as queries for each other.
@@ -104,12 +104,12 @@ def judge_retrieval(
     recording, and clips without a task, are ignored. Raises NotEnoughLabels, and BadField for a
     class that cannot be judged or a wrong number.
     """
-    _check(k, threshold, most_queries)
+    _check(k, threshold, max_queries)
     lib.index.catch_up(lib.store)
     labeled = read_labeled(lib, filter)
     chosen = labeled.chosen(classes, HIDDEN_CLASSES)
-    queries = labeled.queries(most_queries)
-    suns = [method for method in methods if method in SUNS]
+    queries = labeled.queries(max_queries)
+    suns = [method for method in methods if method in SUN_METHODS]
     settings = _settings(threshold) if suns else []
     step = _stepper(
         len(queries) * (len(methods) + len(suns) * len(settings))
@@ -131,12 +131,12 @@ def judge_retrieval(
     return _evaluation(labeled, chosen, k, found)
 
 
-def _check(k: int, threshold: float, most_queries: int) -> None:
+def _check(k: int, threshold: float, max_queries: int) -> None:
     if k < 1:
         raise fields.bad_field("k", "must be at least 1")
     if not (math.isfinite(threshold) and threshold >= 0):
         raise fields.bad_field("threshold", "must be 0 (keep the distances) or above")
-    if most_queries < 1:
+    if max_queries < 1:
         raise fields.bad_field("queries", "must be at least 1")
 
 

@@ -26,8 +26,11 @@ MIN_DRAWN = 1e-16
 
 def shown_methods(evaluation: RetrievalEvaluation) -> tuple[str, ...]:
     """The methods whose confusion matrix is shown by default: all if there are few."""
-    there = tuple(judged.figures.method for judged in evaluation.methods)
-    return tuple(name for name in SIDE_BY_SIDE if name in there) or there[: len(SIDE_BY_SIDE)]
+    judged_methods = tuple(judged.figures.method for judged in evaluation.methods)
+    return (
+        tuple(name for name in SIDE_BY_SIDE if name in judged_methods)
+        or judged_methods[: len(SIDE_BY_SIDE)]
+    )
 
 
 def confusion_figure(evaluation: RetrievalEvaluation, names: Sequence[str], form: Format) -> bytes:
@@ -44,19 +47,19 @@ def vectors_figure(volumes: VolumeEvaluation, form: Format) -> bytes:
     """Primary vectors above, secondary vectors below; a column for each class, a curve for each
     clip."""
     joints = [role.value.replace("_", " ") for role in SUN_ROLES]
-    places = np.arange(float(len(joints)))
-    everything = [one for some in volumes.factors.values() for one in some]
-    rho_range = _range([one.primary for one in everything])
-    epsilon_range = _range([one.secondary for one in everything])
+    joint_indices = np.arange(float(len(joints)))
+    all_factors = [one for some in volumes.factors.values() for one in some]
+    rho_range = _range([one.primary for one in all_factors])
+    epsilon_range = _range([one.secondary for one in all_factors])
     above = [
         Panel(
-            [Curve(places, one.primary) for one in some],
+            [Curve(joint_indices, one.primary) for one in some],
             title=f"{name} ({len(some)} clips)",
             y_label="primary vector ρ" if first else "",
             ticks=joints,
             y_range=rho_range,
         )
-        for first, (name, some) in _told(volumes)
+        for first, (name, some) in _columns(volumes)
     ]
     below = [
         Panel(
@@ -65,7 +68,7 @@ def vectors_figure(volumes: VolumeEvaluation, form: Format) -> bytes:
             y_label="secondary vector ε" if first else "",
             y_range=epsilon_range,
         )
-        for first, (_, some) in _told(volumes)
+        for first, (_, some) in _columns(volumes)
     ]
     title = f"Rank-1 factors of the motion sequence volumes, q = {volumes.q}{_eta(volumes)}"
     return curves_picture([*above, *below], form, title=title, columns=len(volumes.factors))
@@ -115,8 +118,9 @@ def all_figures(
     return figures
 
 
-def _told(volumes: VolumeEvaluation) -> list[tuple[bool, tuple[str, tuple[Rank1, ...]]]]:
-    return [(place == 0, item) for place, item in enumerate(volumes.factors.items())]
+def _columns(volumes: VolumeEvaluation) -> list[tuple[bool, tuple[str, tuple[Rank1, ...]]]]:
+    """For each class: whether it is the first column, and its name and factors."""
+    return [(index == 0, item) for index, item in enumerate(volumes.factors.items())]
 
 
 def _range(vectors: Sequence[FloatArray]) -> tuple[float, float]:

@@ -1,4 +1,7 @@
-"""Functions that rank the library for a clip: the search methods, and Sun's with other settings."""
+"""Functions that rank the library for a clip.
+
+They use the search methods, or Sun's methods with other settings.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,7 @@ itself may be among them."""
 
 
 def by_method(lib: Library, method: Method, filter: ClipFilter | None) -> Ranker:
-    """The same ranking as in searches."""
+    """A function that ranks as searches do, by `method` among the clips that pass the filter."""
     load = partial(lib.arrays.get_many, lib.store)
 
     def rank(clip: ClipRecord) -> Sequence[str]:

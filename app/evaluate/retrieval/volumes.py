@@ -9,7 +9,7 @@ import numpy as np
 
 from app.analysis.descriptors.motion_volume import compression_ratio
 from app.evaluate.retrieval.evaluation import HIDDEN_CLASSES
-from app.evaluate.retrieval.labelled import LabeledClips, read_labeled
+from app.evaluate.retrieval.labeled import LabeledClips, read_labeled
 from app.evaluate.retrieval.rankings import Volumes
 from app.numerics.tensors.rank1 import Rank1
 from app.search.example.distances import EPSILON, RHO
@@ -20,7 +20,7 @@ from app.store.clips.record import ClipRecord
 
 MAX_PER_CLASS = 40
 """Largest number of clips of a class whose vectors are drawn; more would hide each other."""
-AT_ONCE = 256
+CLIPS_PER_LOAD = 256
 """Number of clips whose arrays are loaded at a time."""
 
 
@@ -73,8 +73,8 @@ def judge_volumes(
 ) -> VolumeEvaluation:
     """Judge the given classes, or the largest four. Raises NotEnoughLabels, BadField."""
     labeled = read_labeled(lib, filter)
-    some = {
-        name: _some(labeled, name, MAX_PER_CLASS)
+    sampled = {
+        name: _sample(labeled, name, MAX_PER_CLASS)
         for name in labeled.chosen(classes, HIDDEN_CLASSES)
     }
     return VolumeEvaluation(
@@ -84,28 +84,30 @@ def judge_volumes(
             name: tuple(
                 Volumes.of(lib, members, q=q, threshold=threshold, step=step).factors.values()
             )
-            for name, members in some.items()
+            for name, members in sampled.items()
         },
         compression=_compression(lib, labeled.clips),
     )
 
 
-def _some(labeled: LabeledClips, name: str, most: int) -> list[ClipRecord]:
+def _sample(labeled: LabeledClips, name: str, max_count: int) -> list[ClipRecord]:
     """Clips of a class; if there are too many, an even selection by id."""
     members = [clip for clip in labeled.clips if clip.task == name]
-    places = np.unique(np.linspace(0, len(members) - 1, min(most, len(members))).round())
-    return [members[int(place)] for place in places]
+    indices = np.unique(np.linspace(0, len(members) - 1, min(max_count, len(members))).round())
+    return [members[int(index)] for index in indices]
 
 
 def _compression(lib: Library, measured: Sequence[ClipRecord]) -> Compression:
-    frames, kept, positions = [], 0, 0
-    for start in range(0, len(measured), AT_ONCE):
-        ids = [clip.id for clip in measured[start : start + AT_ONCE]]
+    frames, factor_bytes, position_bytes = [], 0, 0
+    for start in range(0, len(measured), CLIPS_PER_LOAD):
+        ids = [clip.id for clip in measured[start : start + CLIPS_PER_LOAD]]
         with lib.store.read() as tx:
             rhos, epsilons, joints = (
                 arrays.get_many(tx, ids, name) for name in (RHO, EPSILON, "role_positions")
             )
         frames += [len(epsilon) for epsilon in epsilons.values()]
-        kept += sum(array.nbytes for part in (rhos, epsilons) for array in part.values())
-        positions += sum(array.nbytes for array in joints.values())
-    return Compression(len(frames), sum(frames), compression_ratio(frames), kept / positions)
+        factor_bytes += sum(array.nbytes for part in (rhos, epsilons) for array in part.values())
+        position_bytes += sum(array.nbytes for array in joints.values())
+    return Compression(
+        len(frames), sum(frames), compression_ratio(frames), factor_bytes / position_bytes
+    )

@@ -25,7 +25,7 @@ from app.store.clips.filter import ClipFilter
 EXAMPLES = 4
 NEAREST = 10
 """Number of rows of table 2."""
-SHOWN_WORDS = 30
+MAX_WORDS_IN_MESSAGE = 30
 """Largest number of words in a message."""
 DIAGONAL = "recall = precision"
 
@@ -80,9 +80,9 @@ def word_examples(
     vocabulary = WordVocabulary.of(label_sets)
     labels = vocabulary.label_matrix(label_sets)
     if queries is None:
-        often = np.argsort(-labels.sum(axis=0), kind="stable")[:EXAMPLES]
-        queries = [vocabulary.words[column] for column in often]
-    asked = [_asked(query, vocabulary) for query in queries]
+        most_frequent = np.argsort(-labels.sum(axis=0), kind="stable")[:EXAMPLES]
+        queries = [vocabulary.words[column] for column in most_frequent]
+    asked = [_query_words(query, vocabulary) for query in queries]
     symbols = [training.symbols[row] for row in rows]
     points = fit_symbol_space(symbols).place(symbols) if rows else np.zeros((0, 1))
     space = fit_correlated_space(points, labels, ridge=0.0)
@@ -124,10 +124,10 @@ def _panel(figures: Sequence[WordFigures], title: str) -> Panel:
     )
 
 
-def _asked(query: str, vocabulary: WordVocabulary) -> tuple[str, ...]:
+def _query_words(query: str, vocabulary: WordVocabulary) -> tuple[str, ...]:
     asked = tuple(understand(query.split(), vocabulary, {}).weights)
     if not asked:
-        known = ", ".join(vocabulary.words[:SHOWN_WORDS])
+        known = ", ".join(vocabulary.words[:MAX_WORDS_IN_MESSAGE])
         raise fields.bad_field(
             "query", f"no clip carries a word of {query!r}; known words: {known}"
         )

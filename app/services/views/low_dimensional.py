@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.low_dimensional.eigen_motion import (
-    SHOWN,
+    PAPER_DIMENSIONS,
     Basis,
     EigenModel,
     eigen_model,
@@ -130,7 +130,7 @@ def reduce(lib: Library, clip: ClipRecord, wanted: Reduction) -> Reduced:
     track = body_track(load_motion(lib, clip))
     poses, local = _model_poses(lib, clip, track, wanted, basis)
     model = eigen_model(local)
-    dimensions = wanted.dimensions or min(SHOWN, model.poses)
+    dimensions = wanted.dimensions or min(PAPER_DIMENSIONS, model.poses)
     if dimensions > model.poses:
         message = f"must be from 1 to {model.poses}, the poses of the model"
         raise fields.bad_field("dimensions", message)
@@ -261,7 +261,7 @@ def _check_clips(model_clips: Sequence[str]) -> None:
 
 def _shown(model: EigenModel, poses: FloatArray) -> FloatArray:
     """(n, 3) coordinates along the first three axes; 0 for axes that the model does not have."""
-    found = np.zeros((len(poses), SHOWN))
-    kept = min(SHOWN, model.poses)
+    found = np.zeros((len(poses), PAPER_DIMENSIONS))
+    kept = min(PAPER_DIMENSIONS, model.poses)
     found[:, :kept] = model.coordinates(poses, kept)
     return found

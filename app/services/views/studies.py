@@ -17,7 +17,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from app.analysis.low_dimensional.eigen_motion import SHOWN, Basis
+from app.analysis.low_dimensional.eigen_motion import PAPER_DIMENSIONS, Basis
 from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES
 from app.motion.skeleton.resampling import resample
 from app.numerics.binomial import fair_coin_probability, wilson_interval
@@ -93,7 +93,7 @@ class StudyTally:
 def draw_pair(
     lib: Library,
     clip_id: str,
-    dimensions: int = SHOWN,
+    dimensions: int = PAPER_DIMENSIONS,
     model_clips: Sequence[str] = (),
 ) -> PairRecord:
     """Create a pair of a clip's two reductions, on random sides.

@@ -1,4 +1,4 @@
-"""Frame features: the right numbers, free of everything but the movement."""
+"""Frame features depend only on the movement."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from app.motion.frame.body_frame import body_track
 from tests.bodies import motion_of, standing, turned_about_y, walking
 
 
-def test_columns_are_places_changes_travel_and_turning() -> None:
+def test_columns_are_positions_velocities_travel_and_yaw_rate() -> None:
     track = body_track(motion_of(walking(turn=0.5)))
     features = frame_features(track)
     assert features.shape == (track.frames, FEATURES)
@@ -27,14 +27,14 @@ def test_columns_are_places_changes_travel_and_turning() -> None:
     np.testing.assert_allclose(features[:, 81], 0.5, atol=1e-3)
 
 
-def test_place_heading_and_size_change_nothing() -> None:
+def test_position_heading_and_size_change_nothing() -> None:
     body = walking(turn=0.5)
     one = frame_features(body_track(motion_of(body)))
     moved = turned_about_y(body, 2.0) * 1.7 + [3.0, 0.5, -4.0]
     np.testing.assert_allclose(frame_features(body_track(motion_of(moved))), one, atol=1e-3)
 
 
-def test_at_10hz_travel_weighs_double() -> None:
+def test_at_10_hz_travel_has_double_weight() -> None:
     features = frame_features(body_track(motion_of(walking(turn=0.5))))
     slow = features_at_10hz(features, 30.0)
     assert slow.shape == (41, FEATURES)
@@ -42,6 +42,6 @@ def test_at_10hz_travel_weighs_double() -> None:
     np.testing.assert_allclose(slow[20, TRAVEL], 2 * features[60, TRAVEL], rtol=0.02, atol=1e-3)
 
 
-def test_stillness_is_zero_change() -> None:
+def test_a_still_body_has_zero_velocities() -> None:
     features = frame_features(body_track(motion_of(standing(2))))
     assert (features[:, 39:] == 0).all()

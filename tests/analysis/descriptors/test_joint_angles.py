@@ -6,7 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from app.analysis.descriptors.joint_angles import ANGLES, CUT_OFF, filtered, joint_angles, spanned
+from app.analysis.descriptors.joint_angles import (
+    ANGLES,
+    CUT_OFF,
+    filtered,
+    joint_angles,
+    with_gaps_filled,
+)
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
 from tests.bodies import standing, turned_about_y, walking, waving
@@ -114,8 +120,8 @@ def test_short_gaps_are_spanned_by_a_spline_and_long_ones_by_a_line() -> None:
     values = np.sin(2 * t)
     seen = np.ones(60, dtype=bool)
     seen[20:25] = seen[:3] = False
-    np.testing.assert_allclose(spanned(values, seen, 7)[20:25], values[20:25], atol=2e-4)
-    assert (spanned(values, seen, 7)[:3] == values[3]).all()
-    line = spanned(values, seen, 4)[20:25]
+    np.testing.assert_allclose(with_gaps_filled(values, seen, 7)[20:25], values[20:25], atol=2e-4)
+    assert (with_gaps_filled(values, seen, 7)[:3] == values[3]).all()
+    line = with_gaps_filled(values, seen, 4)[20:25]
     np.testing.assert_allclose(np.diff(line), np.diff(line)[0])
-    assert not spanned(values, np.zeros(60, dtype=bool), 7).any()
+    assert not with_gaps_filled(values, np.zeros(60, dtype=bool), 7).any()

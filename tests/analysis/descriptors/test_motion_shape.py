@@ -28,7 +28,7 @@ def test_its_length_is_fixed_and_all_is_finite() -> None:
         assert np.isfinite(found).all()
 
 
-def test_a_walk_is_one_mean_cycle_and_a_wave_is_told_whole() -> None:
+def test_a_walk_is_one_mean_cycle_and_a_wave_is_the_whole_clip() -> None:
     walk, wave = parts_of(shape(walking(6.0, steps_hz=0.9))), parts_of(shape(waving(4.0)))
     assert walk.is_cyclic
     assert walk.seconds == pytest.approx(1 / 0.9, rel=0.02)

@@ -1,4 +1,4 @@
-"""The motion vector: fixed for years, invariant, and telling motions apart."""
+"""The motion vector never changes, is invariant, and separates motions."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_the_covariance_s_logarithm_equals_its_slow_twin() -> None:
 
 @given(turn=st.floats(-4, 4), x=st.floats(-9, 9), z=st.floats(-9, 9), scale=st.floats(0.3, 3))
 @settings(max_examples=25, deadline=None)
-def test_place_heading_and_size_change_nothing(
+def test_position_heading_and_size_change_nothing(
     turn: float, x: float, z: float, scale: float
 ) -> None:
     body = walking(turn=0.5)

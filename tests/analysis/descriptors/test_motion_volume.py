@@ -1,4 +1,4 @@
-"""Motion volumes and the two ways in which the paper compares them."""
+"""Motion volumes, and the two distances of the paper."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_another_norm_is_refused() -> None:
 
 
 @pytest.mark.parametrize("q", [1, 2])
-def test_place_heading_and_size_change_nothing(q: int) -> None:
+def test_position_heading_and_size_change_nothing(q: int) -> None:
     body = walking(turn=0.5)
     one = decompose(body_track(motion_of(body)), q=q)
     moved = turned_about_y(body, 2.0) * 1.7 + [3.0, 0.5, -4.0]

@@ -1,4 +1,4 @@
-"""A clip's few poses: every other one is as near to one of them as that one says."""
+"""The pose cover: every pose of a clip is within the radius of a chosen pose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Windows against the obvious loop over cut-out frames, and what they must not depend on."""
+"""Window vectors agree with a simple loop over windows, and are invariant."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def test_an_hour_has_its_digits_to_the_end() -> None:
 
 @given(turn=st.floats(-4, 4), x=st.floats(-9, 9), z=st.floats(-9, 9), scale=st.floats(0.3, 3))
 @settings(max_examples=15, deadline=None)
-def test_place_heading_and_size_change_nothing(
+def test_position_heading_and_size_change_nothing(
     turn: float, x: float, z: float, scale: float
 ) -> None:
     body = walking(turn=0.5)

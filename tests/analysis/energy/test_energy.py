@@ -1,4 +1,4 @@
-"""Energy: what moves, seen from the floor and from the waist."""
+"""The global and the local energy of motions."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def test_a_body_that_slides_has_global_energy_only() -> None:
         np.testing.assert_allclose(found.local_energy, 0.0, atol=1e-3)
 
 
-def test_limbs_that_move_against_each_other_cancel_as_printed_but_not_by_rms() -> None:
+def test_opposite_limb_movements_cancel_in_the_printed_energy_but_not_in_rms() -> None:
     body = standing(60)
     swing = 0.3 * np.sin(np.arange(60) / 5)[:, None] * np.array([0.0, 0.0, 1.0])
     place(body, JointRole.LEFT_HAND, swing)
@@ -41,23 +41,23 @@ def test_rms_of_one_moving_joint_is_its_speed_over_root_13() -> None:
     np.testing.assert_allclose(energies(track).global_energy, expected, rtol=1e-3)
 
 
-def test_weights_by_mass_make_the_printed_global_energy_that_of_the_center_of_mass() -> None:
+def test_with_mass_weights_the_printed_energy_is_the_speed_of_the_center_of_mass() -> None:
     body = walking(turn=0.5)
     track = body_track(motion_of(body))
-    found = energies(track, EnergyMethod.PRINTED, Weights.MASS).whole
+    found = energies(track, EnergyMethod.PRINTED, Weights.MASS).global_curve
     center = gaussian_filter1d(center_of_mass(track.positions), 1.0, axis=0)
     speed = np.linalg.norm(np.gradient(center, axis=0), axis=1) * 30 / track.body_length
     np.testing.assert_allclose(found.values[5:-5], speed[5:-5], rtol=1e-3)
 
 
 @pytest.mark.parametrize("weights", Weights)
-def test_the_equations_joint_by_joint(weights: Weights) -> None:
-    """A slow twin: the sums of eqs 1 and 2, and the mean square, written out."""
+def test_energies_agree_with_the_equations_written_as_loops(weights: Weights) -> None:
+    """A slow reference: the sums of eqs 1 and 2, and the mean square, joint by joint."""
     track = body_track(motion_of(waving()))
     shares = ROLE_MASSES if weights is Weights.MASS else [1 / 13] * 13
     for positions, scope in (
-        ((track.positions - track.origin[:1, None]) / track.body_length, "whole"),
-        (track.local, "own"),
+        ((track.positions - track.origin[:1, None]) / track.body_length, "global_curve"),
+        (track.local, "local_curve"),
     ):
         sums, squares = np.zeros((track.frames, 3)), np.zeros(track.frames)
         for joint, share in enumerate(shares):
@@ -71,10 +71,12 @@ def test_the_equations_joint_by_joint(weights: Weights) -> None:
         np.testing.assert_allclose(rms.values, np.sqrt(squares), atol=2e-3)
 
 
-def test_noise_is_smoothed_the_more_the_larger_it_is_and_taken_off() -> None:
-    clean = energies(body_track(motion_of(dance(5, 100, noise=0.0).positions, 60.0))).whole
+def test_larger_noise_gets_more_smoothing_and_is_subtracted() -> None:
+    clean = energies(body_track(motion_of(dance(5, 100, noise=0.0).positions, 60.0))).global_curve
     for noise, least in ((0.01, 0.97), (0.025, 0.9)):
-        shaken = energies(body_track(motion_of(dance(5, 100, noise=noise).positions, 60.0))).whole
+        shaken = energies(
+            body_track(motion_of(dance(5, 100, noise=noise).positions, 60.0))
+        ).global_curve
         assert shaken.smoothing > clean.smoothing
         assert shaken.noise > clean.noise
         assert np.corrcoef(shaken.values, clean.values)[0, 1] > least
@@ -83,7 +85,7 @@ def test_noise_is_smoothed_the_more_the_larger_it_is_and_taken_off() -> None:
 
 
 @pytest.mark.parametrize("method", EnergyMethod)
-def test_place_heading_and_size_change_nothing(method: EnergyMethod) -> None:
+def test_position_heading_and_size_change_nothing(method: EnergyMethod) -> None:
     body = walking(turn=0.5)
     one = energies(body_track(motion_of(body)), method)
     moved = turned_about_y(body, 2.0) * 1.7 + [3.0, 0.5, -4.0]
@@ -92,7 +94,7 @@ def test_place_heading_and_size_change_nothing(method: EnergyMethod) -> None:
     np.testing.assert_allclose(other.local_energy, one.local_energy, atol=2e-3)
 
 
-def test_stillness_has_none() -> None:
+def test_a_still_body_has_none() -> None:
     found = energies(body_track(motion_of(standing(2))))
     assert (found.global_energy == 0).all()
     assert (found.local_energy == 0).all()

@@ -1,4 +1,4 @@
-"""Marker noise: seen as large as it is, whatever the body does."""
+"""The estimate of marker noise does not depend on the movement."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ def noise_of(positions: FloatArray, rate: float) -> float:
 
 @pytest.mark.parametrize("rate", [30.0, 60.0, 120.0])
 @pytest.mark.parametrize("noise", [0.002, 0.005, 0.01, 0.025])
-def test_the_noise_on_a_dance_is_found(noise: float, rate: float) -> None:
+def test_the_noise_of_a_dance_is_estimated(noise: float, rate: float) -> None:
     made = dance(3, 110, beats=30, noise=noise, rate=rate)
     # The low-pass before the resampling keeps the share of the noise that 30 Hz can carry.
     assert noise_of(made.positions, rate) == pytest.approx(noise * np.sqrt(30 / rate), rel=0.12)
 
 
-def test_what_moves_without_noise_has_almost_none() -> None:
+def test_clean_motion_has_almost_no_noise() -> None:
     assert noise_of(dance(4, 140, noise=0.0).positions, 60.0) < 2e-4
     assert noise_of(walking(8.0), 30.0) < 2e-4
 
 
 @given(st.floats(0.01, 100.0), st.integers(0, 1000))
-def test_it_grows_with_the_unit_and_not_with_steady_movement(unit: float, seed: int) -> None:
+def test_noise_scales_with_the_unit_and_ignores_steady_movement(unit: float, seed: int) -> None:
     shaking = np.random.default_rng(seed).normal(size=(80, 13, 3))
     sliding = shaking + np.arange(80)[:, None, None] * 0.3 + 7.0
     assert noise_power(sliding, ALIKE) == pytest.approx(noise_power(shaking, ALIKE))
@@ -45,7 +45,7 @@ def test_it_grows_with_the_unit_and_not_with_steady_movement(unit: float, seed: 
     )
 
 
-def test_only_joints_that_weigh_are_looked_at() -> None:
+def test_joints_of_weight_0_are_ignored() -> None:
     shaking = np.zeros((200, 13, 3))
     shaking[:, 4] = np.random.default_rng(0).normal(size=(200, 3))
     on_it, beside = np.eye(13)[4], np.eye(13)[5]
@@ -53,12 +53,12 @@ def test_only_joints_that_weigh_are_looked_at() -> None:
     assert noise_power(shaking, beside) == 0.0
 
 
-def test_a_short_clip_counts_as_clean() -> None:
+def test_a_short_clip_has_no_noise() -> None:
     assert noise_power(np.random.default_rng(0).normal(size=(MIN_FRAMES - 1, 13, 3)), ALIKE) == 0
 
 
 @pytest.mark.parametrize("spread", [1.0, 2.0, 3.0])
-def test_noise_of_speed_is_what_smoothed_noise_has(spread: float) -> None:
+def test_noise_of_speed_agrees_with_simulated_noise(spread: float) -> None:
     rng = np.random.default_rng(1)
     reach = np.arange(-20, 21)
     kernel = np.exp(-0.5 * (reach / spread) ** 2)

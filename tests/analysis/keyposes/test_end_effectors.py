@@ -1,4 +1,4 @@
-"""The method by hands and feet that Perera compares with: what it finds, and what it misses."""
+"""Keyposes by hands and feet, the method that Perera compares with."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def stops_of(body: FloatArray) -> FloatArray:
     return end_effector_candidates(body_track(motion_of(body)), None).times()
 
 
-def test_stops_of_hands_and_feet_are_found_on_beats_and_without() -> None:
+def test_stops_of_hands_and_feet_are_found_with_and_without_beats() -> None:
     made = dance(2, 100, beats=20)
     track = body_track(motion_of(made.positions, made.rate))
     for beats in (given_beats(made.beats), None):
@@ -33,7 +33,7 @@ def test_feet_that_never_move_are_at_rest() -> None:
     assert set(np.diff(found).round()) <= {14, 15, 16}
 
 
-def test_hands_that_rest_while_feet_walk_on_make_none() -> None:
+def test_resting_hands_with_walking_feet_make_no_keypose() -> None:
     body = standing(240)
     t = np.arange(240) / 30
     stops = np.clip(np.sin(np.pi * t) * 1.3, -1, 1)[:, None] * [0.0, 0.3, 0.0]
@@ -46,7 +46,7 @@ def test_hands_that_rest_while_feet_walk_on_make_none() -> None:
     assert len(stops_of(body)) == 0
 
 
-def test_the_trunk_tells_it_nothing() -> None:
+def test_the_trunk_does_not_count() -> None:
     body = standing(120)
     place(body, JointRole.HEAD, np.sin(np.arange(120) / 8)[:, None] * [0.1, 0.0, 0.0])
     hands, feet = end_effector_speeds(body_track(motion_of(body)))
@@ -54,7 +54,7 @@ def test_the_trunk_tells_it_nothing() -> None:
     assert feet.values.max() < 1e-5
 
 
-def test_it_suffers_more_from_noise_than_the_energy_does() -> None:
+def test_noise_harms_this_method_more_than_the_energy() -> None:
     made = dance(7, 90, beats=24, noise=0.025)
     track = body_track(motion_of(made.positions, made.rate))
     theirs = end_effector_candidates(track, given_beats(made.beats)).times()
@@ -64,6 +64,6 @@ def test_it_suffers_more_from_noise_than_the_energy_does() -> None:
     )
 
 
-def test_stillness_has_none() -> None:
+def test_a_still_body_has_none() -> None:
     for frames in (2, 90):
         assert len(stops_of(standing(frames))) == 0

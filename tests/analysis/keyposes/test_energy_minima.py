@@ -1,4 +1,4 @@
-"""Rests: one in each valley, however it shakes, in units of the curve's own maxima."""
+"""Energy minima: one in each valley, in units of the median maximum."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from app.analysis.energy.energy import EnergyCurve
 from app.analysis.keyposes.energy_minima import (
-    STILL,
+    MIN_MAXIMUM,
     EnergyMinimum,
     find_energy_minima,
     usual_length,
@@ -28,7 +28,7 @@ def humps(heights: list[float], width: int = 20, hold: int = 6) -> FloatArray:
     return np.concatenate(parts)
 
 
-def test_every_hold_is_one_rest_and_knows_its_ends() -> None:
+def test_every_hold_is_one_minimum_with_its_ends() -> None:
     minima = find_energy_minima(curve(humps([1.0, 0.8, 1.2])))
     assert [minimum.energy for minimum in minima] == [0.0] * 4
     assert [(minimum.at_start, minimum.at_end) for minimum in minima] == [
@@ -40,7 +40,7 @@ def test_every_hold_is_one_rest_and_knows_its_ends() -> None:
     assert inner.drop == 0.8  # the lower maximum beside it; the median maximum is 1
 
 
-def test_a_hand_that_plays_in_a_hold_does_not_part_it() -> None:
+def test_a_small_movement_does_not_divide_a_hold() -> None:
     values = humps([1.0, 1.0, 1.0], hold=20)
     values[48:52] += 0.15
     assert len(find_energy_minima(curve(values))) == 4
@@ -48,7 +48,7 @@ def test_a_hand_that_plays_in_a_hold_does_not_part_it() -> None:
     assert len(find_energy_minima(curve(values))) == 5
 
 
-def test_a_clip_cut_in_movement_neither_begins_nor_ends_at_rest() -> None:
+def test_a_clip_that_is_cut_within_a_movement_does_not_begin_or_end_at_rest() -> None:
     values = humps([1.0, 1.0, 1.0])[12:-12]
     first, *_, last = find_energy_minima(curve(values))
     assert not first.at_start
@@ -56,16 +56,16 @@ def test_a_clip_cut_in_movement_neither_begins_nor_ends_at_rest() -> None:
     assert first.lowest > 5
 
 
-def test_what_does_not_move_has_none() -> None:
+def test_a_still_curve_has_no_minima() -> None:
     assert find_energy_minima(curve(np.zeros(50))) == ()
     assert find_energy_minima(curve(np.linspace(0, 1, 50))) == ()
-    assert find_energy_minima(curve(0.5 * STILL * humps([1.0, 1.0]))) == ()
+    assert find_energy_minima(curve(0.5 * MIN_MAXIMUM * humps([1.0, 1.0]))) == ()
     shaking = np.abs(np.random.default_rng(0).normal(size=300))
     assert find_energy_minima(curve(0.1 * shaking, noise=0.3)) == ()
 
 
 @given(st.floats(0.1, 50.0), st.lists(st.floats(0.7, 1.3), min_size=3, max_size=8))
-def test_size_changes_nothing_and_time_may_run_backwards(
+def test_size_changes_nothing_and_reversed_time_reverses_the_minima(
     scale: float, heights: list[float]
 ) -> None:
     values = humps(heights)
@@ -81,7 +81,7 @@ def test_size_changes_nothing_and_time_may_run_backwards(
     ]
 
 
-def test_the_usual_length_is_that_of_sure_rests_within_the_clip() -> None:
+def test_the_usual_length_is_that_of_certain_minima_within_the_clip() -> None:
     def minimum(length: int, energy: float = 0.0, *, at_end: bool = False) -> EnergyMinimum:
         return EnergyMinimum(0, 0, length, energy, 1.0, at_start=False, at_end=at_end)
 

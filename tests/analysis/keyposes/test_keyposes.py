@@ -1,4 +1,4 @@
-"""Keyposes: the stops of dances are found; nothing else is."""
+"""Keyposes are the stops of dances and nothing else."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_rms_finds_more_than_the_printed_equations() -> None:
 
 
 @pytest.mark.parametrize("weights", Weights)
-def test_either_weights_find_the_stops(weights: Weights) -> None:
+def test_both_kinds_of_weights_find_the_stops(weights: Weights) -> None:
     found = [find_keyposes(t, weights=weights, beats=d.beats) for d, t in dances()]
     assert f_score(found) > 0.95
 
@@ -63,7 +63,7 @@ def test_frames_rise_and_times_agree() -> None:
     assert found.method is EnergyMethod.PRINTED
 
 
-def test_higher_demands_leave_fewer_keyposes() -> None:
+def test_stricter_thresholds_give_fewer_keyposes() -> None:
     made, track = dances()[2]
     demands = ((1.0, 0.0), (0.25, 0.7), (0.01, 0.7), (1e-6, 3.0))
     for beats in (made.beats, np.zeros(0)):
@@ -73,7 +73,7 @@ def test_higher_demands_leave_fewer_keyposes() -> None:
         assert counts[-1] == 0
 
 
-def test_a_candidate_is_taken_when_it_is_small_or_deep_and_global_goes_first() -> None:
+def test_small_or_deep_candidates_are_selected_and_global_ones_have_priority() -> None:
     """Section 3.1, over every candidate of a dance."""
     made, track = dances()[0]
     candidates = find_candidates(track, beats=made.beats)
@@ -88,7 +88,7 @@ def test_a_candidate_is_taken_when_it_is_small_or_deep_and_global_goes_first() -
         assert {c.beat: c.scope for c in candidates.select(t1, t2)} == expected
 
 
-def test_local_energy_speaks_where_global_energy_is_silent() -> None:
+def test_local_energy_finds_stops_that_global_energy_does_not_show() -> None:
     """Carried along at a steady speed, the stops are seen from the waist alone."""
     made, _ = dances()[1]
     carried = made.positions + (np.arange(len(made.positions)) / made.rate)[:, None, None] * [
@@ -102,7 +102,7 @@ def test_local_energy_speaks_where_global_energy_is_silent() -> None:
     assert set(found.chosen_by) == {Scope.LOCAL}
 
 
-def test_a_walker_has_a_keypose_at_each_step_and_stops_none_between_them() -> None:
+def test_a_walker_has_a_keypose_at_each_step() -> None:
     track = body_track(motion_of(walking(8.0, steps_hz=0.9)))
     found = find_keyposes(track)
     assert len(found.frames) == pytest.approx(2 * 0.9 * 8.0, abs=2)
@@ -138,7 +138,7 @@ def test_the_order_of_beats_and_repetitions_do_not_matter() -> None:
     np.testing.assert_array_equal(one.frames, other.frames)
 
 
-def test_beats_of_the_motion_itself_are_hints_and_others_are_law() -> None:
+def test_only_independent_beats_restrict_keyposes() -> None:
     made, track = dances()[2]
     every_other = made.beats[::2]
     law = find_keyposes(track, beats=Beats(every_other, None, 1.0, BeatSource.AUDIO))

@@ -1,4 +1,4 @@
-"""Low-dimensional motion: equations 4 to 11, and what must hold of them."""
+"""Low-dimensional motion: equations 4 to 11 and their properties."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Implausible poses: what bodies do is let pass, what they do not is found, and where."""
+"""Implausible poses are found with their frames; poses of real bodies are accepted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Beats of recordings: clicks and music at tempi that may drift; none in what has none."""
+"""Beats of recordings: clicks and music with steady and drifting tempi."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.recordings import WITHOUT_BEAT, f_score, piece, without_beat
 
 
 @pytest.mark.parametrize("bpm", [60.0, 97.0, 140.0])
-def test_a_metronome_is_followed_exactly(bpm: float) -> None:
+def test_the_clicks_of_a_metronome_are_found_exactly(bpm: float) -> None:
     samples, beats = piece(11, "clicks", bpm, drift=0.04, seconds=20.0)
     found = find_audio_beats(find_onsets(samples, SAMPLE_RATE))
     assert f_score(found.times, beats, within=0.03) > 0.97
@@ -25,7 +25,7 @@ def test_a_metronome_is_followed_exactly(bpm: float) -> None:
 
 
 @pytest.mark.parametrize("style", STYLES)
-def test_music_of_every_style_is_followed_at_its_own_tempo(style: str) -> None:
+def test_the_tempo_of_every_style_is_found(style: str) -> None:
     samples, beats = piece(12, style, 100.0, drift=0.03, seconds=24.0)
     found = find_audio_beats(find_onsets(samples, SAMPLE_RATE))
     assert f_score(found.times, beats) > 0.9
@@ -33,7 +33,7 @@ def test_music_of_every_style_is_followed_at_its_own_tempo(style: str) -> None:
 
 @pytest.mark.parametrize("kind", WITHOUT_BEAT)
 @pytest.mark.parametrize("seed", [0, 1])
-def test_what_has_no_beat_gets_none(kind: str, seed: int) -> None:
+def test_recordings_without_a_beat_have_no_beats(kind: str, seed: int) -> None:
     found = find_audio_beats(find_onsets(without_beat(seed, kind), SAMPLE_RATE))
     assert len(found.times) == 0
     assert found.tempo is None
@@ -41,7 +41,7 @@ def test_what_has_no_beat_gets_none(kind: str, seed: int) -> None:
     assert found.confidence < 0.5
 
 
-def test_a_tempo_that_is_told_is_kept() -> None:
+def test_a_given_tempo_is_used() -> None:
     samples, beats = piece(13, "disco", 120.0, seconds=12.0)
     onsets = find_onsets(samples, SAMPLE_RATE)
     half = find_audio_beats(onsets, tempo=60.0)
@@ -51,7 +51,7 @@ def test_a_tempo_that_is_told_is_kept() -> None:
 
 
 @pytest.mark.parametrize("seconds", [0.0, 0.5, 2.0])
-def test_too_little_to_have_a_beat(seconds: float) -> None:
+def test_short_recordings_have_no_beats(seconds: float) -> None:
     samples = np.random.default_rng(0).normal(size=int(seconds * SAMPLE_RATE))
     found = find_audio_beats(find_onsets(samples, SAMPLE_RATE))
     assert len(found.times) == 0
@@ -77,13 +77,13 @@ def slow_track(strength: np.ndarray, period: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("period", [7.3, 25.0])
-def test_tracking_by_blocks_is_tracking_by_frames(period: float) -> None:
+def test_tracking_by_blocks_equals_tracking_by_frames(period: float) -> None:
     strength = np.random.default_rng(5).gamma(0.4, 2.0, 400)
     fast, slow = track(strength, period, TIGHTNESS), slow_track(strength, period)
     np.testing.assert_array_equal(fast, slow)
 
 
-def test_beats_cover_what_sounds_and_nothing_else() -> None:
+def test_beats_cover_only_the_part_with_sound() -> None:
     samples, beats = piece(14, "march", 100.0, seconds=12.0)
     silence = np.zeros(5 * SAMPLE_RATE)
     padded = np.concatenate([silence, samples, silence])

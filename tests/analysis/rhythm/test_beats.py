@@ -1,4 +1,4 @@
-"""Beats: the tempo of dances, drifting or not, and none where there is none."""
+"""Beats of motions: steady and drifting tempi of dances, and none in other motions."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_beats_reach_from_the_first_frame_to_the_last() -> None:
     assert np.all(np.diff(times) > 0.8 * beat)
 
 
-def test_a_tempo_that_is_told_is_placed_where_the_motion_rests() -> None:
+def test_beats_of_a_given_tempo_are_at_the_stops_of_the_motion() -> None:
     made = dance(7, 90, beats=20)
     energy = energies(body_track(motion_of(made.positions, made.rate))).global_energy
     found = beats_of_tempo(energy, 30.0, 90.0)
@@ -61,14 +61,14 @@ def test_a_tempo_that_is_told_is_placed_where_the_motion_rests() -> None:
     assert np.median(np.abs(made.beats[:, None] - found.times).min(axis=1)) < 0.08
 
 
-def test_a_tempo_told_of_stillness_is_counted_from_the_first_frame() -> None:
+def test_beats_of_a_given_tempo_begin_at_the_first_frame_of_a_still_motion() -> None:
     found = beats_of_tempo(np.zeros(91), 30.0, 120.0)
     np.testing.assert_allclose(found.times, np.arange(6) * 0.5)
     assert (found.tempo, found.confidence, found.source) == (120.0, 0.0, BeatSource.TEMPO)
     assert len(beats_of_tempo(np.zeros(1), 30.0, 120.0).times) <= 1
 
 
-def test_beats_that_are_listed_are_taken() -> None:
+def test_given_beats_are_used() -> None:
     found = given_beats(np.array([0.5, 1.0, 1.6, 2.0]))
     assert found.tempo == pytest.approx(120.0)
     assert (found.confidence, found.source) == (1.0, BeatSource.GIVEN)
@@ -83,7 +83,7 @@ def test_the_beats_of_a_walk_are_its_steps() -> None:
     assert found.tempo == pytest.approx(108.0, rel=0.03)
 
 
-def test_stops_at_no_beat_are_rarely_taken_for_one() -> None:
+def test_random_stops_rarely_have_beats() -> None:
     accepted = 0
     for seed in range(8):
         energy = energies(body_track(motion_of(irregular(seed, 100.0), 60.0))).global_energy
@@ -100,7 +100,7 @@ def test_aimless_motion_rarely_has_beats() -> None:
 
 
 @pytest.mark.parametrize("frames", [0, 1, 2, 20, 300])
-def test_little_and_stillness_have_no_beats(frames: int) -> None:
+def test_short_and_still_motions_have_no_beats(frames: int) -> None:
     found = find_beats(np.zeros(frames), 30.0)
     assert found.tempo is None
     assert len(found.times) == 0

@@ -1,4 +1,4 @@
-"""Onsets: where sounds begin, whatever the sample rate, and nothing where none does."""
+"""Onsets are at the beginnings of sounds, at every sample rate."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.recordings import piece, without_beat
 
 
 @pytest.mark.parametrize("style", ["clicks", "march", "ballad"])
-def test_strength_is_greatest_where_beats_are(style: str) -> None:
+def test_strength_is_largest_at_beats(style: str) -> None:
     samples, beats = piece(3, style, 90.0, seconds=12.0)
     strength = find_onsets(samples, SAMPLE_RATE).strength
     frames = np.round(beats * RATE).astype(int)
@@ -19,7 +19,7 @@ def test_strength_is_greatest_where_beats_are(style: str) -> None:
     assert np.median(at_beats) > 4 * strength.mean()
 
 
-def test_an_onset_is_placed_within_two_hundredths() -> None:
+def test_the_time_of_an_onset_is_exact_to_20_ms() -> None:
     samples, beats = piece(1, "clicks", 60.0, seconds=12.0)
     strength = find_onsets(samples, SAMPLE_RATE).strength
     for beat in beats:

@@ -1,4 +1,4 @@
-"""A clip's beats from all that is known, and the offset of its recording planted and found."""
+"""The beats of a clip from all sources, and the offset of its recording."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def made(seed: int, sound: Sound, offset: float) -> tuple[DemoClip, BodyTrack, O
 
 @pytest.mark.parametrize("sound", Sound)
 @pytest.mark.parametrize("offset", [-2.37, 0.0, 0.61])
-def test_a_planted_offset_is_found_but_for_whole_beats(sound: Sound, offset: float) -> None:
+def test_a_known_offset_is_estimated_up_to_whole_beats(sound: Sound, offset: float) -> None:
     clip, track, onsets = made(5, sound, offset)
     rhythm = find_rhythm(track, onsets=onsets)
     assert rhythm.offset is not None
@@ -45,7 +45,7 @@ def test_a_planted_offset_is_found_but_for_whole_beats(sound: Sound, offset: flo
     assert np.abs(beats[:, None] - rhythm.beats.times).min(axis=1).max() < 0.09
 
 
-def test_an_offset_that_is_told_is_kept() -> None:
+def test_a_given_offset_is_used() -> None:
     _, track, onsets = made(5, Sound.MUSIC, 0.0)
     rhythm = find_rhythm(track, RhythmInput(audio_offset=7.0), onsets)
     assert rhythm.offset is not None
@@ -53,21 +53,21 @@ def test_an_offset_that_is_told_is_kept() -> None:
     assert rhythm.cautions == ()
 
 
-def test_beats_go_on_where_the_recording_is_silent() -> None:
+def test_beats_continue_where_the_recording_is_silent() -> None:
     _, track, onsets = made(5, Sound.MUSIC, 0.0)
     late = find_rhythm(track, RhythmInput(audio_offset=4.0), onsets).beats
     assert 0.0 <= late.times[0] < 1.0
     assert late.times[-1] <= energies(track).global_energy.size / 30.0
 
 
-def test_a_recording_that_never_meets_the_motion_tells_nothing_of_it() -> None:
+def test_a_recording_outside_the_motion_is_ignored() -> None:
     _, track, onsets = made(5, Sound.MUSIC, 0.0)
     apart = find_rhythm(track, RhythmInput(audio_offset=1000.0), onsets)
     assert apart.beats.source in (BeatSource.MOTION, BeatSource.NONE)
     assert [caution.code for caution in apart.cautions] == ["audio_apart"]
 
 
-def test_beats_that_are_given_for_another_motion_are_told_of_and_not_used() -> None:
+def test_given_beats_outside_the_motion_cause_a_caution_and_are_ignored() -> None:
     _, track, _ = made(5, Sound.MUSIC, 0.0)
     rhythm = find_rhythm(track, RhythmInput(beats=(600.0, 601.0)))
     assert rhythm.beats.source is find_rhythm(track).beats.source
@@ -76,7 +76,7 @@ def test_beats_that_are_given_for_another_motion_are_told_of_and_not_used() -> N
     assert (some.beats.source, some.cautions) == (BeatSource.GIVEN, ())
 
 
-def test_a_recording_without_a_beat_leaves_the_motion_to_tell() -> None:
+def test_without_beats_in_the_recording_the_motion_is_used() -> None:
     _, track, _ = made(5, Sound.MUSIC, 0.0)
     speech = find_onsets(without_beat(1, "speech"), 22050.0)
     rhythm, alone = find_rhythm(track, onsets=speech), find_rhythm(track)
@@ -85,7 +85,7 @@ def test_a_recording_without_a_beat_leaves_the_motion_to_tell() -> None:
     assert [caution.code for caution in rhythm.cautions] == ["audio_without_beats"]
 
 
-def test_a_still_body_does_not_tell_when_its_recording_begins() -> None:
+def test_a_still_body_gives_no_offset() -> None:
     _, _, onsets = made(5, Sound.MUSIC, 0.0)
     rhythm = find_rhythm(body_track(motion_of(standing(300))), onsets=onsets)
     assert rhythm.offset is None
@@ -93,10 +93,10 @@ def test_a_still_body_does_not_tell_when_its_recording_begins() -> None:
     assert [caution.code for caution in rhythm.cautions] == ["audio_offset_unknown"]
 
 
-def test_what_is_told_goes_first() -> None:
+def test_given_values_have_priority() -> None:
     clip, track, onsets = made(5, Sound.MUSIC, 0.0)
-    told = RhythmInput(beats=(0.5, 1.5), tempo=60.0, audio_offset=0.0)
-    assert find_rhythm(track, told, onsets).beats.source is BeatSource.GIVEN
+    given = RhythmInput(beats=(0.5, 1.5), tempo=60.0, audio_offset=0.0)
+    assert find_rhythm(track, given, onsets).beats.source is BeatSource.GIVEN
     both = find_rhythm(track, RhythmInput(tempo=47.5, audio_offset=0.0), onsets).beats
     assert (both.source, both.tempo) == (BeatSource.TEMPO, 47.5)
     halved = find_rhythm(track, RhythmInput(tempo=47.5), onsets)
@@ -109,7 +109,7 @@ def test_what_is_told_goes_first() -> None:
 
 
 @pytest.mark.parametrize("source", SOURCES)
-def test_what_is_stored_is_what_was_found(source: BeatSource) -> None:
+def test_beats_are_the_same_after_storage(source: BeatSource) -> None:
     _, track, _ = made(5, Sound.MUSIC, 0.0)
     rhythm = find_rhythm(track)
     rhythm = replace(rhythm, beats=replace(rhythm.beats, source=source))

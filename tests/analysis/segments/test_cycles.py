@@ -1,4 +1,4 @@
-"""Cycles: what is danced again is found, where and how often; what is not is let be."""
+"""Cycles: repeated sequences are found, and others are not."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_repeated_sequences_are_found_with_their_known_keyposes(
 
 
 @pytest.mark.parametrize("seed", range(210, 218))
-def test_keyposes_that_are_missed_do_little_harm(seed: int) -> None:
+def test_missed_keyposes_do_little_harm(seed: int) -> None:
     dance = cyclic_dance(seed, poses=6, times=5)
     track = _track(dance)
     found = find_keyposes(track).frames
@@ -61,7 +61,7 @@ def test_keyposes_that_are_missed_do_little_harm(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(220, 232))
-def test_what_never_comes_again_has_no_cycle(seed: int) -> None:
+def test_a_sequence_without_repetition_has_no_cycle(seed: int) -> None:
     dance = cyclic_dance(seed, poses=20, times=1)
     assert find_cycles(_poses(_track(dance)), np.array(dance.stops) * 30) == ()
 
@@ -80,7 +80,7 @@ def test_two_sequences_are_two_runs() -> None:
     assert [c.first for c in found] == sorted(c.first for c in found)
 
 
-def test_what_stands_still_or_shakes_repeats_nothing() -> None:
+def test_a_body_that_stands_still_or_shakes_has_no_cycles() -> None:
     draw = np.random.default_rng(1)
     still, shaking = np.zeros((300, 39)), 0.002 * draw.normal(size=(300, 39))
     bounds = np.arange(0.0, 300.0, 15.0)
@@ -89,7 +89,7 @@ def test_what_stands_still_or_shakes_repeats_nothing() -> None:
 
 
 @pytest.mark.parametrize("bounds", [[], [3.0], [3.0, 9.0]])
-def test_less_than_two_segments_repeat_nothing(bounds: list[float]) -> None:
+def test_fewer_than_two_segments_have_no_cycles(bounds: list[float]) -> None:
     assert find_cycles(np.zeros((20, 39)), np.array(bounds)) == ()
     assert find_cycles(np.zeros((1, 39)), np.array([0.0, 0.5, 1.0])) == ()
 
@@ -122,7 +122,7 @@ def test_cycles_are_within_bounds_and_share_no_segment(
         assert all(a.stop == b.first for a, b in pairwise(own))
 
 
-def test_an_hour_of_steps_is_no_trouble() -> None:
+def test_an_hour_of_steps_is_processed() -> None:
     t = np.arange(6000)
     poses = np.sin(2 * np.pi * t[:, None] / 20 + np.arange(6))
     found = find_cycles(poses, np.arange(0.0, 5990.0, 10.0))

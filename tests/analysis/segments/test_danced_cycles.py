@@ -39,7 +39,7 @@ def test_a_segment_begins_where_the_one_before_ends(arrays: dict[str, FloatArray
     np.testing.assert_allclose(segments[1:, 0], segments[:-1, -1], atol=1e-9)
 
 
-def test_what_does_not_repeat_is_one_segment(arrays: dict[str, FloatArray]) -> None:
+def test_a_motion_without_repetition_is_one_segment(arrays: dict[str, FloatArray]) -> None:
     none = arrays | {"segment_cycles": np.zeros((0, 3), dtype=np.int32)}
     found = danced_cycles(none)
     assert (found.length, len(found.segments)) == (1, 1)

@@ -1,4 +1,4 @@
-"""Segments as vectors: like ones are near, whoever dances them, and unlike ones are not."""
+"""Vectors of segments: similar segments of all dancers are near, others are not."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_the_same_step_of_another_dancer_and_time_is_nearest() -> None:
     assert right >= 14
 
 
-def test_a_step_and_its_reverse_are_told_apart() -> None:
+def test_a_step_differs_from_its_reverse() -> None:
     there = waving(2.0, hz=0.125)  # sideways once
     back = there[::-1]
     same, reverse = (segment_vectors(_features(b), np.array([[0.2, 1.8]])) for b in (there, back))
@@ -56,7 +56,7 @@ def test_a_step_and_its_reverse_are_told_apart() -> None:
 
 @settings(max_examples=10, deadline=None)
 @given(st.floats(0.5, 2.0), st.floats(-3.0, 3.0), st.tuples(*[st.floats(-5.0, 5.0)] * 2))
-def test_size_heading_and_place_do_not_matter(
+def test_size_heading_and_position_do_not_matter(
     size: float, angle: float, place: tuple[float, float]
 ) -> None:
     dance = cyclic_dance(310, poses=3, times=1, noise=0.0)
@@ -77,7 +77,7 @@ def test_distances_are_those_of_the_joints() -> None:
     assert apart == pytest.approx(0.3 / body_track(motion_of(body)).body_length, rel=1e-3)
 
 
-def test_arrays_are_of_one_length_and_cycles_within_it() -> None:
+def test_arrays_have_one_length_and_cycles_are_within_it() -> None:
     dance = cyclic_dance(320, poses=5, times=4)
     arrays = describe_segments(_features(dance.positions, dance.rate), dance.stops)
     count = len(dance.stops) - 1
@@ -89,14 +89,14 @@ def test_arrays_are_of_one_length_and_cycles_within_it() -> None:
 
 
 @pytest.mark.parametrize("keyposes", [[], [0.5]])
-def test_no_two_keyposes_no_segment(keyposes: list[float]) -> None:
+def test_fewer_than_two_keyposes_give_no_segment(keyposes: list[float]) -> None:
     arrays = describe_segments(_features(standing(30)), np.array(keyposes))
     assert {name: array.shape for name, array in arrays.items()} == {
         "segment_spans": (0, 2), "segment_vectors": (0, SEGMENT_WIDTH), "segment_cycles": (0, 3),
     }  # fmt: skip
 
 
-def test_times_beyond_the_clip_are_held_at_its_end() -> None:
+def test_times_outside_the_clip_use_its_ends() -> None:
     features = _features(standing(3))
     arrays = describe_segments(features, np.array([0.0, 0.03, 0.06, 4.0]))
     assert all(np.isfinite(array).all() for array in arrays.values())

@@ -27,12 +27,12 @@ def channel(features: np.ndarray, name: str) -> np.ndarray:
     ],
     ids=["place", "heading", "size"],
 )
-def test_place_heading_and_size_do_not_count(changed) -> None:  # type: ignore[no-untyped-def]
+def test_position_heading_and_size_do_not_matter(changed) -> None:  # type: ignore[no-untyped-def]
     body = walking()
     np.testing.assert_allclose(features_of(changed(body)), features_of(body), atol=2e-3)
 
 
-def test_frame_rate_hardly_counts() -> None:
+def test_the_frame_rate_hardly_matters() -> None:
     slow = symbol_statistics(features_of(walking(rate=30.0)), 30.0)
     fast = symbol_statistics(features_of(walking(rate=120.0), 120.0), 30.0)
     np.testing.assert_allclose(fast, slow, atol=0.1)
@@ -49,7 +49,7 @@ def test_the_mirrored_body_has_mirrored_channels() -> None:
         np.testing.assert_allclose(other * sign, channel(there, name), atol=1e-4)
 
 
-def test_channels_mean_what_their_names_say() -> None:
+def test_channels_agree_with_their_names() -> None:
     walk, wave = features_of(walking(speed=1.2)), features_of(waving())
     assert channel(walk, "speed_forward").mean() > 0.5
     assert abs(channel(walk, "speed_left").mean()) < 0.2
@@ -61,7 +61,7 @@ def test_channels_mean_what_their_names_say() -> None:
     assert channel(wave, "height").mean() > 5.0
 
 
-def test_an_arm_swung_all_round_never_jumps() -> None:
+def test_channels_of_a_circling_arm_do_not_jump() -> None:
     body = standing(90)
     angle = np.linspace(0, 4 * np.pi, 90)
     circle = np.stack([0 * angle, 0.28 - 0.28 * np.cos(angle), 0.28 * np.sin(angle)], axis=1)

@@ -1,4 +1,4 @@
-"""A symbol generates the motion that it was fitted to, but for what its states average out."""
+"""A symbol generates the motion to which it was fitted, except for averaging within states."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _bones(positions: np.ndarray) -> np.ndarray:
     return np.linalg.norm(positions[:, children] - positions[:, parents], axis=-1)
 
 
-def test_it_lasts_and_travels_as_the_clip_does(track: BodyTrack, made: SymbolMotion) -> None:
+def test_duration_and_travel_agree_with_the_clip(track: BodyTrack, made: SymbolMotion) -> None:
     assert len(made.positions) == pytest.approx(track.frames, rel=0.05)
     assert len(made.means) == len(made.spreads) == len(made.positions)
     way = np.linalg.norm((made.positions[-1, HIPS] - made.positions[0, HIPS])[[0, 2]])
@@ -41,7 +41,7 @@ def test_it_lasts_and_travels_as_the_clip_does(track: BodyTrack, made: SymbolMot
     assert way == pytest.approx(walked, rel=0.1)
 
 
-def test_its_poses_are_those_of_the_clip_but_for_the_states_averaging(
+def test_poses_agree_with_the_clip_except_for_averaging(
     track: BodyTrack, made: SymbolMotion
 ) -> None:
     generated = body_track(motion_of(made.positions)).local
@@ -52,8 +52,8 @@ def test_its_poses_are_those_of_the_clip_but_for_the_states_averaging(
 
 
 def test_limbs_keep_their_lengths(track: BodyTrack, made: SymbolMotion) -> None:
-    wanted = np.median(_bones(track.local), axis=0) * track.body_length
-    assert np.allclose(_bones(made.positions), wanted)
+    expected = np.median(_bones(track.local), axis=0) * track.body_length
+    assert np.allclose(_bones(made.positions), expected)
 
 
 def test_the_channels_are_those_of_the_generated_motion(made: SymbolMotion) -> None:

@@ -20,7 +20,7 @@ def symbol(positions: np.ndarray) -> GaussianHMM:
 
 
 @pytest.mark.parametrize(("frames", "states"), [(2, 1), (30, 10), (300, 30)])
-def test_shapes_of_what_is_stored(frames: int, states: int) -> None:
+def test_shapes_of_the_stored_arrays(frames: int, states: int) -> None:
     arrays = described(walking(seconds=(frames - 1) / 30))
     shapes = {name: array.shape for name, array in arrays.items()}
     assert shapes == {
@@ -38,7 +38,7 @@ def test_the_same_motion_gives_the_same_symbol() -> None:
         np.testing.assert_array_equal(array, again[name])
 
 
-def test_like_motions_are_near() -> None:
+def test_similar_motions_are_near() -> None:
     walk, again = symbol(walking()), symbol(turned_about_y(walking(speed=1.3), 1.0))
     others = [symbol(waving()), symbol(standing()), symbol(walking(steps_hz=1.6, speed=3.0))]
     distances = symbol_distances([walk], [again, *others])[0]

@@ -1,4 +1,4 @@
-"""A confusion matrix as text: whole where it fits 100 columns, else its largest confusions."""
+"""A confusion matrix as text: complete if it fits 100 columns, else its largest confusions."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.cli.evaluate.confusion_table import MAX_PAIRS, print_confusion
-from app.cli.output import WIDEST
+from app.cli.output import MAX_WIDTH
 from app.numerics.arrays import FloatArray
 
 
@@ -15,7 +15,7 @@ def _mostly_right(count: int) -> FloatArray:
     return np.asarray(shares / shares.sum(axis=1, keepdims=True))
 
 
-def test_what_fits_is_printed_whole(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_small_matrix_is_printed_completely(capsys: pytest.CaptureFixture[str]) -> None:
     print_confusion(["kick", "walk"], np.array([[0.75, 0.25], [0.0, 1.0]]))
     assert capsys.readouterr().out.splitlines() == [
         "          1   2",
@@ -31,10 +31,10 @@ def test_no_line_is_wider_than_a_hundred_columns(
 ) -> None:
     classes = [f"{number:x<{length}}" for number in range(count)]
     print_confusion(classes, _mostly_right(count))
-    assert max(map(len, capsys.readouterr().out.splitlines())) <= WIDEST
+    assert max(map(len, capsys.readouterr().out.splitlines())) <= MAX_WIDTH
 
 
-def test_of_many_classes_the_largest_confusions_are_told(
+def test_for_many_classes_the_largest_confusions_are_printed(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     count = 41
@@ -51,6 +51,6 @@ def test_of_many_classes_the_largest_confusions_are_told(
     assert lines[-1].startswith("41 classes, the 25 largest of 39 confusions; --json")
 
 
-def test_many_classes_none_of_which_is_confused(capsys: pytest.CaptureFixture[str]) -> None:
+def test_many_classes_without_confusion(capsys: pytest.CaptureFixture[str]) -> None:
     print_confusion([f"c{number}" for number in range(41)], np.eye(41))
-    assert capsys.readouterr().out.startswith("41 classes, none of which is taken for another;")
+    assert capsys.readouterr().out.startswith("41 classes, no confusion;")

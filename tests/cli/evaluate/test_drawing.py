@@ -1,4 +1,4 @@
-"""Where pictures of an evaluation may go is told before the evaluation begins."""
+"""The paths of pictures are checked before an evaluation begins."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ COMMANDS = [
 
 
 @pytest.mark.parametrize(("name", "option", "ending"), COMMANDS)
-def test_an_evaluation_does_not_begin_in_vain(
+def test_a_wrong_path_is_refused_before_the_library_is_opened(
     kinedex: Kinedex,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -44,7 +44,7 @@ def test_an_evaluation_does_not_begin_in_vain(
 
 
 @pytest.mark.parametrize(
-    ("place", "why"),
+    ("path", "reason"),
     [
         ("notes/deeper", "a part of that path is a file"),
         pytest.param(
@@ -55,24 +55,24 @@ def test_an_evaluation_does_not_begin_in_vain(
         ("x" * 300, "File name too long"),
     ],
 )
-def test_places_where_nothing_can_be_written(tmp_path: Path, place: str, why: str) -> None:
+def test_paths_that_cannot_be_written_are_refused(tmp_path: Path, path: str, reason: str) -> None:
     (tmp_path / "notes").write_text("mine")
-    with pytest.raises(BadField, match=why):
-        Drawing.prepared(folder=tmp_path / place)
-    with pytest.raises(BadField, match=why):
-        Drawing.prepared(tmp_path / place / "figure.svg")
+    with pytest.raises(BadField, match=reason):
+        Drawing.prepared(folder=tmp_path / path)
+    with pytest.raises(BadField, match=reason):
+        Drawing.prepared(tmp_path / path / "figure.svg")
     with pytest.raises(BadField, match="File name too long"):
         Drawing.prepared(tmp_path / f"{'x' * 300}.svg")
-    assert [path.name for path in tmp_path.iterdir()] == ["notes"]
+    assert [file.name for file in tmp_path.iterdir()] == ["notes"]
 
 
-def test_a_folder_is_no_picture(tmp_path: Path) -> None:
+def test_a_folder_is_not_a_picture_file(tmp_path: Path) -> None:
     (tmp_path / "figure.svg").mkdir()
     with pytest.raises(BadField, match="is a folder, not a file"):
         Drawing.prepared(tmp_path / "figure.svg")
 
 
-def test_looking_leaves_nothing_and_drawing_makes_what_is_missing(tmp_path: Path) -> None:
+def test_checking_creates_nothing_and_drawing_creates_missing_folders(tmp_path: Path) -> None:
     drawing = Drawing.prepared(tmp_path / "a" / "b" / "one.png", tmp_path / "c" / "d", "pdf")
     assert list(tmp_path.iterdir()) == []
     drawing.draw_one(lambda form: form.encode())
@@ -82,7 +82,7 @@ def test_looking_leaves_nothing_and_drawing_makes_what_is_missing(tmp_path: Path
     assert drawn == {"x.pdf": "x", "y.pdf": "y"}
 
 
-def test_nothing_is_drawn_where_nothing_is_wanted(tmp_path: Path) -> None:
+def test_without_paths_nothing_is_drawn(tmp_path: Path) -> None:
     drawing = Drawing.prepared()
     drawing.draw_one(lambda form: pytest.fail(form))
     drawing.draw_all(lambda form: pytest.fail(form))

@@ -39,15 +39,15 @@ def test_tables_for_people_fit_a_terminal(kinedex: Kinedex, danced: Path) -> Non
 
 
 def test_json_for_programs(kinedex: Kinedex, danced: Path) -> None:
-    told = kinedex(*COMMAND, "--json", "--tolerance", "0.05", data_dir=danced).json()
-    assert told["tolerance"] == 0.05
-    assert len(told["clips"]) == told["recordings"] == len(TEMPI)
-    rms = told["methods"]["rms"]
+    result = kinedex(*COMMAND, "--json", "--tolerance", "0.05", data_dir=danced).json()
+    assert result["tolerance"] == 0.05
+    assert len(result["clips"]) == result["recordings"] == len(TEMPI)
+    rms = result["methods"]["rms"]
     assert set(rms) == {"held_out", "usual_thresholds", "learned", "over_t1", "over_t2"}
     assert len(rms["over_t1"]["values"]) == len(rms["over_t1"]["recall"])
 
 
-def test_a_fit_learns_thresholds_from_what_the_manifest_names(
+def test_a_fit_learns_thresholds_from_the_keyposes_of_the_manifest(
     kinedex: Kinedex, danced: Path
 ) -> None:
     fitted = kinedex("fit", "--json", data_dir=danced).json()
@@ -57,10 +57,12 @@ def test_a_fit_learns_thresholds_from_what_the_manifest_names(
 
 
 @pytest.mark.slow
-def test_pictures_go_where_they_are_wanted(kinedex: Kinedex, danced: Path, tmp_path: Path) -> None:
+def test_pictures_are_written_to_the_given_paths(
+    kinedex: Kinedex, danced: Path, tmp_path: Path
+) -> None:
     curves, folder = tmp_path / "curves.png", tmp_path / "clips"
-    wanted = ("--picture", str(curves), "--pictures", str(folder), "--picture-format", "png")
-    ended = kinedex(*COMMAND, *wanted, data_dir=danced)
+    options = ("--picture", str(curves), "--pictures", str(folder), "--picture-format", "png")
+    ended = kinedex(*COMMAND, *options, data_dir=danced)
     assert ended.code == 0, ended.err
     assert curves.read_bytes().startswith(b"\x89PNG")
     assert len(list(folder.glob("clip_*.png"))) == len(TEMPI) + 1
@@ -75,7 +77,7 @@ def test_pictures_need_no_annotation(kinedex: Kinedex, tmp_path: Path) -> None:
     assert len(list((tmp_path / "walks").glob("*.svg"))) == 4
 
 
-def test_what_cannot_be_done_is_said(kinedex: Kinedex) -> None:
+def test_wrong_options_are_refused(kinedex: Kinedex) -> None:
     ended = kinedex(*COMMAND)
     assert ended.code != 0
     assert "keyposes that a person annotated" in ended.err

@@ -21,15 +21,15 @@ def test_tables_for_people_fit_a_terminal(kinedex: Kinedex) -> None:
 
 
 def test_json_for_programs(kinedex: Kinedex) -> None:
-    told = kinedex(*COMMAND, *WAVES, "--json").json()
-    assert told["clips"] == told["dimensions"][0]["clips"]
-    assert set(told["dimensions"][0]["error_mm"]) == {"keypose", "uniform", "all_frames"}
-    assert [row["basis"] for row in told["poses"]] == ["original", "keypose", "uniform"]
-    assert [group["task"] for group in told["groups"]] == ["wave"]
+    result = kinedex(*COMMAND, *WAVES, "--json").json()
+    assert result["clips"] == result["dimensions"][0]["clips"]
+    assert set(result["dimensions"][0]["error_mm"]) == {"keypose", "uniform", "all_frames"}
+    assert [row["basis"] for row in result["poses"]] == ["original", "keypose", "uniform"]
+    assert [group["task"] for group in result["groups"]] == ["wave"]
 
 
 @pytest.mark.slow
-def test_pictures_go_where_they_are_wanted(kinedex: Kinedex, tmp_path: Path) -> None:
+def test_pictures_are_written_to_the_given_paths(kinedex: Kinedex, tmp_path: Path) -> None:
     folder = tmp_path / "new" / "pictures"
     ended = kinedex(*COMMAND, *WAVES, "--pictures", str(folder), "--picture-format", "png")
     assert ended.code == 0, ended.err
@@ -37,7 +37,7 @@ def test_pictures_go_where_they_are_wanted(kinedex: Kinedex, tmp_path: Path) -> 
     assert (folder / "dimensions.svg").is_file()
 
 
-def test_what_cannot_be_done_is_said(kinedex: Kinedex) -> None:
+def test_wrong_options_are_refused(kinedex: Kinedex) -> None:
     ended = kinedex(*COMMAND, "--filter", '{"task": "sleep"}')
     assert ended.code != 0
     assert "No ready clip has 4 keyposes; 0 were looked at" in ended.err

@@ -21,11 +21,11 @@ def test_tables_for_people(kinedex: Kinedex) -> None:
     rows = {line[0]: line[1:] for line in lines[by_take + 1 : by_take + 9] if line}
     assert list(rows)[:2] == ["default", "multilinear"]
     assert rows["chance"] == ["0.333", "0.500", "0.167", "12"]
-    assert ["method", "task", "person", "told", "person", "task", "told"] in lines
-    told = ["new", "known", "together", "balanced", "AUC", "EER", "worst"]
-    assert ["method", "person", *told] in lines
-    told = ["trials", "person", "task", "both", "effects", "mean", "motion", "real"]
-    assert ["other", "tasks", *told] in lines
+    assert ["method", "task", "person", "given", "person", "task", "given"] in lines
+    columns = ["new", "known", "together", "balanced", "AUC", "EER", "worst"]
+    assert ["method", "person", *columns] in lines
+    columns = ["trials", "person", "task", "both", "effects", "mean", "motion", "real"]
+    assert ["other", "tasks", *columns] in lines
     assert "Not judged, person: 3 persons are needed to leave one out; there are 2." in ended.out
     assert "Not judged, source: Two sources are needed" in ended.out
     assert "What tasks are taken for by default, takes left out, %:" in ended.out
@@ -33,31 +33,31 @@ def test_tables_for_people(kinedex: Kinedex) -> None:
 
 
 def test_json_for_programs(kinedex: Kinedex) -> None:
-    told = kinedex(*QUICK, "--json").json()
-    assert told["clips"]["persons"] == ["ada", "bruno"]
-    assert told["clips"]["tasks"] == ["kick", "walk", "wave"]
-    by_take = told["left_out"]["take"]
+    result = kinedex(*QUICK, "--json").json()
+    assert result["clips"]["persons"] == ["ada", "bruno"]
+    assert result["clips"]["tasks"] == ["kick", "walk", "wave"]
+    by_take = result["left_out"]["take"]
     assert list(by_take["methods"]) == ["mean-motion", "prior"]
     task = by_take["methods"]["mean-motion"]["recognised"]["task"]
     assert task["share"] == pytest.approx(task["right"] / task["of"])
     assert task["interval_95"][0] <= task["share"] <= task["interval_95"][1]
-    by_task = told["left_out"]["task"]["methods"]["mean-motion"]["unknown"]["task"]
+    by_task = result["left_out"]["task"]["methods"]["mean-motion"]["unknown"]["task"]
     assert list(by_task["categories"]) == ["kick", "walk", "wave"]
     errors = by_task["false_acceptance"] + by_task["false_rejection"]
     assert by_task["balanced_accuracy"] == pytest.approx(1 - errors / 2)
     assert by_task["curve"][0] == {"false_acceptance": 0.0, "false_rejection": 1.0}
-    assert [row["given"] for row in told["made"]["new_task"]] == [1]
-    assert set(told["perera"]["tables"]) == {"least", "printed"}
-    for rows in told["perera"]["tables"].values():
+    assert [row["given"] for row in result["made"]["new_task"]] == [1]
+    assert set(result["perera"]["tables"]) == {"least", "printed"}
+    for rows in result["perera"]["tables"].values():
         named = [row["category"] for row in rows if row["table"] == 3]
         assert named == ["task recognition", "person recognition"]
-        assert all(0 < row["probed"] <= told["perera"]["segments"] for row in rows[:2])
+        assert all(0 < row["probed"] <= result["perera"]["segments"] for row in rows[:2])
         assert all(row["accuracy"] == row["correct"] / row["probed"] for row in rows[:2])
-    assert set(told["takes_a_cell"]) == {"1"}
-    assert set(told["not_judged"]) >= {"person", "source", "3-takes"}
+    assert set(result["takes_a_cell"]) == {"1"}
+    assert set(result["not_judged"]) >= {"person", "source", "3-takes"}
 
 
-def test_pictures_go_where_they_are_wanted(kinedex: Kinedex, tmp_path: Path) -> None:
+def test_pictures_are_written_to_the_given_paths(kinedex: Kinedex, tmp_path: Path) -> None:
     folder = tmp_path / "new" / "figures"
     ended = kinedex(*QUICK, "--pictures", str(folder), "--picture-format", "png")
     assert ended.code == 0, ended.err
@@ -67,7 +67,7 @@ def test_pictures_go_where_they_are_wanted(kinedex: Kinedex, tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "expected"),
     [
         (("--method", "guess"), "must be one of default"),
         (("--false-accept-rate", "1.5"), "above 0 and below 1"),
@@ -75,11 +75,15 @@ def test_pictures_go_where_they_are_wanted(kinedex: Kinedex, tmp_path: Path) -> 
         (("--pictures", "figures", "--picture-format", "bmp"), ".svg, .png, .pdf"),
     ],
 )
-def test_what_cannot_be_done_is_said_at_once(
-    kinedex: Kinedex, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: list[str], told: str
+def test_wrong_options_are_refused_before_the_evaluation(
+    kinedex: Kinedex,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    words: list[str],
+    expected: str,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     ended = kinedex(*COMMAND, *words)
     assert ended.code == 1
-    assert told in ended.err
+    assert expected in ended.err
     assert list(tmp_path.iterdir()) == []

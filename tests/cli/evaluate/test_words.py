@@ -27,22 +27,22 @@ def test_tables_for_people(kinedex: Kinedex, tmp_path: Path) -> None:
 
 
 def test_json_for_programs(kinedex: Kinedex) -> None:
-    told = kinedex("evaluate", "words", "--json").json()
-    assert [row["method"] for row in told["figures"]] == METHODS
-    assert [row["method"] for row in told["in_sample"]] == METHODS
-    assert all(len(row["precision"]) == len(told["recalls"]) for row in told["figures"])
-    assert told["words"] == len(told["by_word"])
-    assert {"word_error", "word_brier", "set_error"} <= told["reliability"]["default"].keys()
-    ratios = [near["ratio"] for near in told["examples"][0]["nearest"]]
+    result = kinedex("evaluate", "words", "--json").json()
+    assert [row["method"] for row in result["figures"]] == METHODS
+    assert [row["method"] for row in result["in_sample"]] == METHODS
+    assert all(len(row["precision"]) == len(result["recalls"]) for row in result["figures"])
+    assert result["words"] == len(result["by_word"])
+    assert {"word_error", "word_brier", "set_error"} <= result["reliability"]["default"].keys()
+    ratios = [near["ratio"] for near in result["examples"][0]["nearest"]]
     assert ratios == sorted(ratios)
 
 
-def test_what_cannot_be_done_is_said(kinedex: Kinedex) -> None:
-    for words, told in (
+def test_wrong_options_are_refused(kinedex: Kinedex) -> None:
+    for words, expected in (
         (("--query", "zebra"), "no clip carries a word of 'zebra'"),
         (("--picture", "figure.gif"), ".svg, .png, .pdf"),
         (("--filter", '{"task": "nothing"}'), "too few"),
     ):
         ended = kinedex("evaluate", "words", *words)
         assert ended.code == 1
-        assert told in ended.err
+        assert expected in ended.err

@@ -26,19 +26,19 @@ def test_the_same_matrix_gives_the_same_bytes(form: Format) -> None:
     assert first != confusion_picture(shares.T, ["walk", "run"], form, title="k = 20")
 
 
-def test_names_of_others_are_drawn_as_they_are() -> None:
+def test_names_with_special_characters_are_drawn_unchanged() -> None:
     names = ["$\\frac{", "_hidden", "バイバイ", "<b>&amp;", "n" * 300, ""]
     picture = confusion_picture(np.eye(6), names, "svg")
     assert b"<b>" not in picture
 
 
-def test_cells_are_dark_where_the_share_is_large() -> None:
+def test_cells_with_large_shares_are_dark() -> None:
     pixels = imread(io.BytesIO(confusion_picture(np.eye(3), ["a", "b", "c"], "png")))
     dark = (pixels[..., 2] > 0.3) & (pixels[..., 0] < 0.1)
     assert 0.02 < dark.mean() < 0.3  # a third of the cells, and the bar's end
 
 
-def test_matrices_of_the_same_classes_stand_side_by_side() -> None:
+def test_matrices_of_the_same_classes_are_drawn_side_by_side() -> None:
     def width(count: int) -> int:
         matrices = {f"method {i}": np.eye(3) for i in range(count)}
         picture = confusions_picture(matrices, ["a", "b", "c"], "png")
@@ -59,7 +59,7 @@ def test_many_classes_still_fit_a_page() -> None:
     assert 2000 < width < 6500
 
 
-def test_shapes_that_do_not_fit_are_refused() -> None:
+def test_wrong_shapes_are_refused() -> None:
     for shares, names in ((np.eye(2), ["a"]), (np.zeros((0, 0)), []), (np.ones((2, 3)), "ab")):
         with pytest.raises(ValueError, match="one row and one column"):
             confusion_picture(shares, list(names), "svg")
@@ -68,9 +68,7 @@ def test_shapes_that_do_not_fit_are_refused() -> None:
 @pytest.mark.parametrize(
     ("count", "beside"), [(5, 1), (41, 8), pytest.param(300, 1, marks=pytest.mark.slow)]
 )
-def test_names_do_not_run_into_one_another(
-    monkeypatch: pytest.MonkeyPatch, count: int, beside: int
-) -> None:
+def test_names_do_not_overlap(monkeypatch: pytest.MonkeyPatch, count: int, beside: int) -> None:
     heights: list[float] = []
 
     def measured(
@@ -87,7 +85,7 @@ def test_names_do_not_run_into_one_another(
         heights.extend(name.height * 72 / figure.dpi for name in names)
         return form.encode()
 
-    monkeypatch.setattr(confusion, "drawn", measured)
+    monkeypatch.setattr(confusion, "rendered", measured)
     shares = {str(place): np.eye(count) for place in range(beside)}
     confusions_picture(shares, [f"walk-left-{number}" for number in range(count)], "svg")
     assert min(heights) > 3.0  # points: small, and still letters

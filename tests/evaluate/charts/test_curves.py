@@ -25,7 +25,7 @@ def test_the_same_curves_give_the_same_bytes() -> None:
     assert first == curves_picture(panels, "svg", title="two")
 
 
-def test_a_panel_more_takes_more_room() -> None:
+def test_more_panels_make_a_larger_picture() -> None:
     def size(count: int) -> tuple[int, int]:
         picture = curves_picture([_panel(["walk"])] * count, "png")
         height, width = imread(io.BytesIO(picture)).shape[:2]
@@ -36,7 +36,7 @@ def test_a_panel_more_takes_more_room() -> None:
     assert three[1] > 1.7 * one[1]
 
 
-def test_ranges_ticks_and_logarithms_are_taken() -> None:
+def test_ranges_ticks_and_logarithmic_axes_are_used() -> None:
     curve = Curve(np.arange(3.0), np.array([1.0, 1e-3, 1e-6]))
     plain = curves_picture([Panel([curve])], "svg")
     for panel in (
@@ -63,6 +63,6 @@ def test_powers_of_ten_are_written_plainly(monkeypatch: pytest.MonkeyPatch) -> N
     assert [text for text in texts if "$" in text and text != "a $name$"] == []
 
 
-def test_a_picture_of_nothing_is_refused() -> None:
+def test_a_picture_without_panels_is_refused() -> None:
     with pytest.raises(ValueError, match="panel"):
         curves_picture([], "svg")

@@ -1,4 +1,4 @@
-"""What all pictures share."""
+"""The common parts of all pictures."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.evaluate.charts import confusion_picture, format_of, need_plots
 from app.evaluate.charts.drawing import MAX_NAME_LENGTH, color, dashes, marker, shown
 
 
-def test_the_suffix_says_which_format() -> None:
+def test_the_suffix_selects_the_format() -> None:
     assert format_of(Path("a/b.SVG")) == "svg"
     assert format_of(Path("b.png")) == "png"
     assert format_of(Path("b.tar.pdf")) == "pdf"
@@ -22,7 +22,9 @@ def test_the_suffix_says_which_format() -> None:
             format_of(Path(bad))
 
 
-def test_without_matplotlib_it_is_said_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_matplotlib_the_message_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     for name in [name for name in sys.modules if name.partition(".")[0] == "matplotlib"]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
@@ -32,13 +34,13 @@ def test_without_matplotlib_it_is_said_what_to_install(monkeypatch: pytest.Monke
         confusion_picture(np.eye(2), ["a", "b"], "svg")
 
 
-def test_groups_are_told_apart() -> None:
+def test_groups_have_different_styles() -> None:
     groups = range(28)
     assert len({(color(g), str(dashes(g))) for g in groups}) == 28
     assert len({(color(g), marker(g)) for g in range(70)}) == 70
 
 
-def test_long_names_lose_their_middle_and_odd_characters_their_effect() -> None:
+def test_long_names_are_shortened_and_control_characters_replaced() -> None:
     assert shown("walk") == "walk"
     long = shown("a" * 30 + "b" * 30)
     assert (len(long), long[0], long[-1]) == (MAX_NAME_LENGTH, "a", "b")

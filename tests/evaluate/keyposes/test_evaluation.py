@@ -1,4 +1,4 @@
-"""Table 1 and the curves of figures 4 and 5 are those of the annotated clips."""
+"""Table 1 and the curves of figures 4 and 5 for annotated clips."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def annotated(
     opened.close()
 
 
-def test_the_table_counts_what_was_meant_and_found(
+def test_the_table_counts_true_and_found_keyposes(
     annotated: Library, dances: list[DemoClip]
 ) -> None:
     found = judge_keyposes(annotated)
@@ -56,7 +56,7 @@ def test_the_table_counts_what_was_meant_and_found(
     assert ours.usual.f >= printed.usual.f
 
 
-def test_the_usual_thresholds_are_judged_on_what_the_analysis_finds(annotated: Library) -> None:
+def test_the_usual_thresholds_give_the_keyposes_of_the_analysis(annotated: Library) -> None:
     counts = [
         match(find_keyposes(clip.track, beats=clip.beats).times, clip.true)
         for clip in read_annotated(annotated.store)
@@ -66,7 +66,7 @@ def test_the_usual_thresholds_are_judged_on_what_the_analysis_finds(annotated: L
     assert usual.correct == sum(each.correct for each in counts)
 
 
-def test_a_smaller_tolerance_finds_less_and_a_bad_one_is_refused(annotated: Library) -> None:
+def test_a_smaller_tolerance_matches_less_and_a_wrong_one_is_refused(annotated: Library) -> None:
     strict, usual = (judge_keyposes(annotated, tolerance=t).methods[0] for t in (0.02, 0.1))
     assert strict.usual.correct < usual.usual.correct
     for tolerance in (0.0, 2.0, float("nan")):
@@ -74,7 +74,7 @@ def test_a_smaller_tolerance_finds_less_and_a_bad_one_is_refused(annotated: Libr
             judge_keyposes(annotated, tolerance=tolerance)
 
 
-def test_without_annotated_clips_it_is_said_how_to_make_some(
+def test_without_annotated_clips_the_message_says_how_to_annotate(
     annotated: Library, ready_library: Library
 ) -> None:
     with pytest.raises(NotEnoughLabels, match="manifest"):
@@ -89,7 +89,7 @@ def test_the_curves_are_drawn(annotated: Library) -> None:
 
 
 @pytest.mark.slow
-def test_clips_are_drawn_named_or_not(annotated: Library) -> None:
+def test_clips_are_drawn_with_and_without_annotation(annotated: Library) -> None:
     drawn = {clip.name: clip for clip in clips_to_draw(annotated, None)}
     assert sorted(drawn) == ["dance0", "dance1", "dance2", "unnamed"]
     named, unnamed = (clip_figure(annotated, drawn[n], "svg") for n in ("dance0", "unnamed"))

@@ -1,4 +1,4 @@
-"""Keyposes against uniform poses: the figures are those of the motions, and pictures show them."""
+"""The comparison of keyposes with uniform poses, and its pictures."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ def found(ready_library: Library) -> LowDimensionalEvaluation:
 
 def test_the_table_is_the_mean_of_the_clips(ready_library: Library, clip_of: FindClip) -> None:
     waves = ClipFilter(task=("wave",))
-    told: list[tuple[int, int]] = []
-    found = judge_low_dimensional(ready_library, waves, lambda *step: told.append(step))
+    steps: list[tuple[int, int]] = []
+    found = judge_low_dimensional(ready_library, waves, lambda *step: steps.append(step))
     clips = [clip_of(person, "wave") for person in ("ada", "bruno", "chika")]
     assert (found.clips, found.left_out) == (3, 0)
-    assert told == [(1, 3), (2, 3), (3, 3)]
+    assert steps == [(1, 3), (2, 3), (3, 3)]
     for row in found.dimensions[:4]:
         for basis in Basis:
             drawn = [reduce(ready_library, c, Reduction(row.dimensions, basis)) for c in clips]
@@ -40,7 +40,7 @@ def test_the_table_is_the_mean_of_the_clips(ready_library: Library, clip_of: Fin
             assert row.error[basis] == pytest.approx(1000 * np.mean([o.errors[at] for o in drawn]))
 
 
-def test_nothing_beats_the_axes_of_all_frames(found: LowDimensionalEvaluation) -> None:
+def test_the_axes_of_all_frames_have_the_smallest_error(found: LowDimensionalEvaluation) -> None:
     for row in found.dimensions:
         assert row.best <= min(row.error.values())
         assert 0 <= row.keypose_better <= 1
@@ -48,7 +48,7 @@ def test_nothing_beats_the_axes_of_all_frames(found: LowDimensionalEvaluation) -
     assert errors == sorted(errors, reverse=True)
 
 
-def test_poses_are_judged_as_the_view_does(
+def test_poses_have_the_same_faults_as_in_the_view(
     ready_library: Library, found: LowDimensionalEvaluation, clip_of: FindClip
 ) -> None:
     waves = judge_low_dimensional(ready_library, ClipFilter(task=("wave",), person=("ada",)))
@@ -75,7 +75,7 @@ def test_persons_of_a_task_make_one_model(
     assert alone.groups == ()
 
 
-def test_a_library_without_keyposes_is_told(ready_library: Library) -> None:
+def test_a_library_without_keyposes_is_refused(ready_library: Library) -> None:
     with pytest.raises(NotEnoughKeyposes, match="No ready clip has 4 keyposes; 0 were looked at"):
         judge_low_dimensional(ready_library, ClipFilter(task=("sleep",)))
 

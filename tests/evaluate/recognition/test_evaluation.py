@@ -1,4 +1,4 @@
-"""Recognition, judged on labels: all ways of holding out, and what cannot be judged."""
+"""Recognition, judged with labels: all ways of holding out, and parts that cannot be judged."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def judged() -> RecognitionEvaluation:
     return judge_clips(invented(persons=3, tasks=4, takes=4, sources=3), QUICK)
 
 
-def test_all_that_can_be_judged_is(judged: RecognitionEvaluation) -> None:
+def test_every_part_is_judged(judged: RecognitionEvaluation) -> None:
     assert set(judged.held_out) == set(LeftOut)
     assert set(judged.takes) == {3, 1}
     assert [one.method for one in judged.label_given] == list(QUICK)
@@ -33,7 +33,7 @@ def test_all_that_can_be_judged_is(judged: RecognitionEvaluation) -> None:
     assert all(seconds.fit >= 0 and seconds.probe > 0 for seconds in judged.seconds.values())
 
 
-def test_the_default_stands_above_its_baselines(judged: RecognitionEvaluation) -> None:
+def test_the_default_is_better_than_its_baselines(judged: RecognitionEvaluation) -> None:
     for held in (*judged.held_out.values(), *judged.takes.values()):
         default, mean_motion, prior = (one.recognized.task.value for one in held.methods)
         assert default is not None
@@ -66,13 +66,13 @@ def test_no_person_spans_sources(judged: RecognitionEvaluation) -> None:
     assert "task" not in judged.held_out[LeftOut.SOURCE].methods[0].unknown
 
 
-def test_told_the_other_label_the_mean_motion_knows_more(judged: RecognitionEvaluation) -> None:
+def test_the_other_label_helps_the_mean_motion(judged: RecognitionEvaluation) -> None:
     mean_motion = judged.label_given[1]
     assert (mean_motion.given.person.value or 0) > (mean_motion.neither.person.value or 0)
     assert mean_motion.given.person.of == 48
 
 
-def test_the_same_again(judged: RecognitionEvaluation) -> None:
+def test_the_evaluation_is_deterministic(judged: RecognitionEvaluation) -> None:
     guessing = {name: QUICK[name] for name in ("mean-motion", "prior")}
     again = judge_clips(invented(persons=3, tasks=4, takes=4, sources=3), guessing)
     for way, held in judged.held_out.items():
@@ -92,7 +92,7 @@ def test_steps_are_counted() -> None:
     assert {total for _, total in steps} == {len(steps)}
 
 
-def test_what_cannot_be_judged_is_told_with_the_reason() -> None:
+def test_parts_that_cannot_be_judged_have_a_reason() -> None:
     found = judge_clips(invented(persons=2, tasks=2, takes=2), METHODS)
     assert set(found.held_out) == {LeftOut.TAKE}
     assert set(found.takes) == {1}
@@ -100,7 +100,7 @@ def test_what_cannot_be_judged_is_told_with_the_reason() -> None:
     assert "there are 2" in found.not_judged["person"]
 
 
-def test_a_method_that_cannot_learn_is_told_alone() -> None:
+def test_a_method_that_cannot_learn_has_its_own_reason() -> None:
     clips = invented(persons=3, tasks=4, takes=3)
     found = judge_clips(replace(clips, persons=[None] * len(clips)), METHODS)
     assert "multilinear" not in [one.method for one in found.held_out[LeftOut.TAKE].methods]
@@ -133,7 +133,7 @@ def test_a_library_is_read(ready_library: Library) -> None:
     assert all(0 <= row["hit"] <= 1 for rows in found.made.values() for row in rows)
 
 
-def test_where_persons_are_not_recognized_none_is_read(ready_library: Library) -> None:
+def test_without_recognition_of_persons_no_person_is_read(ready_library: Library) -> None:
     settings = ready_library.settings
     anonymous = settings.model_copy(update={"recognize_persons": False})
     object.__setattr__(ready_library, "settings", anonymous)
@@ -146,7 +146,7 @@ def test_where_persons_are_not_recognized_none_is_read(ready_library: Library) -
     assert "recognize_persons" in found.not_judged["perera"]
 
 
-def test_wrong_wishes_are_refused(ready_library: Library) -> None:
+def test_wrong_arguments_are_refused(ready_library: Library) -> None:
     with pytest.raises(BadField, match="must be one of default"):
         evaluate.judge_recognition(ready_library, methods=("guess",))
     with pytest.raises(BadField, match="above 0 and below 1"):

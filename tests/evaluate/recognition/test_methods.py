@@ -1,4 +1,4 @@
-"""The methods side by side, on clips of invented persons and tasks."""
+"""All recognition methods on clips of invented persons and tasks."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ def test_known_means_below_zero(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", METHODS)
-def test_learning_twice_says_the_same(name: str) -> None:
+def test_learning_twice_gives_the_same_guesses(name: str) -> None:
     assert METHODS[name](PART)(CLIPS.samples) == METHODS[name](PART)(CLIPS.samples)
 
 
 @pytest.mark.parametrize("name", [name for name in METHODS if name not in ("pca", "prior")])
-def test_far_off_is_newer(name: str) -> None:
+def test_a_distant_sample_has_a_larger_novelty(name: str) -> None:
     judge = METHODS[name](PART)
     near, far = judge(np.stack([CLIPS.samples[0], CLIPS.samples[0] + 20.0]))
     assert far[1].novelty > near[1].novelty
@@ -47,7 +47,7 @@ def test_the_mean_motion_is_the_nearest_mean() -> None:
             assert guesses[factor].label == nearest
 
 
-def test_who_is_told_helps_the_mean_motion() -> None:
+def test_a_given_person_helps_the_mean_motion() -> None:
     judge = METHODS["mean-motion"](PART)
     for i, (who, what) in enumerate(zip(CLIPS.persons, CLIPS.tasks, strict=True)):
         sample = CLIPS.samples[i : i + 1]
@@ -74,7 +74,7 @@ def test_a_factor_without_labels_has_no_guess(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", RANKING)
-def test_the_quicker_way_ranks_alike(name: str) -> None:
+def test_the_faster_version_gives_the_same_best_candidates(name: str) -> None:
     part = CLIPS.part(np.arange(0, len(CLIPS), 2))
     best = [
         [[guess.label for guess in guesses] for guesses in way[name](part)(CLIPS.samples)]

@@ -1,4 +1,4 @@
-"""What is held out, and that nothing of it is learned."""
+"""Rounds: the held-out clips are never in the training data."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from tests.evaluate.recognition.recognition_library import invented, some
 
 
 @pytest.mark.parametrize("left_out", LeftOut)
-def test_nothing_asked_about_was_learned(left_out: LeftOut) -> None:
+def test_no_probe_is_in_the_training_data(left_out: LeftOut) -> None:
     clips = invented(sources=2)
     for one in rounds(clips, left_out):
         recordings = [{clips.groups[i] for i in part.tolist()} for part in (one.train, one.probe)]
         assert not recordings[0] & recordings[1]
 
 
-def test_takes_leave_each_once_and_no_label_wholly() -> None:
+def test_each_take_is_left_out_once_and_no_label_completely() -> None:
     clips = invented()
     found = rounds(clips, LeftOut.TAKE)
     assert sorted(np.concatenate([one.probe for one in found]).tolist()) == list(range(len(clips)))
@@ -40,7 +40,7 @@ def test_takes_leave_each_once_and_no_label_wholly() -> None:
             assert {labels[i] for i in one.train.tolist()} == set(labels)
 
 
-def test_what_was_recorded_twice_can_be_learned() -> None:
+def test_labels_with_two_recordings_stay_in_the_training_data() -> None:
     clips = some(invented(), np.arange(70, 120))
     rare = [7, 33]
     clips = replace(clips, tasks=["rare" if i in rare else t for i, t in enumerate(clips.tasks)])
@@ -49,7 +49,7 @@ def test_what_was_recorded_twice_can_be_learned() -> None:
 
 
 @pytest.mark.parametrize("factor", ["person", "task"])
-def test_a_label_is_left_out_whole_beside_known_ones(factor: str) -> None:
+def test_all_clips_of_a_label_are_left_out_and_known_labels_are_probed(factor: str) -> None:
     clips = invented()
     labels = clips.labels(factor)
     found = rounds(clips, LeftOut(factor))
@@ -61,14 +61,14 @@ def test_a_label_is_left_out_whole_beside_known_ones(factor: str) -> None:
         assert len(asked) > 1
 
 
-def test_many_labels_leave_in_parties() -> None:
+def test_many_labels_are_left_out_in_groups() -> None:
     clips = invented(persons=MAX_ROUNDS + 5, tasks=2, takes=2)
     found = rounds(clips, LeftOut.PERSON)
     assert len(found) == MAX_ROUNDS
     assert sum(len(one.left_out) for one in found) == MAX_ROUNDS + 5
 
 
-def test_a_source_leaves_whole_and_alone() -> None:
+def test_all_clips_of_one_source_are_left_out() -> None:
     clips = invented(sources=3)
     for one in rounds(clips, LeftOut.SOURCE):
         assert {clips.sources[i] for i in one.probe.tolist()} == set(one.left_out)
@@ -76,7 +76,7 @@ def test_a_source_leaves_whole_and_alone() -> None:
 
 
 @given(takes=st.integers(1, 3), seed=st.integers(0, 20))
-def test_so_many_takes_of_each_cell_are_learned(takes: int, seed: int) -> None:
+def test_the_given_number_of_takes_of_each_cell_is_learned(takes: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
     clips = some(invented(), np.sort(rng.choice(120, 90, replace=False)))
     sizes = Counter(zip(clips.persons, clips.tasks, strict=True))
@@ -98,14 +98,14 @@ def test_two_files_of_a_recording_are_one_take() -> None:
         rounds_by_takes(twice, 2)
 
 
-def test_draws_differ_and_are_the_same_each_time() -> None:
+def test_draws_differ_and_are_deterministic() -> None:
     clips = invented()
     first, again = rounds_by_takes(clips, 1), rounds_by_takes(clips, 1)
     assert all((a.train == b.train).all() for a, b in zip(first, again, strict=True))
     assert len({tuple(one.train.tolist()) for one in first}) == DRAWS
 
 
-def test_each_recording_leaves_alone_where_they_are_few() -> None:
+def test_each_recording_is_left_out_alone_if_there_are_few() -> None:
     clips = invented(persons=2, tasks=3, takes=2)
     alone = sorted(one.probe.tolist() for one in rounds_by_recording(clips))
     assert alone == [[i] for i in range(12)]
@@ -113,7 +113,7 @@ def test_each_recording_leaves_alone_where_they_are_few() -> None:
 
 
 @pytest.mark.parametrize(
-    ("left_out", "clips", "told"),
+    ("left_out", "clips", "expected"),
     [
         (LeftOut.PERSON, invented(persons=2), "3 persons are needed to leave one out; there are 2"),
         (LeftOut.TASK, invented(tasks=1), "3 tasks are needed to leave one out; there are 1"),
@@ -121,6 +121,8 @@ def test_each_recording_leaves_alone_where_they_are_few() -> None:
         (LeftOut.TAKE, invented(1, 1, 2), "too few recordings"),
     ],
 )
-def test_too_little_is_said(left_out: LeftOut, clips: JudgedClips, told: str) -> None:
-    with pytest.raises(NotEnoughLabels, match=told):
+def test_too_few_labels_get_a_clear_message(
+    left_out: LeftOut, clips: JudgedClips, expected: str
+) -> None:
+    with pytest.raises(NotEnoughLabels, match=expected):
         rounds(clips, left_out)

@@ -1,4 +1,4 @@
-"""Shares, confusions and errors on the new, of trials that were made up."""
+"""Shares, confusions and errors for new labels, of constructed trials."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_shares_count_clips_whose_label_was_seen() -> None:
     assert chance(trials) == (0.25, 0.25, 0.0625)
 
 
-def test_nothing_judged_has_no_share() -> None:
+def test_without_judged_trials_there_is_no_share() -> None:
     found = recognized([trial(result(None, "walk"))])
     assert found.task.value is None
     assert found.task.interval == (0.0, 1.0)
@@ -59,7 +59,7 @@ def test_rows_of_the_confusion_are_true_labels() -> None:
     assert shares.tolist() == [[0.25, 0.75, 0], [0, 1, 0], [1, 0, 0]]
 
 
-def test_errors_on_the_new() -> None:
+def test_errors_for_new_labels() -> None:
     trials = [
         trial(result("hop", "run", 3.0, new=True), left_out=("hop",)),
         trial(result("hop", "run", -1.0, new=True), left_out=("hop",)),
@@ -89,7 +89,7 @@ _NOVELTIES = st.lists(st.integers(-5, 5).map(float), min_size=1, max_size=12)
 
 
 @given(known=_NOVELTIES, new=_NOVELTIES)
-def test_the_curve_is_what_counting_says(known: list[float], new: list[float]) -> None:
+def test_the_curve_agrees_with_counting(known: list[float], new: list[float]) -> None:
     trials = [trial(result("a", "a", n)) for n in known]
     trials += [trial(result("b", "a", n, new=True), left_out=("b",)) for n in new]
     found = unknown(trials, "task")

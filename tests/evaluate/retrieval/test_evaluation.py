@@ -1,4 +1,4 @@
-"""Query by example, judged on a library's own labels."""
+"""Query by example, judged with the labels of a library."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
 
-SUNS = (Method.MSV_DTW, Method.MSV_XCORR)
+SUN_METHODS = (Method.MSV_DTW, Method.MSV_XCORR)
 
 
-def test_retrieval_counts_what_searches_answer(
+def test_retrieval_judges_the_rankings_of_searches(
     ready_library: Library, ready_clips: list[ClipRecord]
 ) -> None:
-    methods = [Method.FUSED, Method.VECTOR, *SUNS]
+    methods = [Method.FUSED, Method.VECTOR, *SUN_METHODS]
     found = evaluate.judge_retrieval(ready_library, methods=methods)
-    told = [judged.figures.method for judged in found.methods]
-    assert told == [*methods, "msv-dtw q=1", "msv-xcorr q=1"]
+    names = [judged.figures.method for judged in found.methods]
+    assert names == [*methods, "msv-dtw q=1", "msv-xcorr q=1"]
     for judged in found.methods[: len(methods)]:
         hits = 0
         for clip in ready_clips:
@@ -36,16 +36,16 @@ def test_retrieval_counts_what_searches_answer(
         assert 0 < judged.figures.mean_average_precision <= 1
 
 
-def test_progress_reaches_its_end(ready_library: Library) -> None:
-    told: list[tuple[int, int]] = []
+def test_progress_reaches_the_total(ready_library: Library) -> None:
+    steps: list[tuple[int, int]] = []
     evaluate.judge_retrieval(
         ready_library,
         methods=[Method.VECTOR, Method.MSV_XCORR],
         threshold=0.3,
-        progress=lambda *step: told.append(step),
+        progress=lambda *step: steps.append(step),
     )
     # 12 queries by two methods, and by one with three other settings of 12 volumes each
-    assert told == [(done, 96) for done in range(1, 97)]
+    assert steps == [(done, 96) for done in range(1, 97)]
 
 
 def test_the_tables_of_the_paper(ready_library: Library) -> None:
@@ -66,25 +66,25 @@ def test_the_tables_of_the_paper(ready_library: Library) -> None:
 def test_with_a_threshold_above_all_distances_only_durations_are_compared(
     ready_library: Library,
 ) -> None:
-    found = evaluate.judge_retrieval(ready_library, methods=SUNS, threshold=50.0)
+    found = evaluate.judge_retrieval(ready_library, methods=SUN_METHODS, threshold=50.0)
     by_name = {judged.figures.method: judged for judged in found.methods}
     assert set(by_name) == {
-        *SUNS, "msv-dtw q=1", "msv-xcorr q=1",
+        *SUN_METHODS, "msv-dtw q=1", "msv-xcorr q=1",
         "msv-dtw q=1 eta=50", "msv-xcorr q=1 eta=50",
         "msv-dtw q=2 eta=50", "msv-xcorr q=2 eta=50",
     }  # fmt: skip
     # matrices of ones, whatever q
-    for method in SUNS:
+    for method in SUN_METHODS:
         q1, q2 = (by_name[f"{method} q={q} eta=50"].figures for q in (1, 2))
         assert q1.mean_average_precision == pytest.approx(q2.mean_average_precision)
 
 
-def test_few_may_ask(ready_library: Library) -> None:
-    found = evaluate.judge_retrieval(ready_library, methods=[Method.VECTOR], most_queries=8)
+def test_the_number_of_queries_is_limited(ready_library: Library) -> None:
+    found = evaluate.judge_retrieval(ready_library, methods=[Method.VECTOR], max_queries=8)
     assert found.methods[0].figures.queries == 8
 
 
-def test_a_filter_narrows_what_is_judged(ready_library: Library) -> None:
+def test_a_filter_selects_the_judged_clips(ready_library: Library) -> None:
     two = ClipFilter(task=("walk", "kick"))
     found = evaluate.judge_retrieval(ready_library, two, [Method.VECTOR])
     figures = found.methods[0].figures
@@ -111,7 +111,7 @@ def test_one_task_alone_cannot_be_judged(ready_library: Library) -> None:
         ({"k": 0}, "k"),
         ({"threshold": -0.1}, "threshold"),
         ({"threshold": float("nan")}, "threshold"),
-        ({"most_queries": 0}, "queries"),
+        ({"max_queries": 0}, "queries"),
         ({"classes": ["walk", "fly"]}, "classes"),
     ],
 )

@@ -36,7 +36,7 @@ def test_every_picture_is_drawn_and_named(
     assert len(set(drawn.values())) == len(drawn)
 
 
-def test_the_paper_s_methods_stand_beside_the_default(found: RetrievalEvaluation) -> None:
+def test_the_methods_of_the_paper_are_drawn_with_the_default(found: RetrievalEvaluation) -> None:
     assert retrieval_pictures.shown_methods(found) == ("msv-xcorr",)
     only = RetrievalEvaluation(found.methods[:1], found.chosen, found.classes, 20, 12, 0, 0)
     assert retrieval_pictures.shown_methods(only) == ("vector",)

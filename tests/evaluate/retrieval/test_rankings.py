@@ -1,4 +1,4 @@
-"""Ways to rank the library for a clip."""
+"""Rankings of the library for a clip."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from app.store.clips.record import ClipRecord
 
 
 @pytest.mark.parametrize("method", [Method.MSV_DTW, Method.MSV_XCORR])
-def test_volumes_computed_anew_rank_as_searches_do(
+def test_recomputed_volumes_rank_like_searches(
     ready_library: Library, ready_clips: list[ClipRecord], method: Method
 ) -> None:
     ready_library.index.catch_up(ready_library.store)
@@ -22,7 +22,7 @@ def test_volumes_computed_anew_rank_as_searches_do(
         assert list(anew(clip)) == list(stored(clip))
 
 
-def test_a_threshold_makes_other_volumes(
+def test_a_threshold_changes_the_volumes(
     ready_library: Library, ready_clips: list[ClipRecord]
 ) -> None:
     steps: list[None] = []

@@ -1,4 +1,4 @@
-"""What becomes of a library's motions as volumes."""
+"""The motion volumes of a library."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def test_factors_by_class_and_how_they_converged(ready_library: Library) -> None
     assert all(len(one.primary) == 13 for some in found.factors.values() for one in some)
 
 
-def test_what_is_saved_is_what_the_formula_says(
+def test_the_compression_agrees_with_the_formula(
     ready_library: Library, ready_clips: list[ClipRecord]
 ) -> None:
     compression = evaluate.judge_volumes(ready_library).compression
@@ -32,11 +32,9 @@ def test_what_is_saved_is_what_the_formula_says(
     assert compression.measured == pytest.approx(compression.formula)
 
 
-def test_of_a_large_class_some_are_told(
-    ready_library: Library, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_large_class_is_sampled(ready_library: Library, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(under_test, "MAX_PER_CLASS", 2)
-    monkeypatch.setattr(under_test, "AT_ONCE", 5)
+    monkeypatch.setattr(under_test, "CLIPS_PER_LOAD", 5)
     found = evaluate.judge_volumes(ready_library)
     assert Counter(len(some) for some in found.factors.values()) == {2: 4}
     assert found.compression.clips == 12

@@ -1,4 +1,4 @@
-"""Words, judged on a library's own labels."""
+"""Words, judged with the labels of a library."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from app.errors import BadField, NotEnoughLabels
 from app.services.library.library import Library
 
 
-def test_the_default_stands_beside_the_prior(ready_library: Library) -> None:
+def test_the_default_is_compared_with_the_prior(ready_library: Library) -> None:
     words = {row.method: row for row in evaluate.judge_words(ready_library).figures}
     assert words["default"].top_3_recognition >= words["prior"].top_3_recognition
 
@@ -19,7 +19,7 @@ def test_a_library_without_labels_cannot_be_judged(lib: Library) -> None:
         evaluate.judge_words(lib)
 
 
-def test_examples_tell_how_much_farther_than_the_nearest(ready_library: Library) -> None:
+def test_examples_have_ratios_to_the_nearest_distance(ready_library: Library) -> None:
     (example,) = evaluate.word_examples(ready_library, ["bows"])
     assert example.words == ("bow",)
     ratios = [near.ratio for near in example.nearest]

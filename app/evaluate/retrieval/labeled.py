@@ -18,7 +18,7 @@ from app.store.clips import repository as clips
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
 
-SHOWN_TASKS = 30
+MAX_TASKS_IN_MESSAGE = 30
 """Largest number of tasks in a message."""
 
 
@@ -43,20 +43,21 @@ class LabeledClips:
         """The clips that can be queries."""
         return tuple(clip for clip in self.clips if self.code[clip.id] < len(self.classes))
 
-    def queries(self, most: int) -> tuple[ClipRecord, ...]:
-        """The query clips: at most `most`, evenly from the classes, at least one of each class.
+    def queries(self, max_count: int) -> tuple[ClipRecord, ...]:
+        """At most `max_count` query clips, evenly from the classes, and at least one of each class.
 
         For each query there is another recording of its task.
         """
-        able = self.in_a_class
-        taken: Counter[int] = Counter()
+        candidates = self.in_a_class
+        counts: Counter[int] = Counter()
         turns: list[tuple[int, int]] = []
-        for place in np.random.RandomState(0).permutation(len(able)).tolist():
-            code = self.code[able[place].id]
-            turns.append((taken[code], place))
-            taken[code] += 1
-        drawn = sorted(turns)[: max(most, len(self.classes))]
-        return tuple(able[place] for place in sorted(place for _, place in drawn))
+        # a clip's turn is its number within its class, so that classes alternate
+        for index in np.random.RandomState(0).permutation(len(candidates)).tolist():
+            code = self.code[candidates[index].id]
+            turns.append((counts[code], index))
+            counts[code] += 1
+        chosen_turns = sorted(turns)[: max(max_count, len(self.classes))]
+        return tuple(candidates[index] for index in sorted(index for _, index in chosen_turns))
 
     def judge(self, query: ClipRecord, found: Sequence[str], k: int) -> JudgedRanking:
         """Judge a ranking; clips without a task and files of the query's recording are ignored."""
@@ -70,8 +71,8 @@ class LabeledClips:
             return self.classes[:count]
         for name in names:
             if name not in self.classes:
-                known = ", ".join(self.classes[:SHOWN_TASKS])
-                message = f"no two recordings carry the task {name!r}; they do of {known}"
+                tasks = ", ".join(self.classes[:MAX_TASKS_IN_MESSAGE])
+                message = f"no two recordings carry the task {name!r}, only the tasks {tasks}"
                 raise fields.bad_field("classes", message)
         return tuple(dict.fromkeys(names))
 

@@ -1,4 +1,4 @@
-"""Which clips ask, and what counts as their like."""
+"""The query clips, and the clips that are relevant to them."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from dataclasses import replace
 import pytest
 
 from app.errors import BadField, NotEnoughLabels
-from app.evaluate.retrieval.labelled import LabeledClips, labeled_among
+from app.evaluate.retrieval.labeled import LabeledClips, labeled_among
 from app.store.clips.record import ClipRecord
 
 
-def _clips(like: ClipRecord, *told: tuple[str, str, str | None]) -> list[ClipRecord]:
+def _clips(like: ClipRecord, *labels: tuple[str, str, str | None]) -> list[ClipRecord]:
     """Clips by (id, file name, task)."""
-    return [replace(like, id=i, file_name=name, task=task) for i, name, task in told]
+    return [replace(like, id=i, file_name=name, task=task) for i, name, task in labels]
 
 
 @pytest.fixture
@@ -41,7 +41,7 @@ def test_classes_are_tasks_of_two_recordings_the_largest_first(some: list[ClipRe
     assert labeled.unlabeled == 1
 
 
-def test_copies_of_the_recording_and_unlabelled_clips_are_not_judged(
+def test_copies_of_the_recording_and_unlabeled_clips_are_not_judged(
     some: list[ClipRecord],
 ) -> None:
     labeled = labeled_among(some)
@@ -52,9 +52,9 @@ def test_copies_of_the_recording_and_unlabelled_clips_are_not_judged(
 
 
 def test_queries_are_drawn_evenly_and_the_same_each_time(ready_clips: list[ClipRecord]) -> None:
-    told = [(f"w{i:02}", f"w{i}.bvh", "walk") for i in range(30)]
-    told += [(f"r{i}", f"r{i}.bvh", "run") for i in range(4)]
-    labeled = labeled_among(_clips(ready_clips[0], *told))
+    labels = [(f"w{i:02}", f"w{i}.bvh", "walk") for i in range(30)]
+    labels += [(f"r{i}", f"r{i}.bvh", "run") for i in range(4)]
+    labeled = labeled_among(_clips(ready_clips[0], *labels))
     assert len(labeled.queries(1000)) == 34
     some = labeled.queries(10)
     assert Counter(clip.task for clip in some) == {"walk": 6, "run": 4}
@@ -62,11 +62,11 @@ def test_queries_are_drawn_evenly_and_the_same_each_time(ready_clips: list[ClipR
     assert Counter(clip.task for clip in labeled.queries(1)) == {"walk": 1, "run": 1}
 
 
-def test_the_classes_of_table_1_are_those_told_or_the_largest(some: list[ClipRecord]) -> None:
+def test_the_classes_of_table_1_are_the_given_or_the_largest_ones(some: list[ClipRecord]) -> None:
     labeled = labeled_among(some)
     assert labeled.chosen(None, 1) == ("walk",)
     assert labeled.chosen(["run", "walk", "run"], 4) == ("run", "walk")
-    with pytest.raises(BadField, match="'bow'; they do of walk, run"):
+    with pytest.raises(BadField, match="'bow', only the tasks walk, run"):
         labeled.chosen(["bow"], 4)
 
 
@@ -79,17 +79,17 @@ def test_the_classes_of_table_1_are_those_told_or_the_largest(some: list[ClipRec
         (["walk", "walk"], "All labeled clips carry the task 'walk'"),
     ],
 )
-def test_what_cannot_be_judged_is_said(
+def test_clips_that_cannot_be_judged_get_a_clear_message(
     ready_clips: list[ClipRecord], tasks: list[str | None], message: str
 ) -> None:
-    told = [(str(i), f"{i}.bvh", task) for i, task in enumerate(tasks)]
+    labels = [(str(i), f"{i}.bvh", task) for i, task in enumerate(tasks)]
     with pytest.raises(NotEnoughLabels, match=message):
-        labeled_among(_clips(ready_clips[0], *told))
+        labeled_among(_clips(ready_clips[0], *labels))
 
 
 def test_one_class_among_others_can_be_judged(ready_clips: list[ClipRecord]) -> None:
-    told = [("a", "a.bvh", "walk"), ("b", "b.bvh", "walk"), ("c", "c.bvh", "run")]
-    labeled: LabeledClips = labeled_among(_clips(ready_clips[0], *told))
+    labels = [("a", "a.bvh", "walk"), ("b", "b.bvh", "walk"), ("c", "c.bvh", "run")]
+    labeled: LabeledClips = labeled_among(_clips(ready_clips[0], *labels))
     assert labeled.classes == ("walk",)
     judged = labeled.judge(labeled.clips[0], ["c", "b"], k=20)
     assert (judged.true_positives, judged.retrieved.tolist()) == (0.0, [1.0])
