@@ -54,5 +54,5 @@ class Motion:
 
     def _stand_in(self, role: JointRole) -> JointRole:
         while role not in self.roles:
-            role = role.towards_trunk()
+            role = role.toward_trunk()
         return role

@@ -17,7 +17,7 @@ import numpy as np
 from app.formats.c3d.markers import Markers, gap_cautions, hidden_too_long, labeled_markers
 from app.formats.c3d.points import Points, read_points
 from app.motion.canonical.units import METERS_PER_UNIT
-from app.motion.roles.joint_centres import RECIPES, Center, chosen, joint_centers
+from app.motion.roles.joint_centers import RECIPES, Center, chosen, joint_centers
 from app.motion.roles.joint_names import roles_by_name
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.roles.marker_names import places_of
@@ -136,7 +136,7 @@ def _parents_first(centers: Mapping[JointRole, Center]) -> list[JointRole]:
 def _above(role: JointRole, centers: Mapping[JointRole, Center]) -> JointRole | None:
     """The nearest role toward the hips that has a center; None if there is none."""
     while role is not _R.HIPS:
-        role = _PARENTS.get(role, role.towards_trunk())
+        role = _PARENTS.get(role, role.toward_trunk())
         if role in centers:
             return role
     return None

@@ -18,7 +18,7 @@ from app.formats.common.failures import too_large
 from app.formats.common.numbers import MAX_MAGNITUDE
 from app.formats.common.world_positions import MAX_JOINT_FRAMES, Solved, solve
 from app.formats.fbx.animation import Stack, choose_stack, find_stacks, listed
-from app.formats.fbx.nodes import FbxFile
+from app.formats.fbx.records import FbxFile
 from app.formats.fbx.scene import FbxScene, Numbers, unreadable_at
 from app.formats.fbx.skeleton import Body, find_body
 from app.formats.fbx.timing import Timing, find_timing, key_span

@@ -17,7 +17,7 @@ from app.errors import FormatNotSupported, Place, Unreadable
 from app.formats.common.failures import too_large
 from app.formats.common.names import MAX_NAME_LENGTH
 from app.formats.common.numbers import MAX_MAGNITUDE
-from app.formats.fbx.nodes import FbxFile, FbxRecord, unreadable_byte
+from app.formats.fbx.records import FbxFile, FbxRecord, unreadable_byte
 from app.numerics.arrays import FloatArray
 
 MAX_OBJECTS = 500_000

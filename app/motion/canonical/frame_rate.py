@@ -32,7 +32,7 @@ from itertools import pairwise
 import numpy as np
 import scipy
 
-from app.motion.canonical.centre_of_mass import center_of_mass
+from app.motion.canonical.center_of_mass import center_of_mass
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray

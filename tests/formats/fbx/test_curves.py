@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from app.errors import FormatNotSupported
 from app.formats.fbx.curves import sample
-from app.formats.fbx.nodes import FbxFile
+from app.formats.fbx.records import FbxFile
 from app.formats.fbx.scene import FbxScene
 from app.numerics.arrays import FloatArray
 from tests.formats.fbx.files import (

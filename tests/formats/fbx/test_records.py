@@ -9,9 +9,9 @@ import zlib
 import pytest
 
 from app.errors import KinedexError, TooLarge, Unreadable
-from app.formats.fbx import nodes as fbx_nodes
-from app.formats.fbx.nodes import MAX_ARRAY_BYTES, FbxFile
+from app.formats.fbx import records as fbx_records
 from app.formats.fbx.reader import read_fbx
+from app.formats.fbx.records import MAX_ARRAY_BYTES, FbxFile
 from tests.cpu_time import cpu_seconds_below
 from tests.formats.fbx.files import Array, Record, document
 from tests.formats.fbx.test_reader import clip
@@ -86,8 +86,8 @@ def test_a_bomb_of_zeros_is_not_inflated() -> None:
 
 def test_many_arrays_share_one_budget(monkeypatch: pytest.MonkeyPatch) -> None:
     content = clip(deflate=True)
-    monkeypatch.setattr(fbx_nodes, "MAX_ARRAY_BYTES", 500)
-    monkeypatch.setattr(fbx_nodes, "MAX_INFLATED_RATIO", 0)
+    monkeypatch.setattr(fbx_records, "MAX_ARRAY_BYTES", 500)
+    monkeypatch.setattr(fbx_records, "MAX_INFLATED_RATIO", 0)
     with pytest.raises(TooLarge, match="byte"):
         read_fbx(content)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.motion.roles.joint_centres import RECIPES, joint_centers
+from app.motion.roles.joint_centers import RECIPES, joint_centers
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.rotations import euler_to_quaternions, rotate
 from tests.formats.c3d.files import marker_person

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.motion.posing.posing import ancestors, pose_to
+from app.motion.posing.inverse_kinematics import ancestors, pose_to
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.animation import Animation
 from app.motion.skeleton.kinematics import local_translations
