@@ -17,7 +17,7 @@ import numpy as np
 from app.errors import Unreadable
 from app.formats.acclaim.lines import worded_lines
 from app.formats.bvh.frames import FASTEST_RATE, MAX_FRAMES, SLOWEST_RATE
-from app.formats.common.failures import too_large, unreadable
+from app.formats.common.failures import too_large, unreadable_line
 from app.formats.common.numbers import MAX_MAGNITUDE, excerpt
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray, IntArray
@@ -126,11 +126,13 @@ class _Reader:
             elif first.startswith(b":"):
                 self._header(line, words)
             elif frame is None:
-                raise unreadable(line, f"expected the number of a frame, found {excerpt(first)}")
+                raise unreadable_line(
+                    line, f"expected the number of a frame, found {excerpt(first)}"
+                )
             elif not self._bone_line(frame, line, words):
                 break
         if frame is None:
-            raise unreadable(line, "expected frames, found none")
+            raise unreadable_line(line, "expected frames, found none")
         if self.numbering and len(frame.seen) < fullest:
             detail = f"line {line}: the file breaks off in frame {frame.number}, which is left out"
             self.cautions.append(Caution("truncated", detail))
@@ -162,9 +164,9 @@ class _Reader:
             if found < expected and self.numbering and next(self.lines, None) is None:
                 return False
             name = self.names[bone]
-            raise unreadable(line, f"expected {expected} numbers for {name}, found {found}")
+            raise unreadable_line(line, f"expected {expected} numbers for {name}, found {found}")
         if bone in frame.seen:
-            raise unreadable(
+            raise unreadable_line(
                 line, f"expected each bone once a frame, found {self.names[bone]} twice"
             )
         frame.words[columns] = words[1:]
@@ -177,13 +179,17 @@ class _Reader:
         if bone is None:
             bone = self.bones.get(name.lower())
             if bone is None:
-                raise unreadable(line, f"expected a bone of the skeleton, found {excerpt(name)}")
+                raise unreadable_line(
+                    line, f"expected a bone of the skeleton, found {excerpt(name)}"
+                )
             self.bones[name] = bone
         return bone
 
     def _closed(self, frame: _Frame) -> _Frame:
         if not self.numbering and 0 not in frame.seen:
-            raise unreadable(frame.line, f"expected the root in frame {frame.number}, found none")
+            raise unreadable_line(
+                frame.line, f"expected the root in frame {frame.number}, found none"
+            )
         if len(frame.seen) < len(self.expected):
             self.held += len(self.expected) - len(frame.seen)
             if self.held > MAX_HELD:
@@ -212,8 +218,8 @@ class _Reader:
                     if not _is_usable(word):
                         message = f"expected a number within ±{MAX_MAGNITUDE:g}"
                         line = frame.bone_lines[bone]
-                        return unreadable(line, f"{message}, found {excerpt(word)}")
-        return unreadable(block[0].line, "expected numbers")
+                        return unreadable_line(line, f"{message}, found {excerpt(word)}")
+        return unreadable_line(block[0].line, "expected numbers")
 
     def _absence(self) -> Iterator[Caution]:
         always = [bone for bone, count in self.absent.items() if count == len(self.numbering)]

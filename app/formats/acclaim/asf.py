@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.formats.acclaim.lines import worded_lines
-from app.formats.common.failures import too_large, unreadable
+from app.formats.common.failures import too_large, unreadable_line
 from app.formats.common.limits import MAX_JOINTS
 from app.formats.common.lines import with_plain_newlines
 from app.formats.common.names import readable_name
@@ -99,7 +99,7 @@ class _Reader:
             elif self.section == "hierarchy" and keyword not in ("begin", "end"):
                 self._children(words)
         if not self.bones:
-            raise unreadable(self.line, "expected bones under :bonedata, found none")
+            raise unreadable_line(self.line, "expected bones under :bonedata, found none")
         return self._skeleton()
 
     def _unit(self, keyword: str, words: list[bytes]) -> None:
@@ -111,7 +111,7 @@ class _Reader:
     def _is_degrees(self, words: list[bytes]) -> bool:
         name = words[1].lower() if len(words) > 1 else b""
         if not name.startswith((b"deg", b"rad")):
-            raise unreadable(self.line, f"expected deg or rad, found {excerpt(name)}")
+            raise unreadable_line(self.line, f"expected deg or rad, found {excerpt(name)}")
         return name.startswith(b"deg")
 
     def _root(self, keyword: str, words: list[bytes]) -> None:
@@ -135,7 +135,7 @@ class _Reader:
             if keyword.startswith(b":") or keyword == b"begin":
                 break
             self._bone_line(bone, keyword, words)
-        raise unreadable(self.line, f"expected the end of bone {excerpt(bone.name)}")
+        raise unreadable_line(self.line, f"expected the end of bone {excerpt(bone.name)}")
 
     def _bone_line(self, bone: _Bone, keyword: bytes, words: list[bytes]) -> None:
         if keyword == b"name":
@@ -154,7 +154,7 @@ class _Reader:
         readable_name(bone.name, bone.line)
         key = bone.name.lower()
         if key in self.bones or key == _ROOT:
-            raise unreadable(bone.line, f"expected each bone once, found {excerpt(bone.name)}")
+            raise unreadable_line(bone.line, f"expected each bone once, found {excerpt(bone.name)}")
         if len(self.bones) >= MAX_JOINTS:
             raise too_large(f"line {bone.line}", f"expected at most {MAX_JOINTS} bones")
         self.bones[key] = bone
@@ -163,35 +163,39 @@ class _Reader:
         parent, *children = (word.lower() for word in words)
         for name in (parent, *children):
             if name not in self.bones and name != _ROOT:
-                raise unreadable(self.line, f"expected a bone's name, found {excerpt(name)}")
+                raise unreadable_line(self.line, f"expected a bone's name, found {excerpt(name)}")
         for child in children:
             if child == _ROOT or self.parents.setdefault(child, parent) != parent:
-                raise unreadable(self.line, f"expected one parent for {excerpt(child)}")
+                raise unreadable_line(self.line, f"expected one parent for {excerpt(child)}")
 
     def _numbers(self, words: list[bytes], count: int) -> FloatArray:
         numbers = parse_numbers(b" ".join(words[1:]), self.line)
         if len(numbers) != count:
             message = f"expected {count} numbers after {excerpt(words[0])}, found {len(numbers)}"
-            raise unreadable(self.line, message)
+            raise unreadable_line(self.line, message)
         return numbers
 
     def _order(self, words: list[bytes]) -> str:
         order = b"".join(words).decode("ascii", "replace").upper() or "XYZ"
         if sorted(order) != ["X", "Y", "Z"]:
-            raise unreadable(self.line, f"expected an order of axes such as XYZ, found {order!r}")
+            raise unreadable_line(
+                self.line, f"expected an order of axes such as XYZ, found {order!r}"
+            )
         return order
 
     def _channels(self, words: list[bytes]) -> tuple[str, ...]:
         channels = tuple(word.decode("ascii", "replace").lower() for word in words[1:])
         if len(set(channels)) != len(channels) or not set(channels) <= set(CHANNELS):
             known = " ".join(CHANNELS)
-            raise unreadable(self.line, f"expected each of {known} at most once")
+            raise unreadable_line(self.line, f"expected each of {known} at most once")
         return channels
 
     def _skeleton(self) -> AcclaimSkeleton:
         order = self._from_root()
         if not self.root.channels:
-            raise unreadable(self.line, "expected an order of channels under :root, found none")
+            raise unreadable_line(
+                self.line, "expected an order of channels under :root, found none"
+            )
         bones = [self.root, *(self.bones[name] for name in order[1:])]
         index = {name: joint for joint, name in enumerate(order)}
         parents = np.array([-1, *(index[self.parents[name]] for name in order[1:])])
@@ -229,7 +233,7 @@ class _Reader:
         loose = next((bone for name, bone in self.bones.items() if name not in reached), None)
         if loose is not None:
             message = f"expected bone {excerpt(loose.name)} in :hierarchy, below the root"
-            raise unreadable(loose.line, message)
+            raise unreadable_line(loose.line, message)
         return order
 
     def _axes(self, bone: _Bone) -> FloatArray:

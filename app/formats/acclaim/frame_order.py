@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.formats.acclaim.amc_frames import AmcFrames
-from app.formats.common.failures import unreadable
+from app.formats.common.failures import unreadable_line
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
@@ -42,7 +42,7 @@ def in_order(frames: AmcFrames) -> OrderedFrames:
     steps = np.diff(numbering)
     if (steps == 0).any():
         line = int(lines[1:][steps == 0][0])
-        raise unreadable(
+        raise unreadable_line(
             line, f"expected each frame once, found {_at(numbering, steps == 0)} twice"
         )
     step = int(steps.min()) if len(steps) else 1
@@ -51,7 +51,7 @@ def in_order(frames: AmcFrames) -> OrderedFrames:
     missing = int((steps // step - 1).sum())
     if missing > MAX_MISSING * len(numbering):
         wide = steps == steps.max()
-        raise unreadable(
+        raise unreadable_line(
             int(lines[1:][wide][0]), f"expected frames without gaps, found {_at(numbering, wide)}"
         )
     if missing:

@@ -14,7 +14,7 @@ from itertools import chain, islice
 import numpy as np
 
 from app.formats.common.decimals import plain_table
-from app.formats.common.failures import too_large, unreadable
+from app.formats.common.failures import too_large, unreadable_line
 from app.formats.common.lines import filled_lines
 from app.formats.common.numbers import check_magnitudes, excerpt, parse_any_numbers
 from app.motion.skeleton.recording import FRAME_RATES, Caution
@@ -56,7 +56,7 @@ def read_frames(text: bytes, first_line: int, channels: int) -> Frames:
     rate, cautions = _frame_rate(line, time)
     numbers = _rows(lines, channels)
     if not len(numbers):
-        raise unreadable(line + 1, f"expected frames of {channels} numbers, found none")
+        raise unreadable_line(line + 1, f"expected frames of {channels} numbers, found none")
     if declared != len(numbers):
         detail = f"the file declares {declared} frames and holds {len(numbers)}"
         cautions += (Caution("frames_mismatch", detail),)
@@ -66,14 +66,14 @@ def read_frames(text: bytes, first_line: int, channels: int) -> Frames:
 def _declared_frames(line: int, text: bytes) -> int:
     match = _header(_FRAMES, text)
     if match is None or not re.fullmatch(rb"\d{1,18}", match.group(1)):
-        raise unreadable(line, f"expected 'Frames:' and a number, found {excerpt(text)}")
+        raise unreadable_line(line, f"expected 'Frames:' and a number, found {excerpt(text)}")
     return int(match.group(1))
 
 
 def _frame_rate(line: int, text: bytes) -> tuple[float | None, tuple[Caution, ...]]:
     match = _header(_FRAME_TIME, text)
     if match is None:
-        raise unreadable(line, f"expected 'Frame Time:' and seconds, found {excerpt(text)}")
+        raise unreadable_line(line, f"expected 'Frame Time:' and seconds, found {excerpt(text)}")
     try:
         period = float(match.group(1).replace(b",", b"."))
     except ValueError:
@@ -125,7 +125,7 @@ def _careful_block(
         if len(row) < channels:
             row = _continued(row, rest, line, channels)
         if len(row) != channels:
-            raise unreadable(line, f"expected {channels} numbers, found {len(row)}")
+            raise unreadable_line(line, f"expected {channels} numbers, found {len(row)}")
         rows.append(row)
         numbers.append(line)
     block = np.stack(rows) if rows else np.zeros((0, channels))

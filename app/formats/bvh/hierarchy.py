@@ -16,7 +16,7 @@ from functools import lru_cache
 import numpy as np
 
 from app.errors import Unreadable
-from app.formats.common.failures import too_large, unreadable
+from app.formats.common.failures import too_large, unreadable_line
 from app.formats.common.limits import MAX_JOINTS
 from app.formats.common.names import readable_name
 from app.formats.common.numbers import excerpt, parse_numbers
@@ -129,7 +129,7 @@ class _Tokens:
 
     def expected(self, what: str, found: bytes) -> Unreadable:
         shown = excerpt(found) if found else "the end of the hierarchy"
-        return unreadable(self.line, f"expected {what}, found {shown}")
+        return unreadable_line(self.line, f"expected {what}, found {shown}")
 
 
 class _Reader:
@@ -198,7 +198,7 @@ class _Reader:
         line = self.tokens.line
         numbers = parse_numbers(self.tokens.numbers_on_line(), line, expected=3)
         if len(numbers) != 3:
-            raise unreadable(line, f"expected 3 numbers after OFFSET, found {len(numbers)}")
+            raise unreadable_line(line, f"expected 3 numbers after OFFSET, found {len(numbers)}")
         if self._at_end_site():
             parent = next(opened for opened in reversed(self.open) if opened != _END) - 1
             self.ends.append((parent, numbers))
@@ -214,7 +214,7 @@ class _Reader:
         for _ in range(int(count)):
             channel = self._channel(joint)
             if channel.is_position and channel in self.channels[-MAX_CHANNELS:]:
-                raise unreadable(self.tokens.line, "expected each position channel once")
+                raise unreadable_line(self.tokens.line, "expected each position channel once")
             self.channels.append(channel)
 
     def _channel(self, joint: int) -> Channel:

@@ -13,7 +13,7 @@ import numpy as np
 
 from app.formats.bvh.frames import read_frames
 from app.formats.bvh.hierarchy import Channel, Hierarchy, read_hierarchy
-from app.formats.common.failures import unreadable
+from app.formats.common.failures import unreadable_line
 from app.formats.common.lines import with_plain_newlines
 from app.formats.common.world_positions import Solved, solve
 from app.motion.skeleton.recording import Recording
@@ -33,9 +33,9 @@ def read_bvh(content: bytes) -> Recording:
     motion = _MOTION.search(text)
     hierarchy = read_hierarchy(text[: motion.start()] if motion else text)
     if motion is None:
-        raise unreadable(text.count(b"\n") + 1, "expected MOTION, found the end of the file")
+        raise unreadable_line(text.count(b"\n") + 1, "expected MOTION, found the end of the file")
     if not hierarchy.channels:
-        raise unreadable(1, "expected channels on some joint, found none")
+        raise unreadable_line(1, "expected channels on some joint, found none")
     first_line = text.count(b"\n", 0, motion.end()) + 2
     frames = read_frames(text[motion.end() + 1 :], first_line, len(hierarchy.channels))
     solved = _solve(hierarchy, frames.numbers)

@@ -13,7 +13,7 @@ from math import prod
 
 import numpy as np
 
-from app.formats.common.failures import unreadable_at
+from app.formats.common.failures import unreadable_byte
 from app.numerics.arrays import FloatArray
 
 BLOCK = 512
@@ -72,11 +72,11 @@ def read_parameters(content: bytes) -> tuple[Numbers, Parameters]:
     """
     start = (content[0] - 1) * BLOCK
     if start + 4 > len(content):
-        raise unreadable_at(start, "expected parameters, found the end of the file")
+        raise unreadable_byte(start, "expected parameters, found the end of the file")
     processor = _PROCESSORS.get(content[start + 3])
     if processor is None:
         known = "84, 85 or 86"
-        raise unreadable_at(start + 3, f"expected processor {known}, found {content[start + 3]}")
+        raise unreadable_byte(start + 3, f"expected processor {known}, found {content[start + 3]}")
     return Numbers(processor), _Reader(content, start + 4, Numbers(processor)).read()
 
 
@@ -114,7 +114,7 @@ class _Reader:
         else:
             self.found.append((group, name, self._parameter(offset_at + 2)))
         if offset < 0:
-            raise unreadable_at(offset_at, f"expected the next parameter, found offset {offset}")
+            raise unreadable_byte(offset_at, f"expected the next parameter, found offset {offset}")
         self.at = offset_at + offset
         return offset > 0
 
@@ -123,7 +123,7 @@ class _Reader:
         size = _VALUE_BYTES.get(kind)
         if size is None or not 0 <= dimensions <= 7:
             message = f"expected a parameter, found type {kind} with {dimensions} dimensions"
-            raise unreadable_at(at, message)
+            raise unreadable_byte(at, message)
         shape = list(self._bytes(at + 2, dimensions))
         raw = self._bytes(at + 2 + dimensions, size * prod(shape))
         if kind == -1:
@@ -135,7 +135,7 @@ class _Reader:
 
     def _bytes(self, start: int, length: int) -> bytes:
         if start + length > len(self.content):
-            raise unreadable_at(start, f"expected {length} bytes, found the end of the file")
+            raise unreadable_byte(start, f"expected {length} bytes, found the end of the file")
         return self.content[start : start + length]
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.formats.c3d.parameters import BLOCK, Numbers, Parameters, read_parameters
-from app.formats.common.failures import too_large, unreadable_at
+from app.formats.common.failures import too_large, unreadable_byte
 from app.formats.common.numbers import MAX_MAGNITUDE
 from app.formats.common.world_positions import MAX_JOINT_FRAMES
 from app.motion.skeleton.recording import FRAME_RATES, Caution
@@ -51,11 +51,11 @@ class _Header:
 def read_points(content: bytes) -> Points:
     """Read a C3D file's points. Raises Unreadable naming the byte, and TooLarge."""
     if len(content) < BLOCK:
-        raise unreadable_at(len(content), f"expected a header of {BLOCK} bytes, found the end")
+        raise unreadable_byte(len(content), f"expected a header of {BLOCK} bytes, found the end")
     numbers, parameters = read_parameters(content)
     header = _header(content, numbers)
     if not header.points:
-        raise unreadable_at(2, "expected points, found none")
+        raise unreadable_byte(2, "expected points, found none")
     width = 2 if header.scale > 0 else 4
     frame_bytes = width * (4 * header.points + header.analogue)
     start = (header.data_block - 1) * BLOCK
@@ -84,7 +84,7 @@ def _header(content: bytes, numbers: Numbers) -> _Header:
 
     scale = real(7)
     if not NO_SCALE < abs(scale) < MAX_MAGNITUDE:
-        raise unreadable_at(12, f"expected a scale factor, found {scale:g}")
+        raise unreadable_byte(12, f"expected a scale factor, found {scale:g}")
     return _Header(word(2), word(3), word(4), word(5), scale, word(9), real(11))
 
 
@@ -101,7 +101,7 @@ def _frame_count(
     if not held:
         least = min(declared) if declared else 1
         message = f"expected {least} frames, found {room}: the file is cut short"
-        raise unreadable_at(start, message)
+        raise unreadable_byte(start, message)
     frames = max(held)
     if frames == max(declared):
         return frames, ()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.formats.common.failures import unreadable
+from app.formats.common.failures import unreadable_line
 from app.formats.common.numbers import excerpt
 
 MAX_NAME_LENGTH = 200
@@ -15,5 +15,5 @@ def readable_name(name: bytes, line: int) -> str:
     except UnicodeDecodeError:
         text = name.decode("latin-1")
     if not text or len(text) > MAX_NAME_LENGTH or not text.isprintable():
-        raise unreadable(line, f"expected a joint's name, found {excerpt(name)}")
+        raise unreadable_line(line, f"expected a joint's name, found {excerpt(name)}")
     return text

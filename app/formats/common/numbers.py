@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.formats.common.failures import unreadable
+from app.formats.common.failures import unreadable_line
 from app.numerics.arrays import FloatArray
 
 MAX_MAGNITUDE = 1e9
@@ -30,13 +30,13 @@ def parse_any_numbers(text: bytes, line: int, expected: int | None = None) -> Fl
     if b"," in text:
         text = _without_commas(text, expected)
     if b"_" in text:  # numpy reads 1_0 as 10
-        raise unreadable(line, f"expected numbers, found {excerpt(text)}")
+        raise unreadable_line(line, f"expected numbers, found {excerpt(text)}")
     tokens = text.split()
     try:
         return np.array(tokens, dtype=np.float64)
     except ValueError:
         bad = next(token for token in tokens if not _is_number(token))
-        raise unreadable(line, f"expected a number, found {excerpt(bad)}") from None
+        raise unreadable_line(line, f"expected a number, found {excerpt(bad)}") from None
 
 
 def check_magnitudes(rows: FloatArray, lines: Sequence[int]) -> None:
@@ -46,7 +46,7 @@ def check_magnitudes(rows: FloatArray, lines: Sequence[int]) -> None:
         return
     row, column = np.argwhere(~(np.abs(rows) <= MAX_MAGNITUDE))[0]
     limit = f"±{MAX_MAGNITUDE:g}"
-    raise unreadable(lines[row], f"expected numbers within {limit}, found {rows[row, column]}")
+    raise unreadable_line(lines[row], f"expected numbers within {limit}, found {rows[row, column]}")
 
 
 def _is_number(token: bytes) -> bool:

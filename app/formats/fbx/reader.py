@@ -14,12 +14,12 @@ from functools import partial
 
 import numpy as np
 
-from app.formats.common.failures import too_large
+from app.formats.common.failures import too_large, unreadable_at
 from app.formats.common.numbers import MAX_MAGNITUDE
 from app.formats.common.world_positions import MAX_JOINT_FRAMES, Solved, solve
 from app.formats.fbx.animation import Stack, choose_stack, find_stacks, listed
 from app.formats.fbx.records import FbxFile
-from app.formats.fbx.scene import FbxScene, Numbers, unreadable_at
+from app.formats.fbx.scene import FbxScene, Numbers
 from app.formats.fbx.skeleton import Body, find_body
 from app.formats.fbx.timing import Timing, find_timing, key_span
 from app.formats.fbx.transforms import ANIMATED, FbxNode, Local, World, read_node, world_transforms

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.errors import FormatNotSupported, Place, Unreadable
-from app.formats.common.failures import too_large
+from app.errors import FormatNotSupported
+from app.formats.common.failures import too_large, unreadable_byte
 from app.formats.common.numbers import excerpt
 from app.numerics.arrays import FloatArray, IntArray
 
@@ -201,9 +201,3 @@ class FbxRecord:
         if offset + length > self.children_at:
             raise unreadable_byte(offset, f"expected {length} bytes in {self.name}")
         return self.file.content[offset : offset + length]
-
-
-def unreadable_byte(offset: int, message: str) -> Unreadable:
-    """An Unreadable with the byte, counted from 0."""
-    location = f"byte {offset}"
-    return Unreadable(f"{location}: {message}", places=[Place(location, message)])

@@ -14,10 +14,10 @@ from functools import cached_property
 import numpy as np
 
 from app.errors import FormatNotSupported, Place, Unreadable
-from app.formats.common.failures import too_large
+from app.formats.common.failures import too_large, unreadable_at, unreadable_byte
 from app.formats.common.names import MAX_NAME_LENGTH
 from app.formats.common.numbers import MAX_MAGNITUDE
-from app.formats.fbx.records import FbxFile, FbxRecord, unreadable_byte
+from app.formats.fbx.records import FbxFile, FbxRecord
 from app.numerics.arrays import FloatArray
 
 MAX_OBJECTS = 500_000
@@ -51,11 +51,6 @@ class FbxObject:
     def unreadable(self, message: str) -> Unreadable:
         """An Unreadable with the name of this object."""
         return unreadable_at(self.place, message)
-
-
-def unreadable_at(place: str, message: str) -> Unreadable:
-    """An Unreadable with the name of a node."""
-    return Unreadable(f"{place}: {message}", places=[Place(place, message)])
 
 
 def refused_at(place: str, message: str) -> FormatNotSupported:

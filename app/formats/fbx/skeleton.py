@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.formats.common.failures import too_large
+from app.formats.common.failures import too_large, unreadable_at
 from app.formats.common.limits import MAX_JOINTS
-from app.formats.fbx.scene import FbxObject, FbxScene, unreadable_at
+from app.formats.fbx.scene import FbxObject, FbxScene
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, IntArray
 

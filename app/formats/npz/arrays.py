@@ -21,8 +21,8 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import Place, TooLarge, Unreadable
-from app.formats.common.failures import too_large
+from app.errors import Place, TooLarge
+from app.formats.common.failures import too_large, unreadable_at
 
 MAX_ARRAY_BYTES = 480_000_000
 """Of one array: 20 million joints times frames in float64."""
@@ -80,7 +80,7 @@ class Archive:
         try:
             self._file = zipfile.ZipFile(io.BytesIO(content))
         except (*_ZIP_FAILURES, NotImplementedError) as problem:
-            raise _refused("archive", f"expected a ZIP archive, found {problem}") from problem
+            raise unreadable_at("archive", f"expected a ZIP archive, found {problem}") from problem
         self._members = {
             member.filename.removesuffix(".npy"): member
             for member in self._file.infolist()
@@ -107,12 +107,12 @@ class Archive:
     def _opened(self, key: str) -> Iterator[IO[bytes]]:
         method = self._members[key].compress_type
         if method not in _ZIP_METHODS:
-            raise _refused(key, f"expected deflate, found compression method {method}")
+            raise unreadable_at(key, f"expected deflate, found compression method {method}")
         try:
             with self._file.open(self._members[key]) as stream:
                 yield stream
         except _ZIP_FAILURES as problem:
-            raise _refused(key, f"expected an intact array, found: {problem}") from problem
+            raise unreadable_at(key, f"expected an intact array, found: {problem}") from problem
 
 
 def _read(stream: IO[bytes], key: str, most: int) -> NDArray[Any]:
@@ -122,11 +122,11 @@ def _read(stream: IO[bytes], key: str, most: int) -> NDArray[Any]:
         place = Place(key, f"expected at most {most} bytes, found {shown} {header.dtype}")
         raise TooLarge(f"The array {key} is larger than what is taken.", places=[place])
     if not header.nbytes:
-        raise _refused(key, f"expected at least one element, found shape {header.shape}")
+        raise unreadable_at(key, f"expected at least one element, found shape {header.shape}")
     content = stream.read(header.nbytes + 1)
     if len(content) != header.nbytes:
         there = "more" if len(content) > header.nbytes else str(len(content))
-        raise _refused(key, f"expected {header.nbytes} bytes as declared, found {there}")
+        raise unreadable_at(key, f"expected {header.nbytes} bytes as declared, found {there}")
     flat = np.frombuffer(content, header.dtype)
     if header.fortran:
         return flat.reshape(header.shape[::-1]).transpose()
@@ -136,16 +136,18 @@ def _read(stream: IO[bytes], key: str, most: int) -> NDArray[Any]:
 def _header(stream: IO[bytes], key: str) -> _Header:
     start = stream.read(8)
     if len(start) < 8 or not start.startswith(_MAGIC) or start[6] not in (1, 2, 3):
-        raise _refused(key, "expected an array in NPY format 1 to 3")
+        raise unreadable_at(key, "expected an array in NPY format 1 to 3")
     wide = start[6] > 1
     length = int.from_bytes(stream.read(4 if wide else 2), "little")
     text = stream.read(min(length, MAX_HEADER_BYTES + 1))
     match = _HEADER.fullmatch(text.decode("latin-1"))
     if len(text) != length or match is None:
-        raise _refused(key, "expected a header with descr, fortran_order and shape of plain arrays")
+        raise unreadable_at(
+            key, "expected a header with descr, fortran_order and shape of plain arrays"
+        )
     sizes = re.findall(r"\d+", match["shape"])
     if len(sizes) > MAX_AXES:
-        raise _refused(key, f"expected at most {MAX_AXES} axes, found {len(sizes)}")
+        raise unreadable_at(key, f"expected at most {MAX_AXES} axes, found {len(sizes)}")
     shape = tuple(int(size) for size in sizes)
     return _Header(_dtype(match["descr"], key), shape, match["fortran"] == "True")
 
@@ -153,19 +155,19 @@ def _header(stream: IO[bytes], key: str) -> _Header:
 def _dtype(descr: str, key: str) -> np.dtype[Any]:
     if descr.endswith("O"):
         message = "expected numbers or text, found Python objects, which are never unpickled"
-        raise _refused(key, f"{message}; save it with a plain dtype (text as dtype=str)")
+        raise unreadable_at(key, f"{message}; save it with a plain dtype (text as dtype=str)")
     try:
         if not _DTYPE.fullmatch(descr):
             raise TypeError(descr)
         return np.dtype(descr)
     except TypeError:
-        raise _refused(key, f"expected numbers or text, found dtype {descr!r}") from None
+        raise unreadable_at(key, f"expected numbers or text, found dtype {descr!r}") from None
 
 
 def numbers(array: NDArray[Any], key: str) -> NDArray[Any]:
     """The same array where it holds integers or floats. Raises Unreadable."""
     if array.dtype.kind not in "fiu":
-        raise _refused(key, f"expected numbers, found dtype {array.dtype}")
+        raise unreadable_at(key, f"expected numbers, found dtype {array.dtype}")
     return array
 
 
@@ -173,11 +175,11 @@ def texts(array: NDArray[Any], key: str) -> list[str]:
     """The strings of a one-dimensional array of text or bytes. Raises Unreadable."""
     if array.dtype.kind not in "US" or array.ndim > 1:
         shape = "x".join(map(str, array.shape))
-        raise _refused(key, f"expected a list of strings, found {shape} {array.dtype}")
+        raise unreadable_at(key, f"expected a list of strings, found {shape} {array.dtype}")
     try:
         return list(_decoded(array.reshape(-1)))
     except ValueError as problem:  # code points that are none
-        raise _refused(key, f"expected text, found {problem}") from None
+        raise unreadable_at(key, f"expected text, found {problem}") from None
 
 
 def _decoded(array: NDArray[Any]) -> Iterator[str]:
@@ -188,7 +190,3 @@ def _decoded(array: NDArray[Any]) -> Iterator[str]:
     content, size = array.tobytes(), array.dtype.itemsize
     for start in range(0, len(content), size):
         yield content[start : start + size].decode(encoding).rstrip("\0")
-
-
-def _refused(key: str, message: str) -> Unreadable:
-    return Unreadable(f"{key}: {message}", places=[Place(key, message)])

@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.errors import Place, Unreadable
-from app.formats.common.failures import too_large
+from app.formats.common.failures import too_large, unreadable_at
 from app.formats.common.joint_trees import in_tree_order, parents_of
 from app.formats.common.limits import MAX_JOINTS
 from app.formats.common.names import MAX_NAME_LENGTH
@@ -56,7 +56,9 @@ def read_npz(content: bytes) -> Recording:
     if "poses" in arrays or "pose_body" in arrays:
         return _read_parameters(arrays)
     found = ", ".join(arrays.keys[:10])
-    raise refused("positions", f"expected an array of positions, or of SMPL poses; found {found}")
+    raise unreadable_at(
+        "positions", f"expected an array of positions, or of SMPL poses; found {found}"
+    )
 
 
 def read_npy_positions(content: bytes) -> Recording:
@@ -98,7 +100,7 @@ def _read_parameters(arrays: NamedArrays) -> Recording:
         parts = [arrays.numbers(name) for name in ("root_orient", "pose_body")]
         there = [part.reshape(len(part), -1) for part in parts if part is not None and part.ndim]
         if len(there) < 2 or len(there[0]) != len(there[1]):
-            raise refused("root_orient", "expected as many frames as pose_body has")
+            raise unreadable_at("root_orient", "expected as many frames as pose_body has")
         poses = np.concatenate(there, axis=1)
     if poses.ndim == 3 and poses.shape[2] == 3:
         poses = poses.reshape(len(poses), -1)
@@ -117,7 +119,7 @@ def _checked_positions(array: NDArray[Any] | None, key: str) -> FloatArray:
     """(frames, joints, 3) float32, finite. Raises Unreadable, TooLarge."""
     if array is None or array.ndim != 3 or array.shape[2] != 3:
         shape = "nothing" if array is None else "x".join(map(str, array.shape)) or "one number"
-        raise refused(key, f"expected frames x joints x 3 numbers, found {shape}")
+        raise unreadable_at(key, f"expected frames x joints x 3 numbers, found {shape}")
     frames, joints, _ = array.shape
     if joints > MAX_JOINTS or frames * joints > MAX_JOINT_FRAMES:
         limits = f"{MAX_JOINTS} joints and {MAX_JOINT_FRAMES} joints times frames"
@@ -150,13 +152,15 @@ def _names(arrays: NamedArrays, joints: int) -> list[str] | None:
         return None
     key = arrays.key("joint_names")
     if array.nbytes > 4 * MAX_JOINTS * MAX_NAME_LENGTH:
-        raise refused(key, f"expected names of at most {MAX_NAME_LENGTH} characters")
+        raise unreadable_at(key, f"expected names of at most {MAX_NAME_LENGTH} characters")
     names = [name.strip("\0 ") for name in texts(array, key)]
     if len(names) != joints:
-        raise refused(key, f"expected {joints} names as positions has joints, found {len(names)}")
+        raise unreadable_at(
+            key, f"expected {joints} names as positions has joints, found {len(names)}"
+        )
     for joint, name in enumerate(names):
         if not name or len(name) > MAX_NAME_LENGTH or not name.isprintable():
-            raise refused(f"joint {joint}", f"expected a name, found {name[:40]!a} in {key}")
+            raise unreadable_at(f"joint {joint}", f"expected a name, found {name[:40]!a} in {key}")
     return names
 
 
@@ -174,7 +178,9 @@ def _frame_rate(arrays: NamedArrays) -> float | None:
         return None
     rate = float(array.reshape(-1)[0]) if array.size == 1 else float("nan")
     if not FRAME_RATES[0] <= rate <= FRAME_RATES[1]:
-        raise refused(arrays.key("frame_rate"), f"expected one number of Hz, found {array!s:.40}")
+        raise unreadable_at(
+            arrays.key("frame_rate"), f"expected one number of Hz, found {array!s:.40}"
+        )
     return rate
 
 
@@ -190,7 +196,9 @@ def _unit(arrays: NamedArrays) -> float | None:
         scale = float(numbers(array, key).reshape(-1)[0]) if array.size == 1 else None
     if scale is None or not 1e-6 <= scale <= 1e3:
         known = ", ".join(METERS_PER_UNIT)
-        raise refused(key, f"expected one of {known}, or meters per unit; found {array!s:.40}")
+        raise unreadable_at(
+            key, f"expected one of {known}, or meters per unit; found {array!s:.40}"
+        )
     return scale
 
 
@@ -201,7 +209,7 @@ def _up_axis(arrays: NamedArrays) -> str | None:
     (name, *_) = texts(array, arrays.key("up_axis"))
     axis = name.strip().lower().removeprefix("+")
     if axis not in ("x", "y", "z"):
-        raise refused(arrays.key("up_axis"), f"expected x, y or z, found {name[:20]!a}")
+        raise unreadable_at(arrays.key("up_axis"), f"expected x, y or z, found {name[:20]!a}")
     return axis
 
 
@@ -262,8 +270,3 @@ def _renumbered(parents: IntArray, order: IntArray) -> IntArray:
     new_index[order] = np.arange(len(order))
     new_index[-1] = -1
     return np.asarray(new_index[parents[order]])
-
-
-def refused(location: str, message: str) -> Unreadable:
-    """An Unreadable that names the key, frame or joint."""
-    return Unreadable(f"{location}: {message}", places=[Place(location, message)])

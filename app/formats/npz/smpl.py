@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.errors import Place, Unreadable
+from app.formats.common.failures import unreadable_at
 from app.formats.npz.joint_layouts import SMPL_BODY
 from app.motion.skeleton.kinematics import forward_kinematics, local_translations
 from app.motion.skeleton.recording import Caution, Recording
@@ -80,10 +80,14 @@ def read_smpl(
     if poses.ndim != 2 or poses.shape[1] not in PARAMETERS:
         counts = ", ".join(map(str, PARAMETERS))
         shape = "x".join(map(str, poses.shape))
-        raise _refused("poses", f"expected frames x ({counts}) axis-angle numbers, found {shape}")
+        raise unreadable_at(
+            "poses", f"expected frames x ({counts}) axis-angle numbers, found {shape}"
+        )
     if translation is not None and translation.shape != (frames, 3):
         shape = "x".join(map(str, translation.shape))
-        raise _refused("trans", f"expected {frames}x3 numbers as poses has frames, found {shape}")
+        raise unreadable_at(
+            "trans", f"expected {frames}x3 numbers as poses has frames, found {shape}"
+        )
     skeleton = generic_body()
     rotations = _rotations(poses, len(skeleton))
     roots = np.broadcast_to(skeleton.offsets[0], (frames, 3))
@@ -153,7 +157,3 @@ def _stood_up(skeleton: Skeleton, rotations: FloatArray) -> tuple[Skeleton, Floa
     turned[:, 0] = multiply(rotations[:, 0], back)
     offsets = rotate(turn, skeleton.offsets)
     return Skeleton(skeleton.names, skeleton.parents, offsets), turned
-
-
-def _refused(key: str, message: str) -> Unreadable:
-    return Unreadable(f"{key}: {message}", places=[Place(key, message)])
