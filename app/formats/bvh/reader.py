@@ -1,8 +1,8 @@
 """Reads Biovision hierarchy (BVH) files in all known dialects.
 
-Bytes in, Recording out. Position channels of any joint replace its OFFSET axis by axis. Rotation
-channels turn in the order in which they are listed. Source: Meredith and Maddock, "Motion capture
-file formats explained" (2001).
+Bytes in, Recording out. A position channel of any joint replaces its OFFSET along that axis.
+Rotation channels turn in the order in which they are listed. Source: Meredith and Maddock, "Motion
+capture file formats explained" (2001).
 """
 
 from __future__ import annotations
@@ -62,6 +62,7 @@ def _solve(hierarchy: Hierarchy, numbers: FloatArray) -> Solved:
 
 
 def _local_translations(hierarchy: Hierarchy, numbers: FloatArray) -> FloatArray:
+    """(frames, joints, 3) the offsets, or the position channels; numbers: (frames, channels)."""
     offsets = hierarchy.skeleton.offsets
     result = np.broadcast_to(offsets, (len(numbers), *offsets.shape)).copy()
     for column, channel in enumerate(hierarchy.channels):
@@ -71,7 +72,10 @@ def _local_translations(hierarchy: Hierarchy, numbers: FloatArray) -> FloatArray
 
 
 def _local_rotations(hierarchy: Hierarchy, numbers: FloatArray) -> FloatArray:
-    """(frames, joints, 4): joints whose channels turn in the same order go together."""
+    """(frames, joints, 4) the local quaternions; numbers: (frames, channels) in degrees.
+
+    Joints whose channels turn in the same order are computed together.
+    """
     result = identity_quaternions((len(numbers), len(hierarchy.skeleton)))
     for order, joints, columns in _rotation_groups(hierarchy.channels):
         angles = np.radians(numbers[:, columns])  # (frames, joints of the group, axes)
@@ -82,7 +86,7 @@ def _local_rotations(hierarchy: Hierarchy, numbers: FloatArray) -> FloatArray:
 def _rotation_groups(
     channels: tuple[Channel, ...],
 ) -> list[tuple[str, list[int], list[list[int]]]]:
-    """By rotation order: the joints that have it and their columns (joints, axes)."""
+    """Each order of rotation, the joints that have it, and their columns (joints, axes)."""
     by_joint: dict[int, list[int]] = {}
     for column, channel in enumerate(channels):
         if not channel.is_position:

@@ -66,16 +66,16 @@ def joint_centers(markers: Mapping[str, FloatArray]) -> dict[JointRole, Center]:
     """
     found: dict[JointRole, Center] = {}
     for role, recipes in RECIPES.items():
-        recipe = chosen(recipes, markers.__contains__)
+        recipe = best_recipe(recipes, markers.__contains__)
         if recipe is not None:
             found[role] = Center(_mean(markers, recipe), recipe)
-    pelvis = chosen(_PELVES, markers.__contains__)
+    pelvis = best_recipe(_PELVES, markers.__contains__)
     if pelvis is not None:
         _add_hip_joints(found, markers, pelvis)
     return {role: found[role] for role in JointRole if role in found}
 
 
-def chosen(recipes: tuple[Recipe, ...], has: Callable[[str], bool]) -> Recipe | None:
+def best_recipe(recipes: tuple[Recipe, ...], has: Callable[[str], bool]) -> Recipe | None:
     """The first recipe for which all markers exist; None if there is none."""
     return next((recipe for recipe in recipes if all(map(has, recipe))), None)
 

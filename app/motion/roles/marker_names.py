@@ -81,18 +81,18 @@ def is_marker(label: str) -> bool:
     return not (_UNLABELLED.fullmatch(label) or _NO_MARKER.fullmatch(label))
 
 
-def place_of(label: str) -> str | None:
+def place_on_body(label: str) -> str | None:
     """The place on the body, such as "LKNE" or "C7", or None where no set has the label."""
     key = re.sub(r"[\W_]", "", label).upper()
     key = re.sub(r"^(LEFT|RIGHT)", lambda side: side.group()[0], key)
     return _PLACES.get(key)
 
 
-def places_of(labels: Sequence[str]) -> dict[str, int]:
+def markers_by_place(labels: Sequence[str]) -> dict[str, int]:
     """The first marker of each place that labels (markers,) without subjects name."""
     found: dict[str, int] = {}
     for marker, label in enumerate(labels):
-        place = place_of(label)
+        place = place_on_body(label)
         if place is not None:
             found.setdefault(place, marker)
     return found

@@ -87,7 +87,7 @@ def test_an_mp3_without_a_tag_is_known() -> None:
 def test_samples_that_are_no_numbers_are_refused() -> None:
     broken = TONE.copy()
     broken[100] = np.nan
-    with pytest.raises(Unreadable, match="no numbers"):
+    with pytest.raises(Unreadable, match="not numbers"):
         read_audio(encoded(broken, subtype="FLOAT"))
 
 

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from app.motion.roles.marker_names import is_marker, place_of, places_of, subject_and_label
+from app.motion.roles.marker_names import (
+    is_marker,
+    markers_by_place,
+    place_on_body,
+    subject_and_label,
+)
 
 
 @pytest.mark.parametrize(
@@ -19,7 +24,7 @@ from app.motion.roles.marker_names import is_marker, place_of, places_of, subjec
     ],
 )  # fmt: skip
 def test_places(label: str, place: str | None) -> None:
-    assert place_of(label) == place
+    assert place_on_body(label) == place
 
 
 def test_subjects() -> None:
@@ -36,4 +41,4 @@ def test_what_is_no_marker() -> None:
 
 
 def test_the_first_of_a_place_counts() -> None:
-    assert places_of(["LTHI", "LASI", "L.ASIS", "C7"]) == {"LASI": 1, "C7": 3}
+    assert markers_by_place(["LTHI", "LASI", "L.ASIS", "C7"]) == {"LASI": 1, "C7": 3}
