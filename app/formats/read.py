@@ -70,5 +70,5 @@ def _no_clip(archive: bytes) -> FormatNotSupported:
 def check_stack_belongs(format: str) -> None:
     """Raise BadField if files of this format do not have animation stacks."""
     if format != "fbx":
-        message = f"expected none with a {format.upper()} file; only FBX files have stacks"
+        message = f"goes with an FBX file, not with {format.upper()}"
         raise BadField(f"stack: {message}", places=[Place("stack", message)])

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from app.motion.skeleton.animation import (
-    STILL,
+    MAX_STILL_DISTANCE,
     Animation,
     animation_of_positions,
     animation_of_rotations,
@@ -116,7 +116,7 @@ def test_rotations_of_a_file_are_kept_and_lead_to_other_positions_by_translation
         ).positions(),
         30.0,
     )
-    assert np.abs(true.translations[:, 1:] - skeleton.offsets[1:]).max() < STILL
+    assert np.abs(true.translations[:, 1:] - skeleton.offsets[1:]).max() < MAX_STILL_DISTANCE
 
 
 def test_signs_are_continuous_and_turns_the_same() -> None:

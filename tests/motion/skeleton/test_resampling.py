@@ -121,7 +121,7 @@ def test_a_filter_that_reaches_far_never_passes_over_the_whole_clip(
     samples = np.zeros((20_000, 3))
     for rate in (1.0, 5.0, 60.0, 100.0, 500.0, 999.0):
         resample(samples, 1000.0, rate)
-    assert max(taps) <= 2 * resampling.LOW_PASS_REACH * resampling.FAR_APART + 1
+    assert max(taps) <= 2 * resampling.LOW_PASS_REACH * resampling.MIN_FAR_RATIO + 1
 
 
 def test_blocks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
