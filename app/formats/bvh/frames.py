@@ -60,7 +60,7 @@ def read_frames(text: bytes, first_line: int, channels: int) -> Frames:
     if not len(numbers):
         raise unreadable_line(line + 1, f"expected frames of {channels} numbers, found none")
     if declared != len(numbers):
-        detail = f"the file declares {declared} frames and holds {len(numbers)}"
+        detail = f"the file declares {declared} frames but has {len(numbers)}"
         cautions += (Caution("frames_mismatch", detail),)
     return Frames(numbers, rate, cautions)
 

@@ -118,7 +118,7 @@ def _frame_count(
     frames = max(possible)
     if frames == max(declared):
         return frames, ()
-    detail = f"the file declares {max(declared)} frames and holds {frames}"
+    detail = f"the file declares {max(declared)} frames but has {frames}"
     return frames, (Caution("frames_mismatch", detail),)
 
 

@@ -1,7 +1,7 @@
 """Reads SMPL, SMPL-H and SMPL-X parameters (for example AMASS files) as a recording.
 
 A parameter file contains the angles of a body model, but not its joints. To compute these one needs
-the model, whose license does not allow us to include it. The angles are read exactly and turn a
+the model, which is licensed and not a part of Kinedex. The angles are read exactly and turn a
 generic body of our own. Its segments have the proportions of Drillis and Contini (1966; Winter,
 "Biomechanics and motor control of human movement", fig. 4.1). So the directions of limbs are as
 recorded, but their lengths are generic, and the feet are a few centimeters above or below the
