@@ -17,7 +17,7 @@ def motion_of(positions: FloatArray, frame_rate: float = 30.0) -> Motion:
         format="bvh",
         names=tuple(role.value for role in SUN_ROLES),
         parents=np.array(
-            [SUN_ROLES.index(r.towards_trunk()) if r is not R.HIPS else -1 for r in SUN_ROLES]
+            [SUN_ROLES.index(r.toward_trunk()) if r is not R.HIPS else -1 for r in SUN_ROLES]
         ),
         positions=positions.astype(np.float32),
         roles={role: index for index, role in enumerate(SUN_ROLES)},

@@ -1,4 +1,4 @@
-"""Positions as comma-separated values: a row a frame, for spreadsheets and R."""
+"""Writes positions as comma-separated values (CSV), one row for each frame."""
 
 from __future__ import annotations
 
@@ -11,15 +11,17 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 
 DECIMALS = 6
-"""Of seconds and meters."""
+"""Decimals of seconds and meters."""
 BLOCK_FRAMES = 1024
+"""Frames that are converted to text at once."""
 _FORMULA_STARTS = ("=", "+", "-", "@")
 
 
 def write_csv(names: Sequence[str], positions: FloatArray, frame_rate: float) -> Iterator[bytes]:
-    """`time` in seconds, then x, y and z of each joint in meters, Y up, piece by piece.
+    """The bytes of a CSV file, in blocks of frames.
 
-    positions: (frames, joints, 3). The first row names the columns, as `Hips_x`.
+    names: (joints,). positions: (frames, joints, 3) meters, Y up. frame_rate: Hz. The first row has
+    the names of the columns: `time` (seconds), then for example `Hips_x`, `Hips_y`, `Hips_z`.
     """
     head = io.StringIO()
     columns = [f"{_harmless(name)}_{axis}" for name in names for axis in "xyz"]
@@ -34,5 +36,5 @@ def write_csv(names: Sequence[str], positions: FloatArray, frame_rate: float) ->
 
 
 def _harmless(name: str) -> str:
-    """A joint's name that no spreadsheet takes for a formula."""
+    """The name of a joint in a form that spreadsheets do not run as a formula."""
     return f"'{name}" if name.startswith(_FORMULA_STARTS) else name

@@ -1,4 +1,4 @@
-"""Any motion file: bytes in, Recording out, whatever the format."""
+"""Reads a motion file of any format: bytes in, Recording out."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from app.motion.skeleton.recording import Recording
 
 
 def read_lone_asf(content: bytes) -> Recording:  # noqa: ARG001
-    """Raise MotionNeeded: an ASF file holds bones at rest."""
+    """Raise MotionNeeded, because an ASF file contains only the skeleton."""
     raise MotionNeeded(places=[Place("file", "expected an AMC file, found an ASF file")])
 
 
@@ -28,18 +28,18 @@ READERS: dict[str, Callable[[bytes], Recording]] = {
     "npy": read_npy_positions,
     "npz": read_npz,
 }
-"""By the name that `sniff` gives."""
+"""The reader of each format, by the name that `sniff` returns."""
 
 
 def read_recording(
     content: bytes, skeleton: bytes | None = None, stack: str | None = None
 ) -> Recording:
-    """Read a motion file of a format found by its first bytes.
+    """Read a motion file. Its first bytes decide its format.
 
-    skeleton: the ASF file that an AMC file needs; stack: the animation stack of an FBX file,
-    by default its longest. Raises EmptyFile, UnknownFormat, FormatNotSupported (a ZIP that
-    is no clip), SkeletonNeeded, MotionNeeded, SkeletonNotNeeded, BadField for a stack that does
-    not exist, and the errors of the reader: Unreadable with places, and TooLarge.
+    skeleton: the ASF file that an AMC file needs. stack: the name of the animation stack of an FBX
+    file; by default the longest one. Raises EmptyFile, UnknownFormat, FormatNotSupported (for
+    example, for a ZIP archive without a clip), SkeletonNeeded, MotionNeeded, SkeletonNotNeeded,
+    BadField for a stack that does not exist, Unreadable with places, and TooLarge.
     """
     name = sniff(content)
     if skeleton is not None and name not in ("amc", "asf"):
@@ -58,17 +58,17 @@ def read_recording(
 
 
 def _no_clip(archive: bytes) -> FormatNotSupported:
-    """The error for a ZIP archive that has no arrays of a clip."""
+    """The error for a ZIP archive that does not have the arrays of a clip."""
     found = ", ".join(name[:60] for name in archive_names(archive)[:10])
     message = f"expected an array of positions, or of SMPL poses; found {found}"
     return FormatNotSupported(
-        "This is a ZIP archive and no NPZ file of motion. Import it if it holds motion files.",
+        "This ZIP archive is not an NPZ file of motion. Import it if it contains motion files.",
         places=[Place("positions", message)],
     )
 
 
 def check_stack_belongs(format: str) -> None:
-    """Raise BadField where a file of this format has no animation stacks to pick from."""
+    """Raise BadField if files of this format do not have animation stacks."""
     if format != "fbx":
         message = f"goes with an FBX file, not with {format.upper()}"
         raise BadField(f"stack: {message}", places=[Place("stack", message)])

@@ -10,14 +10,14 @@ import re
 from collections.abc import Iterator
 
 from app.errors import EmptyFile, UnknownFormat
-from app.formats.npz.keys import is_known
+from app.formats.npz.keys import is_known_array
 
 HEAD_BYTES = 4096
-"""The first bytes, in which text formats are recognized."""
+"""The number of first bytes in which text formats are recognized."""
 TAIL_BYTES = 64 * 2**10
-"""The end of an archive, where its directory is: more than NPZ files need for theirs."""
+"""The number of last bytes in which the directory of a ZIP archive is read."""
 HEAD_LINES = 50
-"""Lines of the head in which a keyword may stand after comments."""
+"""The most lines in which a keyword is searched. Comments may come before it."""
 
 _MAGICS = (
     (b"Kaydara FBX Binary", "fbx"),
@@ -44,8 +44,8 @@ _ZIP_ENTRY = b"PK\x01\x02"
 def sniff(content: bytes) -> str:
     """The format: "bvh", "amc", "asf", "c3d", "fbx", "npz", "npy" or "zip".
 
-    content: all of it, or its first HEAD_BYTES and its last TAIL_BYTES at least. Raises
-    EmptyFile where there is nothing but white space, UnknownFormat else.
+    content: the whole file, or at least its first HEAD_BYTES and its last TAIL_BYTES. Raises
+    EmptyFile if there is only white space, and UnknownFormat.
     """
     if not content or (len(content) <= HEAD_BYTES and not content.strip()):
         raise EmptyFile
@@ -57,7 +57,7 @@ def _binary(content: bytes) -> str | None:
         if content.startswith(magic):
             return name
     if is_zip(content):
-        return "npz" if _holds_arrays(content) else "zip"
+        return "npz" if _is_npz(content) else "zip"
     # A C3D file is whole blocks of 512 bytes and begins with a small block number.
     if len(content) >= 512 and content[1] == _C3D_KEY and content[0] in range(1, 100):
         return "c3d"
@@ -65,28 +65,28 @@ def _binary(content: bytes) -> str | None:
 
 
 def is_zip(head: bytes) -> bool:
-    """Whether content that begins so is a ZIP archive; an NPZ file is one, too."""
+    """Whether content that starts with `head` is a ZIP archive. NPZ files are ZIP archives."""
     return head.startswith(_ZIP_MAGICS)
 
 
-def _holds_arrays(archive: bytes) -> bool:
-    """Whether a ZIP is an NPZ file: arrays alone, and one at least by a name that we know.
+def _is_npz(archive: bytes) -> bool:
+    """Whether a ZIP archive is an NPZ file: it has only arrays, and one has a known name.
 
-    A ZIP of NPY clips holds arrays alone, too.
+    Arrays alone are not enough, because an archive of NPY clips also has only arrays.
     """
     names = archive_names(archive)
     return all(name.endswith(".npy") for name in names) and any(
-        is_known(name.removesuffix(".npy")) for name in names
+        is_known_array(name.removesuffix(".npy")) for name in names
     )
 
 
 def archive_names(archive: bytes) -> list[str]:
-    """The names of a ZIP's entries, as far as the end of its directory contains them."""
+    """The names of the entries of a ZIP archive that are listed in its last TAIL_BYTES."""
     return list(_entries(archive[-TAIL_BYTES:])) or [_first_entry(archive)]
 
 
 def _entries(tail: bytes) -> Iterator[str]:
-    """The names in a ZIP's directory (APPNOTE 4.3.12), as far as `tail` holds it."""
+    """The names in the part of a ZIP directory (APPNOTE 4.3.12) that `tail` contains."""
     at = tail.find(_ZIP_ENTRY)
     while at >= 0:
         length = int.from_bytes(tail[at + 28 : at + 30], "little")
@@ -95,7 +95,7 @@ def _entries(tail: bytes) -> Iterator[str]:
 
 
 def _first_entry(content: bytes) -> str:
-    """The name of a ZIP's first entry: all there is of one that was cut off."""
+    """The name of the first entry. An archive that was cut off has no directory, only this."""
     length = int.from_bytes(content[26:28], "little")
     return content[30 : 30 + length].decode("latin-1")
 
@@ -106,16 +106,16 @@ def _text(head: bytes) -> str | None:
         for keyword, name in _KEYWORDS:
             if keyword.match(line):
                 return name
-        if not _may_precede(line.strip()):
+        if not _may_precede_keyword(line.strip()):
             return None
     return None
 
 
-def _may_precede(line: bytes) -> bool:
-    """Whether a keyword may follow: comments, and the frame number of an AMC without header."""
+def _may_precede_keyword(line: bytes) -> bool:
+    """Whether a keyword may follow: a comment, or the frame number of an AMC without header."""
     return not line or line.startswith((b"#", b";", b"//")) or line == b"1"
 
 
 def _unknown(content: bytes) -> str:
     shown = content[:16].decode("ascii", errors="backslashreplace")
-    raise UnknownFormat(f"The content begins with {shown!r}, which no known format does")
+    raise UnknownFormat(f"The content begins with {shown!r}, but no known format does")

@@ -1,1 +1,1 @@
-"""Skeletons, roles, kinematics, the body frame: frozen values and pure functions."""
+"""Skeletons, joint roles, kinematics, the body frame: frozen values and pure functions."""

@@ -17,9 +17,9 @@ class Motion:
 
     names: (joints,). parents: (joints,) int, -1 for a root. positions: (frames, joints, 3)
     float32, in the world, meters, Y up. roles: the joint of each role that was found.
-    missing_roles: those of Sun's 13 roles that were not found. frame_rate: Hz, the one that is
-    used. declared_frame_rate: Hz as in the file, or None. metres_per_unit: the scale that was
-    applied to the numbers of the file.
+    missing_roles: the roles of Sun's 13 that were not found. frame_rate: Hz, the one that is used.
+    declared_frame_rate: Hz as in the file, or None. metres_per_unit: the scale that was applied to
+    the numbers of the file.
     """
 
     format: str
@@ -49,10 +49,11 @@ class Motion:
         A missing role gets the position of its nearest neighbor toward the trunk that is there
         (hand -> elbow -> shoulder -> neck), so that all arrays have the same shape.
         """
-        columns = [self.roles[self._stand_in(role)] for role in SUN_ROLES]
+        columns = [self.roles[self._nearest_found(role)] for role in SUN_ROLES]
         return np.ascontiguousarray(self.positions[:, columns])
 
-    def _stand_in(self, role: JointRole) -> JointRole:
+    def _nearest_found(self, role: JointRole) -> JointRole:
+        # This ends at the latest at the hips, which every motion has.
         while role not in self.roles:
-            role = role.towards_trunk()
+            role = role.toward_trunk()
         return role

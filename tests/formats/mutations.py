@@ -1,4 +1,4 @@
-"""Files broken at random, byte by byte and line by line; a seed names each."""
+"""Damages files at random, by bytes and by lines. The same seed gives the same damage."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from app.errors import KinedexError
 from app.motion.skeleton.recording import Recording
 from tests.cpu_time import cpu_seconds_below
 
-LONGEST = 1.0
-"""Seconds of CPU time that any broken file may take."""
+MAX_SECONDS = 1.0
+"""The most CPU time for a damaged file."""
 PIECES = (b"", b"\n", b" ", b"nan", b"1e999", b"-", b"0", b"9", b"\x00", b"\xff", b"\x7f", b"#")
 
 
 def mutated(content: bytes, seed: int, pieces: Sequence[bytes] = PIECES) -> bytes:
-    """`content` with one to four places changed: bytes replaced, cut, doubled; lines moved."""
+    """`content` with one to four changes: bytes are replaced, cut or doubled, or lines moved."""
     rng = random.Random(seed)
     result = bytearray(content)
     for _ in range(rng.randint(1, 4)):
@@ -44,12 +44,15 @@ def _move_lines(content: bytearray, rng: random.Random) -> None:
 
 
 def check_broken(read: Callable[[int], Recording], seeds: range) -> int:
-    """How many of the broken files are still read; raises where one fails other than by
-    our own failures, takes too long, or is read into what is not finite."""
+    """The number of damaged files that are read without an error.
+
+    Raises if a file gives an error that is not ours, takes too long, or gives positions that are
+    not finite.
+    """
     good = 0
     for seed in seeds:
         try:
-            with cpu_seconds_below(LONGEST, f"seed {seed}"):
+            with cpu_seconds_below(MAX_SECONDS, f"seed {seed}"):
                 recording = read(seed)
         except KinedexError:
             continue

@@ -20,7 +20,7 @@ ROOT Hips
 """
 ROWS = ("1 2 3 90 0 0 0 0 0", "4 5 6 0 0 0 0 0 90")
 SPINE = ((-9.0, 2.0, 3.0), (4.0, 15.0, 6.0))
-"""Where the spine is in the two frames."""
+"""The positions of the spine in the two frames."""
 
 
 def bvh(
@@ -30,7 +30,7 @@ def bvh(
     frames: str | None = None,
     frame_time: str = "0.0333333",
 ) -> bytes:
-    """A BVH file; `frames` is what it declares, by default the truth."""
+    """A BVH file; `frames` is the declared number, by default the true one."""
     declared = str(len(rows)) if frames is None else frames
     head = f"MOTION\nFrames: {declared}\nFrame Time: {frame_time}\n"
     return (hierarchy + head + "".join(row + "\n" for row in rows)).encode()

@@ -1,4 +1,4 @@
-"""CSV: time and meters that any program reads, and names that no spreadsheet runs."""
+"""CSV files have times and meters, and names that spreadsheets do not run as formulas."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Formats are known by their first bytes."""
+"""Formats are recognized by their first bytes."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ SAMPLES = [
 
 
 @pytest.mark.parametrize(("name", "content"), SAMPLES, ids=lambda _: "")
-def test_known_formats(name: str, content: bytes) -> None:
+def test_each_format_is_recognized(name: str, content: bytes) -> None:
     assert sniff(content) == name
 
 
@@ -68,7 +68,7 @@ def test_the_first_and_the_last_bytes_are_enough() -> None:
 
 
 @pytest.mark.parametrize("content", [b"", b" \r\n\t"])
-def test_nothing_is_empty(content: bytes) -> None:
+def test_empty_content_is_refused(content: bytes) -> None:
     with pytest.raises(EmptyFile):
         sniff(content)
 
@@ -76,29 +76,29 @@ def test_nothing_is_empty(content: bytes) -> None:
 @pytest.mark.parametrize(
     "content", [b"hello", b"%PDF-1.7", bytes(1000), b"\x89PNG", b"a HIERARCHY"]
 )
-def test_others_are_unknown(content: bytes) -> None:
+def test_other_content_is_refused(content: bytes) -> None:
     with pytest.raises(UnknownFormat):
         sniff(content)
 
 
 @given(st.binary(max_size=100))
-def test_noise_raises_nothing_but_our_own_failures(noise: bytes) -> None:
+def test_noise_raises_only_our_own_errors(noise: bytes) -> None:
     with suppress(KinedexError):
         read_recording(noise)
 
 
-def test_known_formats_without_a_reader_are_named() -> None:
+def test_formats_without_a_reader_are_named() -> None:
     for name, content in SAMPLES:
         if name not in READERS:
             with pytest.raises(FormatNotSupported, match=name.upper()):
                 read_recording(content)
 
 
-def test_read_recording_reads_what_it_can() -> None:
+def test_read_recording_finds_the_reader() -> None:
     assert read_recording(bvh()).format == "bvh"
 
 
-def test_real_files_are_known_by_content() -> None:
+def test_real_files_are_recognized_by_their_content() -> None:
     for row in manifest()[::10] + [r for r in manifest() if not r["path"].endswith(".bvh")]:
         content = (real_clips() / row["path"]).read_bytes()
         assert sniff(content) == row["path"].rsplit(".")[-1]

@@ -17,7 +17,7 @@ import numpy as np
 import scipy
 
 from app.analysis.energy.marker_noise import noise_of_speed, noise_power
-from app.motion.canonical.centre_of_mass import ROLE_MASSES
+from app.motion.canonical.center_of_mass import ROLE_MASSES
 from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray
 

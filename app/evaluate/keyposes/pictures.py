@@ -40,9 +40,9 @@ FIGURE_DISTANCE = 1.3
 """Distance between two stick figures in meters."""
 
 _LIMBS = [
-    (SUN_ROLES.index(role), SUN_ROLES.index(role.towards_trunk()))
+    (SUN_ROLES.index(role), SUN_ROLES.index(role.toward_trunk()))
     for role in SUN_ROLES
-    if role.towards_trunk() is not role
+    if role.toward_trunk() is not role
 ]
 
 

@@ -1,8 +1,9 @@
-"""Acclaim motion (AMC) on its skeleton (ASF): bytes in, Recording out.
+"""Reads Acclaim motion (AMC) files with their skeleton (ASF): bytes in, Recording out.
 
-A bone's local rotation is C M C^-1: C turns to the bone's axes, M is the product of the
-channels' turns about fixed axes in their order; tx ty tz move the bone's beginning along
-the same axes, l stretches it. Sources: as in `asf.py`.
+The local rotation of a bone is C M C^-1. C turns the world's axes to the axes of the bone. M is the
+product of the channels' turns about fixed axes, in the order of the channels. The channels tx, ty
+and tz move the start of the bone along the same axes, and l stretches the bone. Sources: see
+`asf.py`.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 from app.errors import Place, SkeletonNeeded, Unreadable
 from app.formats.acclaim.amc_frames import AmcFrames, read_amc_frames
 from app.formats.acclaim.asf import AcclaimSkeleton, read_asf
-from app.formats.acclaim.frame_order import USUAL_RATE, in_order
+from app.formats.acclaim.frame_order import USUAL_RATE, in_number_order
 from app.formats.common.lines import with_plain_newlines
 from app.formats.common.world_positions import solve
 from app.motion.skeleton.recording import Recording
@@ -39,7 +40,7 @@ def read_amc(content: bytes, skeleton: bytes | None = None) -> Recording:
     body = _asf(skeleton)
     text = with_plain_newlines(content)
     frames = read_amc_frames(text, body.skeleton.names, body.channels)
-    ordered = in_order(frames)
+    ordered = in_number_order(frames)
     numbers = _in_radians(body, frames, ordered.numbers)
     moving = any(c[0] == "t" or c == "l" for bone in body.channels[1:] for c in bone)
 
@@ -62,7 +63,7 @@ def read_amc(content: bytes, skeleton: bytes | None = None) -> Recording:
 
 
 def _asf(content: bytes) -> AcclaimSkeleton:
-    """The skeleton, whose failures say that they are in that file."""
+    """Read the skeleton. Its errors say that they are in the ASF file, not in the AMC file."""
     try:
         return read_asf(content)
     except Unreadable as problem:
@@ -72,21 +73,26 @@ def _asf(content: bytes) -> AcclaimSkeleton:
 
 def _in_radians(body: AcclaimSkeleton, frames: AmcFrames, numbers: FloatArray) -> FloatArray:
     """`numbers` (frames, channels) with all turns in radians."""
-    said = body.in_degrees if frames.in_degrees is None else frames.in_degrees
-    if not said:
+    # The AMC file has priority, because its header describes its own numbers.
+    in_degrees = body.in_degrees if frames.in_degrees is None else frames.in_degrees
+    if not in_degrees:
         return numbers
     turns = np.array([channel[0] == "r" for bone in body.channels for channel in bone])
     return np.where(turns, np.radians(numbers), numbers)
 
 
 def _local_rotations(body: AcclaimSkeleton, numbers: FloatArray) -> FloatArray:
-    """(frames, joints, 4): joints that turn in the same order go together."""
+    """(frames, joints, 4) the local rotations, float64.
+
+    Joints that turn about the same axes in the same order are computed together.
+    """
     result = identity_quaternions((len(numbers), len(body.channels)))
     for order, joints, columns in _turning_groups(body.channels):
+        # angles (frames, joints of the group, axes of the order) -> turns (frames, joints, 4)
         axes = body.axes[joints]
         turned = euler_to_quaternions(numbers[:, columns], order)
         result[:, joints] = multiply(multiply(axes, turned), conjugate(axes))
-    # The root's pre-set orientation offsets all its turns.
+    # The root has an orientation before it moves. All its turns are added to that.
     result[:, 0] = multiply(result[:, 0], body.orientation)
     return result
 
@@ -94,7 +100,11 @@ def _local_rotations(body: AcclaimSkeleton, numbers: FloatArray) -> FloatArray:
 def _turning_groups(
     channels: Sequence[tuple[str, ...]],
 ) -> list[tuple[str, list[int], list[list[int]]]]:
-    """By order of turning, outermost (last in the file) first: joints and their columns."""
+    """Groups of joints with the same order of axes: the order, the joints, and their columns.
+
+    The order names the outermost axis first. A file lists the axis that turns first, which is the
+    innermost one, so the order is reversed here.
+    """
     groups: dict[str, tuple[list[int], list[list[int]]]] = {}
     start = 0
     for joint, bone in enumerate(channels):
@@ -108,7 +118,11 @@ def _turning_groups(
 
 
 def _local_translations(body: AcclaimSkeleton, numbers: FloatArray) -> FloatArray:
-    """(frames, joints, 3): offsets, moved along the bone's axes, and by stretched parents."""
+    """(frames, joints, 3) the local translations in the unit of the file.
+
+    These are the offsets, moved along the bone's axes by tx, ty and tz. Where a bone is stretched,
+    its children move outward.
+    """
     offsets = body.skeleton.offsets
     result = np.broadcast_to(offsets, (len(numbers), *offsets.shape)).copy()
     start = 0

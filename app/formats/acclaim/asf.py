@@ -1,10 +1,10 @@
 """Acclaim skeleton files (ASF): the bones that an AMC file moves.
 
-Bytes in, AcclaimSkeleton out. A bone begins where its parent ends, so the joint that bears
-a bone's name stands at the bone's beginning, and leaf bones end in end sites. Directions
-are in global axes: with all channels zero every joint's rotation is the identity.
-Sources: M. Schafer, "Acclaim skeleton file definition v1.10" (1994); "Acclaim format: ASF
-line details" (Oxford Metrics, kept by CMU); CMU's FAQ for the unit.
+Bytes in, AcclaimSkeleton out. A bone starts where its parent ends. So the joint with the name of a
+bone is at the start of the bone, and a bone without children ends in an end site. Directions are
+in the axes of the world, so that every joint has the identity as its rotation if all channels are
+zero. Sources: M. Schafer, "Acclaim skeleton file definition v1.10" (1994); "Acclaim format: ASF
+line details" (Oxford Metrics, on the web site of CMU); CMU's FAQ for the unit.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.formats.acclaim.lines import worded_lines
-from app.formats.common.failures import too_large, unreadable
+from app.formats.acclaim.lines import lines_of_words
+from app.formats.common.failures import too_large, unreadable_line
 from app.formats.common.limits import MAX_JOINTS
 from app.formats.common.lines import with_plain_newlines
 from app.formats.common.names import readable_name
@@ -25,21 +25,23 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 MAX_ASF_BYTES = 2_000_000
+"""The size of the largest skeleton file."""
 CHANNELS = ("tx", "ty", "tz", "rx", "ry", "rz", "l")
 METERS_PER_INCH = 0.0254
 STATURES = (0.3, 3.0)
-"""Meters; a rest pose beyond means that `length` is no unit."""
+"""Meters: the smallest and the largest rest pose. Outside, `length` does not give the unit."""
 
 
 @dataclass(frozen=True, slots=True)
 class AcclaimSkeleton:
-    """A skeleton and how an AMC's channels move it; joint 0 is the root.
+    """A skeleton, and how the channels of an AMC file move it. Joint 0 is the root.
 
-    channels: by joint, of CHANNELS, in the order of the AMC's numbers;
-    axes: (joints, 4) quaternions C of the axes that a bone turns about, the root's the
-    identity; orientation: (4,) how the root is turned before it moves; directions:
-    (joints, 3) unit vectors along the bones, zero for the root; in_degrees: the unit of
-    angles; metres_per_unit: None where `length` says nothing.
+    channels: for each joint, names from CHANNELS in the order of the numbers in the AMC file.
+    axes: (joints, 4) quaternions C, which turn the world's axes to those of each bone; the
+    identity for the root. orientation: (4,) the turn of the root before it moves. directions:
+    (joints, 3) unit vectors along the bones in the axes of the world, zero for the root.
+    in_degrees: whether angles are in degrees, else in radians. metres_per_unit: None if `length`
+    does not give the unit.
     """
 
     skeleton: Skeleton
@@ -53,7 +55,7 @@ class AcclaimSkeleton:
 
 
 def read_asf(content: bytes) -> AcclaimSkeleton:
-    """Read an ASF file. Raises Unreadable naming the line, and TooLarge."""
+    """Read an ASF file. Raises Unreadable with the line, and TooLarge."""
     if len(content) > MAX_ASF_BYTES:
         raise too_large("skeleton", f"expected at most {MAX_ASF_BYTES} bytes")
     return _Reader(with_plain_newlines(content)).read()
@@ -61,6 +63,8 @@ def read_asf(content: bytes) -> AcclaimSkeleton:
 
 @dataclass(slots=True)
 class _Bone:
+    """A bone of `:bonedata`, or the root. `order` names the axis that turns first, first."""
+
     line: int
     name: bytes = b""
     direction: FloatArray = field(default_factory=lambda: np.zeros(3))
@@ -71,10 +75,10 @@ class _Bone:
 
 
 class _Reader:
-    """Walks over the lines; `section` is the keyword that they stand under."""
+    """Reads the lines in order. `section` is the last keyword with a colon."""
 
     def __init__(self, text: bytes) -> None:
-        self.lines = worded_lines(text.translate(_AS_SPACES))
+        self.lines = lines_of_words(text.translate(_AS_SPACES))
         self.line = 1
         self.section = ""
         self.root = _Bone(1, _ROOT)
@@ -99,7 +103,7 @@ class _Reader:
             elif self.section == "hierarchy" and keyword not in ("begin", "end"):
                 self._children(words)
         if not self.bones:
-            raise unreadable(self.line, "expected bones under :bonedata, found none")
+            raise unreadable_line(self.line, "expected bones under :bonedata, found none")
         return self._skeleton()
 
     def _unit(self, keyword: str, words: list[bytes]) -> None:
@@ -111,7 +115,7 @@ class _Reader:
     def _is_degrees(self, words: list[bytes]) -> bool:
         name = words[1].lower() if len(words) > 1 else b""
         if not name.startswith((b"deg", b"rad")):
-            raise unreadable(self.line, f"expected deg or rad, found {excerpt(name)}")
+            raise unreadable_line(self.line, f"expected deg or rad, found {excerpt(name)}")
         return name.startswith(b"deg")
 
     def _root(self, keyword: str, words: list[bytes]) -> None:
@@ -125,7 +129,7 @@ class _Reader:
             self.root.angles = self._numbers(words, 3)
 
     def _bone(self) -> None:
-        """Read up to the bone's `end`; limits, masses and the like do not move it."""
+        """Read up to `end` of the bone. Other lines, such as limits and masses, are ignored."""
         bone = _Bone(self.line)
         for line, words in self.lines:
             self.line = line
@@ -135,7 +139,7 @@ class _Reader:
             if keyword.startswith(b":") or keyword == b"begin":
                 break
             self._bone_line(bone, keyword, words)
-        raise unreadable(self.line, f"expected the end of bone {excerpt(bone.name)}")
+        raise unreadable_line(self.line, f"expected the end of bone {excerpt(bone.name)}")
 
     def _bone_line(self, bone: _Bone, keyword: bytes, words: list[bytes]) -> None:
         if keyword == b"name":
@@ -154,7 +158,7 @@ class _Reader:
         readable_name(bone.name, bone.line)
         key = bone.name.lower()
         if key in self.bones or key == _ROOT:
-            raise unreadable(bone.line, f"expected each bone once, found {excerpt(bone.name)}")
+            raise unreadable_line(bone.line, f"expected each bone once, found {excerpt(bone.name)}")
         if len(self.bones) >= MAX_JOINTS:
             raise too_large(f"line {bone.line}", f"expected at most {MAX_JOINTS} bones")
         self.bones[key] = bone
@@ -163,38 +167,43 @@ class _Reader:
         parent, *children = (word.lower() for word in words)
         for name in (parent, *children):
             if name not in self.bones and name != _ROOT:
-                raise unreadable(self.line, f"expected a bone's name, found {excerpt(name)}")
+                raise unreadable_line(self.line, f"expected a bone's name, found {excerpt(name)}")
         for child in children:
             if child == _ROOT or self.parents.setdefault(child, parent) != parent:
-                raise unreadable(self.line, f"expected one parent for {excerpt(child)}")
+                raise unreadable_line(self.line, f"expected one parent for {excerpt(child)}")
 
     def _numbers(self, words: list[bytes], count: int) -> FloatArray:
         numbers = parse_numbers(b" ".join(words[1:]), self.line)
         if len(numbers) != count:
             message = f"expected {count} numbers after {excerpt(words[0])}, found {len(numbers)}"
-            raise unreadable(self.line, message)
+            raise unreadable_line(self.line, message)
         return numbers
 
     def _order(self, words: list[bytes]) -> str:
         order = b"".join(words).decode("ascii", "replace").upper() or "XYZ"
         if sorted(order) != ["X", "Y", "Z"]:
-            raise unreadable(self.line, f"expected an order of axes such as XYZ, found {order!r}")
+            raise unreadable_line(
+                self.line, f"expected an order of axes such as XYZ, found {order!r}"
+            )
         return order
 
     def _channels(self, words: list[bytes]) -> tuple[str, ...]:
         channels = tuple(word.decode("ascii", "replace").lower() for word in words[1:])
         if len(set(channels)) != len(channels) or not set(channels) <= set(CHANNELS):
-            known = " ".join(CHANNELS)
-            raise unreadable(self.line, f"expected each of {known} at most once")
+            listed = " ".join(CHANNELS)
+            raise unreadable_line(self.line, f"expected each of {listed} at most once")
         return channels
 
     def _skeleton(self) -> AcclaimSkeleton:
-        order = self._from_root()
+        order = self._tree_order()
         if not self.root.channels:
-            raise unreadable(self.line, "expected an order of channels under :root, found none")
+            raise unreadable_line(
+                self.line, "expected an order of channels under :root, found none"
+            )
         bones = [self.root, *(self.bones[name] for name in order[1:])]
         index = {name: joint for joint, name in enumerate(order)}
         parents = np.array([-1, *(index[self.parents[name]] for name in order[1:])])
+        # vectors (joints, 3): from the start to the end of each bone
         vectors = np.array([bone.length * bone.direction for bone in bones])
         offsets = np.concatenate([self.position[None], vectors[parents[1:]]])
         leaves = np.setdiff1d(np.arange(len(bones)), parents)
@@ -216,8 +225,12 @@ class _Reader:
             cautions=self._cautions(),
         )
 
-    def _from_root(self) -> list[bytes]:
-        """Names with each bone after its parent, depth first in file order."""
+    def _tree_order(self) -> list[bytes]:
+        """Names of bones, each after its parent, depth first in the order of the file.
+
+        There is no recursion, so that any depth can be read. Raises Unreadable for a bone that is
+        not below the root, which also covers circles.
+        """
         children: dict[bytes, list[bytes]] = {}
         for child, parent in self.parents.items():
             children.setdefault(parent, []).append(child)
@@ -226,14 +239,14 @@ class _Reader:
             order.append(waiting.pop())
             waiting += reversed(children.get(order[-1], ()))
         reached = set(order)
-        loose = next((bone for name, bone in self.bones.items() if name not in reached), None)
-        if loose is not None:
-            message = f"expected bone {excerpt(loose.name)} in :hierarchy, below the root"
-            raise unreadable(loose.line, message)
+        unreached = next((bone for name, bone in self.bones.items() if name not in reached), None)
+        if unreached is not None:
+            message = f"expected bone {excerpt(unreached.name)} in :hierarchy, below the root"
+            raise unreadable_line(unreached.line, message)
         return order
 
     def _axes(self, bone: _Bone) -> FloatArray:
-        """C (4,): the product of turns about fixed axes, in the given order."""
+        """(4,) the quaternion C: the product of turns about fixed axes, in the given order."""
         angles = np.radians(bone.angles) if self.in_degrees else bone.angles
         by_axis = dict(zip("XYZ", angles, strict=True))
         outermost_first = bone.order[::-1]
@@ -243,7 +256,7 @@ class _Reader:
     def _cautions(self) -> tuple[Caution, ...]:
         if not self.root.angles.any():
             return ()
-        detail = "the skeleton's root has a pre-set orientation, which tools read differently"
+        detail = "the root has an orientation before it moves, which programs read differently"
         return (Caution("root_orientation", detail),)
 
 
@@ -257,15 +270,19 @@ def _unit_vector(vector: FloatArray) -> FloatArray:
 
 
 def _metres_per_unit(length: float, skeleton: Skeleton) -> float | None:
-    """`length` is units per inch; 1 is what writers put that say nothing."""
+    """The meters per unit if `length` is units per inch.
+
+    None if `length` is 1, which programs write that do not know the unit, or if the rest pose then
+    has an impossible stature.
+    """
     if length <= 0 or length == 1.0:
         return None
     scale = METERS_PER_INCH / length
-    stature = scale * float(np.ptp(_at_rest(skeleton), axis=0).max())
+    stature = scale * float(np.ptp(_rest_positions(skeleton), axis=0).max())
     return scale if STATURES[0] <= stature <= STATURES[1] else None
 
 
-def _at_rest(skeleton: Skeleton) -> FloatArray:
+def _rest_positions(skeleton: Skeleton) -> FloatArray:
     """(joints + ends, 3) positions with all channels zero."""
     positions = np.array(skeleton.offsets)
     for joint, parent in enumerate(skeleton.parents):

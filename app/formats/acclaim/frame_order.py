@@ -7,26 +7,27 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.formats.acclaim.amc_frames import AmcFrames
-from app.formats.common.failures import unreadable
+from app.formats.common.failures import unreadable_line
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 USUAL_RATE = 120.0
-"""Hz of CMU's and of most AMC files, whose format has no obligatory place for it."""
-MAX_MISSING = 0.5
-"""The most missing frames, as a share of those in the file. With more, the numbers are wrong."""
+"""Hz: the rate of CMU's and of most AMC files. The format does not require a file to give it."""
+MAX_MISSING_SHARE = 0.5
+"""The most missing frames, as a share of the frames in the file. If more are missing, the numbers
+are wrong, and not the frames."""
 
 
 @dataclass(frozen=True, slots=True)
 class OrderedFrames:
-    """numbers: (frames, channels) by rising frame number; step: from number to number."""
+    """Frames by rising number. numbers: (frames, channels). step: between two frame numbers."""
 
     numbers: FloatArray
     step: int
     cautions: tuple[Caution, ...]
 
 
-def in_order(frames: AmcFrames) -> OrderedFrames:
+def in_number_order(frames: AmcFrames) -> OrderedFrames:
     """Sort frames by number and fill gaps by the frame before, each with a caution.
 
     If the numbers rise evenly by more than one, the motion has a lower rate. Raises Unreadable,
@@ -42,25 +43,27 @@ def in_order(frames: AmcFrames) -> OrderedFrames:
     steps = np.diff(numbering)
     if (steps == 0).any():
         line = int(lines[1:][steps == 0][0])
-        raise unreadable(
-            line, f"expected each frame once, found {_at(numbering, steps == 0)} twice"
+        raise unreadable_line(
+            line, f"expected each frame once, found {_number_after(numbering, steps == 0)} twice"
         )
     step = int(steps.min()) if len(steps) else 1
+    # Frames 0, 4, 8 are all frames at a lower rate. Frames 0, 4, 6 have gaps.
     if (steps % step).any():
         step = 1
     missing = int((steps // step - 1).sum())
-    if missing > MAX_MISSING * len(numbering):
+    if missing > MAX_MISSING_SHARE * len(numbering):
         wide = steps == steps.max()
-        raise unreadable(
-            int(lines[1:][wide][0]), f"expected frames without gaps, found {_at(numbering, wide)}"
+        raise unreadable_line(
+            int(lines[1:][wide][0]),
+            f"expected frames without gaps, found {_number_after(numbering, wide)}",
         )
     if missing:
-        detail = f"{missing} frames are missing, which repeat the frame before them"
+        detail = f"{missing} frames are missing; each repeats the frame before it"
         cautions.append(Caution("frames_missing", detail))
     repeats = np.append(steps // step, 1).astype(np.int64)
     return OrderedFrames(np.repeat(frames.numbers[order], repeats, axis=0), step, tuple(cautions))
 
 
-def _at(numbering: IntArray, chosen: BoolArray) -> int:
-    """The first number whose step from the one before is chosen."""
+def _number_after(numbering: IntArray, chosen: BoolArray) -> int:
+    """The first frame number after a chosen step; chosen: (frames - 1,) steps."""
     return int(numbering[1:][chosen][0])

@@ -1,7 +1,8 @@
-"""Reads audio recordings: WAV, FLAC, OGG and MP3 to mono samples, by libsndfile (soundfile).
+"""Reads audio recordings (WAV, FLAC, OGG, MP3) to mono samples, by libsndfile (soundfile).
 
 Each block is decoded, mixed to mono and decimated before the next one. So a small file that
-decompresses to hours costs no more than the limit allows. soundfile is in the extra `audio`.
+decompresses to hours needs no more memory and time than MAX_SECONDS. soundfile is in the extra
+`audio`.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from app.errors import EmptyFile, ExtraNeeded, Place, TooLarge, UnknownFormat, Unreadable
-from app.formats.audio.riff import promised_bytes
+from app.formats.audio.riff import declared_bytes
 from app.numerics.arrays import FloatArray
 
 FORMATS = "WAV, FLAC, OGG or MP3"
@@ -23,23 +24,29 @@ HEAD_BYTES = 12
 SAMPLE_RATES = (2000, 400_000)
 """Hz: the smallest and the largest sample rate of a recording."""
 
-ENOUGH = 22_050
-"""Hz. In faster recordings neighboring samples are averaged; the result is not below this rate."""
+MIN_RESULT_RATE = 22_050
+"""Hz. In faster recordings neighboring samples are averaged. The result is not below this rate."""
 
 MAX_SECONDS = 1800.0
+"""The longest recording."""
 MAX_DECLARED_SECONDS = 24 * 3600.0
-"""Seconds. If a header gives a longer duration, it is not known and is ignored."""
+"""A longer duration in a header means that the program did not know the duration. It is ignored."""
 MIN_SHARE = 0.95
-"""The share of the declared duration that must be there. That of MP3 files is only an estimate."""
+"""The smallest share of the declared duration of a complete file. MP3 files only estimate it."""
 
 MAX_CHANNELS = 32
 BLOCK_FRAMES = 65_536
+"""Samples of each channel that are decoded at once."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sound:
-    """samples: (n,) float32 mono, full scale 1; rate: Hz of `samples`; format: of the file;
-    missing: of a file that was cut off or damaged, what it promises and what is there."""
+    """A recording as mono samples.
+
+    samples: (n,) float32, full scale 1. rate: Hz of `samples`. format: that of the file. missing: a
+    text for people if the file was cut off or damaged; it compares the declared size with the size
+    that could be read.
+    """
 
     samples: FloatArray
     rate: float
@@ -71,10 +78,10 @@ def sniff_audio(head: bytes) -> str:
 
 
 def read_audio(content: bytes) -> Sound:
-    """Decode a recording; of a file that was cut off, decode the part that is there.
+    """Decode a recording. If the file was cut off, the part that exists is decoded.
 
-    Raises EmptyFile, UnknownFormat, Unreadable, TooLarge beyond MAX_SECONDS or MAX_CHANNELS,
-    and ExtraNeeded where soundfile is not installed.
+    Raises EmptyFile, UnknownFormat, Unreadable, TooLarge beyond MAX_SECONDS or MAX_CHANNELS, and
+    ExtraNeeded if soundfile is not installed.
     """
     format = sniff_audio(content[:HEAD_BYTES])
     soundfile = _library()
@@ -84,13 +91,13 @@ def read_audio(content: bytes) -> Sound:
             samples, rate = _decode(file)
             missing = _missing(content, file, len(samples) / rate)
     except soundfile.SoundFileError as problem:
-        # Without what libsndfile was doing, and to which object in memory.
+        # The other parts of the text name internal steps and addresses in memory.
         message = str(getattr(problem, "error_string", problem)).removeprefix("Error : ")
         raise _unreadable(f"{format.upper()}: {message.rstrip('.')}") from problem
     if not len(samples):
-        raise _unreadable("it holds no sound")
+        raise _unreadable("it contains no sound")
     if not np.isfinite(samples).all():
-        raise _unreadable("it holds samples that are no numbers")
+        raise _unreadable("some samples are not numbers")
     return Sound(samples, rate, format, missing)
 
 
@@ -107,7 +114,10 @@ def _library() -> Any:
 
 
 def _check(file: Any) -> None:
-    """Refuse a recording that is too long, before it is decoded; its header may be wrong."""
+    """Refuse a sample rate or a number of channels outside the limits, before decoding.
+
+    The duration is checked while decoding, because a header may be wrong.
+    """
     if not SAMPLE_RATES[0] <= file.samplerate <= SAMPLE_RATES[1]:
         raise _unreadable(f"a sample rate of {file.samplerate} Hz")
     if file.channels > MAX_CHANNELS:
@@ -116,12 +126,14 @@ def _check(file: Any) -> None:
 
 
 def _decode(file: Any) -> tuple[FloatArray, float]:
-    step = max(1, file.samplerate // ENOUGH)
+    """(n,) float32 mono samples, and their rate in Hz. Raises TooLarge."""
+    step = max(1, file.samplerate // MIN_RESULT_RATE)
     rate = file.samplerate / step
     most = int(MAX_SECONDS * rate)
     blocks: list[FloatArray] = []
     count = 0
     while len(block := _next_block(file, step, is_first=not blocks)):
+        # (n, channels) -> (n,) -> (n // step,): mean of the channels, then of `step` neighbors
         mono = block.mean(axis=1)
         whole = len(mono) // step * step
         blocks.append(mono[:whole].reshape(-1, step).mean(axis=1))
@@ -134,7 +146,7 @@ def _decode(file: Any) -> tuple[FloatArray, float]:
 
 
 def _next_block(file: Any, step: int, *, is_first: bool) -> FloatArray:
-    """(n, channels) samples; none at the end, nor where a decoder gives up after the first."""
+    """(n, channels) samples. None at the end, or if the decoder fails after the first block."""
     try:
         block = file.read(BLOCK_FRAMES // step * step, dtype="float32", always_2d=True)
     except _library().SoundFileError:
@@ -145,10 +157,10 @@ def _next_block(file: Any, step: int, *, is_first: bool) -> FloatArray:
 
 
 def _missing(content: bytes, file: Any, seconds: float) -> str | None:
-    """What a header promises beyond the `seconds` that were decoded, and what is there."""
-    promised = promised_bytes(content)
-    if promised is not None and promised > len(content):
-        return f"its header promises {promised} bytes, {len(content)} are there"
+    """A text if the header declares more than the `seconds` that were decoded, else None."""
+    size = declared_bytes(content)
+    if size is not None and size > len(content):
+        return f"its header promises {size} bytes, {len(content)} are there"
     declared = file.frames / file.samplerate
     if declared <= MAX_DECLARED_SECONDS and seconds < MIN_SHARE * declared:
         return f"its header promises {declared:.2f} s, {seconds:.2f} s could be decoded"

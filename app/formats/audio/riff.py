@@ -6,16 +6,16 @@ import struct
 
 _FIRST_CHUNK = 12
 _CHUNK_HEAD = 8
-_UNKNOWN_FROM = 0x7FFF0000
-"""Sizes from here on are what programs write that do not know the length yet."""
+_MIN_UNKNOWN_SIZE = 0x7FFF0000
+"""Programs write sizes from here on if they do not know the size yet."""
 _MAX_CHUNKS = 100
-"""Before the samples; a file with more is not looked through."""
+"""The most chunks before the samples. If a file has more, its size counts as unknown."""
 
 
-def promised_bytes(content: bytes) -> int | None:
-    """The size of a whole RIFF, RIFX or RF64 WAV file by the header of its samples.
+def declared_bytes(content: bytes) -> int | None:
+    """The size in bytes of a complete RIFF, RIFX or RF64 WAV file, by the header of its samples.
 
-    None if it is unknown: the content is no such file, was written as a stream, or has no samples.
+    None if the content is not a WAV file, was written as a stream, or has no samples.
     """
     if content[:4] not in (b"RIFF", b"RIFX", b"RF64"):
         return None
@@ -31,7 +31,8 @@ def promised_bytes(content: bytes) -> int | None:
             (long_size,) = struct.unpack_from(f"{order}Q", content, at + 8)
         if name == b"data":
             length = long_size if long_size is not None else size
-            known = long_size is not None or length < _UNKNOWN_FROM
-            return at + length if known and length else None
+            is_known = long_size is not None or length < _MIN_UNKNOWN_SIZE
+            return at + length if is_known and length else None
+        # Chunks have an even size; one more byte follows an odd one.
         at += size + size % 2
     return None

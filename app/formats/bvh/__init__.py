@@ -1,1 +1,1 @@
-"""BVH: reading every dialect, writing, exporting."""
+"""BVH: a reader of all known dialects, a writer, and the export of animations."""

@@ -1,7 +1,7 @@
-"""An animation as a BVH file: centimeters, Y up, as most programs expect.
+"""Writes an animation as a BVH file in centimeters, Y up, which most programs expect.
 
-Joints that move along their bone have position channels of their own. Leaves that have no
-end site get one, which readers other than ours insist on.
+A joint that moves relative to its parent has position channels. A leaf without an end site gets
+one, because other programs need it.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from app.motion.skeleton.animation import Animation
 from app.motion.skeleton.skeleton import Skeleton
 
 UNITS_PER_METER = 100.0
-"""BVH does not say its unit; centimeters are usual."""
+"""BVH files do not give their unit; centimeters are usual."""
 ROTATION_ORDER = "ZXY"
 END_SHARE = 0.5
-"""Length of an end site that we add, in parts of the bone before it."""
+"""The length of an added end site, as a share of the bone before it."""
 
 
 def write_animation_bvh(animation: Animation) -> Iterator[bytes]:
-    """A BVH file of the animation, piece by piece."""
+    """The bytes of a BVH file of the animation, in blocks."""
     skeleton = _scaled(_with_end_sites(animation.skeleton))
     return bvh_blocks(
         replace(skeleton, names=tuple(bvh_name(name) for name in skeleton.names)),
@@ -37,9 +37,9 @@ def write_animation_bvh(animation: Animation) -> Iterator[bytes]:
 
 
 def bvh_name(name: str) -> str:
-    """A name that stands on a line of a BVH file and reads back: printable, without braces."""
-    kept = "".join(char if char.isprintable() and char not in "{}" else "_" for char in name)
-    return " ".join(kept.split())[:MAX_NAME_LENGTH].strip() or "joint"
+    """A name that BVH readers can read: on one line, printable, without braces."""
+    plain = "".join(char if char.isprintable() and char not in "{}" else "_" for char in name)
+    return " ".join(plain.split())[:MAX_NAME_LENGTH].strip() or "joint"
 
 
 def _scaled(skeleton: Skeleton) -> Skeleton:

@@ -1,8 +1,8 @@
-"""The HIERARCHY part of a BVH file: joints, offsets and channels.
+"""Reads the HIERARCHY part of a BVH file: joints, offsets and channels.
 
-Source: Biovision's format as described by Meredith and Maddock, "Motion capture file formats
-explained" (2001), and what files of other writers hold besides. There is no recursion: the open
-joints are kept on a stack, so that any depth can be read.
+There is no recursion. Joints whose block is open are on a stack, so that any depth can be read.
+Source: Meredith and Maddock, "Motion capture file formats explained" (2001). Variants come from
+files of many programs.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from functools import lru_cache
 import numpy as np
 
 from app.errors import Unreadable
-from app.formats.common.failures import too_large, unreadable
+from app.formats.common.failures import too_large, unreadable_line
 from app.formats.common.limits import MAX_JOINTS
 from app.formats.common.names import readable_name
 from app.formats.common.numbers import excerpt, parse_numbers
@@ -25,10 +25,10 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 MAX_CHANNELS = 12
-"""Channels of one joint: position and rotation need six, odd writers repeat some."""
+"""The most channels of a joint. Position and rotation need six; some programs repeat channels."""
 MAX_HIERARCHY_BYTES = 2_000_000
-REMEMBERED, REMEMBERED_BYTES = 16, 100_000
-"""Hierarchies that are kept in case the next file has the same, and how long they may be."""
+MAX_CACHED, MAX_CACHED_BYTES = 16, 100_000
+"""The most hierarchies in the cache, and the length of the longest one."""
 
 _TOKEN = re.compile(rb"[{}]|[^\s{}]+|\n")
 _NUMBERLIKE = re.compile(rb"[-+.,\d]|nan|inf", re.IGNORECASE)
@@ -36,12 +36,12 @@ _CHANNEL = re.compile(r"([XYZ])(POSITION|ROTATION)")
 _IN_END_SITE = (b"OFFSET", b"CHANNELS", b"}")
 _IN_JOINT = (*_IN_END_SITE, b"JOINT", b"END")
 _END = 0
-"""Marks an open End Site on the stack of open blocks; joints stand there as 1 + index."""
+"""The mark of an End Site on the stack of open blocks. The mark of a joint is 1 + its index."""
 
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """One number of a frame: what it does to which joint; axis 0, 1, 2 = X, Y, Z."""
+    """One number of a frame: a position or an angle of a joint; axis 0, 1, 2 = X, Y, Z."""
 
     joint: int
     is_position: bool
@@ -50,7 +50,7 @@ class Channel:
 
 @dataclass(frozen=True, slots=True)
 class Hierarchy:
-    """A skeleton, its channels in the order of a frame's numbers, and doubts."""
+    """A skeleton, its channels in the order of the numbers of a frame, and cautions."""
 
     skeleton: Skeleton
     channels: tuple[Channel, ...]
@@ -58,21 +58,22 @@ class Hierarchy:
 
 
 def read_hierarchy(text: bytes) -> Hierarchy:
-    """Read everything before MOTION; lines are separated by newlines.
+    """Read the text before MOTION, whose lines are separated by newlines.
 
-    Raises Unreadable naming the line, or TooLarge.
+    Raises Unreadable with the line, and TooLarge.
     """
     if len(text) > MAX_HIERARCHY_BYTES:
         raise too_large("HIERARCHY", f"expected at most {MAX_HIERARCHY_BYTES} bytes before MOTION")
-    return _read_or_remembered(text) if len(text) <= REMEMBERED_BYTES else _Reader(text).read()
+    return _read_cached(text) if len(text) <= MAX_CACHED_BYTES else _Reader(text).read()
 
 
-@lru_cache(maxsize=REMEMBERED)
-def _read_or_remembered(text: bytes) -> Hierarchy:
-    # The files of one recording session hold the same bytes here, clip after clip.
+@lru_cache(maxsize=MAX_CACHED)
+def _read_cached(text: bytes) -> Hierarchy:
+    # All files of one recording session have the same hierarchy, byte for byte.
     hierarchy = _Reader(text).read()
     skeleton = hierarchy.skeleton
     shared = skeleton.parents, skeleton.offsets, skeleton.end_parents, skeleton.end_offsets
+    # All clips with this hierarchy share the arrays, so nobody may change them.
     for array in shared:
         array.setflags(write=False)
     return hierarchy
@@ -88,7 +89,7 @@ class _Joint:
 
 @dataclass(slots=True)
 class _Tokens:
-    """Tokens with the line that they stand on; one token may be put back."""
+    """The tokens of the text, and the line of the last one. A token can be put back."""
 
     source: Iterator[re.Match[bytes]]
     line: int = 1
@@ -114,7 +115,7 @@ class _Tokens:
         return found
 
     def numbers_on_line(self) -> bytes:
-        """What looks like numbers on the rest of this line."""
+        """The tokens on the rest of this line, up to the first that is not like a number."""
         found: list[bytes] = []
         for match in self.source:
             token = match.group()
@@ -129,10 +130,12 @@ class _Tokens:
 
     def expected(self, what: str, found: bytes) -> Unreadable:
         shown = excerpt(found) if found else "the end of the hierarchy"
-        return unreadable(self.line, f"expected {what}, found {shown}")
+        return unreadable_line(self.line, f"expected {what}, found {shown}")
 
 
 class _Reader:
+    """Reads statement after statement. `open` is the stack of open blocks."""
+
     def __init__(self, text: bytes) -> None:
         self.tokens = _Tokens(_TOKEN.finditer(text))
         self.joints: list[_Joint] = []
@@ -168,7 +171,7 @@ class _Reader:
             self._close()
 
     def _allowed(self) -> tuple[bytes, ...]:
-        """The keywords that may stand here: outside of all joints, in an End Site, in a joint."""
+        """The keywords that are allowed here: outside of joints, in an End Site, or in a joint."""
         if not self.open:
             return (b"ROOT",)
         return _IN_END_SITE if self._at_end_site() else _IN_JOINT
@@ -198,7 +201,7 @@ class _Reader:
         line = self.tokens.line
         numbers = parse_numbers(self.tokens.numbers_on_line(), line, expected=3)
         if len(numbers) != 3:
-            raise unreadable(line, f"expected 3 numbers after OFFSET, found {len(numbers)}")
+            raise unreadable_line(line, f"expected 3 numbers after OFFSET, found {len(numbers)}")
         if self._at_end_site():
             parent = next(opened for opened in reversed(self.open) if opened != _END) - 1
             self.ends.append((parent, numbers))
@@ -214,7 +217,7 @@ class _Reader:
         for _ in range(int(count)):
             channel = self._channel(joint)
             if channel.is_position and channel in self.channels[-MAX_CHANNELS:]:
-                raise unreadable(self.tokens.line, "expected each position channel once")
+                raise unreadable_line(self.tokens.line, "expected each position channel once")
             self.channels.append(channel)
 
     def _channel(self, joint: int) -> Channel:

@@ -1,8 +1,8 @@
 """Reads Biovision hierarchy (BVH) files in all known dialects.
 
-Bytes in, Recording out. Position channels of any joint replace its OFFSET axis by axis. Rotation
-channels turn in the order in which they are listed. Source: Meredith and Maddock, "Motion capture
-file formats explained" (2001).
+Bytes in, Recording out. A position channel of any joint replaces its OFFSET along that axis.
+Rotation channels turn in the order in which they are listed. Source: Meredith and Maddock, "Motion
+capture file formats explained" (2001).
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 
 from app.formats.bvh.frames import read_frames
 from app.formats.bvh.hierarchy import Channel, Hierarchy, read_hierarchy
-from app.formats.common.failures import unreadable
+from app.formats.common.failures import unreadable_line
 from app.formats.common.lines import with_plain_newlines
 from app.formats.common.world_positions import Solved, solve
 from app.motion.skeleton.recording import Recording
@@ -33,9 +33,9 @@ def read_bvh(content: bytes) -> Recording:
     motion = _MOTION.search(text)
     hierarchy = read_hierarchy(text[: motion.start()] if motion else text)
     if motion is None:
-        raise unreadable(text.count(b"\n") + 1, "expected MOTION, found the end of the file")
+        raise unreadable_line(text.count(b"\n") + 1, "expected MOTION, found the end of the file")
     if not hierarchy.channels:
-        raise unreadable(1, "expected channels on some joint, found none")
+        raise unreadable_line(1, "expected channels on some joint, found none")
     first_line = text.count(b"\n", 0, motion.end()) + 2
     frames = read_frames(text[motion.end() + 1 :], first_line, len(hierarchy.channels))
     solved = _solve(hierarchy, frames.numbers)
@@ -62,6 +62,7 @@ def _solve(hierarchy: Hierarchy, numbers: FloatArray) -> Solved:
 
 
 def _local_translations(hierarchy: Hierarchy, numbers: FloatArray) -> FloatArray:
+    """(frames, joints, 3) the offsets, or the position channels; numbers: (frames, channels)."""
     offsets = hierarchy.skeleton.offsets
     result = np.broadcast_to(offsets, (len(numbers), *offsets.shape)).copy()
     for column, channel in enumerate(hierarchy.channels):
@@ -71,7 +72,10 @@ def _local_translations(hierarchy: Hierarchy, numbers: FloatArray) -> FloatArray
 
 
 def _local_rotations(hierarchy: Hierarchy, numbers: FloatArray) -> FloatArray:
-    """(frames, joints, 4): joints whose channels turn in the same order go together."""
+    """(frames, joints, 4) the local quaternions; numbers: (frames, channels) in degrees.
+
+    Joints whose channels turn in the same order are computed together.
+    """
     result = identity_quaternions((len(numbers), len(hierarchy.skeleton)))
     for order, joints, columns in _rotation_groups(hierarchy.channels):
         angles = np.radians(numbers[:, columns])  # (frames, joints of the group, axes)
@@ -82,7 +86,7 @@ def _local_rotations(hierarchy: Hierarchy, numbers: FloatArray) -> FloatArray:
 def _rotation_groups(
     channels: tuple[Channel, ...],
 ) -> list[tuple[str, list[int], list[list[int]]]]:
-    """By rotation order: the joints that have it and their columns (joints, axes)."""
+    """Each order of rotation, the joints that have it, and their columns (joints, axes)."""
     by_joint: dict[int, list[int]] = {}
     for column, channel in enumerate(channels):
         if not channel.is_position:

@@ -1,7 +1,7 @@
-"""Writing BVH files: a skeleton and its local rotations to bytes.
+"""Writes BVH files from a skeleton and its local rotations and translations.
 
-Roots have six channels (position, then rotation), and so has every joint that moves along
-its bone; the others have three.
+Joints that move relative to their parent have six channels (position, then rotation). The others
+have three.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 DECIMALS = 6
-"""Of positions (file units) and angles (degrees)."""
+"""Decimals of positions (in the file's unit) and of angles (degrees)."""
 BLOCK_FRAMES = 1024
-"""Frames that are turned into text at once."""
+"""Frames that are converted to text at once."""
 
 
 def write_bvh(
@@ -27,11 +27,11 @@ def write_bvh(
     frame_rate: float,
     rotation_order: str = "ZXY",
 ) -> bytes:
-    """A BVH file of local quaternions (frames, joints, 4) and root positions (frames, 3).
+    """The bytes of a BVH file in which only the first root moves.
 
-    Offsets and positions in the file's unit; frame_rate in Hz; rotation_order holds each
-    of X, Y, Z once. Where a skeleton has several roots, the first one moves and the others
-    turn where they are.
+    skeleton: its offsets are in the unit of the file. rotations: (frames, joints, 4) local unit
+    quaternions w x y z. root_positions: (frames, 3) in the unit of the file. frame_rate: Hz.
+    rotation_order: each of X, Y, Z once. Other roots turn at their offsets.
     """
     order = _depth_first(skeleton)
     translations = np.repeat(skeleton.offsets[None].astype(np.float64), len(rotations), axis=0)
@@ -50,8 +50,12 @@ def bvh_blocks(
     rotation_order: str,
     moving: Sequence[int],
 ) -> Iterator[bytes]:
-    """A BVH file piece by piece, of local quaternions (frames, joints, 4) and local
-    translations (frames, joints, 3), which `moving` joints take in place of their offset."""
+    """The bytes of a BVH file, in blocks of frames.
+
+    rotations: (frames, joints, 4) local unit quaternions w x y z. translations: (frames, joints, 3)
+    local, in the unit of the file; only those of the joints `moving` are written, in place of the
+    offsets. frame_rate: Hz. rotation_order: each of X, Y, Z once.
+    """
     order = _depth_first(skeleton)
     head = ["HIERARCHY", *_hierarchy(skeleton, order, rotation_order, frozenset(moving))]
     head += ["MOTION", f"Frames: {len(rotations)}", f"Frame Time: {1 / frame_rate:.9g}"]
@@ -67,13 +71,16 @@ def bvh_blocks(
 
 
 def _columns(order: list[int], moving: frozenset[int]) -> list[int]:
-    """Where the file's channels stand among each joint's position and angles, in a row."""
+    """The column of each channel of the file in rows of six numbers for each joint.
+
+    The six numbers are the position and the angles.
+    """
     first = {joint: 0 if joint in moving else 3 for joint in order}
     return [6 * joint + axis for joint in order for axis in range(first[joint], 6)]
 
 
 def _depth_first(skeleton: Skeleton) -> list[int]:
-    """Joints in the order in which their blocks open."""
+    """The joints in the order in which their blocks open."""
     found: list[int] = []
     waiting = [int(root) for root in np.flatnonzero(skeleton.parents < 0)[::-1]]
     while waiting:
@@ -102,7 +109,7 @@ def _hierarchy(
 
 
 def _close(open_joints: list[int], until: int) -> Iterator[str]:
-    """Close blocks until `until` is the innermost one that is open."""
+    """Close blocks until joint `until` is the innermost open one; -1 closes all."""
     while open_joints and open_joints[-1] != until:
         open_joints.pop()
         yield "  " * len(open_joints) + "}"

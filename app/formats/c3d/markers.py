@@ -1,4 +1,7 @@
-"""The markers of a C3D file that are used: labeled, of one subject, each once, while seen."""
+"""Selects the markers of a C3D file that are used.
+
+These are the labeled markers of one subject, each label once, in the frames in which they are seen.
+"""
 
 from __future__ import annotations
 
@@ -10,21 +13,22 @@ import numpy as np
 
 from app.errors import Place, Unreadable
 from app.formats.c3d.points import Points
-from app.motion.roles.marker_names import is_marker, places_of, subject_and_label
+from app.motion.roles.marker_names import is_marker, markers_by_place, subject_and_label
 from app.motion.skeleton.occlusion import Gap
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, FloatArray
 
-SHOWN_MARKERS = 8
-"""As many markers are named in a caution or a refusal."""
+MAX_MARKERS_SHOWN = 8
+"""The most markers that a caution or an error names."""
 
 
 @dataclass(frozen=True, slots=True)
 class Markers:
     """The markers of one person.
 
-    labels: (markers,) without their subject; positions: (frames, markers, 3), NaN where
-    unseen; first_frame: the file's number of the first frame.
+    labels: (markers,) without the name of the subject. positions: (frames, markers, 3) in the unit
+    and axes of the file, NaN where a marker is not seen. first_frame: the number that the file
+    gives to the first frame.
     """
 
     labels: tuple[str, ...]
@@ -34,10 +38,11 @@ class Markers:
 
 
 def labeled_markers(points: Points) -> Markers:
-    """The markers of one subject that were seen, each label once.
+    """The markers of one subject that are seen, each label once.
 
-    Frames before the first marker is seen, and after the last, are left out. Raises Unreadable if
-    no labeled marker is seen."""
+    Frames at the start and at the end in which no marker is seen are left out. Raises Unreadable if
+    no labeled marker is ever seen.
+    """
     split = [subject_and_label(label) for label in points.labels]
     outputs = _model_outputs(points)
     named = [
@@ -52,33 +57,39 @@ def labeled_markers(points: Points) -> Markers:
         raise Unreadable(message, places=[Place("POINT:LABELS", message)])
     subject, cautions = _main_subject([split[index] for index in named])
     mine = [index for index in named if split[index][0] == subject]
-    chosen_ones, more = _each_once([(split[index][1], index) for index in mine], seen)
-    shown = np.flatnonzero(seen[:, chosen_ones].any(axis=1))
-    first, last = int(shown[0]), int(shown[-1]) + 1
+    points_read, more_cautions = _each_once([(split[index][1], index) for index in mine], seen)
+    seen_frames = np.flatnonzero(seen[:, points_read].any(axis=1))
+    first, last = int(seen_frames[0]), int(seen_frames[-1]) + 1
     if last - first < len(seen):
-        detail = f"no marker is seen before frame {points.first_frame + first} or after"
-        more += (Caution("frames_trimmed", f"{detail} frame {points.first_frame + last - 1}"),)
+        start, end = points.first_frame + first, points.first_frame + last - 1
+        detail = f"no marker is seen before frame {start} or after frame {end}"
+        more_cautions += (Caution("frames_trimmed", detail),)
     return Markers(
-        tuple(split[index][1] for index in chosen_ones),
-        points.positions[first:last, chosen_ones],
+        tuple(split[index][1] for index in points_read),
+        points.positions[first:last, points_read],
         points.first_frame + first,
-        cautions + more,
+        cautions + more_cautions,
     )
 
 
 def _model_outputs(points: Points) -> set[str]:
-    """Labels that the file itself calls angles, forces and the like."""
+    """Labels of results of gait models, which the file lists as angles, forces and others."""
     groups = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS", "REACTIONS")
     found = (points.parameters.get(f"POINT:{group}") for group in groups)
     return {label for group in found if group is not None for label in group.texts}
 
 
 def _main_subject(names: Sequence[tuple[str, str]]) -> tuple[str, tuple[Caution, ...]]:
-    """The subject with the most known markers; of equal ones that with the most markers."""
+    """The subject with the most markers of known marker sets, or else with the most markers.
+
+    names: the subject and the label of each marker. A caution names the other subjects.
+    """
     by_subject: dict[str, list[str]] = {}
     for subject, label in names:
         by_subject.setdefault(subject, []).append(label)
-    ranked = sorted(by_subject, key=lambda s: (-len(places_of(by_subject[s])), -len(by_subject[s])))
+    ranked = sorted(
+        by_subject, key=lambda s: (-len(markers_by_place(by_subject[s])), -len(by_subject[s]))
+    )
     others = [subject or "without a name" for subject in ranked[1:]]
     if not others:
         return ranked[0], ()
@@ -89,24 +100,27 @@ def _main_subject(names: Sequence[tuple[str, str]]) -> tuple[str, tuple[Caution,
 def _each_once(
     named: Sequence[tuple[str, int]], seen: BoolArray
 ) -> tuple[list[int], tuple[Caution, ...]]:
-    """Of points with the same label, the one that is seen in the most frames."""
+    """The point of each label. If several have it, this is the one seen in the most frames.
+
+    named: label and point. seen: (frames, points). A caution names the labels that occur twice.
+    """
     best: dict[str, int] = {}
     for label, index in named:
-        held = best.setdefault(label, index)
-        if seen[:, index].sum() > seen[:, held].sum():
+        other = best.setdefault(label, index)
+        if seen[:, index].sum() > seen[:, other].sum():
             best[label] = index
     counts = Counter(label for label, _ in named)
     twice = [label for label, count in counts.items() if count > 1]
     if not twice:
         return list(best.values()), ()
-    detail = f"several points have the same label, the one seen most is read: {_listed(twice)}"
-    return list(best.values()), (Caution("duplicate_names", detail),)
+    detail = "several points have the same label; the one seen most often is read: "
+    return list(best.values()), (Caution("duplicate_names", detail + _listed(twice)),)
 
 
 def hidden_too_long(markers: Markers, gaps: Sequence[Gap]) -> Unreadable:
-    """The error with the markers and frames of gaps."""
+    """The error for gaps that are too long, with their markers and frames."""
     places = []
-    for gap in gaps[:SHOWN_MARKERS]:
+    for gap in gaps[:MAX_MARKERS_SHOWN]:
         first, last = markers.first_frame + gap.start, markers.first_frame + gap.end - 1
         where = f"marker {markers.labels[gap.marker]}, frames {first} to {last}"
         places.append(Place(where, f"expected the marker, found it hidden for {last - first + 1}"))
@@ -115,7 +129,10 @@ def hidden_too_long(markers: Markers, gaps: Sequence[Gap]) -> Unreadable:
 
 
 def gap_cautions(markers: Markers, filled: int, gaps: Sequence[Gap]) -> tuple[Caution, ...]:
-    """What was filled in (frames of markers), and what was left out for its long gaps."""
+    """Cautions about gaps that were filled, and about markers that are left out for long gaps.
+
+    filled: the number of filled frames, summed over markers. gaps: the gaps that are too long.
+    """
     cautions: tuple[Caution, ...] = ()
     if filled:
         share = 100 * filled / (len(markers.labels) * len(markers.positions))
@@ -129,4 +146,5 @@ def gap_cautions(markers: Markers, filled: int, gaps: Sequence[Gap]) -> tuple[Ca
 
 
 def _listed(names: Sequence[str]) -> str:
-    return ", ".join(names[:SHOWN_MARKERS]) + (" and others" if len(names) > SHOWN_MARKERS else "")
+    more = " and others" if len(names) > MAX_MARKERS_SHOWN else ""
+    return ", ".join(names[:MAX_MARKERS_SHOWN]) + more

@@ -1,8 +1,8 @@
-"""The parameters of a C3D file: named arrays in groups, in the bytes of three processors.
+"""Reads the parameters of a C3D file: named arrays in groups.
 
-Source: "The C3D file format user guide" (Motion Lab Systems 2008), chapters 4 and 5.
-Numbers come as Intel's, as DEC's (little-endian integers, VAX F floats) or as MIPS's
-(big-endian).
+Numbers have the format of one of three processors: Intel (little-endian), DEC (little-endian
+integers, VAX F floats) or MIPS (big-endian). Source: "The C3D file format user guide" (Motion Lab
+Systems 2008), chapters 4 and 5.
 """
 
 from __future__ import annotations
@@ -13,36 +13,36 @@ from math import prod
 
 import numpy as np
 
-from app.formats.common.failures import unreadable_at
+from app.formats.common.failures import unreadable_byte
 from app.numerics.arrays import FloatArray
 
 BLOCK = 512
-"""Bytes; header, parameters and data begin at whole blocks, counted from 1."""
+"""Bytes of a block. Header, parameters and data begin at whole blocks, counted from 1."""
 MAX_RECORDS = 10_000
-"""Groups and parameters; each has at most 127 letters of name."""
+"""The most groups and parameters that are read. A damaged file may have no end mark."""
 _PROCESSORS = {84: "intel", 85: "dec", 86: "mips"}
 _VALUE_BYTES = {-1: 1, 1: 1, 2: 2, 4: 4}
-"""By type of a parameter: letters, bytes, 16-bit integers, floats."""
+"""The bytes of a value for each type of parameter: letters, bytes, 16-bit integers, floats."""
 
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """How a processor writes numbers."""
+    """Reads numbers in the format of a processor: "intel", "dec" or "mips"."""
 
     processor: str
 
     def integers(self, raw: bytes) -> FloatArray:
-        """16-bit integers, as floats."""
+        """(n,) float64 the signed 16-bit integers in `raw` (2 n bytes)."""
         kind = ">i2" if self.processor == "mips" else "<i2"
         return np.frombuffer(raw, dtype=kind).astype(np.float64)
 
     def floats(self, raw: bytes) -> FloatArray:
-        """32-bit floats (n,) float32."""
+        """(n,) float32 the 32-bit floats in `raw` (4 n bytes)."""
         if self.processor == "mips":
             return np.frombuffer(raw, dtype=">f4").astype(np.float32)
         if self.processor == "intel":
             return np.frombuffer(raw, dtype="<f4")
-        # VAX F: as IEEE with the halves exchanged and the exponent two higher.
+        # VAX F is IEEE with the two halves exchanged and an exponent that is two higher.
         halves = np.frombuffer(raw, dtype="<u2").reshape(-1, 2)[:, ::-1]
         with np.errstate(invalid="ignore"):
             return np.ascontiguousarray(halves).view("<f4")[:, 0] / np.float32(4)
@@ -50,37 +50,39 @@ class Numbers:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One parameter: numbers (n,) flat, or texts; one of them is empty."""
+    """A parameter: either numbers, as a flat list, or texts. The other one is empty."""
 
     values: tuple[float, ...] = ()
     texts: tuple[str, ...] = ()
 
     @property
     def first(self) -> float | None:
-        """The first number, if there is any."""
+        """The first number; None if there are no numbers."""
         return self.values[0] if self.values else None
 
 
 Parameters = Mapping[str, Parameter]
-"""By "GROUP:NAME", upper case."""
+"""The parameters by "GROUP:NAME" in upper case."""
 
 
 def read_parameters(content: bytes) -> tuple[Numbers, Parameters]:
-    """The file's way of writing numbers, and its parameters.
+    """The number format of a C3D file, and its parameters.
 
-    Raises Unreadable naming the byte where the section is not what it should be.
+    content: the file, at least one block. Raises Unreadable with the byte of the damage.
     """
     start = (content[0] - 1) * BLOCK
     if start + 4 > len(content):
-        raise unreadable_at(start, "expected parameters, found the end of the file")
+        raise unreadable_byte(start, "expected parameters, found the end of the file")
     processor = _PROCESSORS.get(content[start + 3])
     if processor is None:
-        known = "84, 85 or 86"
-        raise unreadable_at(start + 3, f"expected processor {known}, found {content[start + 3]}")
+        found = content[start + 3]
+        raise unreadable_byte(start + 3, f"expected processor 84, 85 or 86, found {found}")
     return Numbers(processor), _Reader(content, start + 4, Numbers(processor)).read()
 
 
 class _Reader:
+    """Reads group after group and parameter after parameter, from the byte `at` on."""
+
     def __init__(self, content: bytes, at: int, numbers: Numbers) -> None:
         self.content = content
         self.at = at
@@ -92,6 +94,7 @@ class _Reader:
         for _ in range(MAX_RECORDS):
             if not self._record():
                 break
+        # A group may come after its parameters, so names are joined at the end.
         named = ((f"{self.groups.get(g, '')}:{name}", value) for g, name, value in self.found)
         result: dict[str, Parameter] = {}
         for name, value in named:
@@ -99,7 +102,11 @@ class _Reader:
         return result
 
     def _record(self) -> bool:
-        """Read one group or parameter; False at the end."""
+        """Read a group or a parameter. False at the end of the section.
+
+        The bytes are: length of the name, number of the group (negative for a group itself), the
+        name, the offset of the next record from here, and the value.
+        """
         if self.at + 2 > len(self.content):
             return False
         length, group = (int(x) for x in np.frombuffer(self.content, "i1", 2, self.at))
@@ -114,7 +121,7 @@ class _Reader:
         else:
             self.found.append((group, name, self._parameter(offset_at + 2)))
         if offset < 0:
-            raise unreadable_at(offset_at, f"expected the next parameter, found offset {offset}")
+            raise unreadable_byte(offset_at, f"expected the next parameter, found offset {offset}")
         self.at = offset_at + offset
         return offset > 0
 
@@ -123,7 +130,7 @@ class _Reader:
         size = _VALUE_BYTES.get(kind)
         if size is None or not 0 <= dimensions <= 7:
             message = f"expected a parameter, found type {kind} with {dimensions} dimensions"
-            raise unreadable_at(at, message)
+            raise unreadable_byte(at, message)
         shape = list(self._bytes(at + 2, dimensions))
         raw = self._bytes(at + 2 + dimensions, size * prod(shape))
         if kind == -1:
@@ -135,12 +142,12 @@ class _Reader:
 
     def _bytes(self, start: int, length: int) -> bytes:
         if start + length > len(self.content):
-            raise unreadable_at(start, f"expected {length} bytes, found the end of the file")
+            raise unreadable_byte(start, f"expected {length} bytes, found the end of the file")
         return self.content[start : start + length]
 
 
 def _texts(raw: bytes, shape: list[int]) -> tuple[str, ...]:
-    """The texts of letters whose first dimension is a text's length."""
+    """The texts in `raw`. The first dimension of `shape` is the length of each."""
     length = shape[0] if shape else len(raw)
     if not length:
         return ()

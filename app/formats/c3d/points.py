@@ -1,8 +1,8 @@
-"""The points of a C3D file: header, frame count, and the numbers of each frame.
+"""Reads the points of a C3D file: the header, the number of frames, and the numbers of each frame.
 
-Source: "The C3D file format user guide" (Motion Lab Systems 2008), chapters 3 and 6.
-Analog channels stand between the frames and are skipped, whatever the parameters say of them.
-What the file declares is compared with the number of its bytes before any frame is read.
+The samples of analog channels follow the points of each frame and are skipped. The declared number
+of frames is compared with the size of the file before any frame is read. Source: "The C3D file
+format user guide" (Motion Lab Systems 2008), chapters 3 and 6.
 """
 
 from __future__ import annotations
@@ -12,22 +12,26 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.formats.c3d.parameters import BLOCK, Numbers, Parameters, read_parameters
-from app.formats.common.failures import too_large, unreadable_at
+from app.formats.common.failures import too_large, unreadable_byte
 from app.formats.common.numbers import MAX_MAGNITUDE
 from app.formats.common.world_positions import MAX_JOINT_FRAMES
 from app.motion.skeleton.recording import FRAME_RATES, Caution
 from app.numerics.arrays import FloatArray
 
-FULL_COUNT = 65535
-"""The number of the last frame in the header if 16 bits are too few for it."""
-NO_SCALE = 1e-12
+MAX_HEADER_FRAME = 65535
+"""The last frame in the header if its true number does not fit in 16 bits."""
+MIN_SCALE = 1e-12
+"""A smaller scale factor counts as 0."""
 
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """labels: (points,) as in the file, empty where there is none; positions: (frames,
-    points, 3) float32 in the file's unit and axes, NaN where a point was not seen;
-    first_frame: the number of the first frame; frame_rate: Hz or None."""
+    """The points of a file, labeled or not.
+
+    labels: (points,) as in the file, empty for a point without a label. positions: (frames, points,
+    3) float32 in the unit and axes of the file, NaN where a point was not seen. first_frame: the
+    number that the file gives to the first frame. frame_rate: Hz, None if the file gives none.
+    """
 
     labels: tuple[str, ...]
     positions: FloatArray
@@ -39,8 +43,14 @@ class Points:
 
 @dataclass(frozen=True, slots=True)
 class _Header:
+    """The numbers of the header.
+
+    points: of a frame. analog: all analog samples of a frame. first, last: numbers of frames.
+    scale: positive for integers, negative for floats. data_block: counted from 1. rate: Hz.
+    """
+
     points: int
-    analogue: int
+    analog: int
     first: int
     last: int
     scale: float
@@ -49,20 +59,22 @@ class _Header:
 
 
 def read_points(content: bytes) -> Points:
-    """Read a C3D file's points. Raises Unreadable naming the byte, and TooLarge."""
+    """Read the points of a C3D file. Raises Unreadable with the byte, and TooLarge."""
     if len(content) < BLOCK:
-        raise unreadable_at(len(content), f"expected a header of {BLOCK} bytes, found the end")
+        raise unreadable_byte(len(content), f"expected a header of {BLOCK} bytes, found the end")
     numbers, parameters = read_parameters(content)
     header = _header(content, numbers)
     if not header.points:
-        raise unreadable_at(2, "expected points, found none")
+        raise unreadable_byte(2, "expected points, found none")
     width = 2 if header.scale > 0 else 4
-    frame_bytes = width * (4 * header.points + header.analogue)
+    frame_bytes = width * (4 * header.points + header.analog)
     start = (header.data_block - 1) * BLOCK
+    # The number of whole frames for which the file has bytes.
     room = max(0, len(content) - start) // frame_bytes if start > 0 else 0
     frames, cautions = _frame_count(header, parameters, room, start)
     if frames * header.points > MAX_JOINT_FRAMES:
         raise too_large("frames", f"expected at most {MAX_JOINT_FRAMES} points times frames")
+    # (frames, bytes of a frame) -> the bytes of the points alone, without analog samples
     raw = np.frombuffer(content, "u1", frames * frame_bytes, start).reshape(frames, frame_bytes)
     points = raw[:, : 4 * width * header.points].tobytes()
     return Points(
@@ -83,8 +95,8 @@ def _header(content: bytes, numbers: Numbers) -> _Header:
         return float(numbers.floats(content[2 * index - 2 : 2 * index + 2])[0])
 
     scale = real(7)
-    if not NO_SCALE < abs(scale) < MAX_MAGNITUDE:
-        raise unreadable_at(12, f"expected a scale factor, found {scale:g}")
+    if not MIN_SCALE < abs(scale) < MAX_MAGNITUDE:
+        raise unreadable_byte(12, f"expected a scale factor, found {scale:g}")
     return _Header(word(2), word(3), word(4), word(5), scale, word(9), real(11))
 
 
@@ -93,37 +105,38 @@ def _frame_count(
 ) -> tuple[int, tuple[Caution, ...]]:
     """The number of frames to read, and a caution if more are declared.
 
-    The 16 bits of the header are too few for a long motion, so the parameters count as well.
-    room: how many frames the file has bytes for, from the byte `start` on. Raises Unreadable.
+    The header has only 16 bits for the number of frames, so the parameters are used too. room: the
+    number of frames for which the file has bytes, from the byte `start` on. Raises Unreadable if
+    each declared number is larger.
     """
     declared = _declared_counts(header, parameters)
-    held = [count for count in declared if count <= room]
-    if not held:
-        least = min(declared) if declared else 1
-        message = f"expected {least} frames, found {room}: the file is cut short"
-        raise unreadable_at(start, message)
-    frames = max(held)
+    possible = [count for count in declared if count <= room]
+    if not possible:
+        expected = min(declared) if declared else 1
+        message = f"expected {expected} frames, found {room}: the file is cut short"
+        raise unreadable_byte(start, message)
+    frames = max(possible)
     if frames == max(declared):
         return frames, ()
-    detail = f"the file declares {max(declared)} frames and holds {frames}"
+    detail = f"the file declares {max(declared)} frames but has {frames}"
     return frames, (Caution("frames_mismatch", detail),)
 
 
 def _declared_counts(header: _Header, parameters: Parameters) -> list[int]:
     """The numbers of frames that the header and the parameters declare; empty if none does."""
-    every = (
+    candidates = (
         _count_of_header(header),
         _count_of_points(parameters),
         _count_of_trial(parameters),
     )
-    counts = [count for count in every if count is not None and 0 < count != FULL_COUNT]
-    if not counts and header.last == FULL_COUNT:
-        return [FULL_COUNT - header.first + 1]
+    counts = [count for count in candidates if count is not None and 0 < count != MAX_HEADER_FRAME]
+    if not counts and header.last == MAX_HEADER_FRAME:
+        return [MAX_HEADER_FRAME - header.first + 1]
     return counts
 
 
 def _count_of_header(header: _Header) -> int | None:
-    if header.last < header.first or header.last == FULL_COUNT:
+    if header.last < header.first or header.last == MAX_HEADER_FRAME:
         return None
     return header.last - header.first + 1
 
@@ -133,7 +146,7 @@ def _count_of_points(parameters: Parameters) -> int | None:
     if declared is None or declared.first is None or not np.isfinite(declared.first):
         return None
     count = int(declared.first)
-    # Above 32,767 the sign of the 16-bit integer is wrong.
+    # Counts above 32,767 are read as negative, because 16-bit integers have a sign.
     return count % 2**16 if count < 0 else count
 
 
@@ -145,12 +158,15 @@ def _count_of_trial(parameters: Parameters) -> int | None:
 
 
 def _joined(halves: tuple[float, ...]) -> int:
-    """A 32-bit number written as two 16-bit ones, the low one first."""
+    """The 32-bit number that is stored as two 16-bit numbers, the low one first."""
     return int(halves[0]) % 2**16 + 2**16 * (int(halves[1]) % 2**16)
 
 
 def _positions(raw: bytes, header: _Header, numbers: Numbers, frames: int) -> FloatArray:
-    """(frames, points, 3): x, y, z where the fourth number says that the point was seen."""
+    """(frames, points, 3) float32 in the unit and axes of the file, NaN where not seen.
+
+    raw: four numbers for each point of each frame: x, y, z and a residual.
+    """
     shape = (frames, header.points, 4)
     if header.scale > 0:
         values = numbers.integers(raw).reshape(shape)
@@ -158,7 +174,7 @@ def _positions(raw: bytes, header: _Header, numbers: Numbers, frames: int) -> Fl
     else:
         values = numbers.floats(raw).reshape(shape)
         positions = values[..., :3].copy()
-    # NaN, zeros for all three, and a residual of -1 all mean that no camera saw it.
+    # A point was not seen if it has NaN, three zeros, or a negative residual.
     with np.errstate(invalid="ignore"):
         seen = (np.abs(positions) <= MAX_MAGNITUDE).all(axis=-1) & (values[..., 3] >= 0)
         seen &= (positions != 0).any(axis=-1)
@@ -167,7 +183,7 @@ def _positions(raw: bytes, header: _Header, numbers: Numbers, frames: int) -> Fl
 
 
 def _labels(parameters: Parameters, points: int) -> tuple[str, ...]:
-    """(points,): more than 255 labels go on in LABELS2, LABELS3, ..."""
+    """(points,) the labels. The parameter LABELS has at most 255; LABELS2 and others follow."""
     labels: list[str] = []
     for number in range(1, points // 255 + 2):
         more = parameters.get(f"POINT:LABELS{number if number > 1 else ''}")
@@ -176,8 +192,8 @@ def _labels(parameters: Parameters, points: int) -> tuple[str, ...]:
 
 
 def _rate(header: _Header, parameters: Parameters) -> float | None:
-    said = parameters.get("POINT:RATE")
-    for rate in (said.first if said is not None else None, header.rate):
+    parameter = parameters.get("POINT:RATE")
+    for rate in (parameter.first if parameter is not None else None, header.rate):
         if rate is not None and FRAME_RATES[0] <= rate <= FRAME_RATES[1]:
             return float(np.float32(rate))
     return None

@@ -1,1 +1,1 @@
-"""What several formats share: numbers, lines, names, limits, forward kinematics in blocks."""
+"""Shared by the formats: numbers, lines, names, limits, forward kinematics in blocks."""

@@ -1,6 +1,6 @@
-"""Parents of joints from arrays, checked and put in order.
+"""Reads the parents of joints from arrays, checks them, and puts parents before children.
 
-parents: (joints,) int, -1 for a root. A skeleton of ours has parents before children.
+parents: (joints,) int, -1 for a root.
 """
 
 from __future__ import annotations
@@ -11,30 +11,32 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import Place, Unreadable
+from app.formats.common.failures import unreadable_at
 from app.numerics.arrays import IntArray
 
 SMPL_ROOT = 2**32 - 1
-"""What -1 becomes in the unsigned `kintree_table` of SMPL."""
+"""The value -1 in the unsigned integers of SMPL's `kintree_table`."""
 
 
 def parents_of(array: NDArray[Any], key: str, names: Sequence[str]) -> IntArray:
-    """(joints,) parents from an array (joints,), or (2, joints) as SMPL's `kintree_table`.
+    """(joints,) the parents; -1 for a root.
 
-    A joint that is its own parent is a root. Raises Unreadable naming the joint.
+    array: (joints,) or, as SMPL's `kintree_table`, (2, joints) with the parents first. A joint that
+    is its own parent is a root. key: the name of the array, for errors. Raises Unreadable with the
+    joint.
     """
     row = array[0] if array.ndim == 2 and len(array) == 2 else array
     if row.shape != (len(names),) or array.dtype.kind not in "iu":
         shape = "x".join(map(str, array.shape)) or "one"
-        raise _refused(key, f"expected {len(names)} integers, found {shape} {array.dtype}")
+        raise unreadable_at(key, f"expected {len(names)} integers, found {shape} {array.dtype}")
     parents = np.full(len(names), -1, dtype=np.int64)
     for joint, parent in enumerate(row.tolist()):
         is_root = parent in (-1, SMPL_ROOT, joint)
         if not is_root and not 0 <= parent < len(names):
             found = f"expected -1 or a joint below {len(names)} in {key}, found {parent}"
-            raise _refused(f"joint {joint} ({names[joint]})", found)
+            raise unreadable_at(f"joint {joint} ({names[joint]})", found)
         parents[joint] = -1 if is_root else parent
-    _check_no_circle(parents, names, key)
+    _refuse_circles(parents, names, key)
     return parents
 
 
@@ -55,12 +57,8 @@ def _depths(parents: IntArray) -> IntArray:
     return depths
 
 
-def _check_no_circle(parents: IntArray, names: Sequence[str], key: str) -> None:
+def _refuse_circles(parents: IntArray, names: Sequence[str], key: str) -> None:
     joint = int(np.argmax(_depths(parents)))
     if _depths(parents)[joint] >= len(parents):
         where = f"joint {joint} ({names[joint]})"
-        raise _refused(where, f"expected a tree, found that it is above itself in {key}")
-
-
-def _refused(location: str, message: str) -> Unreadable:
-    return Unreadable(f"{location}: {message}", places=[Place(location, message)])
+        raise unreadable_at(where, f"expected a tree, found that it is its own ancestor in {key}")

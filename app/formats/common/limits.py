@@ -3,4 +3,4 @@
 from __future__ import annotations
 
 MAX_JOINTS = 2000
-"""More joints than any body, hands and face together."""
+"""The most joints of a skeleton. A body with hands and face has fewer."""

@@ -1,4 +1,4 @@
-"""The lines of text formats, with their numbers; the text is never copied whole."""
+"""The lines of text formats, with their numbers. The whole text is never copied into lines."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def with_plain_newlines(content: bytes) -> bytes:
 
 
 def filled_lines(text: bytes, first_line: int = 1) -> Iterator[tuple[int, bytes]]:
-    """Number and content of every line that is not blank; `text` has plain newlines."""
+    """The number and the content of each line that is not blank; `text` has plain newlines."""
     start, number = 0, first_line
     while start < len(text):
         end = text.find(b"\n", start)

@@ -1,4 +1,4 @@
-"""Numbers as motion files write them: white space, commas, exponents, decimal commas."""
+"""Reads the numbers of motion files, with white space, commas, exponents or decimal commas."""
 
 from __future__ import annotations
 
@@ -6,18 +6,19 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.formats.common.failures import unreadable
+from app.formats.common.failures import unreadable_line
 from app.numerics.arrays import FloatArray
 
 MAX_MAGNITUDE = 1e9
-"""No coordinate or angle of a body is larger; sums along a chain stay within float32."""
+"""The largest coordinate or angle of a body. Sums along a chain of joints then fit in float32."""
 
 
 def parse_numbers(text: bytes, line: int, expected: int | None = None) -> FloatArray:
-    """The numbers (n,) float64 within MAX_MAGNITUDE that stand in `text`, line `line`.
+    """(n,) float64 the numbers in `text`, which is on line `line` of the file.
 
-    A comma separates numbers unless, read as a decimal point, it gives just the
-    `expected` number of them. Raises Unreadable naming the line.
+    A comma separates numbers. Only if commas as decimal points give exactly `expected` numbers, and
+    commas as separators do not, they are decimal points. Raises Unreadable with the line, also for
+    numbers beyond MAX_MAGNITUDE.
     """
     numbers = parse_any_numbers(text, line, expected)
     check_magnitudes(numbers[None], [line])
@@ -25,28 +26,32 @@ def parse_numbers(text: bytes, line: int, expected: int | None = None) -> FloatA
 
 
 def parse_any_numbers(text: bytes, line: int, expected: int | None = None) -> FloatArray:
-    """As `parse_numbers`, but NaN and what is too large passes; `check_magnitudes` finds
-    them in many lines at once, which is cheaper."""
+    """As `parse_numbers`, but NaN and numbers that are too large are accepted.
+
+    `check_magnitudes` finds these in many lines at once, which is faster.
+    """
     if b"," in text:
         text = _without_commas(text, expected)
     if b"_" in text:  # numpy reads 1_0 as 10
-        raise unreadable(line, f"expected numbers, found {excerpt(text)}")
+        raise unreadable_line(line, f"expected numbers, found {excerpt(text)}")
     tokens = text.split()
     try:
         return np.array(tokens, dtype=np.float64)
     except ValueError:
         bad = next(token for token in tokens if not _is_number(token))
-        raise unreadable(line, f"expected a number, found {excerpt(bad)}") from None
+        raise unreadable_line(line, f"expected a number, found {excerpt(bad)}") from None
 
 
 def check_magnitudes(rows: FloatArray, lines: Sequence[int]) -> None:
-    """Raise Unreadable naming the first of `lines` (n,) whose row of `rows` (n, numbers)
-    holds NaN or a number beyond MAX_MAGNITUDE."""
+    """Raise Unreadable for the first row with NaN or a number beyond MAX_MAGNITUDE.
+
+    rows: (n, numbers). lines: (n,) the line of each row in the file.
+    """
     if not rows.size or max(rows.max(), -rows.min()) <= MAX_MAGNITUDE:  # False for NaN
         return
     row, column = np.argwhere(~(np.abs(rows) <= MAX_MAGNITUDE))[0]
     limit = f"±{MAX_MAGNITUDE:g}"
-    raise unreadable(lines[row], f"expected numbers within {limit}, found {rows[row, column]}")
+    raise unreadable_line(lines[row], f"expected numbers within {limit}, found {rows[row, column]}")
 
 
 def _is_number(token: bytes) -> bool:
@@ -65,7 +70,7 @@ def _without_commas(text: bytes, expected: int | None) -> bytes:
 
 
 def excerpt(text: bytes, length: int = 40) -> str:
-    """`text` quoted for a message: printable and short."""
+    """The start of `text` in quotes, for a message: printable and short."""
     shown = text[:length].decode("utf-8", errors="replace").strip()
     shown = "".join(char if char.isprintable() else "�" for char in shown)
     return f"'{shown}…'" if len(text) > length else f"'{shown}'"

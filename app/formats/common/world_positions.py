@@ -1,5 +1,8 @@
-"""From local rotations and translations to a recording's arrays, block by block of frames,
-so that temporaries stay small and in the processor's cache."""
+"""Computes the arrays of a recording from local rotations and translations.
+
+This is done in blocks of frames, so that temporary arrays are small and fit in the processor's
+cache.
+"""
 
 from __future__ import annotations
 
@@ -16,16 +19,19 @@ from app.numerics.arrays import FloatArray
 MAX_JOINT_FRAMES = 20_000_000
 """Joints times frames: about 800 MB of positions, rotations and translations."""
 BLOCK_JOINT_FRAMES = 16_384
-"""Frames are solved in blocks of about this many joints."""
+"""Joints times frames of one block, about."""
 
 LocalPose = Callable[[slice], tuple[FloatArray, FloatArray]]
-"""Local rotations (n, joints, 4) w x y z and translations (n, joints, 3) of some frames."""
+"""Gives the local rotations (n, joints, 4) w x y z and translations (n, joints, 3) of n frames."""
 
 
 @dataclass(frozen=True, slots=True)
 class Solved:
-    """Local rotations (frames, joints, 4), translations (frames, joints, 3) or None where
-    only roots move, and world positions (frames, joints, 3), all float32."""
+    """The arrays of a recording, float32, in the unit and axes of the skeleton.
+
+    rotations: (frames, joints, 4) local, w x y z. translations: (frames, joints, 3) local, None if
+    only roots move. positions: (frames, joints, 3) in the world.
+    """
 
     rotations: FloatArray
     translations: FloatArray | None
@@ -33,9 +39,11 @@ class Solved:
 
 
 def solve(skeleton: Skeleton, frames: int, local_pose: LocalPose, *, moving: bool) -> Solved:
-    """Solve `frames` frames; `moving` says whether joints below the roots have translations.
+    """The arrays of `frames` frames.
 
-    Raises TooLarge.
+    local_pose: gives the local rotations and translations of a slice of frames. moving: whether
+    joints below the roots move relative to their parents. Raises TooLarge for more than
+    MAX_JOINT_FRAMES.
     """
     joints = len(skeleton)
     if frames * joints > MAX_JOINT_FRAMES:

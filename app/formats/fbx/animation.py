@@ -1,7 +1,8 @@
-"""The animation stacks (takes) of an FBX file, and what their curves drive.
+"""Reads the animation stacks (takes) of an FBX file, and the properties that their curves drive.
 
-A stack has layers, a layer has curve nodes, each of which drives a property of a node by
-up to three curves. Layers above the first add to it or replace it; we read one layer.
+A stack has layers, and a layer has curve nodes. Each curve node drives a property of a node by up
+to three curves. Layers above the first one add to it or replace it. Only the first layer is read;
+files in which other layers move the body are refused.
 """
 
 from __future__ import annotations
@@ -14,17 +15,18 @@ import numpy as np
 
 from app.errors import BadField, Place
 from app.formats.fbx.curves import read_keys, read_times, sample
-from app.formats.fbx.scene import FbxObject, FbxScene, refused_at
-from app.formats.fbx.transforms import ANIMATED, FIXED
+from app.formats.fbx.scene import FbxObject, FbxScene, unsupported_at
+from app.formats.fbx.transforms import ANIMATED_PROPERTIES, FIXED_PROPERTIES
 from app.numerics.arrays import FloatArray, IntArray
 
-NAMES_SHOWN = 100
+MAX_NAMES_SHOWN = 100
+"""The most names of stacks in a message."""
 _AXES = "XYZ"
 
 
 @dataclass(frozen=True, slots=True)
 class Driver:
-    """A curve node and its curves by axis."""
+    """A curve node, and its curves by axis (0, 1, 2)."""
 
     node: FbxObject
     curves: dict[int, FbxObject]
@@ -32,40 +34,49 @@ class Driver:
 
 @dataclass(frozen=True, slots=True)
 class Stack:
-    """What drives each property (node's id, property's name): `base` in the first layer,
-    `upper` in those above it."""
+    """An animation stack, with the driver of each property of a node.
+
+    base, upper: drivers by the id of the node and the name of the property, in the first layer and
+    in the layers above it.
+    """
 
     stack: FbxObject
     base: dict[tuple[int, str], Driver] = field(default_factory=dict)
     upper: dict[tuple[int, str], Driver] = field(default_factory=dict)
 
     def moving(self) -> set[int]:
-        """Ids of the nodes whose transform has curves."""
+        """The ids of the nodes whose transform has curves."""
         keys = (*self.base.items(), *self.upper.items())
-        return {node for (node, name), driver in keys if name in ANIMATED and driver.curves}
+        return {
+            node for (node, name), driver in keys if name in ANIMATED_PROPERTIES and driver.curves
+        }
 
     def key_times(self, nodes: Iterable[FbxObject]) -> list[IntArray]:
-        """The times (keys,) in ticks of each curve that moves one of these nodes."""
-        drivers = (self.base.get((node.id, name)) for node in nodes for name in ANIMATED)
+        """The times of keys (keys,), in ticks, of each curve that moves one of the nodes."""
+        drivers = (self.base.get((node.id, name)) for node in nodes for name in ANIMATED_PROPERTIES)
         found = [read_times(curve) for one in drivers if one for curve in one.curves.values()]
         return [times for times in found if len(times)]
 
-    def refuse_unknown(self, nodes: Iterable[FbxObject]) -> None:
-        """Raise FormatNotSupported if layers or unusual properties move these nodes."""
+    def refuse_unsupported(self, nodes: Iterable[FbxObject]) -> None:
+        """Raise FormatNotSupported if upper layers or unusual properties move the nodes."""
         ids = {node.id for node in nodes}
         for (node, name), driver in self.base.items():
-            if node in ids and name in FIXED and driver.curves:
-                raise refused_at(driver.node.place, f"expected no curves on {name}")
+            if node in ids and name in FIXED_PROPERTIES and driver.curves:
+                raise unsupported_at(driver.node.location, f"expected no curves on {name}")
+        read = (*ANIMATED_PROPERTIES, *FIXED_PROPERTIES)
         for (node, name), driver in self.upper.items():
-            if node in ids and name in (*ANIMATED, *FIXED) and not _is_neutral(driver):
-                raise refused_at(
-                    driver.node.place, "expected one animation layer; merge the layers"
-                )
+            if node in ids and name in read and not _is_neutral(driver):
+                message = "expected one animation layer; merge the layers"
+                raise unsupported_at(driver.node.location, message)
 
     def channel(
         self, scene: FbxScene, node: FbxObject, name: str, still: FloatArray, ticks: FloatArray
     ) -> FloatArray:
-        """(frames, 3) float32 the values at `ticks` (frames,); (1, 3) if they do not change."""
+        """(frames, 3) float32 the values of a property; (1, 3) if they do not change.
+
+        still: (3,) the values without curves. ticks: (frames,). Rotations are in degrees. Raises
+        the errors of `sample`.
+        """
         driver = self.base.get((node.id, name))
         if driver is None:
             return still[None].astype(np.float32)
@@ -83,7 +94,7 @@ class Stack:
 
 
 def find_stacks(scene: FbxScene) -> list[Stack]:
-    """Every stack, in file order."""
+    """All stacks, in the order of the file."""
     return [_read_stack(scene, stack) for stack in scene.of_kind("AnimationStack")]
 
 
@@ -110,31 +121,31 @@ def _curves(scene: FbxScene, curve_node: FbxObject) -> dict[int, FbxObject]:
 
 
 def _is_neutral(driver: Driver) -> bool:
-    """Whether all curves of an upper layer are zero, as in a layer without edits."""
+    """Whether all curves of an upper layer are zero. Programs write layers without edits so."""
     return not any(np.any(read_keys(curve).values) for curve in driver.curves.values())
 
 
 def choose_stack(stacks: list[Stack], lengths: list[float], name: str | None) -> int:
-    """The index of the stack of this name, else of the longest one; lengths (stacks,).
+    """The index of the stack named `name`; without a name, of the longest stack.
 
-    Raises BadField for a name that no stack has.
+    lengths: (stacks,). Raises BadField if no stack has the name.
     """
     if name is None:
         return int(np.argmax(lengths))
     names = [one.stack.name for one in stacks]
-    tidy = [_as_sent(one) for one in names]
-    if _as_sent(name) not in tidy:
+    sent_names = [_as_sent(one) for one in names]
+    if _as_sent(name) not in sent_names:
         message = f"expected one of the file's stacks ({listed(names)}), found {name!r}"
         raise BadField(f"stack: {message}", places=[Place("stack", message)])
-    return tidy.index(_as_sent(name))
+    return sent_names.index(_as_sent(name))
 
 
 def listed(names: list[str]) -> str:
-    """The names of the stacks, for a message to people."""
-    more = f" and {len(names) - NAMES_SHOWN} more" if len(names) > NAMES_SHOWN else ""
-    return ", ".join(names[:NAMES_SHOWN]) + more
+    """The names of the stacks as one text, for a message."""
+    more = f" and {len(names) - MAX_NAMES_SHOWN} more" if len(names) > MAX_NAMES_SHOWN else ""
+    return ", ".join(names[:MAX_NAMES_SHOWN]) + more
 
 
 def _as_sent(name: str) -> str:
-    """A name as a form sends it: composed (NFC), without surrounding space."""
+    """A name in the form in which HTML forms send it: NFC, without spaces at the ends."""
     return unicodedata.normalize("NFC", name).strip()

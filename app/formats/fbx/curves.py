@@ -1,11 +1,11 @@
-"""The animation curves of an FBX file: keys, and values between them.
+"""Reads the animation curves of an FBX file: keys, and values between keys.
 
-A key says how the curve goes on to the next: constant, linear, or a Bezier cubic whose
-tangents have a slope and a length (a weight, in parts of the gap). Tangents are stored,
-or follow from the neighbors ("auto"). Before the first and after the last key the curve
-is constant. Times are ticks, KTIME a second.
+The flags of a key decide how the curve continues to the next key: constant, linear, or as a cubic
+Bezier curve. The tangents of a Bezier curve have a slope and a length (the weight, as a share of
+the gap between the keys). Tangents are stored in the file, or follow from the neighboring keys
+("auto"). Before the first key and after the last key the curve is constant. Times are in ticks.
 
-Source: the flags of `fbxanimcurve.h` (Autodesk FBX SDK 2020) and its reference.
+Source: the flags in `fbxanimcurve.h` (Autodesk FBX SDK 2020), and the reference of the SDK.
 """
 
 from __future__ import annotations
@@ -15,36 +15,43 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.formats.common.numbers import MAX_MAGNITUDE
-from app.formats.fbx.scene import FbxObject, refused_at
+from app.formats.fbx.scene import FbxObject, unsupported_at
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 KTIME = 46_186_158_000
 """The number of ticks in a second."""
 ON_KEY = 1e-6
-"""The share of a gap within which a time counts as that of the key."""
+"""The share of a gap within which a time counts as the time of the key."""
 USUAL_WEIGHT = 1 / 3
+"""The length of a tangent that has no weight, as a share of the gap."""
 WEIGHT_UNIT = 1e-4
+"""Stored weights are integers in this unit."""
 
 _CONSTANT, _LINEAR, _CUBIC = 0x2, 0x4, 0x8
 _NEXT = 0x100
-"""With _CONSTANT: the value is that of the next key."""
+"""With _CONSTANT: the curve has the value of the next key."""
 _TCB, _USER = 0x200, 0x400
 _CLAMP, _TIMED, _PROGRESSIVE = 0x1000, 0x2000, 0x4000
-"""Flags of automatic tangents: flat next to an equal value; along the chord of the neighbors
-instead of the mean slope of both sides; never beyond the values of the neighbors."""
+"""Flags of automatic tangents. _CLAMP: flat if a neighbor has an equal value. _TIMED: the slope
+from the previous to the next key, and not the mean slope of both gaps. _PROGRESSIVE: the curve does
+not go beyond the values of the neighbors."""
 _WEIGHTED_RIGHT, _WEIGHTED_NEXT_LEFT = 0x1000000, 0x2000000
 _FLAT = 1e-4
-"""A clamped tangent is flat if neighboring values differ by less."""
+"""Neighboring values that differ by less count as equal for _CLAMP."""
 _SOLVING_STEPS = 60
 _SOLVED = 1e-12
-"""Parts of a gap."""
+"""The largest error of a solved time, as a share of the gap."""
 _CONSTANT_BEYOND = (b"C", ord("C"))
 
 
 @dataclass(frozen=True, slots=True)
 class Keys:
-    """times (keys,) ticks, ascending; values (keys,); flags (keys,); data (keys, 4): right
-    slope, next left slope (a second), both weights and velocities as bits."""
+    """The keys of a curve.
+
+    times: (keys,) ticks, ascending. values: (keys,). flags: (keys,) bits. data: (keys, 4) the slope
+    to the right of the key and to the left of the next key, both per second; then the two weights
+    and the two velocities, as bits of a float.
+    """
 
     times: IntArray
     values: FloatArray
@@ -56,16 +63,16 @@ class Keys:
 
 
 def read_times(curve: FbxObject) -> IntArray:
-    """(keys,) ticks, ascending. Raises Unreadable, TooLarge."""
+    """(keys,) the times of the keys in ticks, ascending. Raises Unreadable, TooLarge."""
     times = _integers(curve, "KeyTime")
-    # Differences of far apart int64 would wrap.
+    # Compared, not subtracted, because differences of large int64 numbers can overflow.
     if np.any(times[1:] < times[:-1]):
         raise curve.unreadable("expected times of keys in ascending order")
     return times
 
 
 def read_keys(curve: FbxObject) -> Keys:
-    """Raises Unreadable, TooLarge."""
+    """The keys of a curve. Raises Unreadable, TooLarge."""
     times, values = read_times(curve), _floats(curve, "KeyValueFloat")
     if len(times) != len(values):
         raise curve.unreadable(f"expected {len(times)} values of keys, found {len(values)}")
@@ -77,13 +84,14 @@ def read_keys(curve: FbxObject) -> Keys:
 
 
 def _attributes(curve: FbxObject, keys: int) -> tuple[IntArray, FloatArray]:
-    """Flags (keys,) and data (keys, 4), which runs of keys share."""
+    """Flags (keys,) and data (keys, 4). The file stores them once for each run of equal keys."""
     flags, data = _integers(curve, "KeyAttrFlags"), _floats(curve, "KeyAttrDataFloat")
     counts = _integers(curve, "KeyAttrRefCount")
     fits = len(flags) == len(counts) and len(data) == 4 * len(flags)
     if not fits or np.any(counts < 0) or counts.sum() != keys:
         raise curve.unreadable(f"expected attributes of {keys} keys")
-    # Weights are integers in the bits of a float, which may be those of NaN: copies keep them.
+    # Weights are integers in the bits of a float. These may be the bits of a NaN, so the array is
+    # only copied: a computation could change them.
     run = np.repeat(np.arange(len(flags)), counts)
     return flags[run], data.reshape(-1, 4)[run]
 
@@ -98,7 +106,7 @@ def _floats(curve: FbxObject, name: str) -> FloatArray:
 
 
 def _array(curve: FbxObject, name: str, kind: str) -> FloatArray | IntArray:
-    """(n,) the numbers of a child; empty if there is no such child."""
+    """(n,) the numbers of a child record; empty if there is no child with this name."""
     record = curve.record.child(name)
     found = record.array() if record is not None else np.zeros(0)
     if len(found) and found.dtype.kind != kind:
@@ -107,9 +115,9 @@ def _array(curve: FbxObject, name: str, kind: str) -> FloatArray | IntArray:
 
 
 def sample(curve: FbxObject, ticks: FloatArray) -> FloatArray | None:
-    """Values (n,) float64 at `ticks` (n,) ascending; None for a curve without keys.
+    """(n,) float64 the values at `ticks` (n,), which ascend; None for a curve without keys.
 
-    Raises Unreadable, TooLarge, FormatNotSupported (interpolation that we do not know).
+    Raises Unreadable, TooLarge, and FormatNotSupported for an interpolation that is not supported.
     """
     keys = read_keys(curve)
     if not len(keys):
@@ -117,9 +125,11 @@ def sample(curve: FbxObject, ticks: FloatArray) -> FloatArray | None:
     after = np.searchsorted(keys.times, ticks, side="right")
     values = keys.values.astype(np.float64)
     result = values[np.clip(after - 1, 0, None)]
+    # result (n,): the last key before each time, then overwritten between two keys
     inside = (after > 0) & (after < len(keys))
     if not inside.all():
-        _refuse_going_on(curve, keys, ticks)
+        _refuse_extrapolation(curve, keys, ticks)
+    # left, along (times between keys,): the key before, and the share of the gap after it
     left = after[inside] - 1
     span = (keys.times[left + 1] - keys.times[left]).astype(np.float64)
     along = (ticks[inside] - keys.times[left]) / span
@@ -130,8 +140,8 @@ def sample(curve: FbxObject, ticks: FloatArray) -> FloatArray | None:
     return result
 
 
-def _refuse_going_on(curve: FbxObject, keys: Keys, ticks: FloatArray) -> None:
-    """Refuse curves that repeat or continue outside their keys."""
+def _refuse_extrapolation(curve: FbxObject, keys: Keys, ticks: FloatArray) -> None:
+    """Raise FormatNotSupported if the curve repeats or continues outside its keys."""
     for name, beyond in (
         ("Pre-Extrapolation", ticks[0] < keys.times[0]),
         ("Post-Extrapolation", ticks[-1] > keys.times[-1]),
@@ -139,11 +149,11 @@ def _refuse_going_on(curve: FbxObject, keys: Keys, ticks: FloatArray) -> None:
         record = curve.record.child(name)
         kind = record.child("Type") if record is not None and beyond else None
         if kind is not None and next(iter(kind.properties(1)), b"C") not in _CONSTANT_BEYOND:
-            raise refused_at(curve.place, f"expected a constant {name}")
+            raise unsupported_at(curve.location, f"expected a constant {name}")
 
 
 def _between(curve: FbxObject, keys: Keys, left: IntArray, along: FloatArray) -> FloatArray:
-    """Values (n,) in the gaps after the keys `left` (n,), at `along` (n,) of each gap."""
+    """(n,) the values in the gaps after the keys `left` (n,); along: (n,) shares of the gaps."""
     flags = keys.flags[left]
     start = keys.values[left].astype(np.float64)
     end = keys.values[left + 1].astype(np.float64)
@@ -154,18 +164,21 @@ def _between(curve: FbxObject, keys: Keys, left: IntArray, along: FloatArray) ->
     if cubic.any():
         result[cubic] = _cubic(curve, keys, left[cubic], along[cubic])
     if np.any(flags & (_CONSTANT | _LINEAR | _CUBIC) == 0):
-        raise refused_at(curve.place, "expected constant, linear or cubic keys")
+        raise unsupported_at(curve.location, "expected constant, linear or cubic keys")
     return result
 
 
 def _cubic(curve: FbxObject, keys: Keys, left: IntArray, along: FloatArray) -> FloatArray:
+    """(n,) the values on Bezier curves, as in `_between`. Raises FormatNotSupported."""
+    # gaps (m,): each gap is prepared once; where (n,): the gap of each value
     gaps, where = np.unique(left, return_inverse=True)
     ends = keys.flags[gaps] | np.where(_is_cubic(keys.flags[gaps + 1]), keys.flags[gaps + 1], 0)
     if np.any(ends & _TCB):
-        raise refused_at(curve.place, "expected no TCB keys")
+        raise unsupported_at(curve.location, "expected no TCB keys")
     seconds = (keys.times[gaps + 1] - keys.times[gaps]) / KTIME
     right, next_left = _weights(keys, gaps)
     slopes = _slopes(keys, gaps)
+    # Points of the Bezier curve: times 0, x1, x2, 1 as shares of the gap; values y0, y1, y2, y3.
     x1, x2 = right, 1 - next_left
     y0 = keys.values[gaps].astype(np.float64)
     y3 = keys.values[gaps + 1].astype(np.float64)
@@ -180,7 +193,7 @@ def _is_cubic(flags: IntArray) -> BoolArray:
 
 
 def _weights(keys: Keys, gaps: IntArray) -> tuple[FloatArray, FloatArray]:
-    """(n,) lengths of the tangents at both ends of gaps, in parts of the gap, 0 to 1."""
+    """(n,) the lengths of the tangents at both ends of gaps, as shares of the gap, 0 to 1."""
     bits = np.ascontiguousarray(keys.data[gaps, 2], dtype=np.float32).view(np.uint32)
     right = np.where(
         keys.flags[gaps] & _WEIGHTED_RIGHT, (bits & 0xFFFF) * WEIGHT_UNIT, USUAL_WEIGHT
@@ -192,11 +205,11 @@ def _weights(keys: Keys, gaps: IntArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _slopes(keys: Keys, gaps: IntArray) -> tuple[FloatArray, FloatArray]:
-    """(n,) slopes a second at both ends of gaps."""
+    """(n,) the slopes per second at both ends of gaps."""
     stored = np.nan_to_num(keys.data[gaps, :2].astype(np.float64), posinf=0, neginf=0)
     stored = np.clip(stored, -MAX_MAGNITUDE, MAX_MAGNITUDE)
     automatic = _is_cubic(keys.flags) & (keys.flags & _USER == 0)
-    # What is stored of an automatic tangent is its bias, in percent.
+    # For an automatic tangent, the file stores its bias in percent instead of a slope.
     bias = stored / 100
     start = np.where(automatic[gaps], _auto_slopes(keys, gaps, bias[:, 0]), stored[:, 0])
     end = np.where(automatic[gaps + 1], _auto_slopes(keys, gaps + 1, -bias[:, 1]), stored[:, 1])
@@ -204,46 +217,51 @@ def _slopes(keys: Keys, gaps: IntArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _auto_slopes(keys: Keys, at: IntArray, bias: FloatArray) -> FloatArray:
-    """(n,) slopes of automatic tangents at keys `at`; bias (n,) leans them to the
-    slope on the right, or the left where it is negative; beyond 1 they go on beyond it."""
+    """(n,) the slopes per second of automatic tangents at the keys `at` (n,).
+
+    bias: (n,). A positive bias moves the slope from the mean of both gaps toward that of the right
+    gap, a negative one toward that of the left gap. 1 reaches it, and more goes beyond it.
+    """
     down, before = _rise_and_run(keys, np.maximum(at - 1, 0), at)
     up, after = _rise_and_run(keys, at, np.minimum(at + 1, len(keys) - 1))
     left, right = _ratio(down, before), _ratio(up, after)
     flags = keys.flags[at]
-    leaning = np.where(bias > 0, right, left)
+    biased_to = np.where(bias > 0, right, left)
     mean = (left + right) / 2
-    slope = mean + np.abs(bias) * (leaning - mean)
+    slope = mean + np.abs(bias) * (biased_to - mean)
     slope = np.where(flags & _TIMED != 0, _ratio(down + up, before + after), slope)
     flat = np.minimum(np.abs(down), np.abs(up)) < _FLAT
     slope = np.where(flat & (flags & _CLAMP != 0), 0.0, slope)
     limited = _limited(slope, left / USUAL_WEIGHT, right / USUAL_WEIGHT)
     slope = np.where(flags & _PROGRESSIVE != 0, limited, slope)
+    # The first and the last key have only one gap; the slope of the other one is 0 here.
     outer = (before <= 0) | (after <= 0)
     return np.where(outer, np.where(flags & _PROGRESSIVE != 0, 0.0, left + right), slope)
 
 
 def _rise_and_run(keys: Keys, start: IntArray, end: IntArray) -> tuple[FloatArray, FloatArray]:
-    """(n,) difference of the values, and seconds, between two keys."""
+    """(n,) the difference of the values, and the seconds, between two keys."""
     rise = keys.values[end].astype(np.float64) - keys.values[start]
     return rise, (keys.times[end] - keys.times[start]) / KTIME
 
 
 def _ratio(rise: FloatArray, run: FloatArray) -> FloatArray:
+    """(n,) the slopes; 0 for keys at the same time."""
     return np.divide(rise, run, out=np.zeros(len(run)), where=run > 0)
 
 
 def _limited(slope: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
-    """(n,) slopes no steeper than both limits, flat where these point the other way."""
+    """(n,) slopes that are not steeper than `left` and `right`; 0 if one has another sign."""
     sign = np.where(slope < 0, -1.0, 1.0)
     limit = np.minimum(sign * left, sign * right)
     return np.asarray(sign * np.minimum(np.abs(slope), np.maximum(limit, 0)))
 
 
 def _solve_bezier(x1: FloatArray, x2: FloatArray, x: FloatArray) -> FloatArray:
-    """(n,) parameters at which cubics from 0 to 1 with inner points x1, x2 in [0, 1] reach x.
+    """(n,) the parameters t at which cubic Bezier curves reach x (n,).
 
-    They ascend, so halving finds the parameter; Newton's steps shorten it where they stay
-    within the bracket.
+    The curves have the points 0, x1, x2 and 1, all in [0, 1], so they ascend and bisection always
+    finds t. Newton's method is faster and is used if its step stays inside the bracket.
     """
     low, high, t = np.zeros(len(x)), np.ones(len(x)), x.copy()
     for _ in range(_SOLVING_STEPS):
@@ -266,5 +284,6 @@ def _bezier(
     y3: FloatArray | float,
     t: FloatArray,
 ) -> FloatArray:
+    """The values of cubic Bezier curves with the points y0 to y3 at the parameters t (n,)."""
     s = 1 - t
     return np.asarray(s**3 * y0 + 3 * (s**2 * t * y1 + s * t**2 * y2) + t**3 * y3)

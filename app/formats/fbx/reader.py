@@ -1,10 +1,10 @@
-"""Binary FBX 7 files: skeletons of limb nodes and their animation.
+"""Reads binary FBX 7 files: skeletons of limb nodes and their animation. Bytes in, Recording out.
 
-Bytes in, Recording out. Joints are given frames that are the world's at rest, as in BVH:
-rest is the pose that pre-rotations alone make, or, where there are none, the pose that the
-nodes were saved in. The result has Y up and is right-handed whatever the file's axes.
+At rest, the frames of all joints have the axes of the world, as in BVH. The rest pose is the pose
+by pre-rotations alone. Without pre-rotations it is the pose in which the nodes were saved. The
+result has Y up and is right-handed, whatever axes the file has.
 
-Source: Autodesk FBX SDK 2020 reference; formulas stand in `fbx_transforms`.
+Source: Autodesk FBX SDK 2020 reference. The formulas are in `transforms.py`.
 """
 
 from __future__ import annotations
@@ -14,36 +14,43 @@ from functools import partial
 
 import numpy as np
 
-from app.formats.common.failures import too_large
+from app.formats.common.failures import too_large, unreadable_at
 from app.formats.common.numbers import MAX_MAGNITUDE
 from app.formats.common.world_positions import MAX_JOINT_FRAMES, Solved, solve
 from app.formats.fbx.animation import Stack, choose_stack, find_stacks, listed
-from app.formats.fbx.nodes import FbxFile
-from app.formats.fbx.scene import FbxScene, Numbers, unreadable_at
+from app.formats.fbx.records import FbxFile
+from app.formats.fbx.scene import FbxScene, Numbers
 from app.formats.fbx.skeleton import Body, find_body
 from app.formats.fbx.timing import Timing, find_timing, key_span
-from app.formats.fbx.transforms import ANIMATED, FbxNode, Local, World, read_node, world_transforms
+from app.formats.fbx.transforms import (
+    ANIMATED_PROPERTIES,
+    FbxNode,
+    Local,
+    World,
+    read_node,
+    world_transforms,
+)
 from app.motion.skeleton.recording import Caution, Recording
 from app.motion.skeleton.rotations import matrices_to_quaternions, multiply, rotate
 from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray, IntArray
 
-METERS_PER_CENTIMETRE = 0.01
-"""UnitScaleFactor is in centimeters."""
+METERS_PER_CENTIMETER = 0.01
+"""UnitScaleFactor gives the unit in centimeters."""
 SCALES = (1e-6, 1e3)
-"""The smallest and the largest plausible meters per unit."""
-STILL = 1e-5
+"""The smallest and the largest plausible number of meters per unit."""
+MAX_STILL_SHARE = 1e-5
 """Translations that change by less than this share of the skeleton's size count as constant."""
 
 _CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 
 
 def read_fbx(content: bytes, stack: str | None = None) -> Recording:
-    """Read a binary FBX file; `stack` names the animation stack, by default the longest.
+    """Read a binary FBX file.
 
-    Raises FormatNotSupported for text, encryption, other versions and what we cannot
-    evaluate, Unreadable naming the node or byte, BadField for a stack that is not there,
-    TooLarge.
+    stack: the name of the animation stack; by default the longest one is read. Raises
+    FormatNotSupported for text, encryption, other versions and unsupported properties, Unreadable
+    with the node or byte, BadField for a stack that does not exist, and TooLarge.
     """
     scene = FbxScene(FbxFile(content))
     stacks = find_stacks(scene)
@@ -51,6 +58,7 @@ def read_fbx(content: bytes, stack: str | None = None) -> Recording:
         raise unreadable_at("node Objects/AnimationStack", "expected an animation, found none")
     body = find_body(scene, set().union(*(one.moving() for one in stacks)))
     times = [one.key_times(body.nodes) for one in stacks]
+    # A stack without keys that move the body has no span and counts as the shortest.
     spans = [_span(scene, one, found) for one, found in zip(stacks, times, strict=True)]
     lengths = [span[1] - span[0] if span else -1.0 for span in spans]
     chosen = choose_stack(stacks, lengths, stack)
@@ -73,16 +81,19 @@ def _stack_caution(stacks: list[Stack], lengths: list[float], chosen: int) -> tu
         return ()
     read = stacks[chosen].stack.name
     detail = (
-        f"the file holds {len(names)} animations ({listed(names)}); {read} was read,"
-        " send `stack` for another"
+        f"the file has {len(names)} animations ({listed(names)}); {read} was read,"
+        " send `stack` to choose another"
     )
     return (Caution("stack_chosen", detail),)
 
 
 @dataclass(frozen=True, slots=True)
 class _Motion:
-    """The chains of a body's nodes; channels: of each node translation, rotation in degrees
-    and scale, each (frames, 3) or (1, 3)."""
+    """The nodes of a body and their channels.
+
+    channels: for each node the translation, the rotation in degrees, and the scale, each (frames,
+    3), or (1, 3) if it does not change.
+    """
 
     nodes: list[FbxNode]
     parents: IntArray
@@ -90,13 +101,16 @@ class _Motion:
     frames: int
 
     def local(self, block: slice) -> Local:
-        """Of the frames in `block`."""
+        """The local transforms of the frames in `block`."""
         count = len(range(self.frames)[block])
         values = [[c if len(c) == 1 else c[block] for c in one] for one in self.channels]
         return self._assembled(values, count)
 
     def rest(self) -> Local:
-        """One frame: translations and scales of the first one, rotations at rest."""
+        """The local transforms at rest, as one frame.
+
+        Translations and scales are those of the first frame.
+        """
         turned = any(np.any(node.before) for node in self.nodes)
         values = [
             [moved[:1], (np.zeros((1, 3)) if turned else node.still[1][None]), scaled[:1]]
@@ -110,14 +124,14 @@ class _Motion:
         for index, (node, (moved, degrees, scale)) in enumerate(
             zip(self.nodes, values, strict=True)
         ):
-            local.rotations[:, index] = node.turned(degrees.astype(np.float64))
+            local.rotations[:, index] = node.local_rotations(degrees.astype(np.float64))
             local.scales[:, index] = scale
             turned, scales = local.rotations[:, index], local.scales[:, index]
-            local.translations[:, index] = node.moved(moved.astype(np.float64), turned, scales)
+            local.translations[:, index] = node.origin(moved.astype(np.float64), turned, scales)
         return local
 
     def world(self, local: Local) -> World:
-        """Of some frames' local transforms."""
+        """The world transforms for some local transforms."""
         return world_transforms(self.nodes, self.parents, local)
 
 
@@ -127,13 +141,13 @@ def _recording(
     frames = len(timing.ticks)
     if frames * len(body.nodes) > MAX_JOINT_FRAMES:
         raise too_large("frames", f"expected at most {MAX_JOINT_FRAMES} joints times frames")
-    # Numbers of a broken file overflow on their way; the result is looked at.
+    # The numbers of a broken file may overflow. The result is checked below.
     with np.errstate(all="ignore"):
         motion = _read_motion(scene, body, stack, timing)
         rest = _Rest(motion, body, axes(scene.settings))
         solved = solve(rest.skeleton, frames, rest.local_pose, moving=rest.moving())
-    _check(solved)
-    factor = scene.settings.get("UnitScaleFactor", (np.nan,))[0] * METERS_PER_CENTIMETRE
+    _refuse_large_numbers(solved)
+    factor = scene.settings.get("UnitScaleFactor", (np.nan,))[0] * METERS_PER_CENTIMETER
     return Recording(
         format="fbx",
         skeleton=rest.skeleton,
@@ -148,13 +162,13 @@ def _recording(
 
 
 def _read_motion(scene: FbxScene, body: Body, stack: Stack, timing: Timing) -> _Motion:
-    stack.refuse_unknown(body.nodes)
+    stack.refuse_unsupported(body.nodes)
     nodes = [read_node(scene, node) for node in body.nodes]
     read = partial(stack.channel, scene)
     channels = [
         tuple(
             read(node.node, name, still, timing.ticks)
-            for name, still in zip(ANIMATED, node.still, strict=True)
+            for name, still in zip(ANIMATED_PROPERTIES, node.still, strict=True)
         )
         for node in nodes
     ]
@@ -162,28 +176,34 @@ def _read_motion(scene: FbxScene, body: Body, stack: Stack, timing: Timing) -> _
 
 
 class _Rest:
-    """A motion seen from its rest: joints' frames are the world's there, and Y is up."""
+    """A motion relative to its rest pose, with Y up.
+
+    At rest, the frames of joints have the axes of the world. turn: (3, 3) from the axes of the file
+    to X right, Y up, Z to the viewer.
+    """
 
     def __init__(self, motion: _Motion, body: Body, turn: FloatArray) -> None:
         self.motion = motion
-        self.kept = np.flatnonzero(body.is_joint)
-        self.parents = _parents_among(self.kept, body.parents)
+        self.joints = np.flatnonzero(body.is_joint)
+        self.parents = _parents_among(self.joints, body.parents)
         self.turn = turn
+        # Conjugation by -turn and by turn is the same, so a mirrored turn also has a quaternion.
         self.turn_quaternion = matrices_to_quaternions(turn * np.sign(np.linalg.det(turn)))
         world = motion.world(motion.rest())
-        self.unturned = world.rotations[:, self.kept] * _CONJUGATE
-        positions = world.positions[0, self.kept] @ turn.T
+        self.unturned = world.rotations[:, self.joints] * _CONJUGATE
+        positions = world.positions[0, self.joints] @ turn.T
         below = self.parents >= 0
         positions[below] -= positions[self.parents[below]]
-        names = tuple(body.nodes[index].name or f"joint {index}" for index in self.kept)
+        names = tuple(body.nodes[index].name or f"joint {index}" for index in self.joints)
         self.skeleton = Skeleton(names, self.parents, positions)
 
     def local_pose(self, block: slice) -> tuple[FloatArray, FloatArray]:
-        """Rotations (n, joints, 4) and translations (n, joints, 3) in the joints' new frames."""
+        """Local rotations (n, joints, 4) and translations (n, joints, 3) of a block of frames."""
         world = self.motion.world(self.motion.local(block))
-        turned = multiply(world.rotations[:, self.kept], self.unturned)
+        # world rotations (n, joints, 4) relative to rest, then in the turned axes
+        turned = multiply(world.rotations[:, self.joints], self.unturned)
         turned = multiply(multiply(self.turn_quaternion, turned), self.turn_quaternion * _CONJUGATE)
-        moved = world.positions[:, self.kept] @ self.turn.T
+        moved = world.positions[:, self.joints] @ self.turn.T
         below = np.flatnonzero(self.parents >= 0)
         above = turned[:, self.parents[below]] * _CONJUGATE
         rotations, translations = turned.copy(), moved.copy()
@@ -192,9 +212,9 @@ class _Rest:
         return rotations, translations
 
     def moving(self) -> bool:
-        """Whether joints below the roots change their place in their parents' frames."""
-        motion, root = self.motion, int(self.kept[0])
-        limit = STILL * max(float(np.abs(self.skeleton.offsets).max()), 1e-12)
+        """Whether joints below the root move relative to their parents."""
+        motion, root = self.motion, int(self.joints[0])
+        limit = MAX_STILL_SHARE * max(float(np.abs(self.skeleton.offsets).max()), 1e-12)
         scaled = any(not np.allclose(scale, scale[0, 0]) for _, _, scale in motion.channels)
         return scaled or any(
             motion.nodes[index].has_pivots
@@ -203,16 +223,21 @@ class _Rest:
         )
 
 
-def _parents_among(kept: IntArray, parents: IntArray) -> IntArray:
-    """The parents of kept nodes as indices among the kept, -1 for the one at the top; what
-    lies between joints is a joint too."""
-    new = {int(old): index for index, old in enumerate(kept)}
-    return np.array([new.get(int(parents[index]), -1) for index in kept], dtype=np.int64)
+def _parents_among(joints: IntArray, parents: IntArray) -> IntArray:
+    """(joints,) the parents of joints as indices of joints, -1 for the root.
+
+    joints: (joints,) indices of nodes. parents: (nodes,). All nodes between joints are joints.
+    """
+    new = {int(old): index for index, old in enumerate(joints)}
+    return np.array([new.get(int(parents[index]), -1) for index in joints], dtype=np.int64)
 
 
 def axes(settings: dict[str, Numbers]) -> FloatArray:
-    """(3, 3) from the file's axes to X right, Y up, Z to the viewer; a left-handed file's
-    has determinant -1, which leaves the body as it was. Raises Unreadable."""
+    """(3, 3) the matrix from the axes of a file to X right, Y up, Z to the viewer.
+
+    settings: the numbers of GlobalSettings. The determinant is -1 for a left-handed file, so that
+    the body is not mirrored. Raises Unreadable if the axes are not three different ones.
+    """
     turn = np.zeros((3, 3))
     for row, (name, usual) in enumerate((("CoordAxis", 0), ("UpAxis", 1), ("FrontAxis", 2))):
         axis = settings.get(name, (float(usual),))[0]
@@ -224,7 +249,9 @@ def axes(settings: dict[str, Numbers]) -> FloatArray:
     return turn
 
 
-def _check(solved: Solved) -> None:
+def _refuse_large_numbers(solved: Solved) -> None:
     for numbers in (solved.positions, solved.rotations):
         if not np.all(np.abs(numbers) <= MAX_MAGNITUDE):
-            raise unreadable_at("node Objects/Model", f"expected places within ±{MAX_MAGNITUDE:g}")
+            raise unreadable_at(
+                "node Objects/Model", f"expected positions within ±{MAX_MAGNITUDE:g}"
+            )

@@ -1,8 +1,7 @@
-"""The content of an FBX file: objects with their properties, and their connections.
+"""Reads the objects of an FBX file, their properties and their connections.
 
-Source: the objects, connections and property templates as Autodesk's FBX SDK documents
-them ("FBX object model"); a property that an object lacks has its template's value, and
-one that the template lacks has ours.
+If an object does not have a property, the value of its template is used, and then a default value
+of ours. Source: Autodesk's FBX SDK, "FBX object model".
 """
 
 from __future__ import annotations
@@ -14,10 +13,10 @@ from functools import cached_property
 import numpy as np
 
 from app.errors import FormatNotSupported, Place, Unreadable
-from app.formats.common.failures import too_large
+from app.formats.common.failures import too_large, unreadable_at, unreadable_byte
 from app.formats.common.names import MAX_NAME_LENGTH
 from app.formats.common.numbers import MAX_MAGNITUDE
-from app.formats.fbx.nodes import FbxFile, FbxRecord, unreadable_byte
+from app.formats.fbx.records import FbxFile, FbxRecord
 from app.numerics.arrays import FloatArray
 
 MAX_OBJECTS = 500_000
@@ -28,14 +27,14 @@ _KINDS = frozenset(
      "AnimationCurve")
 )  # fmt: skip
 _TIME_DEFINITION = 127
-"""TCDefinition of files whose second has KTIME ticks."""
+"""The TCDefinition of files in which a second has KTIME ticks."""
 
 Numbers = tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class FbxObject:
-    """An object: `kind` is its record's name, `subtype` its own word (LimbNode, Null)."""
+    """An object: `kind` is the name of its record, `subtype` is for example LimbNode or Null."""
 
     id: int
     kind: str
@@ -44,28 +43,23 @@ class FbxObject:
     record: FbxRecord
 
     @property
-    def place(self) -> str:
-        """The place of the object in the file, for messages."""
+    def location(self) -> str:
+        """The location of the object in the file, for messages."""
         return f"node Objects/{self.kind} {self.id}"
 
     def unreadable(self, message: str) -> Unreadable:
-        """An Unreadable with the name of this object."""
-        return unreadable_at(self.place, message)
+        """An Unreadable with the location of this object."""
+        return unreadable_at(self.location, message)
 
 
-def unreadable_at(place: str, message: str) -> Unreadable:
-    """An Unreadable with the name of a node."""
-    return Unreadable(f"{place}: {message}", places=[Place(place, message)])
-
-
-def refused_at(place: str, message: str) -> FormatNotSupported:
-    """A FormatNotSupported with the name of a node."""
-    return FormatNotSupported(f"{place}: {message}", places=[Place(place, message)])
+def unsupported_at(location: str, message: str) -> FormatNotSupported:
+    """A FormatNotSupported with the location of a node."""
+    return FormatNotSupported(f"{location}: {message}", places=[Place(location, message)])
 
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """`source` belongs to `target`, or to its property of this name ("" for none)."""
+    """`source` belongs to `target`, or drives a property of it; "" is for no property."""
 
     source: int
     target: int
@@ -74,6 +68,8 @@ class Connection:
 
 @dataclass(slots=True)
 class _Ends:
+    """The connections of an object: those to it and those from it."""
+
     incoming: list[Connection] = field(default_factory=list)
     outgoing: list[Connection] = field(default_factory=list)
 
@@ -83,45 +79,45 @@ class FbxScene:
 
     def __init__(self, file: FbxFile) -> None:
         """Raises Unreadable, FormatNotSupported for encrypted files, TooLarge."""
-        _refuse_foreign_headers(file)
+        _refuse_unsupported_headers(file)
         self._file = file
         self.objects = {one.id: one for one in _objects(file)}
         self._ends: dict[int, _Ends] = {}
         for connection in _connections(file):
             self._at(connection.source).outgoing.append(connection)
             self._at(connection.target).incoming.append(connection)
-        self._known: dict[int, dict[str, Numbers]] = {}
+        self._properties: dict[int, dict[str, Numbers]] = {}
 
     def _at(self, object_id: int) -> _Ends:
         return self._ends.setdefault(object_id, _Ends())
 
     def of_kind(self, kind: str) -> list[FbxObject]:
-        """Objects of a kind, in file order."""
+        """The objects of a kind, in the order of the file."""
         return [one for one in self.objects.values() if one.kind == kind]
 
     def sources(self, target: FbxObject, kind: str) -> Iterator[tuple[FbxObject, str]]:
-        """Objects of a kind that belong to `target`, each with the property it drives."""
+        """The objects of a kind that belong to `target`, each with the property that it drives."""
         for connection in self._at(target.id).incoming:
             source = self.objects.get(connection.source)
             if source is not None and source.kind == kind:
                 yield source, connection.to_property
 
     def targets(self, source: FbxObject, kind: str) -> Iterator[FbxObject]:
-        """Objects of a kind that `source` belongs to as a whole."""
+        """The objects of a kind to which `source` belongs, without driving a property."""
         for connection in self._at(source.id).outgoing:
             target = self.objects.get(connection.target)
             if target is not None and target.kind == kind and not connection.to_property:
                 yield target
 
     def driven(self, source: FbxObject) -> Iterator[tuple[FbxObject, str]]:
-        """Nodes of which `source` drives a property, and its name."""
+        """The nodes of which `source` drives a property, each with the name of the property."""
         for connection in self._at(source.id).outgoing:
             target = self.objects.get(connection.target)
             if target is not None and target.kind == "Model" and connection.to_property:
                 yield target, connection.to_property
 
     def vector(self, owner: FbxObject, name: str, default: Numbers) -> FloatArray:
-        """A property's numbers, as many as the default has, float64. Raises Unreadable."""
+        """(n,) float64 the numbers of a property, as many as in `default`. Raises Unreadable."""
         found = self._numbers(owner).get(name) or self._templates.get(owner.kind, {}).get(name)
         found = (found or default)[: len(default)]
         if len(found) != len(default) or not np.all(np.abs(found) <= MAX_MAGNITUDE):
@@ -129,18 +125,18 @@ class FbxScene:
         return np.array(found, dtype=np.float64)
 
     def number(self, owner: FbxObject, name: str, default: float) -> float:
-        """A property of one number. Raises Unreadable."""
+        """A property that is one number. Raises Unreadable."""
         return float(self.vector(owner, name, (default,))[0])
 
     def ticks(self, owner: FbxObject, name: str) -> float | None:
-        """A property that is a time, in ticks, or None."""
+        """A property that is a time, in ticks; None if the object does not have it."""
         found = self._numbers(owner).get(name)
         return found[0] if found and np.isfinite(found[0]) else None
 
     def _numbers(self, owner: FbxObject) -> dict[str, Numbers]:
-        if owner.id not in self._known:
-            self._known[owner.id] = read_properties(owner.record)
-        return self._known[owner.id]
+        if owner.id not in self._properties:
+            self._properties[owner.id] = read_properties(owner.record)
+        return self._properties[owner.id]
 
     @cached_property
     def settings(self) -> dict[str, Numbers]:
@@ -150,7 +146,7 @@ class FbxScene:
 
     @cached_property
     def _templates(self) -> dict[str, dict[str, Numbers]]:
-        """For each kind of object, the default numbers of its properties."""
+        """The template of each kind of object: the default numbers of its properties."""
         found: dict[str, dict[str, Numbers]] = {}
         definitions = self._file.top("Definitions")
         for record in definitions.children("ObjectType") if definitions else ():
@@ -162,7 +158,7 @@ class FbxScene:
 
 
 def read_properties(record: FbxRecord) -> dict[str, Numbers]:
-    """The properties of a record's Properties70 that are numbers, by name."""
+    """The properties in Properties70 of a record that are numbers, by name."""
     found: dict[str, Numbers] = {}
     block = record.child("Properties70")
     for line in block.children("P") if block is not None else ():
@@ -194,7 +190,7 @@ def _object(record: FbxRecord) -> FbxObject:
 
 
 def object_name(name: object) -> str:
-    """The name before its class, which two bytes part from it; always printable."""
+    """The printable name of an object, from bytes with a name, a separator and a class."""
     text = name.split(b"\x00\x01")[0] if isinstance(name, bytes) else b""
     shown = text[: 4 * MAX_NAME_LENGTH].decode("utf-8", errors="replace")[:MAX_NAME_LENGTH]
     return "".join(char if char.isprintable() else "�" for char in shown)
@@ -213,7 +209,7 @@ def _connections(file: FbxFile) -> Iterator[Connection]:
             yield Connection(source, target, _text(to_property))
 
 
-def _refuse_foreign_headers(file: FbxFile) -> None:
+def _refuse_unsupported_headers(file: FbxFile) -> None:
     header = file.top("FBXHeaderExtension")
     encryption = header.child("EncryptionType") if header else None
     if encryption is not None and encryption.properties(1) not in ([], [0]):
@@ -221,7 +217,7 @@ def _refuse_foreign_headers(file: FbxFile) -> None:
     flags = header.child("OtherFlags") if header else None
     definition = flags.child("TCDefinition") if flags else None
     if definition is not None and definition.properties(1) != [_TIME_DEFINITION]:
-        raise refused_at(
+        raise unsupported_at(
             "node FBXHeaderExtension/OtherFlags", "expected times as FBX 7 counts them"
         )
 

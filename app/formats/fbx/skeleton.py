@@ -1,8 +1,8 @@
-"""Which nodes of an FBX scene are the body's joints.
+"""Finds the nodes of an FBX scene that are joints of the body.
 
-Limb nodes are joints. So are the nodes between them, and a node above them that moves (a
-reference that carries the hips). In a scene without limb nodes, the Nulls that move are taken.
-Of several bodies, the one with most moving joints is read.
+Limb nodes are joints. Nodes between them are joints too, and so is a node above them that moves
+(a reference node that carries the hips). In a scene without limb nodes, the Nulls that move are
+joints. If there are several bodies, the one with the most moving joints is read.
 """
 
 from __future__ import annotations
@@ -13,19 +13,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.formats.common.failures import too_large
+from app.formats.common.failures import too_large, unreadable_at
 from app.formats.common.limits import MAX_JOINTS
-from app.formats.fbx.scene import FbxObject, FbxScene, unreadable_at
+from app.formats.fbx.scene import FbxObject, FbxScene
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, IntArray
 
-LIMBS = frozenset(("LimbNode", "Limb", "Root"))
+LIMB_TYPES = frozenset(("LimbNode", "Limb", "Root"))
+"""The subtypes of limb nodes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """Joints and all nodes above them, parents first; parents (nodes,) -1 for none;
-    is_joint (nodes,)."""
+    """The joints of a body and all nodes above them.
+
+    nodes: (nodes,) parents come before their children. parents: (nodes,) -1 for none. is_joint:
+    (nodes,) False for nodes above the body, which only carry it.
+    """
 
     nodes: tuple[FbxObject, ...]
     parents: IntArray
@@ -36,8 +40,8 @@ class Body:
 def find_body(scene: FbxScene, moving: Collection[int]) -> Body:
     """Find the body in a scene.
 
-    moving: the ids of the nodes that have curves. Raises Unreadable where there is no body, or
-    none that moves, and TooLarge for more than MAX_JOINTS joints.
+    moving: the ids of the nodes that have curves. Raises Unreadable if there is no body or if no
+    body moves, and TooLarge for more than MAX_JOINTS joints.
     """
     nodes, parents = _in_order(scene)
     moves = [node.id in moving for node in nodes]
@@ -48,7 +52,7 @@ def find_body(scene: FbxScene, moving: Collection[int]) -> Body:
 
 
 def _limbs(scene: FbxScene, nodes: list[FbxObject], moves: list[bool]) -> list[bool]:
-    """Whether each node is a limb node or, in a scene without any, a Null that moves."""
+    """Whether each node is a limb node or, in a scene without limb nodes, a Null that moves."""
     limbs = [_is_limb(scene, node) for node in nodes]
     if any(limbs):
         return limbs
@@ -56,7 +60,7 @@ def _limbs(scene: FbxScene, nodes: list[FbxObject], moves: list[bool]) -> list[b
 
 
 def _chosen(roots: list[int], moves: list[bool]) -> tuple[int, list[int]]:
-    """The root of the body with most moving joints, and the roots of other moving bodies.
+    """The root of the body with the most moving joints, and the roots of other moving bodies.
 
     roots: the root of each node's body, -1 for none. Raises Unreadable.
     """
@@ -66,12 +70,16 @@ def _chosen(roots: list[int], moves: list[bool]) -> tuple[int, list[int]]:
     moved = Counter(root for root, move in zip(roots, moves, strict=True) if move and root >= 0)
     if not moved:
         raise unreadable_at("node Objects/AnimationCurve", "expected curves that move joints")
+    # If numbers are equal, the larger body is read, and then the first one in the file.
     chosen = max(bodies, key=lambda one: (moved[one], bodies[one], -one))
     return chosen, [one for one in moved if one != chosen and bodies[one] > 1]
 
 
 def _in_order(scene: FbxScene) -> tuple[list[FbxObject], list[int]]:
-    """The nodes of a scene, each after its parent, and the parents' indices."""
+    """The nodes of a scene, each after its parent, and the index of each parent (-1 for none).
+
+    Raises Unreadable if nodes are their own ancestors.
+    """
     children: dict[int, list[FbxObject]] = {}
     models = scene.of_kind("Model")
     waiting: list[tuple[FbxObject, int]] = []
@@ -81,6 +89,7 @@ def _in_order(scene: FbxScene) -> tuple[list[FbxObject], list[int]]:
             waiting.append((model, -1))
         else:
             children.setdefault(parent.id, []).append(model)
+    # A stack takes the last one first, so reversed lists keep the order of the file.
     waiting.reverse()
     nodes: list[FbxObject] = []
     parents: list[int] = []
@@ -92,17 +101,19 @@ def _in_order(scene: FbxScene) -> tuple[list[FbxObject], list[int]]:
     if len(nodes) < len(models):
         reached = {node.id for node in nodes}
         lost = next(model for model in models if model.id not in reached)
-        raise lost.unreadable("expected a node that does not hang on itself")
+        raise lost.unreadable("expected a node that is not its own ancestor")
     return nodes, parents
 
 
 def _is_limb(scene: FbxScene, node: FbxObject) -> bool:
-    if node.subtype in LIMBS:
+    if node.subtype in LIMB_TYPES:
         return True
-    return any(one.subtype in LIMBS for one, _ in scene.sources(node, "NodeAttribute"))
+    return any(one.subtype in LIMB_TYPES for one, _ in scene.sources(node, "NodeAttribute"))
 
 
 def _joints(parents: list[int], limbs: list[bool], moves: list[bool]) -> list[bool]:
+    """Whether each node is a joint: a limb, or a node that moves or is between limbs."""
+    # below: the node has a limb below it. above: the node has a limb above it.
     below, above = [False] * len(parents), [False] * len(parents)
     for index in reversed(range(len(parents))):
         if parents[index] >= 0:
@@ -116,7 +127,7 @@ def _joints(parents: list[int], limbs: list[bool], moves: list[bool]) -> list[bo
 
 
 def _roots(parents: list[int], joints: list[bool]) -> list[int]:
-    """The topmost joint above each joint, -1 for nodes that are no joint."""
+    """The highest joint above each joint, or the joint itself; -1 for other nodes."""
     roots: list[int] = []
     for index, parent in enumerate(parents):
         higher = roots[parent] if parent >= 0 else -1
@@ -127,11 +138,12 @@ def _roots(parents: list[int], joints: list[bool]) -> list[int]:
 def _body(
     nodes: list[FbxObject], parents: list[int], is_joint: list[bool], others: list[str]
 ) -> Body:
-    kept = list(is_joint)
+    """The joints with all nodes above them; others: the names of the bodies that are not read."""
+    is_used = list(is_joint)
     for index in reversed(range(len(nodes))):
-        if kept[index] and parents[index] >= 0:
-            kept[parents[index]] = True
-    indices = [index for index, keep in enumerate(kept) if keep]
+        if is_used[index] and parents[index] >= 0:
+            is_used[parents[index]] = True
+    indices = [index for index, used in enumerate(is_used) if used]
     if len(indices) > MAX_JOINTS:
         raise too_large("joints", f"expected at most {MAX_JOINTS}")
     new = {old: index for index, old in enumerate(indices)}
@@ -147,7 +159,7 @@ def _cautions(names: list[str], others: list[str]) -> tuple[Caution, ...]:
     cautions = []
     if others:
         shown = ", ".join(others[:5])
-        detail = f"the file holds {len(others) + 1} skeletons; {names[0]} was read, not {shown}"
+        detail = f"the file has {len(others) + 1} skeletons; {names[0]} was read, not {shown}"
         cautions.append(Caution("skeleton_chosen", detail))
     twice = [name for name, count in Counter(names).items() if count > 1]
     if twice:

@@ -1,7 +1,7 @@
-"""When an FBX clip is sampled: the start, the end and the rate.
+"""Finds the times at which an FBX clip is sampled: the start, the end and the frame rate.
 
-This is the scene's frame rate (TimeMode), unless its keys are denser. Dense keys are samples at a
-higher rate, and a scene's rate is often only the default of the program.
+The rate is that of the scene (TimeMode), unless the keys are denser. Dense keys are samples of a
+higher rate, and the rate of a scene is often only the default of the program.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.formats.bvh.frames import FASTEST_RATE, MAX_FRAMES, NEAR_WHOLE, SLOWEST_RATE
+from app.formats.bvh.frames import MAX_FRAMES, MAX_RATE, MIN_RATE, NEAR_WHOLE
 from app.formats.common.failures import too_large
 from app.formats.fbx.curves import KTIME
 from app.formats.fbx.scene import Numbers
@@ -25,24 +25,24 @@ TIME_MODES: dict[int, float] = {
 }  # fmt: skip
 """The rate in Hz for each number of TimeMode; 14 is CustomFrameRate, 0 gives no rate."""
 CUSTOM_MODE = 14
-UNSAID_RATE = 30.0
+DEFAULT_RATE = 30.0
 """Hz: the rate for sparse keys in a scene without a rate."""
-NEEDLESS_RATE = 250.0
-"""Hz. A higher rate of a scene is that of its clock, not of its motion."""
-DENSE = 0.5
+MAX_SCENE_RATE = 250.0
+"""Hz. A higher rate of a scene is the rate of its clock, not of its motion."""
+MIN_EQUAL_SHARE = 0.5
 """The share of gaps that must be equal, so that keys count as samples."""
 GAP_TOLERANCE = 0.01
 """Gaps that differ by less (relative) count as equal, because some writers round times."""
-FREE_FRAMES, FRAMES_PER_KEY = 10_000, 1_000
+MAX_FREE_FRAMES, MAX_FRAMES_PER_KEY = 10_000, 1_000
 """The most frames of a clip: a constant, and a number for each key of its longest curve. So a
 single far key does not add hours without movement."""
-ON_GRID = 0.02
-"""In periods. A key that is at most this far from a frame is on it."""
+ON_FRAME = 0.02
+"""The largest distance of a key from a frame on which it is, as a share of a frame's duration."""
 
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """ticks: (frames,) float64 where to sample; frame_rate: Hz."""
+    """ticks: (frames,) float64 the times of the frames. frame_rate: Hz."""
 
     ticks: FloatArray
     frame_rate: float
@@ -52,11 +52,12 @@ class Timing:
 def key_span(
     times: list[IntArray], start: float | None, stop: float | None
 ) -> tuple[float, float] | None:
-    """First and last tick with keys, within the stack's own span where that has some.
+    """The first and the last tick with keys; None if there are no keys.
 
-    times: of each curve (keys,). None where there are no keys.
+    times: (keys,) ticks for each curve. start, stop: the span of the stack in ticks, or None. If
+    there are keys in this span, the result is limited to it.
     """
-    # A lone key only says where a still property stands.
+    # A single key only gives the value of a property that does not change.
     moving = [one for one in times if len(one) > 1] or times
     if not moving:
         return None
@@ -70,32 +71,38 @@ def key_span(
 def find_timing(
     times: list[IntArray], span: tuple[float, float], settings: dict[str, Numbers]
 ) -> Timing:
-    """Raises TooLarge."""
+    """The times and the rate of the frames.
+
+    times: (keys,) ticks for each curve. span: the first and the last tick. settings: the numbers of
+    GlobalSettings. Raises TooLarge.
+    """
     scene, keys = scene_rate(settings), key_rate(times)
-    rate = scene or keys or UNSAID_RATE
+    rate = scene or keys or DEFAULT_RATE
     cautions: tuple[Caution, ...] = ()
-    if keys and (rate > NEEDLESS_RATE or keys > rate * (1 + GAP_TOLERANCE)):
+    if keys and (rate > MAX_SCENE_RATE or keys > rate * (1 + GAP_TOLERANCE)):
         rate = keys
-        detail = f"the scene says {scene or 0:g} Hz; its keys lie {keys:g} a second"
+        detail = f"the rate of the scene is {scene or 0:g} Hz, but it has {keys:g} keys per second"
         cautions = (Caution("frame_rate_from_keys", detail),)
     period = KTIME / rate
     first = span[0]
-    if _on_grid(times, period):
-        first = np.ceil(first / period - ON_GRID) * period
-    count = int((span[1] - first) / period + ON_GRID) + 1
-    most = FREE_FRAMES + FRAMES_PER_KEY * max((len(one) for one in times), default=0)
-    if count > min(MAX_FRAMES, most):
-        raise too_large("frames", f"expected at most {min(MAX_FRAMES, most)}, found {count}")
+    # If keys are on frames, the first frame is on one too, also if the span starts between two.
+    if _are_on_frames(times, period):
+        first = np.ceil(first / period - ON_FRAME) * period
+    count = int((span[1] - first) / period + ON_FRAME) + 1
+    longest = max((len(one) for one in times), default=0)
+    limit = min(MAX_FRAMES, MAX_FREE_FRAMES + MAX_FRAMES_PER_KEY * longest)
+    if count > limit:
+        raise too_large("frames", f"expected at most {limit}, found {count}")
     ticks = np.clip(first + period * np.arange(max(count, 1)), *span)
     return Timing(ticks, rate, cautions)
 
 
 def scene_rate(settings: dict[str, Numbers]) -> float | None:
-    """The rate of GlobalSettings in Hz; None if there is none or it is impossible."""
+    """The rate of GlobalSettings in Hz; None if there is none or if it is impossible."""
     mode = int(settings.get("TimeMode", (0.0,))[0]) if _finite(settings, "TimeMode") else 0
     if mode == CUSTOM_MODE and _finite(settings, "CustomFrameRate"):
         rate = settings["CustomFrameRate"][0]
-        return rate if SLOWEST_RATE <= rate <= FASTEST_RATE else None
+        return rate if MIN_RATE <= rate <= MAX_RATE else None
     return TIME_MODES.get(mode)
 
 
@@ -104,7 +111,10 @@ def _finite(settings: dict[str, Numbers], name: str) -> bool:
 
 
 def key_rate(times: list[IntArray]) -> float | None:
-    """The rate of evenly spaced keys in Hz; None if they are not evenly spaced."""
+    """The rate of evenly spaced keys in Hz; None if they are not evenly spaced.
+
+    times: (keys,) ticks for each curve.
+    """
     if not times:
         return None
     gaps = np.concatenate([np.diff(one) for one in times]).astype(np.float64)
@@ -112,16 +122,17 @@ def key_rate(times: list[IntArray]) -> float | None:
     if not len(gaps):
         return None
     usual = float(np.median(gaps))
-    if np.mean(np.abs(gaps - usual) <= GAP_TOLERANCE * usual) < DENSE:
+    if np.mean(np.abs(gaps - usual) <= GAP_TOLERANCE * usual) < MIN_EQUAL_SHARE:
         return None
     rate = KTIME / usual
-    if not SLOWEST_RATE <= rate <= FASTEST_RATE:
+    if not MIN_RATE <= rate <= MAX_RATE:
         return None
-    known = (float(round(rate)), *TIME_MODES.values())
-    return next((one for one in known if abs(one - rate) <= NEAR_WHOLE * rate), rate)
+    # Times are rounded to ticks, so a rate near a usual one is that rate.
+    usual_rates = (float(round(rate)), *TIME_MODES.values())
+    return next((one for one in usual_rates if abs(one - rate) <= NEAR_WHOLE * rate), rate)
 
 
-def _on_grid(times: list[IntArray], period: float) -> bool:
+def _are_on_frames(times: list[IntArray], period: float) -> bool:
     """Whether most keys are on whole frames, counted from time 0."""
     phase = np.concatenate([one / period for one in times])
-    return bool(np.mean(np.abs(phase - np.round(phase)) <= ON_GRID) > DENSE)
+    return bool(np.mean(np.abs(phase - np.round(phase)) <= ON_FRAME) > MIN_EQUAL_SHARE)

@@ -1,11 +1,12 @@
-"""An FBX node's transform, and world transforms down its tree.
+"""The local transforms of FBX nodes, and the world transforms of a tree of nodes.
 
-The local matrix is T Roff Rp Rpre R Rpost^-1 Rp^-1 Soff Sp S Sp^-1; how a parent's scale
-reaches its children depends on the child's inherit type. Rotation orders name the axis
-that turns first, pre- and post-rotation are XYZ always.
+The local matrix is T Roff Rp Rpre R Rpost^-1 Rp^-1 Soff Sp S Sp^-1 (translation, offset and pivot
+of rotation, pre-rotation, rotation, post-rotation, offset and pivot of scaling, scaling). The
+inherit type of a node decides how the scale of its parent changes it. A rotation order names the
+axis that turns first, first. Pre- and post-rotation always have the order XYZ.
 
-Source: Autodesk FBX SDK 2020, "Computing transformation matrices", and its sample
-"Transformations" for the inherit types.
+Source: Autodesk FBX SDK 2020, "Computing transformation matrices"; for the inherit types, its
+sample "Transformations".
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.formats.fbx.scene import FbxObject, FbxScene, refused_at
+from app.formats.fbx.scene import FbxObject, FbxScene, unsupported_at
 from app.motion.skeleton.kinematics import joints_by_depth
 from app.motion.skeleton.rotations import (
     euler_to_quaternions,
@@ -25,26 +26,31 @@ from app.motion.skeleton.rotations import (
 from app.numerics.arrays import FloatArray, IntArray
 
 ROTATION_ORDERS = ("XYZ", "XZY", "YZX", "YXZ", "ZXY", "ZYX")
-"""The order for each number; the first axis turns first. The sixth, SphericXYZ, is unsupported."""
+"""The order for each number; the first axis turns first. Number 6 (SphericXYZ) is unsupported."""
 R_S_INDEPENDENT, R_S_TOGETHER, WITHOUT_PARENT = 0, 1, 2
-"""InheritType: RrSs (scales multiply apart from rotations), RSrs (matrices multiply),
-Rrs (the parent's own scale is left out)."""
-ANIMATED = ("Lcl Translation", "Lcl Rotation", "Lcl Scaling")
-SHEAR = 1e-4
-"""The largest entry off the diagonal, relative to the largest entry, of a matrix without shear."""
+"""InheritType, with R, S for the parent and r, s for the node. RrSs: rotations and scales are
+multiplied separately. RSrs: matrices are multiplied. Rrs: the parent's own scale is not used."""
+ANIMATED_PROPERTIES = ("Lcl Translation", "Lcl Rotation", "Lcl Scaling")
+MAX_SHEAR = 1e-4
+"""The largest entry off the diagonal of a matrix without shear, relative to its largest entry."""
 
 _ZERO, _ONE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
-_FIXED = (
+_FIXED_VECTORS = (
     "RotationOffset", "RotationPivot", "PreRotation", "PostRotation", "ScalingOffset",
     "ScalingPivot",
 )  # fmt: skip
-FIXED = (*_FIXED, "RotationOrder", "InheritType", "RotationActive")
-"""Properties of the chain that must not be animated."""
+FIXED_PROPERTIES = (*_FIXED_VECTORS, "RotationOrder", "InheritType", "RotationActive")
+"""Properties of a transform that must not be animated."""
 
 
 @dataclass(frozen=True, slots=True)
 class FbxNode:
-    """A node's chain: `order` names the first axis first; vectors (3,) in degrees and units."""
+    """A node with the fixed parts of its transform.
+
+    order: the rotation order, the axis that turns first, first. inherits: the InheritType. Vectors
+    are (3,), float64: rotations in degrees, others in the unit of the file. before, after: pre- and
+    post-rotation. still: the translation, rotation and scale of the node without animation.
+    """
 
     node: FbxObject
     order: str
@@ -59,38 +65,41 @@ class FbxNode:
 
     @property
     def has_pivots(self) -> bool:
-        """Whether turning or scaling moves the node's origin."""
+        """Whether a rotation or a scale of the node moves its origin."""
         return bool(np.any(self.rotation_pivot - self.scaling_offset) or np.any(self.scaling_pivot))
 
-    def turned(self, degrees: FloatArray) -> FloatArray:
-        """Local rotations (..., 4) of Euler angles (..., 3): Rpre R Rpost^-1."""
-        # Our intrinsic order lists the outermost axis first, which is the one that turns last.
+    def local_rotations(self, degrees: FloatArray) -> FloatArray:
+        """(..., 4) the quaternions Rpre R Rpost^-1; degrees: (..., 3) Euler angles X, Y, Z."""
+        # Our function names the outermost axis first, which is the axis that turns last.
         order = self.order[::-1]
         angles = np.radians(degrees)[..., ["XYZ".index(axis) for axis in order]]
-        turned = multiply(_fixed(self.before), euler_to_quaternions(angles, order))
-        return multiply(turned, _fixed(self.after) * [1, -1, -1, -1])
+        turned = multiply(_xyz_rotation(self.before), euler_to_quaternions(angles, order))
+        return multiply(turned, _xyz_rotation(self.after) * [1, -1, -1, -1])
 
-    def moved(self, translation: FloatArray, turned: FloatArray, scale: FloatArray) -> FloatArray:
-        """Where the node's origin is in its parent's frame (..., 3)."""
+    def origin(self, translation: FloatArray, turned: FloatArray, scale: FloatArray) -> FloatArray:
+        """(..., 3) the origin of the node in the frame of its parent, in the unit of the file.
+
+        translation, scale: (..., 3). turned: (..., 4) the local rotations.
+        """
         inner = self.scaling_offset - self.rotation_pivot + (1 - scale) * self.scaling_pivot
         return translation + self.rotation_offset + self.rotation_pivot + rotate(turned, inner)
 
 
 def read_node(scene: FbxScene, node: FbxObject) -> FbxNode:
-    """Read the chain of a node.
+    """Read the fixed parts of the transform of a node.
 
-    Raises FormatNotSupported for unknown chains, and Unreadable.
+    Raises FormatNotSupported for an unknown rotation order or inherit type, and Unreadable.
     """
-    # A node whose rotation is not "active" turns in XYZ about nothing else.
+    # If the rotation is not "active", its order is XYZ, and pre- and post-rotation are not used.
     active = scene.number(node, "RotationActive", 0.0) != 0
     active &= scene.number(node, "RotationSpaceForLimitOnly", 0.0) == 0
     order = int(scene.number(node, "RotationOrder", 0.0)) if active else 0
     if order not in range(len(ROTATION_ORDERS)):
-        raise refused_at(node.place, f"expected rotation order 0 to 5, found {order}")
+        raise unsupported_at(node.location, f"expected rotation order 0 to 5, found {order}")
     inherits = int(scene.number(node, "InheritType", 0.0))
     if inherits not in (R_S_INDEPENDENT, R_S_TOGETHER, WITHOUT_PARENT):
-        raise refused_at(node.place, f"expected inherit type 0, 1 or 2, found {inherits}")
-    fixed = {name: scene.vector(node, name, _ZERO) for name in _FIXED}
+        raise unsupported_at(node.location, f"expected inherit type 0, 1 or 2, found {inherits}")
+    fixed = {name: scene.vector(node, name, _ZERO) for name in _FIXED_VECTORS}
     return FbxNode(
         node=node,
         order=ROTATION_ORDERS[order],
@@ -102,20 +111,25 @@ def read_node(scene: FbxScene, node: FbxObject) -> FbxNode:
         scaling_offset=fixed["ScalingOffset"],
         scaling_pivot=fixed["ScalingPivot"],
         still=(
-            scene.vector(node, ANIMATED[0], _ZERO),
-            scene.vector(node, ANIMATED[1], _ZERO),
-            scene.vector(node, ANIMATED[2], _ONE),
+            scene.vector(node, ANIMATED_PROPERTIES[0], _ZERO),
+            scene.vector(node, ANIMATED_PROPERTIES[1], _ZERO),
+            scene.vector(node, ANIMATED_PROPERTIES[2], _ONE),
         ),
     )
 
 
-def _fixed(degrees: FloatArray) -> FloatArray:
+def _xyz_rotation(degrees: FloatArray) -> FloatArray:
+    """(4,) the quaternion of Euler angles (3,) of which X turns first."""
     return euler_to_quaternions(np.radians(degrees[::-1]), "ZYX")
 
 
 @dataclass(frozen=True, slots=True)
 class Local:
-    """translations (frames, nodes, 3), rotations (frames, nodes, 4), scales (frames, nodes, 3)."""
+    """Local transforms of nodes.
+
+    translations: (frames, nodes, 3) in the unit of the file. rotations: (frames, nodes, 4)
+    quaternions w x y z. scales: (frames, nodes, 3).
+    """
 
     translations: FloatArray
     rotations: FloatArray
@@ -124,19 +138,25 @@ class Local:
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """rotations (frames, nodes, 4), without scale; positions (frames, nodes, 3)."""
+    """World transforms of nodes, in the unit and axes of the file.
+
+    rotations: (frames, nodes, 4) quaternions, without scale. positions: (frames, nodes, 3).
+    """
 
     rotations: FloatArray
     positions: FloatArray
 
 
 def world_transforms(nodes: list[FbxNode], parents: IntArray, local: Local) -> World:
-    """From local to world; parents (nodes,), -1 for a root, stand before their children.
+    """The world transforms of nodes from their local transforms.
 
-    Raises FormatNotSupported where a sheared parent's scale would have to be split.
+    parents: (nodes,), -1 for a root; parents come before their children. Raises FormatNotSupported
+    if the scale of a sheared parent must be separated from its rotation, and Unreadable for a
+    parent with scale 0 that must be divided out.
     """
     turned = np.array(local.rotations)
     positions = np.array(local.translations)
+    # matrices (frames, nodes, 3, 3): world rotations with scale; local ones for nodes that follow
     matrices = quaternions_to_matrices(turned) * local.scales[..., None, :]
     inherits = np.array([node.inherits for node in nodes])
     for depth in joints_by_depth(parents)[1:]:
@@ -153,6 +173,7 @@ def world_transforms(nodes: list[FbxNode], parents: IntArray, local: Local) -> W
 
 
 def _apply(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
+    """(..., 3) the products of matrices (..., 3, 3) and vectors (..., 3)."""
     return np.asarray((matrices @ vectors[..., None])[..., 0])
 
 
@@ -165,12 +186,16 @@ def _inherited(
     matrices: FloatArray,
     local: Local,
 ) -> FloatArray:
-    """World matrices (frames, joints, 3, 3) of nodes of one inherit type; `turned` holds
-    world rotations for the nodes above them, their own local ones for themselves."""
+    """(frames, joints, 3, 3) the world matrices of the nodes `joints`, all of one inherit type.
+
+    turned: (frames, nodes, 4) world rotations for the parents, but local rotations for `joints`.
+    matrices: (frames, nodes, 3, 3) world matrices of the parents.
+    """
     above = parents[joints]
     own = local.scales[:, joints, None, :]
     if kind == R_S_TOGETHER:
         return matrices[:, above] @ (quaternions_to_matrices(turned[:, joints]) * own)
+    # The matrix of the parent is its rotation times its scale, so R^-1 M is the scale.
     upper = quaternions_to_matrices(turned[:, above])
     scales = np.swapaxes(upper, -1, -2) @ matrices[:, above]
     _refuse_shear(nodes, joints, scales)
@@ -181,10 +206,10 @@ def _inherited(
 
 def _refuse_shear(nodes: list[FbxNode], joints: IntArray, scales: FloatArray) -> None:
     size = np.abs(scales).max(axis=(0, 2, 3))
-    sheared = np.abs(scales * (1 - np.eye(3))).max(axis=(0, 2, 3)) > SHEAR * size
+    sheared = np.abs(scales * (1 - np.eye(3))).max(axis=(0, 2, 3)) > MAX_SHEAR * size
     if sheared.any():
-        place = nodes[int(joints[np.argmax(sheared)])].node.place
-        raise refused_at(place, "expected no shear above a node that inherits scale apart")
+        location = nodes[int(joints[np.argmax(sheared)])].node.location
+        raise unsupported_at(location, "expected no shear above a node of inherit type RrSs or Rrs")
 
 
 def _without_zeros(nodes: list[FbxNode], joints: IntArray, scales: FloatArray) -> FloatArray:

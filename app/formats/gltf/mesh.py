@@ -1,7 +1,8 @@
-"""A body of sticks, which makes the skeleton of a GLB file visible.
+"""Makes a mesh of sticks, which shows the skeleton of a GLB file.
 
-Every joint is a small octahedron, every bone a long one. The tip of a bone follows the joint at its
-end, so sticks also follow bones that stretch. Triangles in the rest pose, in meters.
+Each joint is a small octahedron, and each bone is a long one. The tip of a bone moves with the
+joint at its end, so that a stick follows a bone that stretches. The mesh is in the rest pose, in
+meters.
 """
 
 from __future__ import annotations
@@ -17,11 +18,11 @@ from app.numerics.arrays import FloatArray, IntArray
 JOINT_RADIUS = 0.012
 """Meters."""
 BONE_WIDTH = 0.08
-"""Half of a bone's thickest part, in parts of its length."""
-THICKEST = 0.15
-"""Where along the bone it is thickest."""
+"""Half of the largest width of a bone, as a share of its length."""
+WIDEST_SHARE = 0.15
+"""The position of the largest width, as a share of the bone's length from its start."""
 MIN_BONE_LENGTH = 1e-4
-"""Meters; below it there is nothing to draw."""
+"""Meters. Shorter bones are not drawn."""
 _CORNERS = np.array(
     [[0, -1, 0], [1, 0, 0], [0, 0, 1], [-1, 0, 0], [0, 0, -1], [0, 1, 0]], dtype=np.float64
 )
@@ -33,7 +34,11 @@ _TRIANGLES = np.array(
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """corners: (n, 3) meters at rest; joints: (n,) the joint each goes with; triangles: (m, 3)."""
+    """Triangles that move with joints.
+
+    corners: (n, 3) meters, in the rest pose. joints: (n,) the joint with which each corner moves.
+    triangles: (m, 3) indices of corners, counterclockwise as seen from outside.
+    """
 
     corners: FloatArray
     joints: IntArray
@@ -41,7 +46,10 @@ class Mesh:
 
 
 def stick_mesh(skeleton: Skeleton) -> Mesh:
-    """Sticks along the bones and end sites of a skeleton at rest, and a mark at each joint."""
+    """Sticks along the bones and end sites of a skeleton, and an octahedron at each joint.
+
+    skeleton: its offsets are in meters.
+    """
     rest = rest_positions(skeleton)
     corners = [rest[joint] + JOINT_RADIUS * _CORNERS for joint in range(len(skeleton))]
     owners = [np.full(6, joint) for joint in range(len(skeleton))]
@@ -55,6 +63,7 @@ def stick_mesh(skeleton: Skeleton) -> Mesh:
     for start, end, tip in bones:
         if np.linalg.norm(tip - rest[start]) > MIN_BONE_LENGTH:
             corners.append(_stick(rest[start], tip))
+            # Five corners move with the joint at the start, and the tip with the one at the end.
             owners.append(np.array([start] * 5 + [end]))
     first = 6 * np.arange(len(corners))[:, None, None]
     return Mesh(
@@ -63,14 +72,15 @@ def stick_mesh(skeleton: Skeleton) -> Mesh:
 
 
 def _stick(start: FloatArray, tip: FloatArray) -> FloatArray:
-    """(6, 3) corners of an octahedron from start to tip, thickest near the start."""
+    """(6, 3) the corners of an octahedron from `start` (3,) to `tip` (3,), widest near `start`."""
     along = tip - start
     length = np.linalg.norm(along)
     up = along / length
+    # The axis that is least parallel to the bone gives the longest cross product.
     side = np.cross(up, np.eye(3)[np.argmin(np.abs(up))])
     side /= np.linalg.norm(side)
     frame = np.stack([side, up, np.cross(side, up)])
     width = BONE_WIDTH * length
     shape = _CORNERS * [width, 0.0, width]
-    shape[:, 1] = length * np.array([0.0, *[THICKEST] * 4, 1.0])
+    shape[:, 1] = length * np.array([0.0, *[WIDEST_SHARE] * 4, 1.0])
     return np.asarray(start + shape @ frame)

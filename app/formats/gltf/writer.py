@@ -1,9 +1,9 @@
-"""An animation as binary glTF 2.0 (GLB): a node a joint, a skinned body of sticks, one clip.
+"""Writes an animation as binary glTF 2.0 (GLB): a node for each joint, and a mesh of sticks.
 
-Meters, Y up, which is glTF's own frame. Source: Khronos, "glTF 2.0 specification",
-sections 3.7 (skins), 3.11 (animations), 4 (GLB). Written with json and numpy alone: the
-file is one JSON object and one block of numbers, while pygltflib brings eight packages to
-build the same object and trimesh writes neither skins nor animations.
+Meters, Y up, as glTF requires. A GLB file is a JSON object and a block of numbers, so json and
+numpy are enough to write it. pygltflib needs eight packages to build the same object, and trimesh
+does not write skins or animations. Source: Khronos, "glTF 2.0 specification", sections 3.7 (skins),
+3.11 (animations), 4 (GLB).
 """
 
 from __future__ import annotations
@@ -23,17 +23,19 @@ from app.numerics.arrays import FloatArray
 _FLOAT, _USHORT, _UINT = 5126, 5123, 5125
 _ARRAY_BUFFER, _INDEX_BUFFER = 34962, 34963
 _COLOR = (0.23, 0.42, 0.65, 1.0)
-_SAME = 1e-7
-"""A value that varies by less over a clip is not animated."""
+_MIN_CHANGE = 1e-7
+"""A joint whose values change by less over the clip is not animated. Meters, or no unit."""
 _Json = dict[str, Any]
 
 
 def write_glb(animation: Animation, name: str = "motion", license: str | None = None) -> bytes:
-    """A GLB file whose animation plays the joints' rotations, and translations where they
-    change; `license` goes to the asset's copyright."""
+    """The bytes of a GLB file with the rotations of joints, and with translations that change.
+
+    license: the text of `asset.copyright`.
+    """
     blob = _Blob()
     joints = len(animation.skeleton)
-    armature, body = joints, joints + 1  # nodes after the joints'
+    armature, body = joints, joints + 1  # these nodes follow the nodes of the joints
     roots = np.flatnonzero(animation.skeleton.parents < 0).tolist()
     rotations = _xyzw(animation.rotations)
     asset = {"version": "2.0", "generator": "Kinedex"}
@@ -66,7 +68,7 @@ def write_glb(animation: Animation, name: str = "motion", license: str | None = 
 
 
 class _Blob:
-    """The block of numbers, and the accessors and views that say where each array is."""
+    """The block of numbers, with the accessors and views that locate each array in it."""
 
     def __init__(self) -> None:
         self.parts: list[bytes] = []
@@ -75,7 +77,10 @@ class _Blob:
         self.accessors: list[_Json] = []
 
     def add(self, array: NDArray[Any], kind: str, target: int | None = None) -> int:
-        """The index of a new accessor of `kind` (SCALAR, VEC3, ...), a row an element."""
+        """Add an array, one element a row, and return the index of its accessor.
+
+        kind: the type of an element (SCALAR, VEC3, ...). target: the use of the buffer, if any.
+        """
         types = {"f": (_FLOAT, "<f4"), "u": (_USHORT, "<u2"), "i": (_UINT, "<u4")}
         component, dtype = types[array.dtype.kind]
         content = np.ascontiguousarray(array, dtype=dtype)
@@ -92,13 +97,14 @@ class _Blob:
             flat = content.reshape(len(content), -1)
             accessor |= {"min": flat.min(axis=0).tolist(), "max": flat.max(axis=0).tolist()}
         self.accessors.append(accessor)
+        # Each array starts at a multiple of 4 bytes (section 3.6.2.4).
         self.parts.append(data + b"\0" * (-len(data) % 4))
         self.size += len(self.parts[-1])
         return len(self.accessors) - 1
 
 
 def _joint_nodes(animation: Animation, rotations: FloatArray) -> list[_Json]:
-    """A node a joint, standing as in the first frame."""
+    """A node for each joint, in the pose of the first frame."""
     nodes: list[_Json] = []
     for joint, name in enumerate(animation.skeleton.names):
         node: _Json = {
@@ -134,24 +140,25 @@ def _material() -> _Json:
 
 
 def _inverse_binds(animation: Animation) -> FloatArray:
-    """(joints, 16) column-major: from the rest pose to each joint's frame."""
+    """(joints, 16) float32 matrices, column-major: rest pose -> the frame of each joint."""
     rest = rest_positions(animation.skeleton)
     matrices = np.repeat(np.eye(4)[None], len(rest), axis=0)
-    matrices[:, 3, :3] = -rest  # the last column, written first index last
+    # Column-major: index 3 is the last column. At rest, frames are not turned.
+    matrices[:, 3, :3] = -rest
     return matrices.reshape(-1, 16).astype(np.float32)
 
 
 def _animations(blob: _Blob, animation: Animation, rotations: FloatArray, name: str) -> list[_Json]:
-    """One animation of every joint that turns or moves; none where all is still."""
+    """The animation of all joints that turn or move; an empty list if no joint does."""
     times = np.arange(len(rotations), dtype=np.float64) / animation.frame_rate
     times_at: int | None = None
     samplers: list[_Json] = []
     channels: list[_Json] = []
-    held = ~animation.moving_joints()
+    fixed = ~animation.moving_joints()
     moves = animation.translations.copy()
-    moves[:, held] = animation.skeleton.offsets[held]
+    moves[:, fixed] = animation.skeleton.offsets[fixed]
     for path, kind, values in (("rotation", "VEC4", rotations), ("translation", "VEC3", moves)):
-        for joint in np.flatnonzero(np.ptp(values, axis=0).max(axis=-1) > _SAME).tolist():
+        for joint in np.flatnonzero(np.ptp(values, axis=0).max(axis=-1) > _MIN_CHANGE).tolist():
             if times_at is None:
                 times_at = blob.add(times[:, None], "SCALAR")
             output = blob.add(values[:, joint], kind)
@@ -161,7 +168,7 @@ def _animations(blob: _Blob, animation: Animation, rotations: FloatArray, name: 
 
 
 def _xyzw(rotations: FloatArray) -> FloatArray:
-    """glTF's order of a quaternion's numbers, unit length, without jumps of sign."""
+    """(frames, joints, 4) unit quaternions x y z w, the order of glTF, without jumps of sign."""
     turned = continuous(rotations.astype(np.float64))
     turned /= np.linalg.norm(turned, axis=-1, keepdims=True)
     return np.asarray(turned[..., [1, 2, 3, 0]])
@@ -172,7 +179,7 @@ def _plain(numbers: FloatArray) -> list[float]:
 
 
 def _packed(document: _Json, blob: _Blob) -> bytes:
-    """Header, JSON chunk padded with spaces, binary chunk padded with zeros."""
+    """The bytes of the file: header, JSON chunk padded with spaces, chunk of numbers."""
     text = json.dumps(document, separators=(",", ":"), allow_nan=False).encode()
     text += b" " * (-len(text) % 4)
     total = 12 + 8 + len(text) + 8 + blob.size

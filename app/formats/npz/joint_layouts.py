@@ -1,10 +1,10 @@
-"""Known joint orders of files without names, recognized by the body that they make.
+"""Recognizes the joint order of positions without joint names.
 
-A bare array (frames, joints, 3) only shows the number of joints, and several orders have the same
+An array (frames, joints, 3) only shows the number of joints, and several known orders have the same
 number. An order is accepted if its bones are equally long on the left and on the right and keep
-their length, and if no other order with this number of joints does so.
+their length over time, and if no other order with this number of joints does the same.
 
-Sources: the orders' own documentation (SMPL, SMPL-H and SMPL-X by MPI; LAFAN1 by Ubisoft;
+Sources: the documentation of each order (SMPL, SMPL-H and SMPL-X by MPI; LAFAN1 by Ubisoft;
 Human3.6M in 17 joints as in VideoPose3D; Kinect v2 SDK; OpenPose BODY_25).
 """
 
@@ -18,24 +18,28 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray
 
-SIDES_DIFFER = 0.2
+MAX_SIDE_DIFFERENCE = 0.2
 """The largest difference of left and right bones, as a share of their mean, including noise."""
-BONES_BREATHE = 0.2
-"""Median standard deviation of a bone's length over time, as part of that length."""
-FRAMES_JUDGED = 500
-"""The number of frames, evenly spaced, that are checked. More would not change the result."""
+MAX_LENGTH_DEVIATION = 0.2
+"""The largest standard deviation of a bone's length over time, as a share of its mean. It is the
+median over bones."""
+MAX_CHECKED_FRAMES = 500
+"""About the number of frames, evenly spaced, that are checked. More would not change the result."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointLayout:
-    """Joint names and each joint's parent, -1 for the root; `title` is for people."""
+    """A known joint order.
+
+    title: for people. names: (joints,). parents: (joints,) -1 for the root.
+    """
 
     title: str
     names: tuple[str, ...]
     parents: tuple[int, ...]
 
     def paired_bones(self) -> list[tuple[int, int]]:
-        """Left joints and their right counterparts, root excluded."""
+        """The index of each left joint, with that of the same joint on the right."""
         index = {name: joint for joint, name in enumerate(self.names)}
         return [(index[name], index[other]) for name, other in self._mirrored() if other in index]
 
@@ -48,27 +52,30 @@ class JointLayout:
 
 
 def _chains(*chains: str) -> tuple[tuple[str, ...], tuple[int, ...]]:
-    """Names in the order in which they first stand, and parents, from chains of names."""
+    """Names in order of their first occurrence, and parents, from chains of names.
+
+    In a chain, each joint is the parent of the next one.
+    """
     parent_of: dict[str, str | None] = {}
     for chain in chains:
         names = chain.split()
         parent_of.setdefault(names[0], None)
         parent_of.update((name, parent) for parent, name in pairwise(names))
     names_in_order = tuple(parent_of)
-    return names_in_order, _indexed(names_in_order, parent_of)
+    return names_in_order, _parent_indices(names_in_order, parent_of)
 
 
-def _indexed(names: tuple[str, ...], parent_of: dict[str, str | None]) -> tuple[int, ...]:
+def _parent_indices(names: tuple[str, ...], parent_of: dict[str, str | None]) -> tuple[int, ...]:
     above = (parent_of[name] for name in names)
     return tuple(-1 if parent is None else names.index(parent) for parent in above)
 
 
 def _ordered(order: str, *chains: str) -> tuple[tuple[str, ...], tuple[int, ...]]:
-    """As `_chains`, with the names in a stated order."""
+    """As `_chains`, but with the names in the order of `order`."""
     names, parents = _chains(*chains)
     parent_of = {name: None if p < 0 else names[p] for name, p in zip(names, parents, strict=True)}
-    wanted = tuple(order.split())
-    return wanted, _indexed(wanted, parent_of)
+    ordered_names = tuple(order.split())
+    return ordered_names, _parent_indices(ordered_names, parent_of)
 
 
 SMPL_BODY = _ordered(
@@ -164,28 +171,35 @@ LAYOUTS: tuple[JointLayout, ...] = (
         ),
     ),
 )
-"""Every order that we know; several may have the same number of joints."""
+"""All known joint orders. Several may have the same number of joints."""
 
 
 def layout_of(positions: FloatArray) -> JointLayout | None:
-    """The one known order that makes a body of positions (frames, joints, 3), else None."""
-    step = max(1, len(positions) // FRAMES_JUDGED)
+    """The known joint order of `positions` (frames, joints, 3), in any unit and axes.
+
+    None if no order gives a plausible body, or if several do.
+    """
+    step = max(1, len(positions) // MAX_CHECKED_FRAMES)
     some = positions[::step].astype(np.float64)
-    fitting = [
+    plausible = [
         layout
         for layout in LAYOUTS
         if len(layout.names) == positions.shape[1] and _makes_a_body(layout, some)
     ]
-    return fitting[0] if len(fitting) == 1 else None
+    return plausible[0] if len(plausible) == 1 else None
 
 
 def _makes_a_body(layout: JointLayout, positions: FloatArray) -> bool:
+    """Whether bones have the same length on both sides and over time."""
     parents = np.array(layout.parents)
     lengths = np.linalg.norm(positions - positions[:, parents], axis=-1)  # (frames, joints)
     mean = lengths.mean(axis=0)
+    # A bone without length cannot be compared, and the ratios below would divide by 0.
     if not (mean[parents >= 0] > 0).all():
         return False
     left, right = np.array(layout.paired_bones()).T
     difference = np.abs(mean[left] - mean[right]) / (0.5 * (mean[left] + mean[right]))
-    breathing = lengths.std(axis=0)[parents >= 0] / mean[parents >= 0]
-    return bool(np.median(breathing) < BONES_BREATHE and difference.max() < SIDES_DIFFER)
+    deviation = lengths.std(axis=0)[parents >= 0] / mean[parents >= 0]
+    return bool(
+        np.median(deviation) < MAX_LENGTH_DEVIATION and difference.max() < MAX_SIDE_DIFFERENCE
+    )

@@ -1,4 +1,4 @@
-"""What the arrays of NPZ files of motion are called, and reading them by our names."""
+"""The names of arrays in NPZ files of motion. Arrays are read by our names for them."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ KEYS: dict[str, tuple[str, ...]] = {
     "pose_body": ("posebody", "bodypose"),
     "trans": ("trans", "transl", "smpltrans", "translation"),
 }  # fmt: skip
-"""Our name of each array, and the names that files give it, lower case and without separators."""
-_KNOWN = frozenset(name for names in KEYS.values() for name in names)
+"""Our name of each array, and its names in files, in lower case and without separators."""
+_ALL_NAMES = frozenset(name for names in KEYS.values() for name in names)
 AMBIGUOUS = ("joints", "markers")
-"""May be what the joints are called or where they are."""
+"""Names of arrays that contain either the names of joints or their positions."""
 
 
 class NamedArrays:
     """The arrays of an archive by our names."""
 
     def __init__(self, archive: Archive) -> None:
-        """Look at the keys only; raises Unreadable."""
+        """Read the keys, but no numbers. Raises Unreadable."""
         self.keys = archive.keys()
         self._archive = archive
         plain = {_plain(key): key for key in self.keys}
         self._found = {
-            name: [plain[key] for key in known if key in plain] for name, known in KEYS.items()
+            name: [plain[key] for key in aliases if key in plain] for name, aliases in KEYS.items()
         }
         for name, kinds in (("joint_names", "US"), ("positions", "fiu")):
             self._found[name] = [key for key in self._found[name] if self._is(key, kinds)]
@@ -53,26 +53,26 @@ class NamedArrays:
         return _plain(key) not in AMBIGUOUS or self._archive.kind(key) in kinds
 
     def __contains__(self, name: str) -> bool:
-        """Whether the file has an array of this name of ours."""
+        """Whether the file has the array with our name `name`."""
         return bool(self._found[name])
 
     def key(self, name: str) -> str:
-        """What the file calls it."""
+        """The name of an array in the file; our name if the file does not have it."""
         return self._found[name][0] if name in self else name
 
     def read(self, name: str) -> NDArray[Any] | None:
-        """The array, or None where the file has none. Raises Unreadable, TooLarge."""
+        """The array with our name `name`; None if there is none. Raises Unreadable, TooLarge."""
         return self._archive.read(self.key(name)) if name in self else None
 
     def numbers(self, name: str) -> NDArray[Any] | None:
-        """As `read`; refuses what is not numbers."""
+        """As `read`, but raises Unreadable also for an array of anything but numbers."""
         array = self.read(name)
         return None if array is None else numbers(array, self.key(name))
 
 
-def is_known(key: str) -> bool:
-    """Whether an array of this name means something to us."""
-    return _plain(key) in _KNOWN
+def is_known_array(key: str) -> bool:
+    """Whether `key` is one of the names in KEYS, in any case and with any separators."""
+    return _plain(key) in _ALL_NAMES
 
 
 def _plain(key: str) -> str:

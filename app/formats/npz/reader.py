@@ -1,21 +1,20 @@
-"""NPZ and NPY files: joint positions with names, or SMPL parameters (AMASS).
+"""Reads NPZ and NPY files: joint positions, or SMPL parameters (AMASS). Bytes in, Recording out.
 
-The layout, which `/export?format=npz` writes too:
+The layout of an NPZ file, which `/export?format=npz` also writes:
 
 | key | content |
 |---|---|
 | `positions` | numbers (frames, joints, 3), world |
 | `joint_names` | text (joints,) |
-| `parents` | integers (joints,), -1 for a root; may be left out |
+| `parents` | integers (joints,), -1 for a root; optional |
 | `frame_rate` | Hz |
-| `unit` | "m", "cm", "mm", "in", ... or meters per unit; judged from stature where left out |
-| `up_axis` | "x", "y" or "z"; "y" where left out |
+| `unit` | "m", "cm", "mm", "in", ... or meters per unit; without it, the stature decides |
+| `up_axis` | "x", "y" or "z"; "y" without it |
 
-Keys are matched without regard to case and separators, and usual other names are taken
-(`names`, `fps`, `mocap_framerate`, `kintree_table`, ...; see `npz_keys`). Positions without
-names are taken in a known order of joints where just one fits the body
-(`joint_layouts`), else joints are called `joint_0`, `joint_1`, ... so that roles can be
-sent. Angles of a body model are read by `smpl`. Bytes in, Recording out.
+Keys may have any case and separators, and other usual names (`names`, `fps`, `mocap_framerate`,
+`kintree_table`, ...; see `keys.py`). If joints have no names, a known joint order is used if
+exactly one fits the body (`joint_layouts.py`). Otherwise joints are called `joint_0`, `joint_1`,
+..., so that a client can send roles. Angles of a body model are read by `smpl.py`.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.errors import Place, Unreadable
-from app.formats.common.failures import too_large
+from app.formats.common.failures import too_large, unreadable_at
 from app.formats.common.joint_trees import in_tree_order, parents_of
 from app.formats.common.limits import MAX_JOINTS
 from app.formats.common.names import MAX_NAME_LENGTH
@@ -42,13 +41,13 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray, IntArray
 
 FRAME_RATES = (0.1, 10_000.0)
-"""Hz; anything else is no frame rate."""
+"""Hz: the smallest and the largest number that counts as a frame rate."""
 
 
 def read_npz(content: bytes) -> Recording:
     """Read an NPZ file of positions, or of SMPL parameters.
 
-    Raises Unreadable naming the key, frame or joint, and TooLarge.
+    Raises Unreadable with the key, frame or joint, and TooLarge.
     """
     arrays = NamedArrays(Archive(content))
     if "positions" in arrays:
@@ -56,13 +55,15 @@ def read_npz(content: bytes) -> Recording:
     if "poses" in arrays or "pose_body" in arrays:
         return _read_parameters(arrays)
     found = ", ".join(arrays.keys[:10])
-    raise refused("positions", f"expected an array of positions, or of SMPL poses; found {found}")
+    raise unreadable_at(
+        "positions", f"expected an array of positions, or of SMPL poses; found {found}"
+    )
 
 
 def read_npy_positions(content: bytes) -> Recording:
-    """Read a bare array (frames, joints, 3); its frame rate has to be sent.
+    """Read an NPY file: one array (frames, joints, 3) without names or a frame rate.
 
-    Raises Unreadable naming the frame and joint, and TooLarge.
+    Raises Unreadable with the frame and the joint, and TooLarge.
     """
     positions = _checked_positions(read_npy(content), "array")
     skeleton, cautions = _skeleton_of_order(positions)
@@ -98,8 +99,9 @@ def _read_parameters(arrays: NamedArrays) -> Recording:
         parts = [arrays.numbers(name) for name in ("root_orient", "pose_body")]
         there = [part.reshape(len(part), -1) for part in parts if part is not None and part.ndim]
         if len(there) < 2 or len(there[0]) != len(there[1]):
-            raise refused("root_orient", "expected as many frames as pose_body has")
+            raise unreadable_at("root_orient", "expected as many frames as pose_body has")
         poses = np.concatenate(there, axis=1)
+    # Some files have (frames, joints, 3) in place of (frames, 3 joints).
     if poses.ndim == 3 and poses.shape[2] == 3:
         poses = poses.reshape(len(poses), -1)
     if poses.ndim == 2 and len(poses) * 24 > MAX_JOINT_FRAMES:
@@ -117,7 +119,7 @@ def _checked_positions(array: NDArray[Any] | None, key: str) -> FloatArray:
     """(frames, joints, 3) float32, finite. Raises Unreadable, TooLarge."""
     if array is None or array.ndim != 3 or array.shape[2] != 3:
         shape = "nothing" if array is None else "x".join(map(str, array.shape)) or "one number"
-        raise refused(key, f"expected frames x joints x 3 numbers, found {shape}")
+        raise unreadable_at(key, f"expected frames x joints x 3 numbers, found {shape}")
     frames, joints, _ = array.shape
     if joints > MAX_JOINTS or frames * joints > MAX_JOINT_FRAMES:
         limits = f"{MAX_JOINTS} joints and {MAX_JOINT_FRAMES} joints times frames"
@@ -126,16 +128,17 @@ def _checked_positions(array: NDArray[Any] | None, key: str) -> FloatArray:
 
 
 def _checked_numbers(array: NDArray[Any], key: str) -> FloatArray:
-    """Raises Unreadable naming the first number that is none, or beyond all reason."""
+    """The same array. Raises Unreadable with the first NaN or number beyond MAX_MAGNITUDE."""
     if max(float(array.max()), -float(array.min())) <= MAX_MAGNITUDE and _is_finite(array):
         return array
-    with np.errstate(invalid="ignore"):  # signalling NaN
-        place = np.argwhere(~(np.abs(array.astype(np.float64)) <= MAX_MAGNITUDE))[0]
-    where = ", ".join(str(index) for index in place)
-    nouns = zip(("frame", "joint"), place[: array.ndim - 1], strict=False)
+    # A signaling NaN would give a warning.
+    with np.errstate(invalid="ignore"):
+        position = np.argwhere(~(np.abs(array.astype(np.float64)) <= MAX_MAGNITUDE))[0]
+    where = ", ".join(str(index) for index in position)
+    nouns = zip(("frame", "joint"), position[: array.ndim - 1], strict=False)
     location = ", ".join(f"{noun} {index}" for noun, index in nouns)
     limit = f"±{MAX_MAGNITUDE:g}"
-    found = array[tuple(place)]
+    found = array[tuple(position)]
     message = f"expected numbers within {limit}, found {found} at {key}[{where}], counted from 0"
     raise Unreadable(f"{location}: {message}", places=[Place(location or key, message)])
 
@@ -150,13 +153,15 @@ def _names(arrays: NamedArrays, joints: int) -> list[str] | None:
         return None
     key = arrays.key("joint_names")
     if array.nbytes > 4 * MAX_JOINTS * MAX_NAME_LENGTH:
-        raise refused(key, f"expected names of at most {MAX_NAME_LENGTH} characters")
+        raise unreadable_at(key, f"expected names of at most {MAX_NAME_LENGTH} characters")
     names = [name.strip("\0 ") for name in texts(array, key)]
     if len(names) != joints:
-        raise refused(key, f"expected {joints} names as positions has joints, found {len(names)}")
+        raise unreadable_at(
+            key, f"expected {joints} names as positions has joints, found {len(names)}"
+        )
     for joint, name in enumerate(names):
         if not name or len(name) > MAX_NAME_LENGTH or not name.isprintable():
-            raise refused(f"joint {joint}", f"expected a name, found {name[:40]!a} in {key}")
+            raise unreadable_at(f"joint {joint}", f"expected a name, found {name[:40]!a} in {key}")
     return names
 
 
@@ -174,7 +179,9 @@ def _frame_rate(arrays: NamedArrays) -> float | None:
         return None
     rate = float(array.reshape(-1)[0]) if array.size == 1 else float("nan")
     if not FRAME_RATES[0] <= rate <= FRAME_RATES[1]:
-        raise refused(arrays.key("frame_rate"), f"expected one number of Hz, found {array!s:.40}")
+        raise unreadable_at(
+            arrays.key("frame_rate"), f"expected one number of Hz, found {array!s:.40}"
+        )
     return rate
 
 
@@ -189,8 +196,10 @@ def _unit(arrays: NamedArrays) -> float | None:
     else:
         scale = float(numbers(array, key).reshape(-1)[0]) if array.size == 1 else None
     if scale is None or not 1e-6 <= scale <= 1e3:
-        known = ", ".join(METERS_PER_UNIT)
-        raise refused(key, f"expected one of {known}, or meters per unit; found {array!s:.40}")
+        units = ", ".join(METERS_PER_UNIT)
+        raise unreadable_at(
+            key, f"expected one of {units}, or meters per unit; found {array!s:.40}"
+        )
     return scale
 
 
@@ -201,7 +210,7 @@ def _up_axis(arrays: NamedArrays) -> str | None:
     (name, *_) = texts(array, arrays.key("up_axis"))
     axis = name.strip().lower().removeprefix("+")
     if axis not in ("x", "y", "z"):
-        raise refused(arrays.key("up_axis"), f"expected x, y or z, found {name[:20]!a}")
+        raise unreadable_at(arrays.key("up_axis"), f"expected x, y or z, found {name[:20]!a}")
     return axis
 
 
@@ -209,11 +218,9 @@ def _skeleton_of_order(positions: FloatArray) -> tuple[Skeleton, tuple[Caution, 
     layout = layout_of(positions)
     if layout is None:
         names = [f"joint_{joint}" for joint in range(positions.shape[1])]
-        detail = (
-            "the file names no joints and their order is not known: send roles, by joint_0, ..."
-        )
+        detail = "the file has no joint names and no known joint order: send roles by joint_0, ..."
         return _skeleton(names, None, positions), (Caution("joint_names_missing", detail),)
-    detail = f"the file names no joints; the body is that of the {layout.title} order"
+    detail = f"the file has no joint names; the body fits the joint order of {layout.title}"
     parents = np.array(layout.parents)
     return _skeleton(list(layout.names), parents, positions), (
         Caution("joint_names_guessed", detail),
@@ -221,7 +228,7 @@ def _skeleton_of_order(positions: FloatArray) -> tuple[Skeleton, tuple[Caution, 
 
 
 def _skeleton(names: list[str], parents: IntArray | None, positions: FloatArray) -> Skeleton:
-    """Joints in the file's order (see `_recording`); at rest as in the first frame."""
+    """Joints in the order of the file, whose rest pose is the first frame."""
     above = np.full(len(names), -1) if parents is None else parents
     first = positions[0].astype(np.float64)
     offsets = first - np.where(above[:, None] >= 0, first[above], 0.0)
@@ -238,7 +245,7 @@ def _recording(
     up_axis: str = "y",
     cautions: tuple[Caution, ...] = (),
 ) -> Recording:
-    """A recording whose joints stand after their parents."""
+    """A recording in which each joint comes after its parent."""
     order = in_tree_order(skeleton.parents)
     return Recording(
         format=format_name,
@@ -258,12 +265,9 @@ def _recording(
 
 
 def _renumbered(parents: IntArray, order: IntArray) -> IntArray:
+    """(joints,) the parents as indices in the new order; order: (joints,) old indices."""
+    # The last element is for the parent -1, which indexes it.
     new_index = np.empty(len(order) + 1, dtype=np.int64)
     new_index[order] = np.arange(len(order))
     new_index[-1] = -1
     return np.asarray(new_index[parents[order]])
-
-
-def refused(location: str, message: str) -> Unreadable:
-    """An Unreadable that names the key, frame or joint."""
-    return Unreadable(f"{location}: {message}", places=[Place(location, message)])

@@ -1,21 +1,21 @@
-"""SMPL, SMPL-H and SMPL-X parameters (AMASS and its like) as a recording.
+"""Reads SMPL, SMPL-H and SMPL-X parameters (for example AMASS files) as a recording.
 
-A parameter file holds the angles of a body model, not its joints: those need the model,
-which is licensed and not here. The angles are read exactly; they turn a generic body of
-our own, with segments by Drillis and Contini's proportions of stature (1966; Winter,
-"Biomechanics and motor control of human movement", fig. 4.1). So directions of limbs are
-as recorded, lengths of limbs are generic, and the ground under the feet is a few
-centimeters off. Fingers and face are left out.
+A parameter file contains the angles of a body model, but not its joints. To compute these one needs
+the model, which is licensed and not a part of Kinedex. The angles are read exactly and turn a
+generic body of our own. Its segments have the proportions of Drillis and Contini (1966; Winter,
+"Biomechanics and motor control of human movement", fig. 4.1). So the directions of limbs are as
+recorded, but their lengths are generic, and the feet are a few centimeters above or below the
+ground. Fingers and face are left out.
 
-Sources: Loper et al., "SMPL" (2015), for the order of joints and the axis-angle
-parameters; Mahmood et al., "AMASS" (2019), for the file's keys.
+Sources: Loper et al., "SMPL" (2015), for the order of joints and the axis-angle parameters; Mahmood
+et al., "AMASS" (2019), for the keys of the file.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from app.errors import Place, Unreadable
+from app.formats.common.failures import unreadable_at
 from app.formats.npz.joint_layouts import SMPL_BODY
 from app.motion.skeleton.kinematics import forward_kinematics, local_translations
 from app.motion.skeleton.recording import Caution, Recording
@@ -24,20 +24,21 @@ from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
 STATURE = 1.7
-"""Meters, of the generic body."""
+"""Meters: the stature of the generic body."""
 BODY_JOINTS = 22
-"""The first joints of every SMPL model are the same."""
+"""The number of joints, at the start of the order, that all SMPL models share."""
 PARAMETERS = (66, 72, 156, 165)
-"""Numbers a frame: body alone, SMPL, SMPL-H, SMPL-X."""
+"""The numbers of a frame: body alone, SMPL, SMPL-H, SMPL-X."""
 
 _CAUTION = Caution(
     "body_model_missing",
-    "the file holds angles of the SMPL body model, which Kinedex does not have: angles are exact,"
+    "the file has angles of the SMPL body model, which Kinedex does not have: angles are exact,"
     f" limb lengths are those of a generic body {STATURE} m tall (betas and gender are not used),"
     " fingers and face are left out",
 )
 
-# Shares of stature in the rest pose: left is +X, up +Y, forward +Z, arms out to the sides.
+# Offsets in the rest pose, as shares of the stature. Left is +X, up is +Y, forward is +Z, and the
+# arms point to the sides.
 _LEG = {
     "Hip": (0.055, -0.045, 0),
     "Knee": (0, -0.245, 0),
@@ -61,7 +62,7 @@ _TRUNK = {
 }
 
 _Y_TO_Z_UP = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0])
-"""The turn by 90 degrees about X that stands a Y-up rest pose upright in a Z-up world."""
+"""The quaternion of 90 degrees about X, which turns Y up to Z up."""
 
 
 def read_smpl(
@@ -72,25 +73,29 @@ def read_smpl(
 ) -> Recording:
     """A recording of 24 joints in meters from axis-angle parameters.
 
-    poses: (frames, n) radians, n one of PARAMETERS, the root's first; translation:
-    (frames, 3) meters, None for a body that stays; both finite. up_axis: "z" as in AMASS,
-    or "y". Raises Unreadable.
+    poses: (frames, n) rotation vectors in radians, the root first; n is one of PARAMETERS.
+    translation: (frames, 3) meters, or None if the root does not move. Both must be finite.
+    frame_rate: Hz. up_axis: "z" as in AMASS, or "y". Raises Unreadable.
     """
     frames = len(poses)
     if poses.ndim != 2 or poses.shape[1] not in PARAMETERS:
         counts = ", ".join(map(str, PARAMETERS))
         shape = "x".join(map(str, poses.shape))
-        raise _refused("poses", f"expected frames x ({counts}) axis-angle numbers, found {shape}")
+        raise unreadable_at(
+            "poses", f"expected frames x ({counts}) axis-angle numbers, found {shape}"
+        )
     if translation is not None and translation.shape != (frames, 3):
         shape = "x".join(map(str, translation.shape))
-        raise _refused("trans", f"expected {frames}x3 numbers as poses has frames, found {shape}")
+        raise unreadable_at(
+            "trans", f"expected {frames}x3 numbers as poses has frames, found {shape}"
+        )
     skeleton = generic_body()
     rotations = _rotations(poses, len(skeleton))
     roots = np.broadcast_to(skeleton.offsets[0], (frames, 3))
     if translation is not None:
         roots = roots + translation
     if up_axis == "z":
-        skeleton, rotations = _stood_up(skeleton, rotations)
+        skeleton, rotations = _with_z_up_rest(skeleton, rotations)
     positions = forward_kinematics(skeleton, rotations, local_translations(skeleton, roots))
     return Recording(
         format="npz",
@@ -106,9 +111,9 @@ def read_smpl(
 
 
 def generic_body() -> Skeleton:
-    """SMPL's 24 joints with our own rough offsets in meters, Y up.
+    """The 24 joints of SMPL with our own approximate offsets in meters, Y up.
 
-    The root's offset is where the model's pelvis is from its origin, about.
+    The offset of the root is about that of the model's pelvis from the model's origin.
     """
     names = (*SMPL_BODY[0], "L_Hand", "R_Hand")
     wrists = tuple(names.index(wrist) for wrist in ("L_Wrist", "R_Wrist"))
@@ -127,7 +132,10 @@ def _share(name: str) -> tuple[float, float, float]:
 
 
 def _rotations(poses: FloatArray, joints: int) -> FloatArray:
-    """(frames, joints, 4) local quaternions; SMPL's own two hand joints are not fingers."""
+    """(frames, joints, 4) the local quaternions. Angles of fingers and face are not used.
+
+    SMPL has angles for its two hand joints. The other models have angles of fingers instead.
+    """
     result = identity_quaternions((len(poses), joints))
     count = joints if poses.shape[1] == 3 * joints else BODY_JOINTS
     vectors = poses[:, : 3 * count].reshape(len(poses), count, 3)
@@ -138,22 +146,19 @@ def _rotations(poses: FloatArray, joints: int) -> FloatArray:
 def rotation_vectors_to_quaternions(vectors: FloatArray) -> FloatArray:
     """Unit quaternions (..., 4) of rotation vectors (..., 3): axis times angle in radians."""
     angle = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    # sin(a/2) / a, which numpy's sinc knows without dividing by 0
+    # sin(angle / 2) / angle, by numpy's sinc, which does not divide by 0
     share = 0.5 * np.sinc(angle / (2 * np.pi))
     return np.concatenate([np.cos(angle / 2), share * vectors], axis=-1)
 
 
-def _stood_up(skeleton: Skeleton, rotations: FloatArray) -> tuple[Skeleton, FloatArray]:
-    """The same movement with a rest pose that stands along Z, as the world does.
+def _with_z_up_rest(skeleton: Skeleton, rotations: FloatArray) -> tuple[Skeleton, FloatArray]:
+    """The same movement with a rest pose whose up axis is Z, as in the world.
 
-    Locals are conjugated, R' = C R C*; the root's world turn stays R, so R' = R C*.
+    With the turn C from Y up to Z up, local rotations R become C R C*. The world rotation of the
+    root is given for the Z-up world, so it becomes R C*.
     """
     turn, back = _Y_TO_Z_UP, _Y_TO_Z_UP * [1, -1, -1, -1]
     turned = multiply(multiply(turn, rotations), back)
     turned[:, 0] = multiply(rotations[:, 0], back)
     offsets = rotate(turn, skeleton.offsets)
     return Skeleton(skeleton.names, skeleton.parents, offsets), turned
-
-
-def _refused(key: str, message: str) -> Unreadable:
-    return Unreadable(f"{key}: {message}", places=[Place(key, message)])

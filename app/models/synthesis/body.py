@@ -19,7 +19,7 @@ from app.models.synthesis.feet import MIN_QUANTILE, feet_of, floor_of, on_the_fl
 from app.models.synthesis.motion import Course
 from app.motion.frame.body_frame import ANALYSIS_RATE, BodyTrack, turned
 from app.motion.frame.foot_contact import FEET, planted
-from app.motion.posing.posing import ancestors, pose_to
+from app.motion.posing.inverse_kinematics import ancestors, pose_to
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.animation import Animation, continuous
 from app.motion.skeleton.rotations import conjugate, identity_quaternions, multiply

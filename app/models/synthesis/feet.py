@@ -15,7 +15,7 @@ import numpy as np
 import scipy
 
 from app.motion.frame.foot_contact import LEVEL_PERCENTILE, Stance, stances
-from app.motion.posing.posing import ancestors
+from app.motion.posing.inverse_kinematics import ancestors
 from app.motion.skeleton.animation import Animation
 from app.motion.skeleton.kinematics import forward_kinematics
 from app.motion.skeleton.rotations import conjugate, identity_quaternions, multiply

@@ -1,4 +1,4 @@
-"""Turns a recording, as it is in its file, into the canonical form that everything else uses."""
+"""Makes the canonical motion of a recording: meters, Y up, joint roles, frame rate."""
 
 from __future__ import annotations
 
@@ -17,10 +17,8 @@ from app.motion.motion import Motion
 from app.motion.roles.bodies import roles_of_one_body
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
 from app.motion.roles.roles import given_roles
-from app.motion.skeleton.kinematics import joints_by_depth
+from app.motion.skeleton.kinematics import rest_positions
 from app.motion.skeleton.recording import FRAME_RATES, Caution, Recording
-from app.motion.skeleton.skeleton import Skeleton
-from app.numerics.arrays import FloatArray
 
 
 def canonicalize(
@@ -32,18 +30,18 @@ def canonicalize(
 ) -> Motion:
     """The motion of a recording in meters, Y up, right-handed, with roles, rate and unit.
 
-    frame_rate (Hz), metres_per_unit and roles (the joint name of each role) are what a client
-    says. They have priority over the file. Raises BadField if they are impossible, NotHuman if
-    essential roles are missing, Unreadable if no usable frame rate is known, and BadContent if
-    the body is larger or faster than any human.
+    frame_rate (Hz), metres_per_unit and roles (the joint name of each role) are hints of a client.
+    They have priority over the file. Raises BadField if a hint is impossible, NotHuman if essential
+    roles are missing, Unreadable if there is no usable frame rate, and BadContent if the body is
+    larger or faster than any human.
     """
     names, parents = recording.skeleton.names, recording.skeleton.parents
     rate = _active_rate(recording, frame_rate)
     given = given_roles(names, {str(role): name for role, name in (roles or {}).items()})
     found, others = roles_of_one_body(names, parents, recording.positions, given)
-    missing = _missing(found)
+    missing = _missing_roles(found)
     up_axis = judge_up_axis(
-        recording.positions, _rest(recording.skeleton), found, recording.up_axis
+        recording.positions, rest_positions(recording.skeleton), found, recording.up_axis
     )
     unit = _active_unit(recording, found, metres_per_unit)
     positions = to_y_up(recording.positions, up_axis) * np.float32(unit.metres_per_unit)
@@ -68,23 +66,24 @@ def canonicalize(
     return _with_cautions(motion, doubts)
 
 
-def _active_rate(recording: Recording, said: float | None) -> float:
-    if said is not None:
-        return _within("frame_rate", said, FRAME_RATES, "Hz")
+def _active_rate(recording: Recording, hint: float | None) -> float:
+    """The frame rate in Hz: from the client, else the file, else the usual one of the format."""
+    if hint is not None:
+        return _within("frame_rate", hint, FRAME_RATES, "Hz")
     if recording.frame_rate is None and recording.assumed_frame_rate is not None:
         return recording.assumed_frame_rate
     if recording.frame_rate is None:
         reasons = [c.detail for c in recording.cautions if c.code == "frame_time_unusable"]
         message = reasons[0] if reasons else "expected a frame rate, found none"
         raise Unreadable(
-            f"The file does not say its frame rate ({message}); send frame_rate",
+            f"The file does not give its frame rate ({message}); send frame_rate",
             places=[Place("frame_rate", message)],
         )
-    least, most = FRAME_RATES
-    if not least <= recording.frame_rate <= most:
-        message = f"expected {least:g} to {most:g} Hz, found {recording.frame_rate:g}"
+    smallest, largest = FRAME_RATES
+    if not smallest <= recording.frame_rate <= largest:
+        message = f"expected {smallest:g} to {largest:g} Hz, found {recording.frame_rate:g}"
         raise Unreadable(
-            f"The file's frame rate cannot be ({message}); send frame_rate",
+            f"The frame rate of the file is impossible ({message}); send frame_rate",
             places=[Place("frame_rate", message)],
         )
     return recording.frame_rate
@@ -97,7 +96,8 @@ def _within(field: str, value: float, limits: tuple[float, float], unit: str) ->
     return float(value)
 
 
-def _missing(found: Mapping[JointRole, int]) -> tuple[JointRole, ...]:
+def _missing_roles(found: Mapping[JointRole, int]) -> tuple[JointRole, ...]:
+    """The roles of SUN_ROLES that were not found. Raises NotHuman if one of them is essential."""
     essential = [role for role in ESSENTIAL_ROLES if role not in found]
     if essential:
         raise NotHuman(
@@ -107,20 +107,13 @@ def _missing(found: Mapping[JointRole, int]) -> tuple[JointRole, ...]:
     return tuple(role for role in SUN_ROLES if role not in found)
 
 
-def _active_unit(recording: Recording, roles: Mapping[JointRole, int], said: float | None) -> Unit:
-    if said is not None:
-        return Unit(_within("unit", said, SCALES, "meters per unit"))
+def _active_unit(recording: Recording, roles: Mapping[JointRole, int], hint: float | None) -> Unit:
+    """The unit from the client, else from the file if it is plausible, else from the stature."""
+    if hint is not None:
+        return Unit(_within("unit", hint, SCALES, "meters per unit"))
     if recording.metres_per_unit is not None:
         return confirm_unit(recording.metres_per_unit, recording.positions, roles)
     return judge_unit(recording.positions, roles)
-
-
-def _rest(skeleton: Skeleton) -> FloatArray:
-    """(joints, 3) the positions if all rotations are 0 and roots are at their offsets."""
-    rest = np.array(skeleton.offsets, dtype=np.float64)
-    for joints in joints_by_depth(skeleton.parents)[1:]:
-        rest[joints] += rest[skeleton.parents[joints]]
-    return rest
 
 
 def _axis_caution(recording: Recording, up_axis: str) -> tuple[Caution, ...]:
@@ -140,12 +133,12 @@ def _rate_cautions(motion: Motion) -> tuple[Caution, ...]:
     return tuple(judge_frame_rate(motion.role_positions(), motion.frame_rate))
 
 
-def _assumption(recording: Recording, said: float | None) -> tuple[Caution, ...]:
+def _assumption(recording: Recording, hint: float | None) -> tuple[Caution, ...]:
     """A caution if the frame rate comes neither from the client nor from the file."""
-    if said is not None or recording.frame_rate is not None:
+    if hint is not None or recording.frame_rate is not None:
         return ()
     rate = recording.assumed_frame_rate
-    detail = f"the file does not say its frame rate; {rate:g} Hz is usual for this format"
+    detail = f"the file does not give its frame rate; {rate:g} Hz is usual for this format"
     return (Caution("frame_rate_assumed", detail, likely=rate),)
 
 

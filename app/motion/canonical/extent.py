@@ -1,10 +1,10 @@
 """Refuses positions that no human body can have, before anything is computed from them.
 
-Damaged files, and files read in a wrong unit, hold impossible positions. They would cause
-infinities in descriptors of small floats, or useless hits. Each limit is far beyond what people
-do. It is given both in meters and in lengths of the body, because a client may give any unit. In
-501 real clips, joints are at most 1.5 m from the hips, the hips move at most .4 m in 1/30 s, and
-joints are at most 9 m from the origin.
+Damaged files, and files that are read in a wrong unit, have impossible positions. These would cause
+infinities in descriptors that are stored as small floats, or useless hits. Each limit is much
+larger than human movements. It is given both in meters and in body lengths, because a client may
+give any unit. In 501 real clips, joints are at most 1.5 m from the hips, the hips move at most
+.4 m in 1/30 s, and joints are at most 9 m from the origin.
 """
 
 from __future__ import annotations
@@ -25,21 +25,22 @@ from app.numerics.arrays import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class _Limit:
-    """The largest length, in meters and in lengths of the body; the smaller one counts."""
+    """The largest length, in meters and in body lengths. The smaller one is used."""
 
     meters: float
     bodies: float
 
-    def of(self, body: float) -> float:
-        return min(self.meters, self.bodies * body)
+    def in_meters(self, body_length: float) -> float:
+        return min(self.meters, self.bodies * body_length)
 
 
-REACH = _Limit(10.0, 1_000.0)
-"""From the hips to another joint of the body."""
-STEP = _Limit(100.0, 1_000.0)
-"""Of the hips in 1/30 s, some 10,000 km/h; real recordings are cut, and then the body jumps."""
-FARTHEST = _Limit(10_000.0, 10_000.0)
-"""From the origin; beyond, float32 does not hold a millimeter."""
+MAX_REACH = _Limit(10.0, 1_000.0)
+"""The largest distance from the hips to another joint of the body."""
+MAX_STEP = _Limit(100.0, 1_000.0)
+"""The largest distance that the hips move in 1/30 s, about 10,000 km/h. It is large because the
+body jumps where a real recording was cut."""
+MAX_DISTANCE = _Limit(10_000.0, 10_000.0)
+"""The largest distance from the origin. Beyond it, float32 is less exact than a millimeter."""
 
 
 def check_extent(motion: Motion) -> tuple[Caution, ...]:
@@ -49,23 +50,26 @@ def check_extent(motion: Motion) -> tuple[Caution, ...]:
     """
     size = _size(motion)
     own = sorted(set(motion.roles.values()))
-    farthest = FARTHEST.of(size)
-    far = _first_beyond(motion.positions, farthest, own)
+    max_distance, max_reach = MAX_DISTANCE.in_meters(size), MAX_REACH.in_meters(size)
+    far = _first_beyond(motion.positions, max_distance, own)
     if far is not None:
-        raise _refused(motion, far, farthest, "from the origin")
+        raise _refused(motion, far, max_distance, "from the origin")
     hips = motion.positions[:, motion.roles[JointRole.HIPS]]
-    _refuse_jumps(STEP.of(size), hips, motion)
+    _refuse_jumps(MAX_STEP.in_meters(size), hips, motion)
     for joint in own:
         away = motion.positions[:, [joint]] - hips[:, None]
-        reached = _first_beyond(away, REACH.of(size), [0])
+        reached = _first_beyond(away, max_reach, [0])
         if reached is not None:
-            found = _Found(reached.frame, joint, reached.meters)
-            raise _refused(motion, found, REACH.of(size), "from the hips")
-    return _strangers(farthest, motion)
+            excess = _Excess(reached.frame, joint, reached.meters)
+            raise _refused(motion, excess, max_reach, "from the hips")
+    return _other_joints_caution(max_distance, motion)
 
 
 def _size(motion: Motion) -> float:
-    """The body length in meters; infinite for a body without size, which the analysis refuses."""
+    """The body length in meters; infinite for a body without size.
+
+    The analysis refuses this body later, with a clearer message.
+    """
     try:
         return body_length(motion)
     except NotHuman:
@@ -73,7 +77,7 @@ def _size(motion: Motion) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class _Found:
+class _Excess:
     """Where a limit is exceeded, and the length there in meters."""
 
     frame: int
@@ -81,8 +85,8 @@ class _Found:
     meters: float
 
 
-def _first_beyond(positions: FloatArray, limit: float, joints: Iterable[int]) -> _Found | None:
-    """The first of `joints` with a coordinate beyond `limit`, and its first such frame.
+def _first_beyond(positions: FloatArray, limit: float, joints: Iterable[int]) -> _Excess | None:
+    """The first of `joints` with a coordinate beyond `limit`, in the first frame where this is so.
 
     positions: (frames, joints, 3). Joints are checked one by one, to avoid a copy of a long clip.
     """
@@ -92,31 +96,32 @@ def _first_beyond(positions: FloatArray, limit: float, joints: Iterable[int]) ->
         distances = np.abs(positions[:, joint]).max(axis=1)
         if distances.max() > limit:
             frame = int(np.argmax(distances > limit))
-            return _Found(frame, joint, float(distances[frame]))
+            return _Excess(frame, joint, float(distances[frame]))
     return None
 
 
 def _refuse_jumps(limit: float, hips: FloatArray, motion: Motion) -> None:
-    """hips: (frames, 3), meters."""
+    """Raise BadContent if the hips (frames, 3), in meters, move farther than `limit` in 1/30 s."""
     apart = max(1, round(motion.frame_rate / ANALYSIS_RATE))
     steps = np.linalg.norm(hips[apart:] - hips[:-apart], axis=-1)
     if steps.size and steps.max() > limit:
         frame = int(np.argmax(steps > limit))
-        found = _Found(frame + apart, motion.roles[JointRole.HIPS], float(steps[frame]))
-        where = f"from where it was {apart / motion.frame_rate:.3g} s before"
-        raise _refused(motion, found, limit, where)
+        excess = _Excess(frame + apart, motion.roles[JointRole.HIPS], float(steps[frame]))
+        where = f"from its position {apart / motion.frame_rate:.3g} s before"
+        raise _refused(motion, excess, limit, where)
 
 
-def _refused(motion: Motion, found: _Found, limit: float, where: str) -> BadContent:
-    message = f"expected at most {limit:.3g} m {where}, found {found.meters:.3g} m"
-    location = f"frame {found.frame}, joint {motion.names[found.joint]}"
+def _refused(motion: Motion, excess: _Excess, limit: float, where: str) -> BadContent:
+    message = f"expected at most {limit:.3g} m {where}, found {excess.meters:.3g} m"
+    location = f"frame {excess.frame}, joint {motion.names[excess.joint]}"
     return BadContent(
-        f"No body reaches so far ({location}: {message}). Is the unit right?",
+        f"No human body has this size or speed ({location}: {message}). Is the unit right?",
         places=[Place(location, message)],
     )
 
 
-def _strangers(limit: float, motion: Motion) -> tuple[Caution, ...]:
+def _other_joints_caution(limit: float, motion: Motion) -> tuple[Caution, ...]:
+    """A caution if a joint without a role is too far from the origin."""
     found = _first_beyond(motion.positions, limit, range(len(motion.names)))
     if found is None:
         return ()

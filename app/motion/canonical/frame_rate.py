@@ -16,10 +16,10 @@ large. Five laws are checked that no body can break:
 
 A rate that is too low only shows in flights, because slow motion breaks no other law.
 
-Real clips at their true rates have a demand of at most .39 (n = 372), a support of -1.33 g, flights
-of .81 to 1.26 g, and steps of 1.09. At twice their rate, a third of the clips that still last 3 s
-are detected, and nine of ten walks. (Gestures of a standing person obey every law at twice their
-speed.)
+Real clips at their true rates have a friction demand of at most .39 (n = 372), fall with at most
+1.33 g, have flights of .81 to 1.26 g, and steps of at most 1.09. At twice their rate, a third of
+the clips that still last 3 s are detected, and nine of ten walks. (Gestures of a standing person
+obey each law even at twice their speed.)
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from itertools import pairwise
 import numpy as np
 import scipy
 
-from app.motion.canonical.centre_of_mass import center_of_mass
+from app.motion.canonical.center_of_mass import center_of_mass
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
@@ -41,38 +41,43 @@ GRAVITY = 9.81
 """m/s2."""
 CUTOFF = 4.0
 """Hz. Faster changes of the center of mass are mostly noise."""
-SHORTEST = 3.0
+MIN_SECONDS = 3.0
 """Seconds at the checked rate. A shorter clip may be a single start, stop or leap."""
 MIN_FRAMES = 30
+"""The fewest frames for the laws about accelerations and speeds."""
 EDGE = 0.25
 """Seconds at each end that are left out, because the filter is not exact there."""
-FRICTION_QUANTILE, FRICTION_LIMIT = 75.0, 0.45
+FRICTION_QUANTILE, MAX_FRICTION = 75.0, 0.45
+"""The percentile of the friction demand, and its largest value (force / weight on the foot)."""
 MIN_WEIGHT = 0.5
-"""The smallest share of the weight by which friction demand is divided, for moments of flight."""
-SUPPORT_QUANTILE, SUPPORT_LIMIT = 2.0, -1.7
-"""In g."""
-SPEED_QUANTILE, SPEED_LIMIT = 95.0, 12.5
-"""m/s."""
-STEP_LIMIT = 1.7
+"""The smallest share of the weight by which a force is divided. In flight, the weight is near 0."""
+SUPPORT_QUANTILE, MIN_SUPPORT = 2.0, -1.7
+"""The percentile of the vertical acceleration, and its smallest value in g."""
+SPEED_QUANTILE, MAX_SPEED = 95.0, 12.5
+"""The percentile of the speed, and its largest value in m/s."""
+MAX_PACE = 1.7
+"""The largest step frequency x sqrt(leg length / g), without unit."""
 MIN_STEP_LENGTH, MIN_STEPS = 0.2, 6
-"""In leg lengths; and how many there have to be."""
+"""The shortest step in leg lengths, and the fewest steps."""
 STEP_CUTOFF = 8.0
-"""Hz."""
-CLEARANCE = 0.12
-"""Meters that both feet are above where they mostly stand."""
-FLIGHT_FRAMES, FLIGHT_RISE, FLIGHT_MISFIT = 6, 0.05, 0.05
-"""Fewest frames; least rise of hips and center of mass in meters; worst residual in rises."""
+"""Hz. Faster changes of the feet are mostly noise."""
+MIN_CLEARANCE = 0.12
+"""Meters: the smallest height of both feet in flight, above the height at which they stand."""
+MIN_FLIGHT_FRAMES, MIN_FLIGHT_RISE, MAX_FLIGHT_MISFIT = 6, 0.05, 0.05
+"""The fewest frames of a flight; the smallest rise of the hips and the center of mass in meters;
+the largest distance from the parabola, as a share of the rise."""
 FLIGHT_LIMITS = (0.5, 2.0)
-"""Measured over true gravity; outside the rate is off by sqrt(2) or more."""
+"""The smallest and the largest plausible gravity in g. Outside, the rate is wrong by a factor of
+sqrt(2) or more."""
 FACTORS = (2.0, 3.0, 4.0, 5.0, 8.0)
-"""How rates are off: frames dropped or doubled, 120 written for 60 or 30."""
+"""The usual factors of wrong rates: frames dropped or doubled, or 120 Hz in place of 60 or 30."""
 
 _ROLE = {role: index for index, role in enumerate(SUN_ROLES)}
 
 
 @dataclass(frozen=True, slots=True)
 class _Finding:
-    """A broken law. factor: by how much the rate is at least too high (below 1: too low)."""
+    """A law that a rate breaks. factor: the rate is too high at least by it; below 1: too low."""
 
     factor: float
     reason: str
@@ -101,22 +106,22 @@ def _likely_rate(positions: FloatArray, rate: float, factor: float) -> float:
     """
     if factor < 1:
         return rate * min(FACTORS, key=lambda usual: abs(np.log(usual * factor)))
-    lawful = (
+    plausible = (
         rate / usual
         for usual in FACTORS
         if usual >= factor and next(_findings(positions, rate / usual), None) is None
     )
-    return next(lawful, rate / FACTORS[-1])
+    return next(plausible, rate / FACTORS[-1])
 
 
 def _findings(positions: FloatArray, rate: float) -> Iterator[_Finding]:
     """The laws that the rate breaks, the most reliable law first."""
-    if len(positions) < FLIGHT_FRAMES:
+    if len(positions) < MIN_FLIGHT_FRAMES:
         return
     center = center_of_mass(positions)
     yield from _free_fall(positions, center, rate)
     yield from _steps(positions, rate)
-    if len(positions) < max(SHORTEST * rate, MIN_FRAMES):
+    if len(positions) < max(MIN_SECONDS * rate, MIN_FRAMES):
         return
     smooth = _low_pass(center, rate, CUTOFF)
     edge = max(1, round(EDGE * rate))
@@ -127,9 +132,10 @@ def _findings(positions: FloatArray, rate: float) -> Iterator[_Finding]:
 
 
 def _free_fall(positions: FloatArray, center: FloatArray, rate: float) -> Iterator[_Finding]:
+    """positions: (frames, 13, 3); center: (frames, 3) the center of mass; both in meters."""
     gravities = [
         float(-2 * curve[0]) * rate**2 / GRAVITY
-        for start, end in _off_the_floor(positions)
+        for start, end in _flights(positions)
         if (
             curve := _parabola(center[start:end, 1], positions[start:end, _ROLE[JointRole.HIPS], 1])
         )
@@ -139,7 +145,7 @@ def _free_fall(positions: FloatArray, center: FloatArray, rate: float) -> Iterat
         gravities
         and not FLIGHT_LIMITS[0] <= (pull := float(np.median(gravities))) <= FLIGHT_LIMITS[1]
     ):
-        # Flights measure the factor itself, not a bound: choose the nearest usual one.
+        # Other laws only give a bound of the factor. Flights give its value.
         factor = pull**0.5
         near = min(FACTORS, key=lambda usual: abs(np.log(usual / factor)))
         yield _Finding(
@@ -147,18 +153,22 @@ def _free_fall(positions: FloatArray, center: FloatArray, rate: float) -> Iterat
         )
 
 
-def _off_the_floor(positions: FloatArray) -> list[tuple[int, int]]:
-    """Start and end frame of every stretch with both feet clear of the floor."""
+def _flights(positions: FloatArray) -> list[tuple[int, int]]:
+    """The start and the end (exclusive) of each flight; positions: (frames, 13, 3) meters."""
     feet = positions[:, [_ROLE[JointRole.LEFT_FOOT], _ROLE[JointRole.RIGHT_FOOT]], 1]
-    clear = np.all(feet > np.percentile(feet, 5, axis=0) + CLEARANCE, axis=1)
+    clear = np.all(feet > np.percentile(feet, 5, axis=0) + MIN_CLEARANCE, axis=1)
     edges = np.flatnonzero(np.diff(np.r_[0, clear.astype(np.int8), 0]))
-    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2) if b - a >= FLIGHT_FRAMES]
+    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2) if b - a >= MIN_FLIGHT_FRAMES]
 
 
 def _parabola(height: FloatArray, hips: FloatArray) -> FloatArray | None:
-    """Coefficients (3,) per frame of a flight's parabola, or None where it is no flight."""
+    """(3,) the coefficients of the parabola of a flight, highest power first, time in frames.
+
+    height, hips: (frames,) the heights of the center of mass and of the hips, in meters. None if
+    the movement is not a flight.
+    """
     rise = float(np.ptp(height))
-    if min(rise, float(np.ptp(hips))) < FLIGHT_RISE or int(np.argmax(height)) in (
+    if min(rise, float(np.ptp(hips))) < MIN_FLIGHT_RISE or int(np.argmax(height)) in (
         0,
         len(height) - 1,
     ):
@@ -166,35 +176,37 @@ def _parabola(height: FloatArray, hips: FloatArray) -> FloatArray | None:
     frames = np.arange(len(height))
     curve = np.polyfit(frames, height, 2)
     misfit = float(np.abs(height - np.polyval(curve, frames)).max())
-    return curve if curve[0] < 0 and misfit < FLIGHT_MISFIT * rise else None
+    return curve if curve[0] < 0 and misfit < MAX_FLIGHT_MISFIT * rise else None
 
 
 def _friction(acceleration: FloatArray) -> Iterator[_Finding]:
-    """acceleration: (frames, 3) of the center of mass in g."""
+    """acceleration: (frames, 3) that of the center of mass in g."""
     sideways = np.hypot(acceleration[:, 0], acceleration[:, 2])
     weight = np.maximum(1 + acceleration[:, 1], MIN_WEIGHT)
     demand = float(np.percentile(sideways / weight, FRICTION_QUANTILE))
-    if demand > FRICTION_LIMIT:
+    if demand > MAX_FRICTION:
         yield _Finding(
-            (demand / FRICTION_LIMIT) ** 0.5,
+            (demand / MAX_FRICTION) ** 0.5,
             f"the feet would need a grip of {demand:.2f} of their load for a quarter of the time",
         )
 
 
 def _support(acceleration: FloatArray) -> Iterator[_Finding]:
+    """acceleration: (frames, 3) that of the center of mass in g."""
     fall = float(np.percentile(acceleration[:, 1], SUPPORT_QUANTILE))
-    if fall < SUPPORT_LIMIT:
+    if fall < MIN_SUPPORT:
         yield _Finding(abs(fall) ** 0.5, f"the body falls with {-fall:.1f} g")
 
 
 def _speed(velocity: FloatArray) -> Iterator[_Finding]:
-    """velocity: (frames, 3) of the center of mass, m/s."""
+    """velocity: (frames, 3) that of the center of mass in m/s."""
     speed = float(np.percentile(np.linalg.norm(velocity, axis=1), SPEED_QUANTILE))
-    if speed > SPEED_LIMIT:
-        yield _Finding(speed / SPEED_LIMIT, f"the body travels at {speed:.0f} m/s")
+    if speed > MAX_SPEED:
+        yield _Finding(speed / MAX_SPEED, f"the body travels at {speed:.0f} m/s")
 
 
 def _steps(positions: FloatArray, rate: float) -> Iterator[_Finding]:
+    """positions: (frames, 13, 3) in meters. A step ends when the other foot passes the first."""
     smooth = _low_pass(positions, rate, STEP_CUTOFF)
     leg = _leg_length(positions)
     stride = _fore_aft_of_feet(smooth)
@@ -205,8 +217,8 @@ def _steps(positions: FloatArray, rate: float) -> Iterator[_Finding]:
         return
     frequency = rate / float(np.median(times))
     pace = frequency * (leg / GRAVITY) ** 0.5
-    if pace > STEP_LIMIT:
-        yield _Finding(pace / STEP_LIMIT, f"the legs take {frequency:.1f} steps a second")
+    if pace > MAX_PACE:
+        yield _Finding(pace / MAX_PACE, f"the legs take {frequency:.1f} steps a second")
 
 
 def _leg_length(positions: FloatArray) -> float:
@@ -219,11 +231,12 @@ def _leg_length(positions: FloatArray) -> float:
 
 
 def _fore_aft_of_feet(positions: FloatArray) -> FloatArray:
-    """(frames,): how far the left foot is before the right one, meters."""
+    """(frames,) the distance of the left foot ahead of the right one, in meters."""
     across = positions[:, _ROLE[JointRole.LEFT_KNEE]] - positions[:, _ROLE[JointRole.RIGHT_KNEE]]
     shoulders = (JointRole.LEFT_SHOULDER, JointRole.RIGHT_SHOULDER)
     wide = positions[:, _ROLE[shoulders[0]]] - positions[:, _ROLE[shoulders[1]]]
     across = wide if np.any(wide) else across
+    # Forward is horizontal and at right angles to the line from right to left.
     forward = np.stack([-across[:, 2], across[:, 0]], axis=1)
     forward /= np.maximum(np.linalg.norm(forward, axis=1, keepdims=True), 1e-9)
     feet = positions[:, _ROLE[JointRole.LEFT_FOOT]] - positions[:, _ROLE[JointRole.RIGHT_FOOT]]
@@ -231,7 +244,8 @@ def _fore_aft_of_feet(positions: FloatArray) -> FloatArray:
 
 
 def _low_pass(samples: FloatArray, rate: float, cutoff: float) -> FloatArray:
-    """Samples (frames, ...) without what is faster than `cutoff` Hz, no delay."""
+    """`samples` (frames, ...) without frequencies above `cutoff` Hz, and without a delay."""
+    # A filter near half of the rate is not stable, and there is little to remove.
     if cutoff >= 0.45 * rate:
         return samples
     padding = min(len(samples) - 1, round(rate))
@@ -242,5 +256,5 @@ def _low_pass(samples: FloatArray, rate: float, cutoff: float) -> FloatArray:
 
 @lru_cache(maxsize=64)
 def _sections(rate: float, cutoff: float) -> FloatArray:
-    """The filter, whose design takes longer than its use on a short clip."""
+    """The filter. It is cached, because its design takes longer than its use on a short clip."""
     return np.asarray(scipy.signal.butter(2, cutoff, fs=rate, output="sos"))

@@ -35,9 +35,9 @@ MIN_STATURE = 1e-6
 """In any unit. A body with a smaller stature has no size."""
 USUAL_STATURES = (1.35, 2.15)
 """Meters. Outside this range, a caution says that the unit is a guess."""
-FARTHEST_FACTOR = 1.6
+MAX_GUESSED_FACTOR = 1.6
 """If no unit gives a stature within this factor of the typical one, the body is scaled to it."""
-BELIEVED_FACTOR = 2.5
+MAX_DECLARED_FACTOR = 2.5
 """The unit of a file is accepted if the stature is within this factor of the typical one."""
 
 _R = JointRole
@@ -54,6 +54,7 @@ _SEGMENTS: tuple[tuple[JointRole, JointRole, float], ...] = (
     (_R.HIPS, _R.LEFT_KNEE, 0.26),
     (_R.HIPS, _R.RIGHT_KNEE, 0.26),
 )
+"""The ends of each segment, and its length as a share of the stature."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,15 +81,20 @@ def stature(positions: FloatArray, roles: Mapping[JointRole, int]) -> float:
 
 
 def judge_unit(positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
-    """The unit of `positions` (frames, joints, 3) that makes the stature most usual."""
+    """The unit by which the stature is nearest to TYPICAL_STATURE.
+
+    positions: (frames, joints, 3) in the unit of the file. roles: the joint of each role. If no
+    unit fits, the body is scaled to TYPICAL_STATURE. A caution says that the unit is a guess.
+    """
     height = stature(positions, roles)
     if height < MIN_STATURE:
-        detail = "the body has no size, so its unit cannot be judged; taken as meters"
+        detail = "the body has no size, so its unit cannot be guessed; meters are used"
         return Unit(1.0, (Caution("unit_guessed", detail),))
     scales = np.array(list(METERS_PER_UNIT.values()))
-    odds = np.abs(np.log(height * scales / TYPICAL_STATURE))
-    best = float(scales[np.argmin(odds)])
-    if odds.min() > np.log(FARTHEST_FACTOR):
+    # Logarithms, because half and twice the stature are equally unusual.
+    distances = np.abs(np.log(height * scales / TYPICAL_STATURE))
+    best = float(scales[np.argmin(distances)])
+    if distances.min() > np.log(MAX_GUESSED_FACTOR):
         best = TYPICAL_STATURE / height
         detail = f"no known unit fits; scaled so that the person is {TYPICAL_STATURE} m tall"
         return Unit(best, (Caution("unit_guessed", detail, likely=best),))
@@ -100,18 +106,19 @@ def judge_unit(positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
 
 
 def confirm_unit(declared: float, positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
-    """The unit that a file declares, in meters per unit, or else the judged unit.
+    """The unit that a file declares, or else the judged unit.
 
-    The judged unit is used if the declared one gives an impossible stature. Exporters often write
-    a scale that does not fit their numbers.
+    declared: meters per unit. positions: (frames, joints, 3) in the unit of the file. roles: the
+    joint of each role. The judged unit is used if the declared one gives an impossible stature.
+    Exporters often write a scale that does not fit their numbers.
     """
     height = stature(positions, roles) * declared
-    if height < MIN_STATURE or abs(np.log(height / TYPICAL_STATURE)) <= np.log(BELIEVED_FACTOR):
+    if height < MIN_STATURE or abs(np.log(height / TYPICAL_STATURE)) <= np.log(MAX_DECLARED_FACTOR):
         return Unit(declared)
     judged = judge_unit(positions, roles)
     detail = (
         f"by the file's own unit the person would be {height:.3g} m tall; "
-        f"taken as {judged.metres_per_unit:g} m instead of {declared:g} m"
+        f"{judged.metres_per_unit:g} m are used instead of {declared:g} m"
     )
     return Unit(
         judged.metres_per_unit,

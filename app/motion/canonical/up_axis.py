@@ -1,8 +1,8 @@
 """Finds the axis that points up, and turns it to Y.
 
-People mostly have the head above the feet. The axis along which this is so in the motion is up. If
-it differs from the axis that the file declares, the rest pose must not agree with the file, because
-people also lie down.
+The axis along which the head is above the feet during the motion is up. If the file declares
+another axis, the rest pose decides, because people also lie down: if it agrees with the file, the
+axis of the file is up.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ import numpy as np
 from app.motion.roles.joint_roles import JointRole
 from app.numerics.arrays import FloatArray
 
-CLEARLY = 2.0
-"""The height of the head above the feet along another axis must be larger by this factor than that
-along the declared axis."""
+MIN_HEIGHT_RATIO = 2.0
+"""The height of the head above the feet along another axis must be larger, by this factor, than
+their distance along the declared axis."""
 
 _TO_Y_UP: dict[str, list[list[int]]] = {
     "x": [[0, -1, 0], [1, 0, 0], [0, 0, 1]],
@@ -26,7 +26,7 @@ _TO_Y_UP: dict[str, list[list[int]]] = {
     "-y": [[1, 0, 0], [0, -1, 0], [0, 0, -1]],
     "-z": [[1, 0, 0], [0, 0, -1], [0, 1, 0]],
 }
-"""Proper rotations (right-handed stays right-handed) that bring the axis to Y."""
+"""The rotation that brings each axis to Y. None is a mirror, so a right-handed body stays so."""
 
 
 def judge_up_axis(
@@ -37,20 +37,20 @@ def judge_up_axis(
 ) -> str:
     """The axis that points up: "x", "y", "z" or one of them with a minus sign.
 
-    positions: (frames, joints, 3). rest: (joints, 3) the positions if all rotations are 0.
-    declared: the axis that the file declares.
+    positions: (frames, joints, 3) in any unit. rest: (joints, 3) the positions if all rotations are
+    0. roles: the joint of each role. declared: the axis that the file declares.
     """
     upright = _head_over_feet(positions, roles).mean(axis=0)
     moving = _axis(upright)
     along_declared = abs(float(upright["xyz".index(declared[-1])]))
-    if moving in (declared, None) or np.abs(upright).max() < CLEARLY * along_declared:
+    if moving in (declared, None) or np.abs(upright).max() < MIN_HEIGHT_RATIO * along_declared:
         return moving if moving and moving[-1] == declared[-1] else declared
     resting = _axis(_head_over_feet(rest[None], roles)[0])
     return declared if resting == declared or moving is None else moving
 
 
 def to_y_up(positions: FloatArray, up_axis: str) -> FloatArray:
-    """(..., 3) `positions` turned so that `up_axis` becomes Y."""
+    """(..., 3) `positions` (..., 3), turned so that `up_axis` becomes Y. The unit stays."""
     if up_axis == "y":
         return positions
     turn = np.array(_TO_Y_UP[up_axis], dtype=positions.dtype)

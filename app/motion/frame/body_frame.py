@@ -1,7 +1,8 @@
-"""The body frame: a motion without its place, heading, size and frame rate.
+"""The body frame: a motion without its position, heading, size and frame rate.
 
-Origin at the hips, X to the body's left along the shoulders' horizontal, Y up, Z forward
-(right-handed), scaled by the body length: torso + neck to head + shin.
+The origin is at the hips. X points to the left of the body, along the horizontal part of the line
+between the shoulders. Y points up and Z points forward (right-handed). The unit is the body length:
+torso + neck to head + shin.
 """
 
 from __future__ import annotations
@@ -27,10 +28,10 @@ SHIN_PER_TORSO = 0.85
 """Usual proportions, used for joints that a skeleton does not have."""
 
 MIN_AXIS_SHARE = 0.2
-"""The smallest horizontal share of the left-right line. With less, it gives no heading."""
+"""The smallest horizontal share of the line from right to left. With less, it has no heading."""
 
 MIN_BODY_SIZE = 1e-6
-"""A smaller body length or left-right line counts as 0."""
+"""A smaller body length or line from right to left, in the unit of the positions, counts as 0."""
 
 _LEFT_RIGHT: tuple[tuple[JointRole, JointRole], ...] = (
     (JointRole.LEFT_SHOULDER, JointRole.RIGHT_SHOULDER),
@@ -125,7 +126,7 @@ def body_length(motion: Motion) -> float:
     head = _distance(motion, r.NECK, r.HEAD) if has_head else torso * NECK_TO_HEAD_PER_TORSO
     length = torso + head + (float(np.mean(shins)) if shins else torso * SHIN_PER_TORSO)
     if not length > MIN_BODY_SIZE:
-        message = "hips, neck, head, knees and feet are all in one place"
+        message = "hips, neck, head, knees and feet all have the same position"
         raise NotHuman(f"The body has no size: {message}.", places=[Place("joints", message)])
     return length
 
@@ -149,8 +150,11 @@ def _distance(motion: Motion, one: JointRole, other: JointRole) -> float:
 
 
 def _left_axis(motion: Motion) -> FloatArray | None:
-    """(n, 3) the line from right to left of the first pair of joints that are not above each
-    other; None if there is no such pair."""
+    """(n, 3) the line from right to left, in meters, at ANALYSIS_RATE.
+
+    It is that of the first pair of joints whose line is level enough in some frame. None if there
+    is no pair.
+    """
     for left, right in _LEFT_RIGHT:
         if left not in motion.roles or right not in motion.roles:
             continue
@@ -162,15 +166,17 @@ def _left_axis(motion: Motion) -> FloatArray | None:
 
 
 def _gives_heading(line: FloatArray) -> BoolArray:
+    """(n,) whether `line` (n, 3) is level enough and long enough to give a heading."""
     across = np.hypot(line[:, 0], line[:, 2])
-    least = np.maximum(MIN_AXIS_SHARE * np.linalg.norm(line, axis=1), MIN_BODY_SIZE)
-    return np.asarray(across > least)
+    min_width = np.maximum(MIN_AXIS_SHARE * np.linalg.norm(line, axis=1), MIN_BODY_SIZE)
+    return np.asarray(across > min_width)
 
 
 def _heading(left: FloatArray | None, frames: int) -> FloatArray:
-    """(frames,) the unwrapped heading, from the left axis (frames, 3).
+    """(frames,) the unwrapped heading in radians, from the line `left` (frames, 3).
 
-    It is interpolated where the axis is upright. A body without left and right faces along Z.
+    It is interpolated in frames in which the line is upright. Without a line, the heading is 0: the
+    body faces along Z.
     """
     if left is None:
         return np.zeros(frames)

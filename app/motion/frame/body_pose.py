@@ -1,4 +1,4 @@
-"""Single poses in the body frame: without place, heading and size.
+"""Single poses in the body frame: without position, heading and size.
 
 A query by pose has no motion around it. So each pose is treated as a motion of one frame, with its
 own hips, heading and body length (see `body_frame`). Equal poses then have equal numbers.
@@ -34,9 +34,9 @@ _TIPS, _STARTS = ([SUN_ROLES.index(pair[end]) for pair in (*_LENGTHS, *SIDES)] f
 def body_poses(positions: FloatArray) -> FloatArray:
     """(n, 13, 3) float64 poses in the body frame, in body lengths.
 
-    positions: (n, 13, 3) in SUN_ROLES order, any unit, Y up. A joint at the place of its neighbor
-    toward the trunk counts as missing (see `Motion.role_positions`). The heading is that of the
-    shoulders if their line is level enough, else that of the more level one of shoulders and
+    positions: (n, 13, 3) in SUN_ROLES order, any unit, Y up. A joint at the position of its
+    neighbor toward the trunk counts as missing (see `Motion.role_positions`). The heading is that
+    of the shoulders if their line is level enough, else that of the more level one of shoulders and
     knees. A pose without size, or without left and right, is NaN.
     """
     # (3, 13, n): planes of x, y and z, in which everything below is contiguous
@@ -55,9 +55,10 @@ def body_poses(positions: FloatArray) -> FloatArray:
 def _body_lengths(lengths: FloatArray) -> FloatArray:
     """(n,) the body lengths; lengths: (4, n) of torso, neck to head, and both shins."""
     torso, head, *shins = lengths
-    known = np.count_nonzero(shins, axis=0)
+    # A missing foot is at the position of the knee, so its shin has the length 0.
+    shin_count = np.count_nonzero(shins, axis=0)
     head = np.where(head > 0, head, NECK_TO_HEAD_PER_TORSO * torso)
-    shin = np.where(known > 0, sum(shins) / np.maximum(known, 1), SHIN_PER_TORSO * torso)
+    shin = np.where(shin_count > 0, sum(shins) / np.maximum(shin_count, 1), SHIN_PER_TORSO * torso)
     return np.asarray(torso + head + shin)
 
 
@@ -73,5 +74,5 @@ def _left_lines(
     second = (shares[0] <= MIN_AXIS_SHARE) & (shares[1] > shares[0])
     x, _, z = np.where(second, lines[:, 1], lines[:, 0])
     width = np.where(second, widths[1], widths[0])
-    held = np.maximum(width, MIN_BODY_SIZE)
-    return x / held, z / held, width
+    divisor = np.maximum(width, MIN_BODY_SIZE)
+    return x / divisor, z / divisor, width

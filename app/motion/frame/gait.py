@@ -1,8 +1,8 @@
 """Gait cycles: from one forward swing of the left foot to the next.
 
-The fore-aft difference of the feet in the body frame is cut at its upward zero crossings. A cycle
-must last as long as two human steps, swing widely to both sides, and travel. Other motions have no
-cycles.
+A cycle starts where the left foot passes the right one forward. This is an upward zero crossing of
+the difference of the feet along the forward axis of the body frame. A cycle must have the duration
+of two human steps, swing widely to both sides, and travel. Other motions have no cycles.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
 
 SMOOTHING = 0.05
-"""Seconds (standard deviation)."""
+"""Seconds: the standard deviation of the filter of the foot difference."""
 
 MIN_CYCLE = 0.4
 MAX_CYCLE = 2.0
@@ -29,7 +29,7 @@ MIN_SWING = 0.15
 MIN_TRAVEL = 0.3
 """Body lengths that the hips must travel in a cycle. Kicks and dances on the spot do not."""
 
-LACKING = 0.15
+MAX_MISSING_SHARE = 0.15
 """The share of a cycle that may be missing in a short clip."""
 
 LEFT_FOOT = SUN_ROLES.index(JointRole.LEFT_FOOT)
@@ -43,7 +43,7 @@ def gait_cycles(track: BodyTrack) -> list[tuple[int, int]]:
 
 
 def exact_gait_cycles(track: BodyTrack) -> list[tuple[float, float]]:
-    """The start and the end of each gait cycle of `track`, in fractions of frames.
+    """The start and the end of each gait cycle of `track`, in frames and fractions of frames.
 
     If cycles were cut at whole frames, their phases would be wrong by up to a frame.
     """
@@ -58,36 +58,39 @@ def _cycles(track: BodyTrack, split: FloatArray) -> list[tuple[int, int]]:
 
 
 def _upward(split: FloatArray) -> list[int]:
-    """Frames at which (n,) `split` has just become positive."""
+    """The first frame of each positive part of `split` (n,)."""
     return [int(frame) + 1 for frame in np.flatnonzero((split[:-1] <= 0) & (split[1:] > 0))]
 
 
 def _crossing(split: FloatArray, frame: int) -> float:
-    """When `split` (n,) rises through zero just before `frame`, in frames."""
+    """The time, in frames, at which `split` (n,) crosses zero upward just before `frame`.
+
+    This is `frame` if there is no crossing, as at the ends of a short clip.
+    """
     if not 0 < frame < len(split) or not split[frame - 1] <= 0 < split[frame]:
         return float(frame)
     return float(frame - split[frame] / (split[frame] - split[frame - 1]))
 
 
 def _lone_cycle(split: FloatArray) -> list[tuple[int, int]]:
-    """The cycle of a clip that is too short for two upward crossings.
+    """The cycle of a clip that is too short for two upward crossings; empty if there is none.
 
-    The downward crossings give its length. It starts or ends at the upward crossing; up to
-    LACKING of it may be missing.
+    The two downward crossings give its length. It starts or ends at the upward crossing. A share
+    of MAX_MISSING_SHARE may be missing.
     """
     upward, downward = _upward(split), _upward(-split)
     if len(upward) != 1 or len(downward) != 2:
         return []
     middle, length = upward[0], downward[1] - downward[0]
     for first, stop in ((middle, middle + length), (middle - length, middle)):
-        held = max(first, 0), min(stop, len(split))
-        if held[1] - held[0] >= (1 - LACKING) * length:
-            return [held]
+        present = max(first, 0), min(stop, len(split))
+        if present[1] - present[0] >= (1 - MAX_MISSING_SHARE) * length:
+            return [present]
     return []
 
 
 def foot_split(track: BodyTrack) -> FloatArray:
-    """(n,) how far the left foot is ahead of the right one, in body lengths, smoothed."""
+    """(n,) the distance of the left foot ahead of the right one, in body lengths, smoothed."""
     split = track.local[:, LEFT_FOOT, FORWARD] - track.local[:, RIGHT_FOOT, FORWARD]
     return np.asarray(
         scipy.ndimage.gaussian_filter1d(split, SMOOTHING * track.rate, mode="nearest")

@@ -1,1 +1,1 @@
-"""Inverse kinematics, one body for all clips, bind poses."""
+"""Inverse kinematics, the canonical body, and rotations from files."""

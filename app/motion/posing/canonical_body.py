@@ -1,12 +1,12 @@
-"""The canonical body: the movement of any clip on one skeleton of fixed bones.
+"""The canonical body: the movement of any clip on one skeleton with fixed bone lengths.
 
 The body has Sun's 13 roles and a few more. It is 1.7 m tall, and its segments are those of Drillis
 and Contini (1966; Winter, "Biomechanics and motor control of human movement", fig. 4.1). Its rest
 pose is a T-pose that faces Z, with left at +X. Its joints turn so that its bones have the
 directions of the clip's bones. The path over the ground is scaled by the length of the legs. In
-each frame, the lower foot is as far above the floor as that of the clip, scaled in the same way. So
-standing feet stay on the floor. Roles that a clip does not have keep the T-pose relative to their
-parent.
+each frame, the lower foot has the height of that of the clip above the floor, scaled in the same
+way. So standing feet stay on the floor. Roles that a clip does not have keep the T-pose relative
+to their parent.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ MIN_LEG_LENGTH = 1e-3
 """Meters: the smallest leg length by which paths are scaled."""
 
 _R = JointRole
-# role: role that it hangs on, offset in shares of stature
+# For each role: the role of its parent, and its offset in the rest pose as a share of the stature.
 _BODY: dict[JointRole, tuple[JointRole | None, tuple[float, float, float]]] = {
     _R.HIPS: (None, (0, 0.569, 0)),
     _R.CHEST: (_R.HIPS, (0, 0.17, -0.01)),
@@ -54,7 +54,7 @@ _BODY: dict[JointRole, tuple[JointRole | None, tuple[float, float, float]]] = {
     _R.RIGHT_TOES: (_R.RIGHT_FOOT, (0, -0.03, 0.08)),
 }
 BODY_ROLES: tuple[JointRole, ...] = tuple(_BODY)
-"""The joints of the body, in its order."""
+"""The joints of the canonical body, in the order of its skeleton."""
 
 _COLUMN = {role: column for column, role in enumerate(BODY_ROLES)}
 _LEGS = (
@@ -66,7 +66,10 @@ _Points = dict[JointRole, FloatArray]
 
 
 def canonical_body() -> Skeleton:
-    """The body at rest, meters, Y up, standing on the floor; joints are called by role."""
+    """The skeleton of the canonical body, in meters, Y up. Its joints have the names of roles.
+
+    In the rest pose, the ankles are ANKLE_HEIGHT above the floor.
+    """
     above = (role for role, _ in _BODY.values())
     return Skeleton(
         names=tuple(role.value for role in BODY_ROLES),
@@ -76,18 +79,21 @@ def canonical_body() -> Skeleton:
 
 
 def on_canonical_body(motion: Motion) -> Animation:
-    """The movement of `motion` on the canonical body, at the same frame rate."""
+    """The movement of `motion` on the canonical body, in meters, Y up, at the same frame rate."""
     body, points = canonical_body(), _points(motion)
     rotations = solve_rotations(body, _bones(body, points, motion.frames))
     scale = _leg_length(body.offsets) / max(_leg_length_of(points), MIN_LEG_LENGTH)
     roots = points[_R.HIPS] * scale
     posed = forward_kinematics(body, rotations, local_translations(body, roots))
-    roots[:, 1] += _wanted_height(points, scale) - posed[:, _FEET, 1].min(axis=1)
+    roots[:, 1] += _target_height(points, scale) - posed[:, _FEET, 1].min(axis=1)
     return Animation(body, rotations, local_translations(body, roots), motion.frame_rate)
 
 
 def _points(motion: Motion) -> _Points:
-    """(frames, 3) float64 meters by role; chest and upper legs are put in where they lack."""
+    """(frames, 3) float64 positions of each role, in meters.
+
+    A missing chest or upper leg is estimated from hips, neck, and the line from right to left.
+    """
     points: _Points = {
         role: motion.positions[:, joint].astype(np.float64) for role, joint in motion.roles.items()
     }
@@ -103,7 +109,7 @@ def _points(motion: Motion) -> _Points:
 
 
 def _bones(body: Skeleton, points: _Points, frames: int) -> FloatArray:
-    """(frames, joints, 3) world vectors along the body's bones; 0 where an end is unknown."""
+    """(frames, joints, 3) world vectors along the body's bones, in meters; 0 without both ends."""
     bones = np.zeros((frames, len(body), 3))
     for role, column in _COLUMN.items():
         above = _BODY[role][0]
@@ -113,12 +119,12 @@ def _bones(body: Skeleton, points: _Points, frames: int) -> FloatArray:
 
 
 def _leg_length(offsets: FloatArray) -> float:
-    """Thigh and shank of the body at rest."""
+    """The length of thigh and shank of the body at rest, in meters."""
     return float(sum(np.linalg.norm(offsets[_COLUMN[role]]) for role in _LEGS[0][1:]))
 
 
 def _leg_length_of(points: _Points) -> float:
-    """Median thigh and shank of a clip's legs; a thigh counts twice where no foot is known."""
+    """The median length of thigh and shank of a clip, in meters; without a foot, of two thighs."""
     lengths = []
     for hip, knee, foot in _LEGS:
         thigh = np.linalg.norm(points[hip] - points[knee], axis=-1)
@@ -127,8 +133,8 @@ def _leg_length_of(points: _Points) -> float:
     return float(np.mean(lengths))
 
 
-def _wanted_height(points: _Points, scale: float) -> FloatArray:
-    """(frames,) height of the body's lower ankle: the clip's above its floor, scaled."""
+def _target_height(points: _Points, scale: float) -> FloatArray:
+    """(frames,) the height of the lower ankle of the body, in meters: that of the clip, scaled."""
     feet = [points.get(foot, points[knee])[:, 1] for _, knee, foot in _LEGS]
     lower = np.min(feet, axis=0)
     floor = np.percentile(lower, FLOOR_PERCENTILE)

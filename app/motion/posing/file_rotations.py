@@ -1,8 +1,8 @@
-"""The rotations of a file in the canonical form, in which its positions are stored.
+"""Converts the rotations of a file to the canonical form of its motion: meters, Y up.
 
-A canonical motion is the recording turned to Y up and scaled to meters. The turn is found again by
-comparing the recording with the stored positions. So a file that is now read differently is
-detected, and not exported wrongly.
+A canonical motion is the recording, turned to Y up and scaled to meters. The turn is found by
+comparing the recording with the stored positions. So a file that is read differently now than when
+it was stored is detected, and is not exported wrongly.
 """
 
 from __future__ import annotations
@@ -18,19 +18,20 @@ from app.motion.skeleton.rotations import conjugate, matrices_to_quaternions, mu
 from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
-SAME_PLACE = 5e-5
-"""Meters: the largest distance between the positions by the file's own offsets and the stored
-ones."""
-SAME_READING = 1e-3
-"""Meters: the largest distance, in the first frame, between the recording and what was stored."""
+MAX_OFFSET_ERROR = 5e-5
+"""Meters: the largest distance between the stored positions and those by the offsets of the file.
+If it is larger, translations replace the offsets."""
+MAX_READING_ERROR = 1e-3
+"""Meters: the largest distance, in the first frame, between the recording and the stored motion."""
 UP_AXES = ("y", "z", "x", "-z", "-x", "-y")
 
 
 def animation_of_recording(recording: Recording, motion: Motion) -> Animation | None:
-    """The rotations of a recording in the form of `motion`, which was made from it.
+    """An animation with the rotations of a recording, in the canonical form of `motion`.
 
-    The result is None if the recording has no rotations, or if `motion` was not made from it. Its
-    positions are those of `motion`, apart from rounding.
+    motion: the canonical motion of the recording. The result is in meters, Y up, and has the
+    positions of `motion`, apart from rounding. It is None if the recording has no rotations, or if
+    `motion` was not made from it.
     """
     if recording.rotations is None or recording.skeleton.names != motion.names:
         return None
@@ -43,7 +44,7 @@ def animation_of_recording(recording: Recording, motion: Motion) -> Animation | 
     skeleton = _turned(recording.skeleton, turn, motion.metres_per_unit)
     translations = _translations(recording, turn, motion)
     reached = forward_kinematics(skeleton, rotations, translations)
-    if np.abs(reached - motion.positions).max() <= SAME_PLACE:
+    if np.abs(reached - motion.positions).max() <= MAX_OFFSET_ERROR:
         return Animation(skeleton, rotations, translations, motion.frame_rate)
     return animation_of_rotations(skeleton, rotations, motion.positions, motion.frame_rate)
 
@@ -54,13 +55,16 @@ def _turn_between(recording: Recording, motion: Motion) -> FloatArray | None:
         return None
     first = recording.positions[0].astype(np.float64) * motion.metres_per_unit
     for axis in UP_AXES:
-        if np.abs(to_y_up(first, axis) - motion.positions[0]).max() <= SAME_READING:
+        if np.abs(to_y_up(first, axis) - motion.positions[0]).max() <= MAX_READING_ERROR:
             return matrices_to_quaternions(to_y_up(np.eye(3), axis).T)
     return None
 
 
 def _turned(skeleton: Skeleton, turn: FloatArray, scale: float) -> Skeleton:
-    """Conjugating every local rotation turns the rest pose along with the world."""
+    """The skeleton with turned offsets in meters.
+
+    Local rotations are conjugated by `turn`, so the rest pose must be turned in the same way.
+    """
     return Skeleton(
         names=skeleton.names,
         parents=skeleton.parents,
@@ -77,5 +81,6 @@ def _translations(recording: Recording, turn: FloatArray, motion: Motion) -> Flo
         local = local_translations(recording.skeleton, recording.positions[:, 0])
     translations = rotate(turn, local.astype(np.float64)) * motion.metres_per_unit
     roots = recording.skeleton.parents < 0
+    # A root has no parent, so its translation is its stored position.
     translations[:, roots] = motion.positions[:, roots]
     return translations

@@ -1,1 +1,1 @@
-"""Which joint of a skeleton is the left knee."""
+"""Joint roles: which joint of a skeleton is, for example, the left knee."""

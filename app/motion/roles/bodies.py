@@ -1,7 +1,8 @@
-"""Several bodies in one file: one is used, and the others are reported in a caution.
+"""Finds the joint roles of one body if a file has several bodies.
 
-A skeleton may have several roots: people, props, loose markers. Roles must not be mixed from
-two people, so that where two trees are bodies by themselves, only one is looked at.
+A skeleton may have several roots, which belong to people, props or single markers. The roles of two
+people must not be mixed. So if two trees of joints are bodies, the roles are found in one of them,
+and a caution names the others.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ def roles_of_one_body(
     """The joint of each role, all of one body, and a caution if there are other bodies.
 
     names, parents: (joints,). positions: (frames, joints, 3) in any unit and axes. given: joints
-    that a client named. The body with most of them is used, else the first one.
+    that a client named. The body with the most of these joints is used, and else the first body.
     """
     found = _bodies(names, parents, positions)
     if len(found) < 2:
@@ -39,7 +40,7 @@ def roles_of_one_body(
     ours = max(found, key=lambda joints: len(set(joints.tolist()) & set(given.values())))
     others = ", ".join(names[int(joints[0])] for joints in found if joints is not ours)
     detail = (
-        f"the file holds {len(found)} people; taken is the one below {names[int(ours[0])]}, "
+        f"the file has {len(found)} people; the one with the root {names[int(ours[0])]} is used, "
         f"left out: {others}"
     )
     roles = _roles_in(ours, names, parents, positions) | dict(given)
@@ -66,9 +67,9 @@ def _roles_in(
     joints: IntArray, names: Sequence[str], parents: IntArray, positions: FloatArray
 ) -> Roles:
     """The roles that are found in one tree, as joints of the whole skeleton."""
-    place = {joint: index for index, joint in enumerate(joints.tolist())}
-    inner = np.array([place.get(int(parent), -1) for parent in parents[joints]])
-    found = find_roles([names[joint] for joint in joints], inner, positions[:, joints])
+    new_index = {joint: index for index, joint in enumerate(joints.tolist())}
+    tree_parents = np.array([new_index.get(int(parent), -1) for parent in parents[joints]])
+    found = find_roles([names[joint] for joint in joints], tree_parents, positions[:, joints])
     return {role: int(joints[index]) for role, index in found.items()}
 
 

@@ -1,13 +1,13 @@
-"""What a joint's name says about its role, in the common naming conventions.
+"""Finds joint roles by the names of joints, in the common naming conventions.
 
-CMU/MotionBuilder `LeftUpLeg`, ASF `lfemur`, DAZ/Poser `lShldr`, Mixamo
+These are CMU/MotionBuilder `LeftUpLeg`, ASF `lfemur`, DAZ/Poser `lShldr`, Mixamo
 `mixamorig:LeftArm`, Bandai Namco `UpperArm_L`, LAFAN1, SMPL `L_Hip`, Vicon plug-in-gait
 `LKNE`, Rokoko, Xsens, Unreal `upperarm_l`, 3ds Max `Bip01 L Calf`, Blender `thigh.L`,
 OptiTrack `LUArm`, Kinect `KneeLeft`. Case and separators do not matter.
 
-The same word means different joints in different conventions (`LeftShoulder` is the
-collar bone beside `LeftArm`, the upper arm beside `LeftCollar`), so aliases are ordered:
-the first that a skeleton has is taken.
+The same word names different joints in different conventions. `LeftShoulder` is the collar bone if
+there is also a `LeftArm`, but it is the upper arm if there is also a `LeftCollar`. So the aliases
+of a role have an order, and the first one that a skeleton has is used.
 """
 
 from __future__ import annotations
@@ -53,9 +53,9 @@ _PREFIX = re.compile(
     r"[\s_.\-]+",
     re.IGNORECASE,
 )
-"""What rigs put before every joint's name."""
-_NOISE = frozenset(("joint", "jnt", "bone", "bn"))
-"""What rigs put elsewhere in a joint's name."""
+"""Prefixes that programs add to the names of all joints."""
+_FILLERS = frozenset(("joint", "jnt", "bone", "bn"))
+"""Words without meaning that programs add elsewhere in the name of a joint."""
 _SIDES: dict[str, Side] = {
     "left": "left", "l": "left", "lft": "left",
     "right": "right", "r": "right", "rgt": "right",
@@ -64,7 +64,10 @@ _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 
 
 def roles_by_name(names: Sequence[str]) -> dict[JointRole, int]:
-    """The joint of each role that is found by name; no joint has two roles."""
+    """The joint of each role that is found by name. No joint has two roles.
+
+    names: (joints,) parents come before their children.
+    """
     keys = _first_by_key(names)
     found: dict[JointRole, int] = {}
     for role, aliases in _aliases_by_role():
@@ -88,7 +91,7 @@ def _aliases_by_role() -> list[tuple[JointRole, list[tuple[Side | None, str]]]]:
 
 
 def _first_by_key(names: Sequence[str]) -> dict[tuple[Side | None, str], int]:
-    """The first joint (nearest to a root) of each side and word."""
+    """The first joint, which is nearest to a root, of each side and word."""
     keys: dict[tuple[Side | None, str], int] = {}
     for joint, name in enumerate(names):
         keys.setdefault(side_and_word(name), joint)
@@ -96,25 +99,25 @@ def _first_by_key(names: Sequence[str]) -> dict[tuple[Side | None, str], int]:
 
 
 def side_and_word(name: str) -> tuple[Side | None, str]:
-    """A joint's side and the rest of its name, e.g. ("left", "upperarm") for `UpperArm_L`."""
+    """The side of a joint and the rest of its name: ("left", "upperarm") for `UpperArm_L`."""
     words = _words(name)
     sides = [_SIDES[word] for word in words if word in _SIDES]
     rest = "".join(word for word in words if word not in _SIDES)
     if len(sides) == 1 and rest:
         return sides[0], rest
-    return _glued("".join(words))
+    return _side_without_separator("".join(words))
 
 
 def _words(name: str) -> list[str]:
-    local = re.split(r"[:|]", name)[-1].strip()
-    while prefix := _PREFIX.match(local):
-        local = local[prefix.end() :]
-    words = [word.lower().lstrip("0") for word in _WORD.findall(local)]
-    return [word for word in words if word and word not in _NOISE]
+    name_part = re.split(r"[:|]", name)[-1].strip()
+    while prefix := _PREFIX.match(name_part):
+        name_part = name_part[prefix.end() :]
+    words = [word.lower().lstrip("0") for word in _WORD.findall(name_part)]
+    return [word for word in words if word and word not in _FILLERS]
 
 
-def _glued(word: str) -> tuple[Side | None, str]:
-    """Side letters without a separator: `lfemur`, `rightfoot`, `LKNE`, `luarm`."""
+def _side_without_separator(word: str) -> tuple[Side | None, str]:
+    """The side and the rest of a name without separators: `lfemur`, `rightfoot`, `LKNE`."""
     for mark, side in _SIDES.items():
         if word.startswith(mark) and word.removeprefix(mark) in _ALIASES_WITH_SIDE:
             return side, word.removeprefix(mark)

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 
 class JointRole(StrEnum):
-    """A joint's meaning in the body."""
+    """The meaning of a joint in the body. The first 13 roles have the order of Sun 2011."""
 
     LEFT_KNEE = "left_knee"
     RIGHT_KNEE = "right_knee"
@@ -27,7 +27,7 @@ class JointRole(StrEnum):
     LEFT_UPPER_LEG = "left_upper_leg"
     RIGHT_UPPER_LEG = "right_upper_leg"
 
-    def towards_trunk(self) -> JointRole:
+    def toward_trunk(self) -> JointRole:
         """The neighboring role that is nearer to the hips; for the hips, the hips."""
         return _TOWARDS_TRUNK[self]
 
@@ -75,7 +75,6 @@ _TOWARDS_TRUNK: dict[JointRole, JointRole] = {
 }
 
 SUN_PARENTS: tuple[int, ...] = tuple(
-    -1 if (nearer := role.towards_trunk()) is role else SUN_ROLES.index(nearer)
-    for role in SUN_ROLES
+    -1 if (nearer := role.toward_trunk()) is role else SUN_ROLES.index(nearer) for role in SUN_ROLES
 )
-"""Each of SUN_ROLES' neighbor toward the trunk, as an index; the hips are the root."""
+"""(13,) the index of the neighbor toward the trunk of each of SUN_ROLES; -1 for the hips."""

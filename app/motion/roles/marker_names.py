@@ -1,10 +1,9 @@
-"""Which place on the body a marker's label names, in the marker sets that are about.
+"""Finds the place on the body that the label of a marker names, in common marker sets.
 
-Vicon plug-in-gait (`LKNE`, `Bob:LASI`), CMU's own (`LFWT`), Helen Hayes as Cortex names it
-(`L.Knee.Medial`, `V.Sacral`), the ISB's anatomical landmarks (`LFLE`), OptiTrack's baseline
-(`WaistLFront`). Case, separators and the subject before a colon do not matter. Sources:
-Vicon's plug-in gait reference guide; Kadaba et al. 1990 (Helen Hayes); Leardini et al. 2007
-(ISB names).
+The marker sets are Vicon plug-in-gait (`LKNE`, `Bob:LASI`), CMU's own (`LFWT`), Helen Hayes as
+Cortex names it (`L.Knee.Medial`, `V.Sacral`), the ISB's anatomical landmarks (`LFLE`), OptiTrack's
+baseline (`WaistLFront`). Case and separators do not matter. Sources: Vicon's plug-in gait reference
+guide; Kadaba et al. 1990 (Helen Hayes); Leardini et al. 2007 (ISB names).
 """
 
 from __future__ import annotations
@@ -12,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+# Places on both sides, and their labels; ? is L or R.
 _SIDED: dict[str, tuple[str, ...]] = {
     "ASI": ("?ASI", "?ASIS", "?IAS", "?FWT", "WAIST?FRONT", "?WAISTFRONT"),
     "PSI": ("?PSI", "?PSIS", "?IPS", "?BWT", "WAIST?BACK", "?WAISTBACK"),
@@ -65,34 +65,34 @@ _PLACES = {alias: place for place, aliases in _MIDDLE.items() for alias in alias
     for alias in aliases
     for side in "LR"
 }
-_UNLABELLED = re.compile(r"(|\*\d*|U_?\d+|UNLABELL?ED.*|M\d{3,}|UN-?NAMED.*)", re.IGNORECASE)
+_UNLABELED = re.compile(r"(|\*\d*|U_?\d+|UNLABELL?ED.*|M\d{3,}|UN-?NAMED.*)", re.IGNORECASE)
 _NO_MARKER = re.compile(r".*(Angles?|Forces?|Moments?|Powers?|GRF)$", re.IGNORECASE)
-"""What gait models write among the points, though it is no place."""
+"""Labels of results of gait models, which are stored as points but are not markers."""
 
 
 def subject_and_label(label: str) -> tuple[str, str]:
-    """`Bob:LKNE` as ("Bob", "LKNE"); no subject is the empty one."""
+    """The subject and the rest of a label: ("Bob", "LKNE") for `Bob:LKNE`; "" is for no subject."""
     subject, _, name = label.strip().rpartition(":")
     return subject.strip(), name.strip()
 
 
 def is_marker(label: str) -> bool:
-    """Whether a label without its subject names a marker: not `*12`, not `LKneeAngles`."""
-    return not (_UNLABELLED.fullmatch(label) or _NO_MARKER.fullmatch(label))
+    """Whether a label without its subject names a marker. `*12` and `LKneeAngles` do not."""
+    return not (_UNLABELED.fullmatch(label) or _NO_MARKER.fullmatch(label))
 
 
-def place_of(label: str) -> str | None:
-    """The place on the body, such as "LKNE" or "C7", or None where no set has the label."""
+def place_on_body(label: str) -> str | None:
+    """The place on the body, for example "LKNE" or "C7"; None if no marker set has the label."""
     key = re.sub(r"[\W_]", "", label).upper()
     key = re.sub(r"^(LEFT|RIGHT)", lambda side: side.group()[0], key)
     return _PLACES.get(key)
 
 
-def places_of(labels: Sequence[str]) -> dict[str, int]:
-    """The first marker of each place that labels (markers,) without subjects name."""
+def markers_by_place(labels: Sequence[str]) -> dict[str, int]:
+    """The first marker at each place; labels: (markers,) without their subjects."""
     found: dict[str, int] = {}
     for marker, label in enumerate(labels):
-        place = place_of(label)
+        place = place_on_body(label)
         if place is not None:
             found.setdefault(place, marker)
     return found

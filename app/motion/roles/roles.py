@@ -1,4 +1,4 @@
-"""Which joint has which role: from the client, else by its name, else by the body's shape."""
+"""Finds the joint of each role: from the client, else by names, else by the body's shape."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ _LIMBS: tuple[tuple[JointRole, ...], ...] = (
 )
 """Chains of roles: each joint must be below the one before it in the tree."""
 _NEEDED = tuple(role for role in JointRole if role not in (_R.CHEST, _R.LEFT_TOES, _R.RIGHT_TOES))
+"""If one of these roles is not found by name, the shape of the body is used."""
 
 
 def find_roles(
@@ -31,13 +32,13 @@ def find_roles(
 ) -> dict[JointRole, int]:
     """The joint of each role; roles that cannot be found are left out.
 
-    names, parents: (joints,). positions: (frames, joints, 3) in any unit and axes. given: joints
-    that are already known; they have priority. Sides in names have priority over geometry. No
-    joint gets two roles, except by `given`.
+    names, parents: (joints,). positions: (frames, joints, 3) in any unit and axes. given: the
+    joints of roles that a client named; they have priority. Sides in names have priority over
+    geometry. No joint gets two roles, except by `given`.
     """
     found = dict(given or {})
     tree = _Ancestry(parents)
-    _add(found, tree.consistent(roles_by_name(names)))
+    _add(found, tree.without_contradictions(roles_by_name(names)))
     _add(found, tree.trunk_from_limbs(found))
     if any(role not in found for role in _NEEDED):
         _add_agreeing(found, roles_by_shape(parents, positions))
@@ -79,7 +80,7 @@ def _add(found: dict[JointRole, int], more: Mapping[JointRole, int]) -> None:
 
 
 def _add_agreeing(found: dict[JointRole, int], shape: Mapping[JointRole, int]) -> None:
-    """Add roles by shape, unless these exchange left and right of a known role."""
+    """Add roles by shape. If they contradict the sides in `found`, left and right are exchanged."""
     swapped = any(
         role in found and role.mirrored() != role and shape.get(role.mirrored()) == joint
         for role, joint in found.items()
@@ -88,11 +89,13 @@ def _add_agreeing(found: dict[JointRole, int], shape: Mapping[JointRole, int]) -
 
 
 class _Ancestry:
+    """The parents of joints, for questions about ancestors."""
+
     def __init__(self, parents: IntArray) -> None:
         self.parents = [int(parent) for parent in parents]
 
     def above(self, joint: int) -> list[int]:
-        """The joint and its ancestors, nearest first."""
+        """The joint, then its ancestors, the nearest one first."""
         found = []
         while joint >= 0:
             found.append(joint)
@@ -100,11 +103,14 @@ class _Ancestry:
         return found
 
     def is_tree(self) -> bool:
-        """Whether joints have parents. Markers have none; only their names can be used."""
+        """Whether some joints have parents. Markers have none, so only their names can be used."""
         return any(parent >= 0 for parent in self.parents)
 
-    def consistent(self, named: dict[JointRole, int]) -> dict[JointRole, int]:
-        """`named` without limbs whose joints are not below each other in the tree."""
+    def without_contradictions(self, named: dict[JointRole, int]) -> dict[JointRole, int]:
+        """`named` without limbs whose joints are not below each other in the tree.
+
+        The hips are removed if they are not above both legs.
+        """
         if not self.is_tree():
             return named
         good = dict(named)
@@ -119,7 +125,7 @@ class _Ancestry:
         return good
 
     def trunk_from_limbs(self, found: Mapping[JointRole, int]) -> dict[JointRole, int]:
-        """The hips, where the legs branch; the neck, below the head or where the arms branch."""
+        """The hips, where the legs meet; the neck, below the head or where the arms meet."""
         trunk: dict[JointRole, int] = {}
         legs, arms = (self._branching(found, r) for r in (_R.LEFT_KNEE, _R.LEFT_SHOULDER))
         if legs is not None:

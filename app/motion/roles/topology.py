@@ -1,9 +1,10 @@
-"""Joint roles from the shape of a skeleton, if its names give none.
+"""Finds joint roles by the shape of a skeleton, if its names give none.
 
-Legs and arms are the two mirrored pairs of chains with the longest two neighboring bones. Thigh and
-shank make .49 of the stature, upper arm and forearm .33 (Drillis and Contini 1966; fig. 4.1 of
-Winter, "Biomechanics and motor control"). Left is the cross product of up (along the trunk) and
-forward (where the toes point and the knees bend). A mirrored motion gets mirrored roles.
+Legs and arms are two pairs of mirrored chains of bones. Each chain has two long neighboring bones:
+thigh and shank are .49 of the stature, and upper arm and forearm are .33 (Drillis and Contini 1966;
+fig. 4.1 of Winter, "Biomechanics and motor control"). Legs are the longest pair. Left is the cross
+product of up (along the trunk) and forward (where the toes point and the knees bend). A mirrored
+motion gets mirrored roles.
 """
 
 from __future__ import annotations
@@ -17,17 +18,17 @@ import numpy as np
 from app.motion.roles.joint_roles import JointRole
 from app.numerics.arrays import FloatArray, IntArray
 
-SAMPLED_FRAMES = 64
-"""The most frames, evenly chosen, on which shape and sides are judged."""
-SAME_LENGTH = 0.85
+MAX_SAMPLED_FRAMES = 64
+"""The most frames, evenly spaced, in which shape and sides are measured."""
+MIN_MIRROR_RATIO = 0.85
 """The smallest ratio of the lengths of two mirrored bones (shorter / longer)."""
-NEAR_LONGEST = 0.85
-"""Pairs of bones of at least this share of the longest pair count as equally long."""
-NO_LENGTH = 0.02
-"""A bone below this share of its chain only doubles a joint."""
+MIN_LONGEST_SHARE = 0.85
+"""Pairs of bones with at least this share of the longest pair count as equally long."""
+MIN_BONE_SHARE = 0.02
+"""A bone with a smaller share of its chain has no length: its two joints are one."""
 MIN_ARM_SHARE = 0.35
 """Upper arm and forearm have at least this share of the length of thigh and shank."""
-CLEAR_SIDE = 0.02
+MIN_SIDE_EVIDENCE = 0.02
 """Left and right are decided only if the evidence is at least this share of its possible size."""
 MAX_PAIRED_CHILDREN = 12
 """The most children of a joint that are compared in pairs. Bodies have fewer branches."""
@@ -35,9 +36,10 @@ MAX_PAIRED_CHILDREN = 12
 
 @dataclass(frozen=True, slots=True)
 class _Chain:
-    """A limb, from the joint where it branches off outward; `branch` is its first own joint.
+    """A limb, from the joint where it leaves the trunk, outward.
 
-    joints: one more than `lengths`; bone i runs from joint i to joint i + 1.
+    branch: the first joint that belongs to the limb alone. joints: (bones + 1,) bone i is from
+    joint i to joint i + 1. lengths: (bones,).
     """
 
     branch: int
@@ -47,10 +49,11 @@ class _Chain:
     def main_bones(self) -> int:
         """The index of the first of the two main bones: the longest two neighbors.
 
-        A collar bone can be as long as a forearm. So of nearly equal pairs the outermost is used.
+        A collar bone can be as long as a forearm. So if pairs are nearly equally long, the
+        outermost pair is used.
         """
         sums = np.array([a + b for a, b in pairwise(self.lengths)])
-        return int(np.flatnonzero(sums >= NEAR_LONGEST * sums.max())[-1])
+        return int(np.flatnonzero(sums >= MIN_LONGEST_SHARE * sums.max())[-1])
 
     def reach(self) -> float:
         """The length of the two main bones."""
@@ -59,16 +62,16 @@ class _Chain:
 
 
 _Pair = tuple[int, _Chain, _Chain]
-"""The joint where two mirrored chains branch off, and the chains."""
+"""The joint where two mirrored chains leave the trunk, and the two chains."""
 
 
 def roles_by_shape(parents: IntArray, positions: FloatArray) -> dict[JointRole, int]:
-    """The joint of each role, from the tree `parents` (joints,) and the shape of the body.
+    """The joint of each role, by the shape of the body.
 
-    positions: (frames, joints, 3) in any unit and axes. The result is empty if there are no two
-    legs. Limbs are left out if their side is unclear.
+    parents: (joints,) -1 for a root. positions: (frames, joints, 3) in any unit and axes. The
+    result is empty if there are no legs. Limbs are left out if their side is unclear.
     """
-    chosen = np.unique(np.linspace(0, len(positions) - 1, SAMPLED_FRAMES).astype(int))
+    chosen = np.unique(np.linspace(0, len(positions) - 1, MAX_SAMPLED_FRAMES).astype(int))
     tree = _Tree(parents, np.asarray(positions[chosen], dtype=np.float64))
     pairs = sorted(tree.mirrored_pairs(), key=lambda pair: -pair[1].reach())
     if not pairs:
@@ -85,6 +88,9 @@ def roles_by_shape(parents: IntArray, positions: FloatArray) -> dict[JointRole, 
 
 
 class _Tree:
+    """The tree of joints. length: (joints,) of the bone to each joint. reach: (joints,) the longest
+    way outward from each joint."""
+
     def __init__(self, parents: IntArray, positions: FloatArray) -> None:
         self.parents = parents
         self.positions = positions
@@ -100,20 +106,20 @@ class _Tree:
                 self.reach[parent] = max(self.reach[parent], along)
 
     def mirrored_pairs(self) -> Iterator[_Pair]:
-        """All pairs of similar chains that branch off at one joint and have two or more bones."""
+        """All pairs of similar chains with at least two bones that leave the trunk at one joint."""
         for joint, children in enumerate(self.children):
             chains = [self.chain(joint, child) for child in children[:MAX_PAIRED_CHILDREN]]
             for one, other in combinations(chains, 2):
-                if _alike(one, other):
+                if _are_mirrored(one, other):
                     yield joint, one, other
 
     def chain(self, start: int, child: int) -> _Chain:
-        """The longest chain from `start` through `child` outward, without doubled joints."""
+        """The longest chain from `start` through `child` outward, without bones of no length."""
         path = [start, child]
         while self.children[path[-1]]:
             onward = self.children[path[-1]]
             path.append(max(onward, key=lambda joint: self.length[joint] + self.reach[joint]))
-        small = NO_LENGTH * float(self.length[path[1:]].sum())
+        small = MIN_BONE_SHARE * float(self.length[path[1:]].sum())
         joints, lengths = [start], []
         for joint in path[1:]:
             if self.length[joint] <= small:
@@ -124,7 +130,7 @@ class _Tree:
         return _Chain(child, tuple(joints), tuple(lengths))
 
     def could_be_arms(self, legs: _Pair, arms: _Pair) -> bool:
-        """Whether the pair is long enough, and apart from the legs' chains."""
+        """Whether the chains are long enough, and share no joint with the legs."""
         if arms[1].reach() < MIN_ARM_SHARE * legs[1].reach():
             return False
         taken = {joint for chain in legs[1:] for joint in chain.joints if joint != legs[0]}
@@ -132,7 +138,11 @@ class _Tree:
         return not taken & (others | {arms[0]})
 
     def trunk_roles(self, legs: _Pair, arms: _Pair | None) -> dict[JointRole, int]:
-        """Hips, chest, neck and head: what leaves the arms' (else legs') joint upwards."""
+        """Hips, chest, neck and head.
+
+        Neck and head are on the longest chain from the joint where the arms (or else the legs)
+        meet.
+        """
         found = {JointRole.HIPS: legs[0]}
         top, *limbs = legs if arms is None else arms
         if top != legs[0]:
@@ -164,19 +174,19 @@ class _Tree:
         return column
 
 
-def _alike(one: _Chain, other: _Chain) -> bool:
-    """Whether the main bones are; what comes after them may hang on another finger."""
+def _are_mirrored(one: _Chain, other: _Chain) -> bool:
+    """Whether the main bones of two chains are mirrored. Later bones may be of other fingers."""
     if min(len(one.lengths), len(other.lengths)) < 2 or one.main_bones() != other.main_bones():
         return False
     main = slice(one.main_bones(), one.main_bones() + 2)
     pairs = zip(one.lengths[main], other.lengths[main], strict=True)
-    return all(min(pair) >= SAME_LENGTH * max(pair) for pair in pairs)
+    return all(min(pair) >= MIN_MIRROR_RATIO * max(pair) for pair in pairs)
 
 
 def _left_of_body(
     trunk: dict[JointRole, int], positions: FloatArray, legs: _Pair
 ) -> FloatArray | None:
-    """(frames, 3): where left is in each frame, or None without a trunk."""
+    """(frames, 3) a vector to the left of the body; None if there is no trunk."""
     top = trunk.get(JointRole.NECK, trunk.get(JointRole.CHEST))
     if top is None:
         return None
@@ -186,7 +196,7 @@ def _left_of_body(
 
 
 def _forward_of_leg(chain: _Chain, positions: FloatArray) -> FloatArray:
-    """(frames, 3): how far the toes are before the ankle, and the knee before the leg."""
+    """(frames, 3) a vector forward: from the ankle to the toes, plus from the leg to the knee."""
     first = chain.main_bones()
     hip, knee, ankle = (positions[:, joint] for joint in chain.joints[first : first + 3])
     leg = ankle - hip
@@ -197,18 +207,18 @@ def _forward_of_leg(chain: _Chain, positions: FloatArray) -> FloatArray:
 
 
 def _left_first(pair: _Pair, positions: FloatArray, left: FloatArray) -> _Pair | None:
-    """The pair with its left chain first, or None where that is not clear."""
+    """The pair with its left chain first; None if the sides are not clear."""
     branching, one, other = pair
-    apart = _root_of_limb(one, positions) - _root_of_limb(other, positions)
+    apart = _limb_start(one, positions) - _limb_start(other, positions)
     evidence = np.sum(apart * left, axis=-1)
     possible = np.linalg.norm(apart, axis=-1) * np.linalg.norm(left, axis=-1)
-    if abs(evidence.sum()) <= CLEAR_SIDE * possible.sum():
+    if abs(evidence.sum()) <= MIN_SIDE_EVIDENCE * possible.sum():
         return None
     return (branching, one, other) if evidence.sum() > 0 else (branching, other, one)
 
 
-def _root_of_limb(chain: _Chain, positions: FloatArray) -> FloatArray:
-    """(frames, 3): where the upper main bone begins, or its middle if that is the trunk's."""
+def _limb_start(chain: _Chain, positions: FloatArray) -> FloatArray:
+    """(frames, 3) the start of the upper main bone, or its middle if the start is on the trunk."""
     first = chain.main_bones()
     joints = chain.joints[first : first + 1 if first else 2]
     return np.asarray(positions[:, list(joints)].mean(axis=1))
@@ -219,7 +229,7 @@ _ARM = ("shoulder", "elbow", "hand")
 
 
 def _limb_roles(pair: _Pair, parts: tuple[str, ...]) -> dict[JointRole, int]:
-    """Roles of a pair whose left chain comes first."""
+    """The joints of the roles of a pair whose left chain comes first."""
     found = {}
     for side, chain in zip(("left", "right"), pair[1:], strict=True):
         main = chain.joints[chain.main_bones() :]

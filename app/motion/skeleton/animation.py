@@ -1,7 +1,7 @@
-"""A motion as rotations and translations of joints, as animation programs use it.
+"""Represents a motion as rotations and translations of joints, as animation programs do.
 
-It is solved from positions alone, or made from the rotations of a file. In both cases the
-translations are such that the joints have the given positions.
+The rotations are computed from positions, or come from a file. In both cases the translations are
+chosen so that the joints have the given positions.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from app.motion.skeleton.rotations import (
 from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
-STILL = 2e-6
-"""Meters. A joint that leaves its offset by no more does not count as moving. Errors add up along a
-chain; thirty joints stay within 0.06 mm."""
-FOLLOW_PARENT = 3e-7
-"""The weight of following the parent's turn, compared with the bones' directions. It is so small
-that it only decides what the directions do not determine, such as the twist about a single bone."""
-REVERSED = 1e-7
+MAX_STILL_DISTANCE = 2e-6
+"""Meters. A joint moves if its translation differs from its offset by more than this. Errors add up
+along a chain: with thirty joints, they are at most 0.06 mm."""
+PARENT_WEIGHT = 3e-7
+"""The weight of following the rotation of the parent, relative to that of the directions of bones.
+It only decides what the directions do not determine, for example the twist about a single bone."""
+MIN_HALF = 1e-7
 """The length of the half-angle quaternion below which a bone counts as reversed."""
 BLOCK_FRAMES = 2048
-"""Frames that are solved at once. It bounds the memory."""
+"""Frames that are solved at once. This limits the memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,10 +56,10 @@ class Animation:
     def moving_joints(self) -> BoolArray:
         """(joints,) whether a joint is a root or its translation differs from its offset."""
         away = np.abs(self.translations - self.skeleton.offsets).max(axis=(0, 2))
-        return np.asarray((away > STILL) | (self.skeleton.parents < 0))
+        return np.asarray((away > MAX_STILL_DISTANCE) | (self.skeleton.parents < 0))
 
     def resampled(self, frame_rate: float) -> Animation:
-        """The same movement at `frame_rate` Hz; rotations are interpolated the shorter way."""
+        """The same movement at `frame_rate` Hz. Rotations are interpolated by the shorter way."""
         if frame_rate == self.frame_rate:
             return self
         turns = resample(continuous(self.rotations), self.frame_rate, frame_rate)
@@ -73,7 +73,10 @@ class Animation:
 
 
 def continuous(rotations: FloatArray) -> FloatArray:
-    """The same rotations (frames, joints, 4), with signs such that quaternions do not jump."""
+    """(frames, joints, 4) the same rotations, with signs by which quaternions do not jump.
+
+    q and -q are the same rotation, but numbers between them are not.
+    """
     turned_over = np.sum(rotations[1:] * rotations[:-1], axis=-1) < 0
     flips = np.cumsum(turned_over, axis=0) % 2 == 1
     result = np.array(rotations)
@@ -106,8 +109,9 @@ def animation_of_positions(
     """An animation whose joints turn so that the bones have the directions in the positions.
 
     names, parents: (joints,). positions: (frames, joints, 3) in the world, meters. frame_rate:
-    Hz. The rest pose is the first frame. A joint turns as its children do (least squares). A
-    joint without children follows its parent, as does everything that bones do not determine.
+    Hz. The rest pose has the directions of the first frame and the median lengths of bones. A joint
+    turns so that the directions of its bones are as in the positions (least squares). If they do
+    not determine its turn, and for joints without children, it follows its parent.
     """
     first = positions[0].astype(np.float64)
     offsets = first - np.where(parents[:, None] >= 0, first[parents], 0.0)
@@ -123,7 +127,10 @@ def animation_of_positions(
 
 
 def bone_lengths(parents: IntArray, positions: FloatArray) -> FloatArray:
-    """(joints,) the median distance of each joint from its parent, in the unit of positions."""
+    """(joints,) the median distance of each joint from its parent, in the unit of `positions`.
+
+    positions: (frames, joints, 3). The length of a root is 0.
+    """
     above = positions[:, np.maximum(parents, 0)]
     return np.asarray(np.median(np.linalg.norm(positions - above, axis=-1), axis=0), np.float64)
 
@@ -132,8 +139,8 @@ def solve_rotations(skeleton: Skeleton, bones: FloatArray) -> FloatArray:
     """(frames, joints, 4) the local rotations that turn the skeleton's bones along `bones`.
 
     bones: (frames, joints, 3) the world vectors from parents to joints; zero vectors are ignored.
-    For each joint, Wahba's problem over its children is solved by the SVD (Markley 1988). Long
-    bones have a larger weight, and following the parent's turn has a small one.
+    For each joint, Wahba's problem over its children is solved by the SVD (Markley 1988). Longer
+    bones have larger weights. PARENT_WEIGHT is the weight of following the parent.
     """
     blocks = range(0, len(bones), BLOCK_FRAMES)
     return np.concatenate(
@@ -151,7 +158,7 @@ def _solve_block(skeleton: Skeleton, bones: FloatArray) -> FloatArray:
         above = world[:, parent] if parent >= 0 else identity_quaternions((frames,))
         children = skeleton.children(joint)
         if children:
-            # seen from the parent's frame: (frames, children, 3)
+            # seen (frames, children, 3): the bones in the frame of the parent
             seen = rotate(conjugate(above)[:, None], bones[:, children])
             rest = skeleton.offsets[children]
             turn = _swing(seen[:, 0], rest[0]) if len(children) == 1 else _wahba(seen, rest)
@@ -163,8 +170,8 @@ def _solve_block(skeleton: Skeleton, bones: FloatArray) -> FloatArray:
 def _swing(seen: FloatArray, rest: FloatArray) -> FloatArray:
     """(frames, 4) the shortest turns that bring `rest` (3,) to the directions `seen` (frames, 3).
 
-    For a single bone `_wahba` gives the same. If a vector has no length, there is no turn. If the
-    bone is reversed, it is half a turn about some orthogonal axis.
+    `_wahba` gives the same turns for a single bone, but is slower. A vector without length gives no
+    turn. A reversed bone gives half a turn about any orthogonal axis.
     """
     to, start = _unit(seen), _unit(rest)
     across = np.cross(start, np.eye(3)[np.argmin(np.abs(start))])
@@ -172,18 +179,22 @@ def _swing(seen: FloatArray, rest: FloatArray) -> FloatArray:
     length = np.linalg.norm(half, axis=-1, keepdims=True)
     reversed_turn = np.concatenate([[0.0], _unit(across)])
     return np.asarray(
-        np.where(length > REVERSED, half / np.maximum(length, REVERSED), reversed_turn)
+        np.where(length > MIN_HALF, half / np.maximum(length, MIN_HALF), reversed_turn)
     )
 
 
 def _wahba(seen: FloatArray, rest: FloatArray) -> FloatArray:
-    """(frames, 4) the turns that bring `rest` (children, 3) nearest to `seen`
-    (frames, children, 3), and are near the identity if these do not determine them."""
+    """(frames, 4) the turns that bring `rest` (children, 3) nearest to `seen` (frames, children,
+    3).
+
+    If the vectors do not determine a turn, it is near the identity.
+    """
     weights = np.linalg.norm(rest, axis=-1) * np.linalg.norm(seen, axis=-1)
     directions = _unit(seen) * weights[..., None]
-    pull = FOLLOW_PARENT * np.maximum(weights.sum(axis=-1), 1e-9)[:, None, None] * np.eye(3)
+    pull = PARENT_WEIGHT * np.maximum(weights.sum(axis=-1), 1e-9)[:, None, None] * np.eye(3)
     profile = np.einsum("fci,cj->fij", directions, _unit(rest)) + pull
     u, _, vt = np.linalg.svd(profile)
+    # The sign makes the result a rotation, and not a mirror.
     u[..., 2] *= np.linalg.det(u @ vt)[:, None]
     return matrices_to_quaternions(u @ vt)
 

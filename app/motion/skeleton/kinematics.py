@@ -1,7 +1,7 @@
 """Forward kinematics: from local rotations and translations to world positions.
 
-All joints of one depth are turned at once, over all frames: (frames, joints at that
-depth, 4). The textbook's product of 4x4 matrices joint by joint is the tests' twin.
+All joints of one depth are computed at once, for all frames: (frames, joints at this depth, 4). The
+tests compare the result with products of 4x4 matrices, joint by joint.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Markers that no camera saw for a while: short gaps are filled, long gaps are reported.
+"""Fills short gaps of markers that no camera saw for a while, and reports long gaps.
 
 A gap is filled by a cubic spline through all frames in which the marker was seen. At the ends of
-the recording it is filled by the nearest such frame.
+the recording it is filled with the position in the nearest frame in which the marker was seen.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import scipy
 from app.numerics.arrays import BoolArray, FloatArray
 
 MAX_GAP = 0.25
-"""Seconds. A limb can move away and back within half a second, so a longer gap may hide that."""
+"""Seconds. A limb can move away and back within half a second, and a longer gap may hide this."""
 
 
 @dataclass(frozen=True, slots=True)

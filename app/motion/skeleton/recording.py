@@ -30,10 +30,10 @@ class Recording:
 
     positions: (frames, joints, 3) float32 in the world, in the unit and axes of the file, always
     finite. rotations: (frames, joints, 4) float32 local unit quaternions w x y z; None if the
-    format has none (markers). translations: (frames, joints, 3) float32 local translations if
-    they change over time (joints of six channels); None means the skeleton's offsets and the
-    motion of the root. frame_rate: Hz as declared, None if the file does not give it. up_axis:
-    "x", "y" or "z". metres_per_unit: None if the file does not give it. assumed_frame_rate: Hz,
+    format has none (markers). translations: (frames, joints, 3) float32 local translations if they
+    change over time (joints of six channels); None means the skeleton's offsets and the motion of
+    the root. frame_rate: Hz as declared, None if the file does not give it. up_axis: "x", "y" or
+    "z", as declared. metres_per_unit: None if the file does not give it. assumed_frame_rate: Hz,
     the usual rate of the format, if the file does not give one and nearly all files agree.
     """
 

@@ -4,9 +4,9 @@ Between samples, the motion is a cubic Hermite curve with Catmull-Rom tangents. 
 would cut the peaks of fast movement at 24 Hz, so that results would depend on the frame rate.
 Before the rate is lowered, a windowed-sinc low-pass filter (flat to about 12 Hz of 30) removes
 frequencies that the lower rate cannot represent, which avoids aliasing. The filter grows with the
-ratio of the rates. If they are FAR_APART, only the frames that are read are filtered, so that the
-cost depends only on the length of the clip. Long clips are processed in blocks.
-Shapes: (frames, ...) in, (samples, ...) out. Any unit.
+ratio of the rates. If the ratio is at least MIN_FAR_RATIO, only the frames that are read are
+filtered, so that the cost depends only on the length of the clip. Long clips are processed in
+blocks. Shapes: (frames, ...) in, (samples, ...) out. Any unit.
 """
 
 from __future__ import annotations
@@ -20,22 +20,23 @@ from app.deadline import check
 from app.numerics.arrays import FloatArray
 
 LOW_PASS_REACH = 4.0
-"""Half-length of the low-pass, in periods of the lower rate."""
+"""Half of the length of the low-pass filter, in periods of the lower rate."""
 
-FAR_APART = 8.0
-"""The ratio of the rates from which on only the frames that are read are filtered."""
+MIN_FAR_RATIO = 8.0
+"""From this ratio of the rates on, only the frames that are read are filtered."""
 
 NUMBERS_AT_ONCE = 2_000_000
-"""Numbers of one block. It bounds the memory and the time of a step."""
+"""Numbers of one block. It limits the memory and the time of a step."""
 
-AROUND = 4
-"""Frames from which a moment is read: its two neighbors, and the next ones for the tangents."""
+CURVE_FRAMES = 4
+"""Frames that determine the curve at a time: two neighbors, and two more for the tangents."""
 
 _ROUNDING = 1e-6
+"""Added to a number of samples before it is rounded down, because the division is not exact."""
 
 
 def resample(samples: FloatArray, from_rate: float, to_rate: float) -> FloatArray:
-    """`samples` (frames, ...) of `from_rate` Hz at `to_rate` Hz.
+    """(samples, ...) `samples` (frames, ...) of `from_rate` Hz, at `to_rate` Hz.
 
     The first sample stays at time 0. The result has
     floor((frames - 1) / from_rate * to_rate) + 1 samples, in the float type of the input.
@@ -59,7 +60,7 @@ def resample_to(samples: FloatArray, count: int) -> FloatArray:
 def _at_steps(samples: FloatArray, step: float, count: int) -> FloatArray:
     """(count, ...) low-pass filtered samples from the first frame on, `step` frames apart."""
     times = np.arange(count) * step
-    if step < FAR_APART or len(samples) < AROUND:
+    if step < MIN_FAR_RATIO or len(samples) < CURVE_FRAMES:
         return sample_at(low_pass(samples, step), times)
     return _few_of_low_pass(samples, step, times)
 
@@ -104,27 +105,28 @@ def low_pass(samples: FloatArray, ratio: float) -> FloatArray:
 
 
 def _few_of_low_pass(samples: FloatArray, ratio: float, times: FloatArray) -> FloatArray:
-    """`sample_at(low_pass(samples, ratio), times)`, at a cost that the moments set.
+    """(n, ...) the same as `sample_at(low_pass(samples, ratio), times)`, but faster for few times.
 
-    A whole clip through a filter that grows with it would cost the square of its length.
+    The length of the filter grows with `ratio`, which may be nearly the length of the clip. To
+    filter all frames would cost the square of this length.
     """
     kernel, last = _sinc(ratio), len(samples) - 1
     continued = _continued(samples, len(kernel) // 2).reshape(-1, samples[0].size)
-    # Row r is the kernel r frames later: together they filter the frames around a moment.
-    kernels = np.zeros((AROUND, len(kernel) + AROUND - 1))
-    for row in range(AROUND):
+    # Row r has the kernel moved by r frames, so the rows give CURVE_FRAMES filtered frames.
+    kernels = np.zeros((CURVE_FRAMES, len(kernel) + CURVE_FRAMES - 1))
+    for row in range(CURVE_FRAMES):
         kernels[row, row : row + len(kernel)] = kernel
     read = np.empty((len(times), samples[0].size), dtype=samples.dtype)
     for number, time in enumerate(np.clip(times, 0, last)):
         check()
-        first = min(max(int(time) - 1, 0), last + 1 - AROUND)
+        first = min(max(int(time) - 1, 0), last + 1 - CURVE_FRAMES)
         smooth = kernels @ continued[first : first + kernels.shape[1]]
         read[number] = sample_at(smooth, np.array([time - first]))[0]
     return read.reshape(len(times), *samples.shape[1:])
 
 
 def _blocks(samples: FloatArray) -> Iterator[slice]:
-    """`samples` (frames, ...) in blocks of frames; between two of them the work may stop."""
+    """Blocks of the frames of `samples` (frames, ...). The deadline is checked at each block."""
     frames = max(1, NUMBERS_AT_ONCE // max(1, samples[:1].size))
     for first in range(0, len(samples), frames):
         check()
@@ -132,6 +134,7 @@ def _blocks(samples: FloatArray) -> Iterator[slice]:
 
 
 def _sinc(ratio: float) -> FloatArray:
+    """(n,) a sinc filter with a squared cosine window and the sum 1; n is odd."""
     reach = int(np.ceil(LOW_PASS_REACH * ratio))
     offsets = np.arange(-reach, reach + 1)
     kernel = np.sinc(offsets / ratio) * np.cos(0.5 * np.pi * offsets / (reach + 1)) ** 2
@@ -139,12 +142,13 @@ def _sinc(ratio: float) -> FloatArray:
 
 
 def _continued(samples: FloatArray, reach: int) -> FloatArray:
+    """(reach + frames + reach, ...) the samples, continued by point reflection at both ends."""
     width = [(reach, reach)] + [(0, 0)] * (samples.ndim - 1)
     return np.pad(samples, width, mode="reflect", reflect_type="odd")
 
 
 def _tangents(samples: FloatArray) -> FloatArray:
-    """Slope per frame at each sample; central inside, parabolic at the ends."""
+    """(frames, ...) the slope per frame at each sample: central inside, parabolic at the ends."""
     if len(samples) == 2:
         return np.repeat(samples[1:] - samples[:1], 2, axis=0)
     return np.asarray(np.gradient(samples, axis=0, edge_order=2))

@@ -1,12 +1,13 @@
 """Rotations as unit quaternions and Euler angles, vectorized over any leading axes.
 
-Quaternions are (..., 4), w x y z, acting on column vectors: q v q*. Euler angles are
-intrinsic: order "ZXY" means R = Rz(a0) Rx(a1) Ry(a2), which is how BVH lists its
-channels (Meredith and Maddock, "Motion capture file formats explained", 2001).
+Quaternions are (..., 4), w x y z, and turn column vectors v by q v q*. Euler angles are intrinsic:
+the order "ZXY" means R = Rz(a0) Rx(a1) Ry(a2). This is the order of the channels in BVH files
+(Meredith and Maddock, "Motion capture file formats explained", 2001).
 
-scipy's Rotation stays out: for 150 frames of 31 joints it takes 8 times as long to read angles
-(4.1 ms against .50) and 18 times as long for a product (2.0 ms against .11). It turns points as
-fast (tests/bench/test_libraries.py). Before scipy 1.17 it holds no more than one axis.
+We have our own functions because scipy's Rotation is slower: for 150 frames of 31 joints it needs
+8 times as long to read angles (4.1 ms instead of .50), and 18 times as long for a product (2.0 ms
+instead of .11). It turns points equally fast (tests/bench/test_libraries.py). Before scipy 1.17 its
+arrays have only one axis.
 """
 
 from __future__ import annotations
@@ -17,14 +18,14 @@ from app.numerics.arrays import FloatArray
 
 AXES = "XYZ"
 GIMBAL_LIMIT = 1.0 - 1e-12
-"""Sine of the middle angle above which the first and last axis are taken to coincide."""
+"""The sine of the middle angle above which the first and the last axis count as the same."""
 
 
 def euler_to_quaternions(angles_rad: FloatArray, order: str) -> FloatArray:
-    """Quaternions (..., 4) of intrinsic Euler angles (..., len(order)) in radians.
+    """(..., 4) unit quaternions of intrinsic Euler angles (..., len(order)) in radians.
 
-    `order` names the axes from the outermost in, e.g. "ZXY"; any number of axes (none
-    gives the identity) and repeated ones are allowed.
+    order: the axes from the outermost to the innermost, for example "ZXY". Any number of axes is
+    allowed, and an axis may occur twice. No axis gives the identity.
     """
     if not order:
         return identity_quaternions(angles_rad.shape[:-1])
@@ -44,6 +45,7 @@ def identity_quaternions(shape: tuple[int, ...]) -> FloatArray:
 
 
 def _about_axis(angle: FloatArray, axis: int) -> FloatArray:
+    """(..., 4) the quaternions of turns by `angle` (...,) radians about X, Y or Z (0, 1, 2)."""
     result = np.zeros((*angle.shape, 4))
     result[..., 0] = np.cos(angle / 2)
     result[..., 1 + axis] = np.sin(angle / 2)
@@ -74,7 +76,7 @@ def rotate(quaternions: FloatArray, vectors: FloatArray) -> FloatArray:
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    # np.cross spends most of its time on moving axes.
+    # np.cross is slower, because it spends most of its time on moving axes.
     x, y, z = a[..., 0], a[..., 1], a[..., 2]
     u, v, w = b[..., 0], b[..., 1], b[..., 2]
     product = np.empty(np.broadcast_shapes(a.shape, b.shape))
@@ -98,12 +100,12 @@ def quaternions_to_matrices(quaternions: FloatArray) -> FloatArray:
 def matrices_to_quaternions(matrices: FloatArray) -> FloatArray:
     """Unit quaternions (..., 4) with w >= 0 of rotation matrices (..., 3, 3).
 
-    The largest of the four components is found first, so that no small number is
-    divided by (Shepperd 1978).
+    The largest of the four components is computed first, so that there is no division by a small
+    number (Shepperd 1978).
     """
     m = np.asarray(matrices, dtype=np.float64)
     trace = m[..., 0, 0] + m[..., 1, 1] + m[..., 2, 2]
-    # (..., 4, 4): row i is the quaternion times four times its own component i
+    # outer (..., 4, 4): row i is the quaternion, multiplied by 4 times its component i
     outer = np.empty((*m.shape[:-2], 4, 4))
     outer[..., 0, 0] = 1 + trace
     for i in range(3):
@@ -120,14 +122,14 @@ def matrices_to_quaternions(matrices: FloatArray) -> FloatArray:
 def quaternions_to_euler(quaternions: FloatArray, order: str) -> FloatArray:
     """Intrinsic Euler angles (..., 3) in radians of unit quaternions (..., 4).
 
-    `order` holds each of X, Y, Z once; the middle angle lies in [-pi/2, pi/2]. In gimbal
-    lock the last angle is 0.
+    order: each of X, Y, Z once, the outermost axis first. The middle angle is in [-pi/2, pi/2]. In
+    gimbal lock the last angle is 0, because only the sum or difference of two angles is determined.
     """
     i, j, k = (AXES.index(axis) for axis in order)
     sign = 1.0 if (j - i) % 3 == 1 else -1.0
     m = quaternions_to_matrices(quaternions)
     sine = sign * m[..., i, k]
-    # arcsin of it would lose half the digits near 90 degrees
+    # arcsin(sine) would lose half of the digits near 90 degrees.
     middle = np.arctan2(sine, np.hypot(m[..., i, i], m[..., i, j]))
     locked = np.abs(sine) > GIMBAL_LIMIT
     first = np.arctan2(-sign * m[..., j, k], m[..., k, k])

@@ -1,4 +1,4 @@
-"""The skeleton: joint names, parents and offsets, parents before children."""
+"""The skeleton: the names, parents and offsets of joints."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from app.numerics.arrays import FloatArray, IntArray
 
 @dataclass(frozen=True, slots=True)
 class Skeleton:
-    """A tree of joints, each after its parent.
+    """A tree of joints. Each joint comes after its parent.
 
-    names: (joints,); parents: (joints,) int, -1 for a root;
-    offsets: (joints, 3) from parent to joint at rest, in the file's unit and axes;
-    end_parents: (ends,) joint that an end site hangs on; end_offsets: (ends, 3).
+    names: (joints,). parents: (joints,) int, -1 for a root. offsets: (joints, 3) from the parent to
+    the joint at rest, in the unit and axes of the file. end_parents: (ends,) the joint of each end
+    site, which is the end of a bone without a joint. end_offsets: (ends, 3) from this joint.
     """
 
     names: tuple[str, ...]
@@ -28,5 +28,5 @@ class Skeleton:
         return len(self.names)
 
     def children(self, joint: int) -> list[int]:
-        """Indices of the joints whose parent is `joint`, in file order."""
+        """The indices of the joints whose parent is `joint`, in the order of the file."""
         return [int(child) for child in np.flatnonzero(self.parents == joint)]

@@ -7,7 +7,7 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from app.analysis.energy.energy import EnergyMethod, Weights, energies
-from app.motion.canonical.centre_of_mass import ROLE_MASSES, center_of_mass
+from app.motion.canonical.center_of_mass import ROLE_MASSES, center_of_mass
 from app.motion.frame.body_frame import body_track
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from tests.bodies import motion_of, place, standing, turned_about_y, walking, waving

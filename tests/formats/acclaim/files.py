@@ -1,4 +1,4 @@
-"""ASF and AMC files for tests, written from parts, and their slow twin: 4x4 matrices."""
+"""Writes ASF and AMC files for tests, and computes their positions slowly by 4x4 matrices."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from app.numerics.arrays import FloatArray
 from tests.people import BODY, CONVENTIONS, ROLES, person
 
 Rows = list[list[list[float]]]
-"""By frame and bone: the numbers of its channels."""
+"""The numbers of the channels, by frame and bone."""
 
 
 @dataclass(frozen=True)
 class Bone:
-    """A bone as an ASF file tells it; the first of a list is the root, `parent` an index."""
+    """A bone of an ASF file. The first bone of a list is the root; `parent` is an index."""
 
     name: str
     parent: int = -1
@@ -42,7 +42,7 @@ ARM_ROWS: Rows = [
 
 
 def asf(bones: Sequence[Bone] = ARM, *, degrees: bool = True, length: float = 0.45) -> bytes:
-    """An ASF file; bones' angles are in degrees here and written as told."""
+    """An ASF file. Angles of `bones` are in degrees; the file has degrees or radians."""
 
     def turned(angles: Sequence[float]) -> str:
         return " ".join(f"{a if degrees else np.radians(a):.17g}" for a in angles)
@@ -73,20 +73,20 @@ def asf(bones: Sequence[Bone] = ARM, *, degrees: bool = True, length: float = 0.
 def amc(
     bones: Sequence[Bone] = ARM, rows: Rows = ARM_ROWS, *, degrees: bool = True, first: int = 1
 ) -> bytes:
-    """An AMC file; turns are in degrees here and written as told."""
+    """An AMC file. Turns in `rows` are in degrees; the file has degrees or radians."""
     lines = ["#!OML:ASF test.asf", ":FULLY-SPECIFIED", ":DEGREES" if degrees else ":RADIANS"]
     for number, row in enumerate(rows, first):
         lines += [str(number)]
         for bone, values in zip(bones, row, strict=True):
             pairs = zip(bone.channels, values, strict=True)
-            told = [v if degrees or c[0] not in "rR" else np.radians(v) for c, v in pairs]
-            if told:
-                lines += [f"{bone.name} {' '.join(f'{v:.17g}' for v in told)}"]
+            numbers = [v if degrees or c[0] not in "rR" else np.radians(v) for c, v in pairs]
+            if numbers:
+                lines += [f"{bone.name} {' '.join(f'{v:.17g}' for v in numbers)}"]
     return "\n".join([*lines, ""]).encode()
 
 
-def beginnings(bones: Sequence[Bone], row: list[list[float]]) -> FloatArray:
-    """(bones, 3): where each bone begins in one frame, by the textbook's 4x4 matrices."""
+def bone_starts(bones: Sequence[Bone], row: list[list[float]]) -> FloatArray:
+    """(bones, 3) the start of each bone in one frame, by 4x4 matrices as in a textbook."""
     frames: list[FloatArray] = []
     stretches: list[float] = []
     for bone, values in zip(bones, row, strict=True):
@@ -115,7 +115,7 @@ def beginnings(bones: Sequence[Bone], row: list[list[float]]) -> FloatArray:
 
 
 def _turn(axis: str, degrees: float) -> FloatArray:
-    """4x4 matrix of a turn about one axis."""
+    """The 4x4 matrix of a turn about an axis."""
     cosine, sine = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     j, k = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis.lower()]
     matrix = np.eye(4)
@@ -129,7 +129,7 @@ def acclaim_person(
 ) -> tuple[bytes, bytes, FloatArray]:
     """ASF, AMC and true positions (frames, roles, 3) in meters of the swaying person.
 
-    A joint off the end of its parent hangs on a bone of its own that does not move.
+    A joint that is not at the end of its parent's bone gets one more bone, which does not move.
     """
     recording = person(frames=frames, seed=seed)
     names = CONVENTIONS["ASF"]

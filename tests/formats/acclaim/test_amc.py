@@ -1,4 +1,4 @@
-"""AMC on ASF: read as the twin's matrices say, or refused with the line."""
+"""AMC files with ASF files agree with a slow twin, or are refused with the line."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from tests.formats.acclaim.files import (
     acclaim_person,
     amc,
     asf,
-    beginnings,
+    bone_starts,
 )
 from tests.formats.samples import bvh
 from tests.people import ROLES
@@ -46,7 +46,7 @@ def codes(recording: Recording) -> list[str]:
 
 
 def line_of(motion: bytes) -> str:
-    """The place that the reader names in refusing the motion."""
+    """The location in the error for the motion."""
     with pytest.raises(Unreadable) as caught:
         read_amc(motion, asf())
     (place,) = caught.value.places
@@ -55,10 +55,10 @@ def line_of(motion: bytes) -> str:
 
 
 def twin(bones: tuple[Bone, ...] = ARM, rows: Rows = ARM_ROWS) -> np.ndarray:
-    return np.array([beginnings(bones, row) for row in rows])
+    return np.array([bone_starts(bones, row) for row in rows])
 
 
-def test_a_plain_pair() -> None:
+def test_a_simple_pair_of_files() -> None:
     recording = read_amc(amc(), asf())
     assert recording.format == "amc"
     assert recording.skeleton.names == ("root", "upper", "lower")
@@ -101,13 +101,13 @@ MOTION, SKELETON = amc(), asf()
         (amc(first=101), SKELETON),
     ],
 )  # fmt: skip
-def test_dialects_of_the_same_pair_read_the_same(motion: bytes, skeleton: bytes) -> None:
+def test_dialects_of_the_same_files_give_the_same_recording(motion: bytes, skeleton: bytes) -> None:
     recording = read_recording(motion, skeleton)
     assert np.allclose(recording.positions, twin(), atol=1e-5)
     assert recording.cautions == ()
 
 
-def test_the_person_comes_out_as_it_went_in() -> None:
+def test_a_person_is_read_as_it_was_written() -> None:
     skeleton, motion, truth = acclaim_person()
     found = canonicalize(read_recording(motion, skeleton))
     assert found.missing_roles == ()
@@ -116,12 +116,12 @@ def test_the_person_comes_out_as_it_went_in() -> None:
     assert "frame_rate_assumed" in [caution.code for caution in found.cautions]
     expected = truth[:, [ROLES.index(role) for role in SUN_ROLES]]
     assert np.allclose(found.role_positions(), expected, atol=1e-4)
-    said = canonicalize(read_recording(motion, skeleton), frame_rate=60)
-    assert said.frame_rate == 60
-    assert "frame_rate_assumed" not in [caution.code for caution in said.cautions]
+    with_hint = canonicalize(read_recording(motion, skeleton), frame_rate=60)
+    assert with_hint.frame_rate == 60
+    assert "frame_rate_assumed" not in [caution.code for caution in with_hint.cautions]
 
 
-def test_a_rate_in_the_file_is_believed() -> None:
+def test_a_frame_rate_in_the_file_is_used() -> None:
     declared = MOTION.replace(b":DEGREES", b":SAMPLES-PER-SECOND 60\n:DEGREES")
     assert read_amc(declared, SKELETON).frame_rate == 60
     odd = read_amc(declared.replace(b"SECOND 60", b"SECOND soon"), SKELETON)
@@ -141,32 +141,32 @@ def test_channels_that_move_and_stretch() -> None:
     assert np.allclose(recording.positions[0], [[0, 0, 0], [-3, 0, 0], [-5.5, 0, 0]], atol=1e-5)
 
 
-def test_a_root_turned_beforehand_is_told() -> None:
+def test_an_orientation_of_the_root_gives_a_caution() -> None:
     bones = (Bone("root", angles=(0, 90, 0), channels=ROOT.channels), *ARM[1:])
     recording = read_amc(amc(bones), asf(bones))
     assert np.allclose(recording.positions, twin(bones), atol=1e-5)
     assert codes(recording) == ["root_orientation"]
 
 
-def test_bones_that_a_frame_lacks_stay_as_they_were() -> None:
+def test_a_bone_missing_in_a_frame_keeps_its_pose() -> None:
     lacking = MOTION.replace(b"upper 40 50 60\n", b"").replace(b"\n2\n", b"\n2\n")
     third = lacking + b"3\nroot 4 5 6 10 20 30\nupper 40 50 60\nlower 70 80\n"
     recording = read_amc(third, SKELETON)
-    held = [[*ARM_ROWS[1][:1], ARM_ROWS[0][1], *ARM_ROWS[1][2:]]]
-    assert np.allclose(recording.positions[1:2], twin(ARM, held), atol=1e-5)
+    repeated = [[*ARM_ROWS[1][:1], ARM_ROWS[0][1], *ARM_ROWS[1][2:]]]
+    assert np.allclose(recording.positions[1:2], twin(ARM, repeated), atol=1e-5)
     (caution,) = recording.cautions
     assert caution.code == "bones_missing"
     assert "upper" in caution.detail
 
 
-def test_bones_without_any_motion_stay_at_rest() -> None:
+def test_bones_without_channels_in_the_motion_stay_at_rest() -> None:
     motion = b"".join(line + b"\n" for line in MOTION.splitlines() if b"lower" not in line)
     recording = read_amc(motion, SKELETON)
     assert np.allclose(recording.positions, twin(), atol=1e-5)
     assert codes(recording) == ["bones_missing"]
 
 
-def test_a_file_that_breaks_off_loses_its_last_frame() -> None:
+def test_an_incomplete_last_frame_is_left_out() -> None:
     last = b"root 4 5 6 10 20 30\nupper 40 50 60\nlower 70 80\n"
     for cut in (b"80\n", b"lower 70 80\n", b"upper 40 50 60\nlower 70 80\n", last):
         recording = read_amc(MOTION.removesuffix(cut), SKELETON)
@@ -174,7 +174,7 @@ def test_a_file_that_breaks_off_loses_its_last_frame() -> None:
         assert np.allclose(recording.positions, twin()[:1], atol=1e-5)
 
 
-def test_frames_are_put_in_order_and_short_gaps_repeat() -> None:
+def test_frames_are_sorted_and_short_gaps_are_filled() -> None:
     def frame(number: int) -> bytes:
         return f"{number}\nroot {number} 0 0 0 0 0\nupper 0 0 0\nlower 0 0\n".encode()
 
@@ -209,14 +209,14 @@ def test_frames_are_put_in_order_and_short_gaps_repeat() -> None:
         (MOTION, b"", "line 1"),
     ],
 )
-def test_a_motion_that_cannot_be_read_is_refused_with_its_line(
+def test_an_unreadable_motion_is_refused_with_the_line(
     old: bytes, new: bytes, location: str
 ) -> None:
     assert old in MOTION
     assert line_of(MOTION.replace(old, new, 1)) == location
 
 
-def test_either_file_alone_is_refused_and_says_what_is_wanted() -> None:
+def test_one_file_without_the_other_is_refused_by_the_name_of_the_missing_file() -> None:
     with pytest.raises(SkeletonNeeded, match="`skeleton`") as missing:
         read_recording(MOTION)
     assert missing.value.places[0].location == "skeleton"
@@ -227,7 +227,7 @@ def test_either_file_alone_is_refused_and_says_what_is_wanted() -> None:
         read_recording(bvh(), SKELETON)
 
 
-def test_a_few_bytes_cannot_ask_for_gigabytes_or_minutes() -> None:
+def test_a_small_file_cannot_use_gigabytes_or_minutes() -> None:
     bones = (ROOT, *(Bone(f"b{i}", i, channels=("rx",)) for i in range(1000)))
     zeros: Rows = [[[0] * 6, *([0] for _ in range(1000))]]
     head = amc(bones, zeros)
@@ -265,7 +265,7 @@ def skeletons(draw: st.DrawFn) -> tuple[Bone, ...]:
 
 @settings(max_examples=60, deadline=None)
 @given(data=st.data(), bones=skeletons(), degrees=st.booleans(), frames=st.integers(1, 3))
-def test_any_skeleton_and_motion_reads_as_its_twin_says(
+def test_any_skeleton_and_motion_agree_with_the_slow_twin(
     data: st.DataObject, bones: tuple[Bone, ...], degrees: bool, frames: int
 ) -> None:
     rng = np.random.default_rng(data.draw(st.integers(0, 1000)))
@@ -289,17 +289,17 @@ def read_broken(seed: int) -> Recording:
     return read_amc(MOTION, mutations.mutated(SKELETON, seed, PIECES))
 
 
-def test_mutations_raise_nothing_but_our_own_failures() -> None:
+def test_damaged_files_raise_only_our_own_errors() -> None:
     assert 50 < mutations.check_broken(read_broken, range(500)) < 450
 
 
 @pytest.mark.slow
-def test_ten_thousand_mutations_raise_nothing_but_our_own_failures() -> None:
+def test_ten_thousand_damaged_files_raise_only_our_own_errors() -> None:
     mutations.check_broken(read_broken, range(10_000))
 
 
 @pytest.mark.parametrize("clip", ["02_01", "02_03", "02_04"])
-def test_real_legs_stand_where_the_bvh_of_the_same_clips_has_them(clip: str) -> None:
+def test_real_legs_have_the_positions_of_the_same_clips_in_bvh(clip: str) -> None:
     folder = real_clips()
     skeleton = (folder / "cmu-asfamc" / "02.asf").read_bytes()
     ours = read_recording((folder / "cmu-asfamc" / f"{clip}.amc").read_bytes(), skeleton)

@@ -1,4 +1,4 @@
-"""Skeletons of AMC files: units, and what is refused with its line."""
+"""ASF files: their unit, and errors with the line."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tests.formats.acclaim.files import acclaim_person, amc, asf
 MOTION, SKELETON = amc(), asf()
 
 
-def test_units_follow_the_length_and_are_left_open_where_it_says_nothing() -> None:
+def test_the_unit_is_read_from_the_length_or_is_unknown() -> None:
     assert read_amc(MOTION, asf(length=0.45)).metres_per_unit == pytest.approx(0.0254 / 0.45)
     person_asf, person_amc, _ = acclaim_person(frames=2, scale=100)
     for length, scale in ((b"2.54", 0.01), (b"1.0", None), (b"0", None), (b"1e-4", None)):
-        told = person_asf.replace(b"length 0.45", b"length " + length)
-        assert read_amc(person_amc, told).metres_per_unit == scale
+        skeleton = person_asf.replace(b"length 0.45", b"length " + length)
+        assert read_amc(person_amc, skeleton).metres_per_unit == scale
 
 
 @pytest.mark.parametrize(
@@ -42,9 +42,7 @@ def test_units_follow_the_length_and_are_left_open_where_it_says_nothing() -> No
         (b"  end\n:hierarchy", b":hierarchy", 36),
     ],
 )
-def test_a_skeleton_that_cannot_be_read_is_refused_with_its_line(
-    old: bytes, new: bytes, line: int
-) -> None:
+def test_an_unreadable_skeleton_is_refused_with_the_line(old: bytes, new: bytes, line: int) -> None:
     assert old in SKELETON
     with pytest.raises(Unreadable, match="The skeleton cannot be read") as caught:
         read_amc(MOTION, SKELETON.replace(old, new, 1))

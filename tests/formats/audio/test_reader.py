@@ -1,4 +1,4 @@
-"""Recordings: every format to the same samples; hostile and broken ones are refused."""
+"""Audio files of each format give the same samples; damaged and hostile ones are refused."""
 
 from __future__ import annotations
 
@@ -44,20 +44,20 @@ def test_wav_of_every_depth(subtype: str) -> None:
     np.testing.assert_allclose(read_audio(encoded(subtype=subtype)).samples, TONE, atol=0.01)
 
 
-def test_our_own_wav_is_one() -> None:
+def test_a_wav_file_of_our_own_is_read() -> None:
     np.testing.assert_allclose(read_audio(write_wav(TONE, RATE)).samples, TONE, atol=1e-4)
 
 
-def test_channels_are_mixed() -> None:
+def test_channels_are_mixed_to_mono() -> None:
     stereo = np.stack([TONE, -TONE, 3 * TONE / 2, TONE / 2], axis=1)
     np.testing.assert_allclose(read_audio(encoded(stereo)).samples, TONE / 2, atol=1e-4)
 
 
-@pytest.mark.parametrize(("rate", "kept"), [(8000, 8000), (44100, 22050), (96000, 24000)])
-def test_fast_recordings_are_thinned_out(rate: int, kept: int) -> None:
+@pytest.mark.parametrize(("rate", "result_rate"), [(8000, 8000), (44100, 22050), (96000, 24000)])
+def test_fast_recordings_are_decimated(rate: int, result_rate: int) -> None:
     tone = np.sin(2 * np.pi * 440 * np.arange(rate) / rate)
     sound = read_audio(encoded(tone, rate=rate, subtype="FLOAT"))
-    assert sound.rate == kept
+    assert sound.rate == result_rate
     assert sound.duration == pytest.approx(1.0, abs=0.01)
     assert np.abs(np.fft.rfft(sound.samples)).argmax() == pytest.approx(440, abs=2)
 
@@ -72,26 +72,26 @@ def test_fast_recordings_are_thinned_out(rate: int, kept: int) -> None:
         (b"\xff", UnknownFormat),
     ],
 )
-def test_what_is_no_recording_is_refused(head: bytes, failure: type[BadContent]) -> None:
+def test_other_files_are_refused(head: bytes, failure: type[BadContent]) -> None:
     with pytest.raises(failure):
         sniff_audio(head)
     with pytest.raises(failure):
         read_audio(head)
 
 
-def test_an_mp3_without_a_tag_is_known() -> None:
+def test_an_mp3_file_without_a_tag_is_recognized() -> None:
     content = encoded(format="MP3", rate=44100)
     assert sniff_audio(content[content.index(b"\xff\xfb") :][:12]) == "mp3"
 
 
-def test_samples_that_are_no_numbers_are_refused() -> None:
+def test_samples_of_nan_are_refused() -> None:
     broken = TONE.copy()
     broken[100] = np.nan
-    with pytest.raises(Unreadable, match="no numbers"):
+    with pytest.raises(Unreadable, match="not numbers"):
         read_audio(encoded(broken, subtype="FLOAT"))
 
 
-def test_no_sound_at_all_is_refused() -> None:
+def test_a_recording_without_samples_is_refused() -> None:
     with pytest.raises(Unreadable, match="no sound"):
         read_audio(encoded(TONE[:0]))
 
@@ -107,7 +107,7 @@ def test_limits(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("format", ["WAV", "FLAC", "OGG", "MP3"])
-def test_broken_files_are_read_or_refused(format: str) -> None:
+def test_damaged_files_are_read_or_refused(format: str) -> None:
     whole = encoded(TONE[:4000], format=format)
     refused = 0
     for seed in range(60):
@@ -129,7 +129,7 @@ def _stated(size: int) -> bytes:
 
 
 @pytest.mark.parametrize("format", ["WAV", "WAVEX", "RF64"])
-def test_a_wav_that_was_cut_off_tells_how_much_is_there(format: str) -> None:
+def test_a_cut_off_wav_file_reports_its_declared_and_its_real_size(format: str) -> None:
     whole = encoded(format=format)
     assert read_audio(whole).missing is None
     for length in (2000, len(whole) - 2):
@@ -140,14 +140,14 @@ def test_a_wav_that_was_cut_off_tells_how_much_is_there(format: str) -> None:
 
 
 @pytest.mark.parametrize("size", [0x7FFFFFFF, 0x80000000, 0xFFFFFFFF])
-def test_a_wav_that_was_written_as_a_stream_is_whole(size: int) -> None:
+def test_a_wav_file_written_as_a_stream_is_complete(size: int) -> None:
     streamed = read_audio(_stated(size))
     assert streamed.missing is None
     assert streamed.duration == pytest.approx(2.0, abs=0.01)
 
 
 @pytest.mark.parametrize("format", ["FLAC", "MP3"])
-def test_what_is_there_of_a_compressed_recording_is_heard(format: str) -> None:
+def test_the_existing_part_of_a_cut_off_recording_is_decoded(format: str) -> None:
     tone = np.tile(TONE, 10)
     whole = encoded(tone, format=format)
     cut = read_audio(whole[: len(whole) * 2 // 3])
@@ -157,7 +157,7 @@ def test_what_is_there_of_a_compressed_recording_is_heard(format: str) -> None:
     assert read_audio(whole).missing is None
 
 
-def test_without_the_library_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_soundfile_the_error_names_the_package(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "soundfile", None)
     with pytest.raises(ExtraNeeded, match=r"kinedex\[audio\]"):
         read_audio(encoded())

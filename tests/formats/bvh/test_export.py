@@ -1,4 +1,4 @@
-"""Animations as BVH read back in place, whatever joints do and are called."""
+"""Exported BVH files are read back with the same positions, for all movements and names."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TENTH_OF_MM = 1e-4
 
 
 def there_and_back(animation: Animation) -> tuple[Recording, list[int]]:
-    """What is read, and for each of its joints which one of the animation's it is."""
+    """The recording that is read back, and the joint of the animation for each of its joints."""
     order = []
     for root in np.flatnonzero(animation.skeleton.parents < 0):
         waiting = [int(root)]
@@ -28,7 +28,7 @@ def there_and_back(animation: Animation) -> tuple[Recording, list[int]]:
 
 
 @pytest.mark.parametrize("name", ANIMATIONS)
-def test_positions_come_back_within_a_tenth_of_a_millimetre(name: str) -> None:
+def test_positions_are_read_back_within_a_tenth_of_a_millimeter(name: str) -> None:
     animation = ANIMATIONS[name]()
     recording, order = there_and_back(animation)
     found = recording.positions / 100.0
@@ -41,7 +41,7 @@ def test_positions_come_back_within_a_tenth_of_a_millimetre(name: str) -> None:
     joints=st.integers(1, 8), frames=st.integers(1, 5), seed=st.integers(0, 9999),
     names=st.lists(st.text(max_size=12), min_size=8, max_size=8),
 )  # fmt: skip
-def test_any_skeleton_comes_back(joints: int, frames: int, seed: int, names: list[str]) -> None:
+def test_any_skeleton_is_read_back(joints: int, frames: int, seed: int, names: list[str]) -> None:
     rng = np.random.default_rng(seed)
     parents = np.array([int(rng.integers(-1, joint)) if joint else -1 for joint in range(joints)])
     positions = (5 * rng.normal(size=(frames, joints, 3))).astype(np.float32)
@@ -51,7 +51,7 @@ def test_any_skeleton_comes_back(joints: int, frames: int, seed: int, names: lis
     assert list(recording.skeleton.names) == [bvh_name(names[joint]) for joint in order]
 
 
-def test_long_chains_stay_in_place() -> None:
+def test_long_chains_keep_their_positions() -> None:
     rng = np.random.default_rng(0)
     steps = rng.normal(size=(20, 30, 3))
     steps /= np.linalg.norm(steps, axis=-1, keepdims=True) * 10
@@ -62,7 +62,7 @@ def test_long_chains_stay_in_place() -> None:
     assert np.abs(recording.positions / 100.0 - positions).max() < TENTH_OF_MM
 
 
-def test_rotations_and_firm_bones_are_kept_as_three_channels() -> None:
+def test_joints_with_constant_offsets_have_three_channels() -> None:
     animation = a_person()
     recording, order = there_and_back(animation)
     assert order == list(range(len(order)))
@@ -72,7 +72,7 @@ def test_rotations_and_firm_bones_are_kept_as_three_channels() -> None:
     assert same.min() > 1 - 1e-6
 
 
-def test_every_leaf_has_an_end_site_as_other_programs_insist() -> None:
+def test_every_leaf_has_an_end_site_for_other_programs() -> None:
     text = b"".join(write_animation_bvh(a_person())).decode()
     assert text.count("End Site") == 5  # head (its own), two hands, two toes
 
@@ -81,5 +81,5 @@ def test_every_leaf_has_an_end_site_as_other_programs_insist() -> None:
     ("name", "written"),
     [("a{b}", "a_b_"), (" a \t b\n", "a _ b_"), ("\0", "_"), ("", "joint"), ("x" * 300, "x" * 200)],
 )
-def test_names_stand_on_one_line(name: str, written: str) -> None:
+def test_names_are_on_one_line(name: str, written: str) -> None:
     assert bvh_name(name) == written

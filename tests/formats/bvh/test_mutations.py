@@ -1,4 +1,4 @@
-"""Broken BVH files: refused with our own failures, or read, and at once."""
+"""Damaged BVH files are read, or refused with our own errors, in a short time."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ def read_broken(content: bytes, seed: int) -> Recording:
     return read_bvh(mutations.mutated(content, seed, PIECES))
 
 
-def test_mutations_of_a_small_file() -> None:
+def test_a_damaged_small_file() -> None:
     good = mutations.check_broken(lambda seed: read_broken(bvh(), seed), range(1000))
     assert 10 < good < 990
 
 
 @pytest.mark.slow
-def test_ten_thousand_mutations() -> None:
+def test_ten_thousand_damaged_files() -> None:
     (clip,) = demo_clips(actors=["ada"], tasks=["bow"], takes=1)
     short = b"\n".join(clip.content.split(b"\n")[:160])
     mutations.check_broken(lambda seed: read_broken(short, seed), range(5_000))
@@ -32,7 +32,7 @@ def test_ten_thousand_mutations() -> None:
 
 
 @pytest.mark.slow
-def test_mutations_of_real_files() -> None:
+def test_damaged_real_files() -> None:
     for path in sorted((real_clips() / "bandai-namco-2").glob("wave-left-hand_*_001.bvh"))[:4]:
         content = path.read_bytes()
         mutations.check_broken(lambda seed, whole=content: read_broken(whole, seed), range(250))

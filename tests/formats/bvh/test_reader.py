@@ -1,4 +1,4 @@
-"""BVH as it is found in the wild: read rightly, or refused with the line."""
+"""BVH files of many programs are read correctly, or refused with the line."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.real_clips import real_clips
 
 
 def line_of(content: bytes) -> str:
-    """The place that the reader names in refusing the content."""
+    """The location in the error for the content."""
     with pytest.raises(Unreadable) as caught:
         read_bvh(content)
     (place,) = caught.value.places
@@ -27,14 +27,14 @@ def line_of(content: bytes) -> str:
     return place.location
 
 
-def test_what_files_share_cannot_be_changed_through_one_of_them() -> None:
+def test_shared_hierarchies_are_read_only() -> None:
     first, second = read_bvh(bvh()), read_bvh(bvh())
     assert first.skeleton.offsets.tolist() == second.skeleton.offsets.tolist()
     with pytest.raises(ValueError, match="read-only"):
         first.skeleton.offsets[0] = 1.0
 
 
-def test_a_plain_file() -> None:
+def test_a_simple_file() -> None:
     recording = read_bvh(bvh())
     assert recording.skeleton.names == ("Hips", "Spine")
     assert recording.skeleton.parents.tolist() == [-1, 0]
@@ -79,7 +79,7 @@ PLAIN = bvh()
         PLAIN.replace(b"Frames: 2", b"Frames 2"),
     ],
 )
-def test_dialects_of_the_same_file_read_the_same(content: bytes) -> None:
+def test_dialects_of_the_same_file_give_the_same_recording(content: bytes) -> None:
     recording = read_bvh(content)
     assert np.allclose(recording.positions[:, 1], SPINE, atol=1e-5)
     assert recording.frame_rate == 30
@@ -96,7 +96,7 @@ def test_position_channels_replace_the_offset_axis_by_axis() -> None:
     assert np.allclose(recording.translations[:, 1], [[7, 3, -7], [7, -4, -7]])
 
 
-def test_each_joint_turns_in_its_own_order_wherever_positions_stand() -> None:
+def test_each_joint_turns_in_the_order_of_its_channels() -> None:
     hierarchy = HIERARCHY.replace(
         "Xposition Yposition Zposition Zrotation Xrotation Yrotation",
         "Yrotation Zposition Xrotation Yposition Zrotation Xposition",
@@ -119,14 +119,14 @@ def test_joints_without_channels_and_several_roots() -> None:
 
 
 @pytest.mark.parametrize("declared", ["0", "1", "3", "999999999999"])
-def test_frames_that_lie_are_read_as_they_are(declared: str) -> None:
+def test_all_frames_are_read_if_the_declared_number_is_wrong(declared: str) -> None:
     recording = read_bvh(bvh(frames=declared))
     assert len(recording.positions) == 2
     assert [caution.code for caution in recording.cautions] == ["frames_mismatch"]
 
 
 @pytest.mark.parametrize("frame_time", ["0", "-1", "nan", "inf", "soon", "1e-9", "33", ""])
-def test_a_frame_time_that_is_none_is_left_open(frame_time: str) -> None:
+def test_an_impossible_frame_time_gives_no_frame_rate(frame_time: str) -> None:
     recording = read_bvh(bvh(frame_time=frame_time))
     assert recording.frame_rate is None
     (caution,) = recording.cautions
@@ -138,11 +138,11 @@ def test_a_frame_time_that_is_none_is_left_open(frame_time: str) -> None:
     ("frame_time", "rate"),
     [("0.0083333", 120), (".008333", 120), ("0.016667", 60), ("0.033367", 29.97), ("0.04", 25)],
 )
-def test_rates_rounded_in_print_are_made_whole(frame_time: str, rate: float) -> None:
+def test_rates_near_whole_numbers_are_rounded(frame_time: str, rate: float) -> None:
     assert read_bvh(bvh(frame_time=frame_time)).frame_rate == pytest.approx(rate, abs=0.003)
 
 
-def test_names_in_any_encoding_with_spaces_and_twice() -> None:
+def test_names_with_any_encoding_with_spaces_and_duplicates() -> None:
     latin = HIERARCHY.replace("Spine", "Rücken wirbel").encode("latin-1")
     names = read_bvh(latin + bvh()[len(HIERARCHY) :]).skeleton.names
     assert names == ("Hips", "Rücken wirbel")
@@ -181,13 +181,13 @@ def test_names_in_any_encoding_with_spaces_and_twice() -> None:
         ("HIERARCHY", "ANARCHY", "line 1"),
     ],
 )
-def test_what_cannot_be_read_is_refused_with_its_line(old: str, new: str, location: str) -> None:
+def test_an_unreadable_file_is_refused_with_the_line(old: str, new: str, location: str) -> None:
     content = bvh()
     assert old.encode() in content
     assert line_of(content.replace(old.encode(), new.encode(), 1)) == location
 
 
-def test_every_truncation_is_refused_or_read_whole() -> None:
+def test_every_truncated_file_is_refused_or_read() -> None:
     content = bvh()
     for length in range(len(content)):
         try:
@@ -199,12 +199,12 @@ def test_every_truncation_is_refused_or_read_whole() -> None:
             assert short == any(c.code == "frames_mismatch" for c in recording.cautions)
 
 
-def test_no_rows_or_channels_are_refused() -> None:
+def test_files_without_frames_or_channels_are_refused() -> None:
     assert line_of(bvh(rows=())) == "line 19"
     assert line_of(bvh("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n}\n", ("0",))) == "line 1"
 
 
-def test_thousands_of_nested_joints_are_read_and_more_refused() -> None:
+def test_nested_joints_are_read_up_to_the_limit() -> None:
     def nested(depth: int) -> bytes:
         down = "".join(f"JOINT j{i} {{ OFFSET 0 1 0 CHANNELS 0\n" for i in range(depth - 1))
         root = "HIERARCHY ROOT r { OFFSET 0 0 0 CHANNELS 1 Xrotation\n"
@@ -216,7 +216,7 @@ def test_thousands_of_nested_joints_are_read_and_more_refused() -> None:
         read_bvh(nested(MAX_JOINTS + 1))
 
 
-def test_a_few_bytes_cannot_ask_for_gigabytes() -> None:
+def test_a_small_file_cannot_use_gigabytes() -> None:
     joints = "".join(f"JOINT j{i} {{ OFFSET 0 1 0 }}\n" for i in range(MAX_JOINTS - 1))
     hierarchy = f"HIERARCHY ROOT r {{ OFFSET 0 0 0 CHANNELS 1 Xrotation\n{joints}}}\n"
     content = bvh(hierarchy, ("0",)) + b"0\n" * 20_000
@@ -247,7 +247,7 @@ def test_memory_is_a_few_times_the_array() -> None:
 
 @settings(max_examples=150, deadline=2000)
 @given(data=st.data())
-def test_mutations_raise_nothing_but_our_own_failures(data: st.DataObject) -> None:
+def test_damaged_files_raise_only_our_own_errors(data: st.DataObject) -> None:
     content = bytearray(bvh())
     for _ in range(data.draw(st.integers(1, 4))):
         start = data.draw(st.integers(0, len(content)))
@@ -265,7 +265,7 @@ def test_mutations_raise_nothing_but_our_own_failures(data: st.DataObject) -> No
 
 @settings(max_examples=200, deadline=2000)
 @given(st.binary(max_size=200))
-def test_noise_raises_nothing_but_our_own_failures(noise: bytes) -> None:
+def test_noise_raises_only_our_own_errors(noise: bytes) -> None:
     for content in (noise, HIERARCHY.encode() + b"MOTION\n" + noise):
         with pytest.raises(KinedexError):
             read_bvh(content)
@@ -283,7 +283,7 @@ def test_real_dialects() -> None:
     assert cmu.translations is None
 
 
-def test_too_many_joints_are_refused_with_their_line() -> None:
+def test_too_many_joints_are_refused_with_the_line() -> None:
     joints = b"".join(
         b"JOINT j%d\n{\nOFFSET 0 1 0\nCHANNELS 0\nEnd Site\n{\nOFFSET 0 0 0\n}\n}\n" % i
         for i in range(3000)

@@ -1,4 +1,4 @@
-"""What is written reads back the same."""
+"""Written BVH files are read back with the same motion."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def skeletons(draw: st.DrawFn) -> Skeleton:
     rate=st.sampled_from([24.0, 29.97, 30.0, 120.0]),
     seed=st.integers(0, 1000),
 )
-def test_motions_come_back(
+def test_motions_are_read_back(
     skeleton: Skeleton, frames: int, order: str, rate: float, seed: int
 ) -> None:
     rng = np.random.default_rng(seed)
@@ -51,7 +51,7 @@ def test_motions_come_back(
     roots = rng.uniform(-100, 100, (frames, 3))
     recording = read_bvh(write_bvh(skeleton, rotations, roots, rate, order))
     expected = forward_kinematics(skeleton, rotations, local_translations(skeleton, roots))
-    # The writer goes depth first; a skeleton may stand in another order.
+    # The writer writes joints depth first, but a skeleton may have another order.
     order_read = [skeleton.names.index(name) for name in recording.skeleton.names]
     assert sorted(order_read) == list(range(len(skeleton)))
     assert np.allclose(recording.positions, expected[:, order_read], atol=1e-2)
@@ -60,7 +60,7 @@ def test_motions_come_back(
     assert recording.cautions == ()
 
 
-def test_a_person_comes_back_joint_by_joint() -> None:
+def test_a_person_is_read_back_joint_by_joint() -> None:
     before = person(CONVENTIONS["MotionBuilder"])
     assert before.rotations is not None
     content = write_bvh(before.skeleton, before.rotations, before.positions[:, 0], 30.0)

@@ -1,4 +1,4 @@
-"""C3D files for tests: written byte by byte for any processor, and people as markers."""
+"""Writes C3D files for tests, for each processor, and gives the markers of people."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def c3d(
     processor: str = "intel",
     scale: float = -1.0,
     rate: float = 100.0,
-    analogue: int = 0,
+    analog: int = 0,
     first: int = 1,
     parameters: Mapping[str, Value] | None = None,
     last: int | None = None,
@@ -77,14 +77,14 @@ def c3d(
     """
     frames, points = positions.shape[:2]
     writer = Writer(processor)
-    told: dict[str, Value] = {"POINT:USED": points, "POINT:FRAMES": min(frames, 32767)}
-    told |= {"POINT:SCALE": float(scale), "POINT:RATE": float(rate), "POINT:UNITS": "mm"}
-    told |= {"POINT:LABELS": list(labels[:255])} if len(labels) else {}
-    told |= {"POINT:LABELS2": list(labels[255:])} if len(labels) > 255 else {}
-    told |= parameters or {}
-    names = list(dict.fromkeys(name.split(":")[0] for name in told))
+    written: dict[str, Value] = {"POINT:USED": points, "POINT:FRAMES": min(frames, 32767)}
+    written |= {"POINT:SCALE": float(scale), "POINT:RATE": float(rate), "POINT:UNITS": "mm"}
+    written |= {"POINT:LABELS": list(labels[:255])} if len(labels) else {}
+    written |= {"POINT:LABELS2": list(labels[255:])} if len(labels) > 255 else {}
+    written |= parameters or {}
+    names = list(dict.fromkeys(name.split(":")[0] for name in written))
     section = b"".join(writer.group(i, name) for i, name in enumerate(names, 1))
-    for name, value in told.items():
+    for name, value in written.items():
         if value is not None:
             group, _, own = name.partition(":")
             section += writer.parameter(names.index(group) + 1, own, value)
@@ -92,17 +92,17 @@ def c3d(
     section = bytes([1, 80, blocks, PROCESSORS[processor]]) + section
     data_block = 2 + blocks
     end = first + frames - 1 if last is None else last
-    words = [points, analogue, first, min(end, 65535), 10]
+    words = [points, analog, first, min(end, 65535), 10]
     header = bytes([2, 80]) + np.array(words).astype(f"{writer.ends}u2").tobytes()
     header += writer.floats([scale]) + writer.integers([data_block, 0]) + writer.floats([rate])
     return (
         header.ljust(512, b"\x00")
         + section.ljust(512 * blocks, b"\x00")
-        + _data(writer, positions, scale, analogue)
+        + _data(writer, positions, scale, analog)
     )
 
 
-def _data(writer: Writer, positions: FloatArray, scale: float, analogue: int) -> bytes:
+def _data(writer: Writer, positions: FloatArray, scale: float, analog: int) -> bytes:
     frames, points = positions.shape[:2]
     hidden = np.isnan(positions).any(axis=-1)
     values = np.zeros((frames, points, 4))
@@ -110,7 +110,7 @@ def _data(writer: Writer, positions: FloatArray, scale: float, analogue: int) ->
     values[..., 3] = np.where(hidden, -1, 0)
     if scale > 0:
         values[..., :3] = np.round(values[..., :3] / scale)
-    rows = np.concatenate([values.reshape(frames, -1), np.full((frames, analogue), 7)], axis=1)
+    rows = np.concatenate([values.reshape(frames, -1), np.full((frames, analog), 7)], axis=1)
     return writer.integers(rows) if scale > 0 else writer.floats(rows)
 
 
@@ -136,7 +136,7 @@ PLUG_IN_GAIT: dict[str, tuple[JointRole, tuple[float, float, float]]] = {
     "LHEE": (R.LEFT_FOOT, (0, -0.05, -0.08)), "RHEE": (R.RIGHT_FOOT, (0, -0.05, -0.08)),
     "LTOE": (R.LEFT_TOES, (0, 0, 0)), "RTOE": (R.RIGHT_TOES, (0, 0, 0)),
 }  # fmt: skip
-"""Markers that stand fast on a joint of the person: which, and where beside it in meters."""
+"""The markers of each joint of the person, and their offsets from the joint in meters."""
 
 
 def markers_of(recording: Recording) -> dict[str, FloatArray]:

@@ -1,4 +1,4 @@
-"""The points of C3D files: as ezc3d has them, whole or refused."""
+"""The points of C3D files agree with ezc3d, or the file is refused."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MARKERS, LABELS = stacked(marker_person()[0])
 PLAIN = c3d(MARKERS, LABELS)
 
 
-def test_ezc3d_writes_what_we_read_and_reads_what_the_tests_write(tmp_path: Path) -> None:
+def test_our_reader_and_ezc3d_agree(tmp_path: Path) -> None:
     theirs = ezc3d.c3d()
     point, analog = (theirs["parameters"][group] for group in ("POINT", "ANALOG"))
     point["RATE"]["value"], point["UNITS"]["value"] = [100], ["mm"]
@@ -33,7 +33,7 @@ def test_ezc3d_writes_what_we_read_and_reads_what_the_tests_write(tmp_path: Path
     assert list(ours.labels) == LABELS
     assert ours.frame_rate == 100
     assert np.allclose(ours.positions, hidden, atol=1e-3, equal_nan=True)
-    for processor in ("intel", "dec"):  # ezc3d knows no MIPS
+    for processor in ("intel", "dec"):  # ezc3d does not support MIPS
         for scale in (-1.0, 0.1):
             content = c3d(hidden, LABELS, processor=processor, scale=scale)
             (tmp_path / "ours.c3d").write_bytes(content)
@@ -41,7 +41,7 @@ def test_ezc3d_writes_what_we_read_and_reads_what_the_tests_write(tmp_path: Path
             assert np.allclose(read_points(content).positions, read, atol=1e-3, equal_nan=True)
 
 
-def test_more_points_than_one_parameter_names() -> None:
+def test_labels_in_more_than_one_parameter() -> None:
     many = np.tile(MARKERS[:3, :1], (1, 300, 1))
     labels = [f"point{i}" for i in range(300)]
     points = read_points(c3d(many, labels))
@@ -50,7 +50,7 @@ def test_more_points_than_one_parameter_names() -> None:
 
 @pytest.mark.parametrize("keep", [0.3, 0.6, 0.99])
 @pytest.mark.parametrize("scale", [-1.0, 0.1])
-def test_a_file_that_breaks_off_is_refused(keep: float, scale: float) -> None:
+def test_a_truncated_file_is_refused(keep: float, scale: float) -> None:
     content = c3d(MARKERS, LABELS, scale=scale)
     data = MARKERS.shape[0] * MARKERS.shape[1] * (16 if scale < 0 else 8)
     with pytest.raises(Unreadable, match="expected 60 frames, found") as caught:
@@ -60,7 +60,7 @@ def test_a_file_that_breaks_off_is_refused(keep: float, scale: float) -> None:
         read_points(content[:600])
 
 
-def test_more_frames_than_sixteen_bits_hold() -> None:
+def test_more_frames_than_sixteen_bits_can_count() -> None:
     track = np.ones((70_000, 1, 3)) * np.arange(1, 70_001)[:, None, None]
     both = {"TRIAL:ACTUAL_START_FIELD": [1, 0], "TRIAL:ACTUAL_END_FIELD": [4464, 1]}
     full = {"POINT:FRAMES": -1}
@@ -82,7 +82,7 @@ def test_more_frames_than_sixteen_bits_hold() -> None:
         (0, b"\x63", "byte 50176"),  # parameters beyond the end
     ],
 )
-def test_headers_that_cannot_be_are_refused(at: int, value: bytes, location: str) -> None:
+def test_impossible_headers_are_refused(at: int, value: bytes, location: str) -> None:
     content = PLAIN[:at] + value + PLAIN[at + len(value) :]
     with pytest.raises(Unreadable) as caught:
         read_points(content)
@@ -95,17 +95,17 @@ def test_headers_that_cannot_be_are_refused(at: int, value: bytes, location: str
     points=st.integers(1, 5),
     processor=st.sampled_from(sorted(PROCESSORS)),
     scale=st.sampled_from([-1.0, -0.01, 0.05]),
-    analogue=st.integers(0, 9),
+    analog=st.integers(0, 9),
     seed=st.integers(0, 1000),
 )
-def test_any_points_read_as_they_were_written(
-    frames: int, points: int, processor: str, scale: float, analogue: int, seed: int
+def test_any_points_are_read_as_they_were_written(
+    frames: int, points: int, processor: str, scale: float, analog: int, seed: int
 ) -> None:
     rng = np.random.default_rng(seed)
     positions = rng.uniform(-1000, 1000, (frames, points, 3)) + 1
     positions[rng.random((frames, points)) < 0.2] = np.nan
     labels = [f"P{i}" for i in range(points)]
-    content = c3d(positions, labels, processor=processor, scale=scale, analogue=analogue)
+    content = c3d(positions, labels, processor=processor, scale=scale, analog=analog)
     read = read_points(content)
     step = scale if scale > 0 else 1e-3
     assert np.allclose(read.positions, positions, atol=0.6 * step, equal_nan=True)

@@ -1,4 +1,4 @@
-"""C3D: markers become a person, whatever processor, marker set and damage; or are refused."""
+"""C3D files of all processors and marker sets give a person, or are refused."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ def codes(recording: Recording | Motion) -> list[str]:
 
 
 def worst_error(motion: Motion, start: int = 0) -> dict[JointRole, float]:
-    """By role: the largest distance from the truth, meters."""
+    """The largest distance of each role from its true position, in meters."""
     truth = TRUTH[start : start + motion.frames, [ROLES.index(role) for role in SUN_ROLES]]
     apart = np.linalg.norm(motion.role_positions() - truth, axis=-1).max(axis=0)
     return {r: e for r, e in zip(SUN_ROLES, apart.tolist(), strict=True) if r in motion.roles}
 
 
 def hide(*gaps: tuple[str, int, int]) -> FloatArray:
-    """The person's markers, hidden by label from frame to frame (exclusive)."""
+    """The markers of the person. gaps: a hidden label, its first frame, and the frame after."""
     hidden = MARKERS.copy()
     for label, start, end in gaps:
         hidden[start:end, LABELS.index(label)] = np.nan
@@ -47,9 +47,9 @@ def hide(*gaps: tuple[str, int, int]) -> FloatArray:
 
 @pytest.mark.parametrize("processor", PROCESSORS)
 @pytest.mark.parametrize("scale", [-1.0, 0.1])
-@pytest.mark.parametrize("analogue", [0, 30])
-def test_the_person_comes_out_as_it_went_in(processor: str, scale: float, analogue: int) -> None:
-    content = c3d(MARKERS, LABELS, processor=processor, scale=scale, analogue=analogue)
+@pytest.mark.parametrize("analog", [0, 30])
+def test_a_person_is_read_as_it_was_written(processor: str, scale: float, analog: int) -> None:
+    content = c3d(MARKERS, LABELS, processor=processor, scale=scale, analog=analog)
     recording = read_recording(content)
     assert (recording.format, recording.frame_rate) == ("c3d", 100)
     assert (recording.metres_per_unit, recording.up_axis) == (0.001, "z")
@@ -128,7 +128,7 @@ def test_helen_hayes() -> None:
     assert max(errors.values()) < 0.06
 
 
-def test_outer_markers_alone_are_near_enough() -> None:
+def test_outer_markers_alone_are_accurate_enough() -> None:
     outer = {
         label: track for label, track in TRACKS.items() if label[1:] not in ("KNM", "ANM", "ELM")
     }
@@ -137,7 +137,7 @@ def test_outer_markers_alone_are_near_enough() -> None:
     assert max(worst_error(motion).values()) < 0.051
 
 
-def test_hip_joints_lie_below_and_inside_the_pelvis_markers() -> None:
+def test_hip_joints_are_below_and_inside_the_pelvis_markers() -> None:
     motion = canonicalize(read_c3d(PLAIN))
     for side in ("left", "right"):
         role = JointRole(f"{side}_upper_leg")
@@ -145,7 +145,7 @@ def test_hip_joints_lie_below_and_inside_the_pelvis_markers() -> None:
         assert np.linalg.norm(motion.positions[:, motion.roles[role]] - truth, axis=-1).max() < 0.06
 
 
-def test_what_is_no_marker_of_this_person_is_left_out() -> None:
+def test_other_points_and_other_subjects_are_left_out() -> None:
     rng = np.random.default_rng(0)
     tracks = dict(TRACKS)
     extra = {"*12": 1.0, "": 1.0, "LKneeAngles": 90.0, "HEDO": 1.0, "Ann:LKNE": 1.0, "Ann:C7": 1.0}
@@ -157,7 +157,7 @@ def test_what_is_no_marker_of_this_person_is_left_out() -> None:
     assert max(worst_error(canonicalize(recording)).values()) < 0.001
 
 
-def test_of_the_same_label_twice_the_one_seen_most_is_read() -> None:
+def test_the_point_seen_most_often_is_read_if_a_label_occurs_twice() -> None:
     ghost = np.full((len(MARKERS), 1, 3), np.nan)
     ghost[5:9] = 1e4
     for positions, labels in (
@@ -174,12 +174,13 @@ def test_short_gaps_are_filled() -> None:
     recording = read_c3d(content)
     assert codes(recording) == ["gaps_filled"]
     errors = worst_error(canonicalize(recording))
-    assert max(errors.pop(role) for role in (R.RIGHT_FOOT, R.LEFT_HAND)) < 0.1  # ends are held
+    # Gaps at the ends are filled with the nearest position, which is less accurate.
+    assert max(errors.pop(role) for role in (R.RIGHT_FOOT, R.LEFT_HAND)) < 0.1
     assert max(errors.values()) < 0.01
 
 
 @pytest.mark.parametrize("hidden", ["nan", "zeros", "residual"])
-def test_whatever_says_that_a_point_is_hidden(hidden: str) -> None:
+def test_every_way_to_mark_a_hidden_point(hidden: str) -> None:
     positions = MARKERS.copy()
     at = (slice(10, 20), LABELS.index("LKNE"))
     content = bytearray(c3d(positions, LABELS))
@@ -203,7 +204,7 @@ def test_long_gaps_are_refused_with_marker_and_frames() -> None:
     assert "30" in place.message
 
 
-def test_long_gaps_of_markers_that_others_stand_in_for_are_told() -> None:
+def test_long_gaps_of_markers_that_are_not_needed_give_a_caution() -> None:
     recording = read_c3d(c3d(hide(("LKNM", 10, 40), ("C7", 0, 50), ("LTHI", 0, 59)), LABELS))
     (caution,) = recording.cautions
     assert caution.code == "markers_left_out"
@@ -223,7 +224,7 @@ def test_labels_that_are_never_seen_are_absent() -> None:
     assert motion.missing_roles == ()
 
 
-def test_frames_with_nobody_there_are_trimmed_at_the_ends() -> None:
+def test_frames_without_markers_are_removed_at_the_ends() -> None:
     empty = np.full((40, *MARKERS.shape[1:]), np.nan)
     recording = read_c3d(c3d(np.concatenate([empty, MARKERS, empty]), LABELS))
     assert codes(recording) == ["frames_trimmed"]
@@ -236,20 +237,20 @@ def test_roles_sent_by_the_client_may_be_markers() -> None:
     strange = [f"point{i}" for i in range(len(LABELS))]
     with pytest.raises(NotHuman):
         canonicalize(read_c3d(c3d(MARKERS, strange)))
-    said = {"hips": "LASI", "neck": "C7", "left_knee": "LKNE", "right_knee": "RKNE"}
-    names = {role: strange[LABELS.index(label)] for role, label in said.items()}
+    roles = {"hips": "LASI", "neck": "C7", "left_knee": "LKNE", "right_knee": "RKNE"}
+    names = {role: strange[LABELS.index(label)] for role, label in roles.items()}
     motion = canonicalize(read_c3d(c3d(MARKERS, strange)), roles=names)
     assert len(motion.roles) == 4
 
 
-def test_no_labels_at_all_are_refused() -> None:
+def test_a_file_without_labels_is_refused() -> None:
     with pytest.raises(Unreadable, match="labeled markers"):
         read_c3d(c3d(MARKERS, []))
     with pytest.raises(Unreadable, match="labeled markers"):
         read_c3d(c3d(np.full_like(MARKERS, np.nan), LABELS))
 
 
-def test_a_few_bytes_cannot_ask_for_gigabytes_or_minutes() -> None:
+def test_a_small_file_cannot_use_gigabytes_or_minutes() -> None:
     content = bytearray(PLAIN)
     content[2:4], content[8:10] = b"\xff\xff", b"\xff\xff"
     tracemalloc.start()
@@ -264,20 +265,20 @@ def test_a_few_bytes_cannot_ask_for_gigabytes_or_minutes() -> None:
         read_c3d(blinking)
 
 
-SMALL = c3d(MARKERS[:8, :], LABELS, analogue=3)
+SMALL = c3d(MARKERS[:8, :], LABELS, analog=3)
 
 
 def read_broken(seed: int) -> Recording:
     head = len(SMALL) - 8 * len(LABELS) * 16
-    if seed % 3:  # most mutations where the structure is
+    if seed % 3:  # most damage is in the header and the parameters
         return read_c3d(mutations.mutated(SMALL[:head], seed) + SMALL[head:])
     return read_c3d(mutations.mutated(SMALL, seed))
 
 
-def test_mutations_raise_nothing_but_our_own_failures() -> None:
+def test_damaged_files_raise_only_our_own_errors() -> None:
     assert 50 < mutations.check_broken(read_broken, range(500)) < 450
 
 
 @pytest.mark.slow
-def test_ten_thousand_mutations_raise_nothing_but_our_own_failures() -> None:
+def test_ten_thousand_damaged_files_raise_only_our_own_errors() -> None:
     mutations.check_broken(read_broken, range(10_000))

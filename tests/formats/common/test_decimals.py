@@ -1,4 +1,4 @@
-"""Plain decimals, read many at once, against Python's own reading of each."""
+"""Plain decimal numbers, read many at once, agree with Python's reading of each number."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ WORDS = st.text(alphabet="0123456789.-", min_size=1, max_size=6)
 
 
 @given(st.lists(st.tuples(PLAIN, PLAIN, PLAIN), min_size=1, max_size=6))
-def test_each_number_is_read_as_alone(rows: list[tuple[str, str, str]]) -> None:
+def test_each_number_is_read_as_python_reads_it(rows: list[tuple[str, str, str]]) -> None:
     lines = ["\t ".join(row).encode() for row in rows]
     table = plain_table(lines, 3)
     assert table is not None
@@ -24,7 +24,7 @@ def test_each_number_is_read_as_alone(rows: list[tuple[str, str, str]]) -> None:
 
 
 @given(st.lists(st.tuples(WORDS, WORDS), min_size=1, max_size=4))
-def test_what_is_no_number_is_never_read_as_one(rows: list[tuple[str, str]]) -> None:
+def test_text_that_is_not_a_number_is_never_read_as_a_number(rows: list[tuple[str, str]]) -> None:
     table = plain_table([" ".join(row).encode() for row in rows], 2)
     if table is not None:
         np.testing.assert_array_equal(table, [[float(word) for word in row] for row in rows])
@@ -37,13 +37,13 @@ NOT_PLAIN = """
 
 
 @pytest.mark.parametrize("line", NOT_PLAIN.strip().replace("\n", "; ").split("; "))
-def test_what_is_not_plain_is_left_alone(line: str) -> None:
+def test_numbers_that_are_not_plain_are_left_to_the_slow_reader(line: str) -> None:
     assert plain_table([line.encode()], 2) is None
 
 
-def test_lines_are_not_joined() -> None:
+def test_numbers_of_two_lines_are_not_joined() -> None:
     assert plain_table([b"1 2 3", b"4"], 2) is None
 
 
-def test_no_lines_are_left_alone() -> None:
+def test_no_lines_give_no_table() -> None:
     assert plain_table([], 3) is None

@@ -1,4 +1,4 @@
-"""Numbers in every manner of writing, and nothing that is none."""
+"""Numbers in all forms are read, and other text is refused."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from app.formats.common.numbers import MAX_MAGNITUDE, excerpt, parse_numbers
 
 
 @given(st.lists(st.floats(-MAX_MAGNITUDE, MAX_MAGNITUDE)), st.sampled_from([" ", "\t", ", ", ","]))
-def test_any_numbers_come_back(numbers: list[float], between: str) -> None:
+def test_any_numbers_are_read_back(numbers: list[float], between: str) -> None:
     text = between.join(map(repr, numbers)).encode()
     assert parse_numbers(text, 1, expected=len(numbers)).tolist() == numbers
 
@@ -36,7 +36,7 @@ def test_commas_separate_unless_points_are_expected(
 @pytest.mark.parametrize(
     "bad", [b"nan", b"-inf", b"1e10", b"1_0", b"0x1", b"1.2.3", b"\xff", b"--1"]
 )
-def test_the_bad_one_is_named_with_its_line(bad: bytes) -> None:
+def test_a_bad_number_is_reported_with_its_line(bad: bytes) -> None:
     with pytest.raises(Unreadable) as caught:
         parse_numbers(b"1 2 " + bad, 7)
     assert caught.value.places[0].location == "line 7"

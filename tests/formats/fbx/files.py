@@ -1,4 +1,4 @@
-"""Small binary FBX files, written for the tests of their reader."""
+"""Writes small binary FBX files for the tests of the reader."""
 
 from __future__ import annotations
 
@@ -21,8 +21,10 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Curve:
-    """Keys at seconds; flags and data (right slope, next left slope, weights, velocities) of
-    all keys, or of each."""
+    """The keys of a curve. times: seconds. flags, data: of all keys, or of each key.
+
+    data: the right slope, the next left slope, the weights and the velocities.
+    """
 
     times: Sequence[float]
     values: Sequence[float]
@@ -33,7 +35,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Bone:
-    """A node; `parent` is an index or -1; properties by FBX's names."""
+    """A node. parent: an index, or -1. properties: by their names in FBX."""
 
     name: str
     parent: int = -1
@@ -42,12 +44,12 @@ class Bone:
 
 
 Curves = Mapping[tuple[int, str], Mapping[str, Curve]]
-"""By node's index and property: curves by axis."""
+"""The curves by axis of each property, by the index of the node and the property's name."""
 
 
 @dataclass(frozen=True)
 class Take:
-    """A stack with one layer for each mapping; span in seconds."""
+    """A stack with one layer for each mapping. span: seconds."""
 
     name: str
     layers: Sequence[Curves]
@@ -57,15 +59,15 @@ class Take:
 
 @dataclass(frozen=True)
 class Array:
-    """An array property: its type's letter and its numbers."""
+    """An array property: the letter of its type, and its numbers."""
 
     code: str
     numbers: Sequence[float]
     deflate: bool = False
     stored: bytes | None = None
-    """Deflated bytes that stand instead of the numbers."""
+    """Compressed bytes that are written in place of the numbers."""
     count: int = 0
-    """What is said of them."""
+    """The declared count of the numbers in `stored`."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +107,7 @@ def fbx(
 
 
 def document(records: Iterable[Record], version: int = 7400) -> bytes:
-    """Magic, version, records and the empty one that ends them."""
+    """The bytes of a file: magic, version, records, and the empty record at the end."""
     start = MAGIC + version.to_bytes(4, "little")
     wide = version >= 7500
     content = start

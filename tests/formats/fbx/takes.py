@@ -1,4 +1,4 @@
-"""A small chain of bones that sways, as FBX files hold it: what the FBX tests share."""
+"""A small chain of swaying bones as FBX files, shared by the FBX tests."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def clip(
 
 
 def expected(bones: Sequence[Bone], animated: Animated = SWAY) -> FloatArray:
-    """(frames, bones, 3) by the slow twin."""
+    """(frames, bones, 3) the positions by the slow twin."""
     frames = max(len(values) for values in animated.values())
     return np.array(
         [
@@ -59,7 +59,7 @@ def expected(bones: Sequence[Bone], animated: Animated = SWAY) -> FloatArray:
 
 
 def consistent(recording: Recording) -> bool:
-    """Whether rotations, translations and offsets tell the same as the positions."""
+    """Whether rotations, translations and offsets give the positions."""
     assert recording.rotations is not None
     moved = recording.translations
     if moved is None:
@@ -83,7 +83,7 @@ def person_bones(names: Mapping[Any, str]) -> list[Bone]:
 
 
 def person_takes(seconds: Mapping[str, float]) -> bytes:
-    """A person with an animation of each name, which lasts so long at 30 Hz."""
+    """A person with animations at 30 Hz; seconds: the duration of each, by its name."""
     takes = []
     for name, length in seconds.items():
         phase = np.linspace(0, 6 * length, round(30 * length) + 1)
@@ -102,7 +102,7 @@ WALK = Take("walk", [curves(SWAY)])
 
 
 def axis_system(coord: str, up: str, front: str) -> dict[str, int]:
-    """GlobalSettings of axes such as "-z"."""
+    """The GlobalSettings of three axes, for example "-z"."""
     found = {}
     for name, axis in (("CoordAxis", coord), ("UpAxis", up), ("FrontAxis", front)):
         found[name] = "xyz".index(axis[-1])

@@ -1,4 +1,4 @@
-"""Values between the keys of an FBX curve, against the definition of a Bezier curve."""
+"""Values between the keys of an FBX curve agree with the definition of a Bezier curve."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from app.errors import FormatNotSupported
 from app.formats.fbx.curves import sample
-from app.formats.fbx.nodes import FbxFile
+from app.formats.fbx.records import FbxFile
 from app.formats.fbx.scene import FbxScene
 from app.numerics.arrays import FloatArray
 from tests.formats.fbx.files import (
@@ -82,7 +82,7 @@ def test_tangents_with_slopes_and_weights(
     assert np.allclose(found, truth, atol=1e-4)
 
 
-def test_tangents_are_a_third_of_the_gap_unless_they_are_weighted() -> None:
+def test_tangents_without_weight_have_a_third_of_the_gap() -> None:
     at = np.linspace(0, 1, 11)
     data = [(5.0, -3.0, packed_weights(0.9, 0.1), 0)]
     found = sampled(Curve([0, 1], [0, 1], CUBIC | USER, data), at)
@@ -105,7 +105,7 @@ def test_tangents_are_a_third_of_the_gap_unless_they_are_weighted() -> None:
 def test_automatic_tangents(
     flags: int, stored: tuple[float, float], slopes: list[tuple[float, float]]
 ) -> None:
-    """Slopes on the left and right of keys whose gaps rise by 2, 5 and -2 a second."""
+    """The keys have gaps with the slopes 2, 5 and -2 per second; slopes are left and right."""
     keys = [(0.0, 0.0), (1.0, 2.0), (3.0, 12.0), (4.0, 10.0)]
     times, values = zip(*keys, strict=True)
     curve = Curve(times, values, flags, [(*stored, 0, 0)])
@@ -115,7 +115,7 @@ def test_automatic_tangents(
         assert sampled(curve, np.array([at]))[0] == pytest.approx(truth, abs=1e-5)
 
 
-def test_clamped_automatic_tangents_are_flat_beside_an_equal_value() -> None:
+def test_clamped_automatic_tangents_are_flat_next_to_an_equal_value() -> None:
     flags = CUBIC | AUTO | CLAMP
     found = sampled(Curve([0, 1, 2, 3], [0, 5, 5, 9], flags), np.linspace(1, 2, 5))
     assert np.allclose(found, 5, atol=1e-6)
@@ -128,12 +128,12 @@ def test_progressive_tangents_do_not_overshoot() -> None:
     assert found.min() >= -1e-6
 
 
-def test_before_and_after_its_keys_a_curve_is_constant() -> None:
+def test_a_curve_is_constant_outside_its_keys() -> None:
     found = sampled(Curve([1, 2], [5, 7]), np.array([0, 1, 1.5, 2, 3]))
     assert np.allclose(found, [5, 5, 6, 7, 7])
 
 
-def test_of_keys_at_one_time_the_last_counts() -> None:
+def test_the_last_of_several_keys_at_one_time_is_used() -> None:
     found = sampled(Curve([0, 1, 1, 2], [0, 4, 9, 9]), np.array([0.5, 1, 1.5]))
     assert np.allclose(found, [2, 9, 9])
 
@@ -145,7 +145,7 @@ def test_tcb_keys_are_refused_only_between_keys() -> None:
         sampled(curve, np.array([0.5]))
 
 
-def test_keys_of_no_known_interpolation_are_refused() -> None:
+def test_keys_with_an_unknown_interpolation_are_refused() -> None:
     with pytest.raises(FormatNotSupported, match="AnimationCurve"):
         sampled(Curve([0, 1], [0, 1], 0), np.array([0.5]))
 

@@ -1,4 +1,4 @@
-"""Broken FBX files: refused with our own failures, at once, and within a file's memory."""
+"""Damaged FBX files are refused with our own errors, in a short time and little memory."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from tests.cpu_time import cpu_seconds_below
 from tests.formats.fbx.files import AUTO, CUBIC, Bone, Curve, Take, fbx
 from tests.formats.fbx.test_reader import CHAIN, SWAY, TRAITS, clip, curves
 
-SLOWEST = 1.0
-"""Seconds of CPU time a file."""
-MOST_MEMORY = 60_000_000
-"""Bytes a file; the mutated ones have a few kilobytes."""
+MAX_SECONDS = 1.0
+"""The most CPU time for a file."""
+MAX_MEMORY = 60_000_000
+"""The most memory for a file in bytes. The damaged files have a few kilobytes."""
 
 
 def seeds() -> list[bytes]:
-    """Small files that together have every trait."""
+    """Small files that together have all properties that the reader supports."""
     rich = [Bone("Scene", -1, {"Lcl Scaling": (2.0, 2.0, 2.0)}, "Null")]
     rich += [
         Bone(b.name, b.parent + 1, {**b.properties, **TRAITS["both"], "InheritType": 2})
@@ -39,7 +39,7 @@ def seeds() -> list[bytes]:
 
 
 def mutated(content: bytes, rng: np.random.Generator) -> bytes:
-    """Some bytes replaced, or a piece cut, doubled or moved."""
+    """`content` with some bytes replaced, or with a piece cut, doubled or moved."""
     data = bytearray(content)
     kind = rng.integers(6)
     at = int(rng.integers(20, len(data)))
@@ -58,12 +58,12 @@ def mutated(content: bytes, rng: np.random.Generator) -> bytes:
 
 
 def read_mutations(contents: list[bytes], count: int, seed: int) -> int:
-    """Read `count` mutations, each within SLOWEST; returns how many could be read."""
+    """Read `count` mutations, each within MAX_SECONDS; returns how many could be read."""
     rng = np.random.default_rng(seed)
     read = 0
     for index in range(count):
         content = mutated(contents[index % len(contents)], rng)
-        with suppress(KinedexError), cpu_seconds_below(SLOWEST, f"mutation {index}"):
+        with suppress(KinedexError), cpu_seconds_below(MAX_SECONDS, f"mutation {index}"):
             recording = read_fbx(content)
             assert np.isfinite(recording.positions).all()
             assert recording.rotations is not None
@@ -72,25 +72,25 @@ def read_mutations(contents: list[bytes], count: int, seed: int) -> int:
     return read
 
 
-def test_mutations_are_refused_or_read() -> None:
+def test_damaged_files_are_refused_or_read() -> None:
     assert 0 < read_mutations(seeds(), 300, seed=0) < 300
 
 
-def test_mutations_do_not_eat_memory() -> None:
+def test_damaged_files_need_little_memory() -> None:
     tracemalloc.start()
     read_mutations(seeds(), 60, seed=2)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert peak < MOST_MEMORY
+    assert peak < MAX_MEMORY
 
 
 @pytest.mark.slow
-def test_ten_thousand_mutations_are_refused_or_read() -> None:
+def test_ten_thousand_damaged_files_are_refused_or_read() -> None:
     assert 0 < read_mutations(seeds(), 10_000, seed=1) < 10_000
 
 
 def without_properties(content: bytes, name: str) -> tuple[bytes, int]:
-    """The file with a property count of 0 in all records of a name, and how many these are."""
+    """The file with a property count of 0 in all records of a name, and their number."""
     result, changed, at = bytearray(content), 0, -1
     length_and_name = bytes([len(name)]) + name.encode()
     while (at := content.find(length_and_name, at + 1)) >= 0:
@@ -109,8 +109,8 @@ def without_properties(content: bytes, name: str) -> tuple[bytes, int]:
         ("AnimationCurve", "id, name and type of a AnimationCurve"),
     ],
 )
-def test_records_that_lost_their_properties_are_refused(name: str, expected: str) -> None:
-    """A count of 0 once broke connections."""
+def test_records_without_properties_are_refused(name: str, expected: str) -> None:
+    """In an earlier version, a count of 0 caused an error in connections."""
     content, changed = without_properties(clip(), name)
     assert changed > 0
     with pytest.raises(Unreadable, match=expected):
@@ -118,7 +118,7 @@ def test_records_that_lost_their_properties_are_refused(name: str, expected: str
 
 
 @pytest.mark.parametrize("name", ["P", "EncryptionType"])
-def test_records_that_a_clip_can_do_without_are_passed_over(name: str) -> None:
+def test_records_that_a_clip_does_not_need_are_ignored(name: str) -> None:
     content, changed = without_properties(clip(), name)
     assert changed > 0
     assert len(read_fbx(content).positions) == len(read_fbx(clip()).positions)

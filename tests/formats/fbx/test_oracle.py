@@ -1,4 +1,4 @@
-"""Binary FBX against another reader, where it is installed: `pip install pufbx` compiles it."""
+"""Binary FBX files agree with ufbx, if it is installed: `pip install pufbx` compiles it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TOLERANCE = 1e-3
 
 
 def keys(found: Any, seconds: FloatArray) -> FloatArray:
-    """Values (n, columns) of baked keys at some seconds, linear between them."""
+    """(n, columns) the values of baked keys at `seconds` (n,), linear between keys."""
     times = np.array([key[0] for key in found])
     values = np.array([list(key[1]) for key in found], dtype=float)
     if values.shape[1] == 4:
@@ -28,7 +28,7 @@ def keys(found: Any, seconds: FloatArray) -> FloatArray:
 
 
 def baked(file: Path, seconds: FloatArray, rate: float) -> dict[str, FloatArray]:
-    """World positions (n, 3) of each node; no node of these files has a scale."""
+    """(n, 3) the world positions of each node. No node of these files has a scale."""
     pufbx = pytest.importorskip("pufbx", reason="NO ORACLE: pufbx is not installed")
     from pufbx.animation.bake_anim import bake_anim
 
@@ -52,12 +52,12 @@ def baked(file: Path, seconds: FloatArray, rate: float) -> dict[str, FloatArray]
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "first"), [("85_12", 67), ("85_14", 52)])
-def test_world_positions_are_those_of_ufbx(name: str, first: int) -> None:
-    """`first`: the frame, counted from time 0, of the clip's first keys."""
+def test_world_positions_agree_with_ufbx(name: str, first: int) -> None:
+    """first: the frame of the clip's first keys, counted from time 0."""
     file = real_clips() / "cmu-fbx" / f"{name}.fbx"
     recording = read_fbx(file.read_bytes())
     assert recording.frame_rate is not None
     seconds = (first + np.arange(len(recording.positions))) / recording.frame_rate
-    told = baked(file, seconds, recording.frame_rate)
-    expected = np.stack([told[joint] for joint in recording.skeleton.names], axis=1)
+    by_ufbx = baked(file, seconds, recording.frame_rate)
+    expected = np.stack([by_ufbx[joint] for joint in recording.skeleton.names], axis=1)
     assert np.abs(recording.positions - expected).max() < TOLERANCE

@@ -1,4 +1,4 @@
-"""Binary FBX as it is found in the wild: read rightly, or refused by name."""
+"""Binary FBX files are read correctly, or refused with the node or byte."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tests.formats.fbx.takes import (
 from tests.formats.samples import bvh
 
 
-def test_a_plain_file() -> None:
+def test_a_simple_file() -> None:
     recording = read_recording(clip())
     assert recording.format == "fbx"
     assert recording.skeleton.names == ("Hips", "Spine", "Head")
@@ -44,7 +44,7 @@ def test_a_plain_file() -> None:
 
 @pytest.mark.parametrize("version", [7100, 7400, 7500, 7700])
 @pytest.mark.parametrize("deflate", [False, True])
-def test_every_width_of_offsets_and_both_encodings(version: int, deflate: bool) -> None:
+def test_all_widths_of_offsets_and_both_encodings(version: int, deflate: bool) -> None:
     recording = read_fbx(clip(version=version, deflate=deflate))
     assert np.allclose(recording.positions, expected(CHAIN), atol=1e-4)
 
@@ -72,7 +72,7 @@ TRAITS |= {f"order {n}": {**ACTIVE, "RotationOrder": n} for n in range(6)}
 
 @pytest.mark.parametrize("bone", [0, 1])
 @pytest.mark.parametrize("trait", TRAITS)
-def test_the_whole_chain_of_a_node(trait: str, bone: int) -> None:
+def test_all_parts_of_a_transform(trait: str, bone: int) -> None:
     bones = [replace(b, properties={**b.properties, "InheritType": 1}) for b in CHAIN]
     bones[bone] = replace(bones[bone], properties={**bones[bone].properties, **TRAITS[trait]})
     recording = read_fbx(clip(bones))
@@ -90,13 +90,13 @@ def test_inherit_types(inherits: int, scale: tuple[float, float, float]) -> None
         Bone("Nose", 2, {"Lcl Translation": (0.0, 0.0, 9.0), "InheritType": 2}),
     ]
     if inherits == 1 and scale != (2.0, 2.0, 2.0):
-        bones = bones[:2]  # a sheared parent's scale cannot be taken apart
+        bones = bones[:2]  # the scale of a sheared parent cannot be separated from its rotation
     recording = read_fbx(clip(bones))
     assert np.allclose(recording.positions, expected(bones), atol=1e-3)
     assert consistent(recording)
 
 
-def test_shear_above_a_scale_that_is_inherited_apart_is_refused() -> None:
+def test_shear_above_a_separately_inherited_scale_is_refused() -> None:
     bones = changed(0, {"Lcl Scaling": (3.0, 1.0, 1.0)})
     bones[1] = replace(bones[1], properties={**bones[1].properties, "InheritType": 1})
     with pytest.raises(FormatNotSupported, match="Model 102"):
@@ -119,9 +119,15 @@ def test_bones_that_stretch() -> None:
     assert consistent(recording)
 
 
-def test_properties_that_a_node_lacks_come_from_the_template() -> None:
-    said = changed(1, {"RotationActive": 1, "RotationOrder": 5, "PreRotation": (1.0, 2.0, 3.0)})
-    bones = [*CHAIN[:1], replace(CHAIN[1], properties={**said[1].properties}), *CHAIN[2:]]
+def test_missing_properties_come_from_the_template() -> None:
+    bones_with_order = changed(
+        1, {"RotationActive": 1, "RotationOrder": 5, "PreRotation": (1.0, 2.0, 3.0)}
+    )
+    bones = [
+        *CHAIN[:1],
+        replace(CHAIN[1], properties={**bones_with_order[1].properties}),
+        *CHAIN[2:],
+    ]
     template = {"RotationActive": 1, "RotationOrder": 5, "PreRotation": (1.0, 2.0, 3.0)}
     everywhere = [replace(b, properties={**b.properties, **template}) for b in bones]
     recording = read_fbx(clip(CHAIN, template=template))
@@ -129,16 +135,16 @@ def test_properties_that_a_node_lacks_come_from_the_template() -> None:
 
 
 @pytest.mark.parametrize("axes", RIGHT_HANDED + LEFT_HANDED)
-def test_any_axes_come_out_as_x_right_y_up_z_front(axes: dict[str, int]) -> None:
+def test_all_axes_become_x_right_y_up_z_front(axes: dict[str, int]) -> None:
     recording = read_fbx(clip(settings={"TimeMode": 6, **axes}))
     seen = expected(CHAIN)
     for column, name in enumerate(("CoordAxis", "UpAxis", "FrontAxis")):
-        told = axes[f"{name}Sign"] * seen[:, :, axes[name]]
-        assert np.allclose(recording.positions[:, :, column], told, atol=1e-4)
+        expected_column = axes[f"{name}Sign"] * seen[:, :, axes[name]]
+        assert np.allclose(recording.positions[:, :, column], expected_column, atol=1e-4)
     assert consistent(recording)
 
 
-def test_axes_that_are_none_are_refused() -> None:
+def test_impossible_axes_are_refused() -> None:
     with pytest.raises(Unreadable, match="GlobalSettings"):
         read_fbx(clip(settings={"UpAxis": 0, "CoordAxis": 0}))
 
@@ -152,7 +158,7 @@ def test_units(factor: float, meters: float | None) -> None:
 
 
 @pytest.mark.parametrize(
-    ("said", "keys", "rate", "doubted"),
+    ("settings", "keys", "rate", "has_caution"),
     [
         ({"TimeMode": 6}, 30, 30, False),
         ({"TimeMode": 3}, 60, 60, False),
@@ -166,18 +172,18 @@ def test_units(factor: float, meters: float | None) -> None:
         ({"TimeMode": 1}, 30, 120, False),
     ],
 )
-def test_frame_rates(said: dict[str, Any], keys: float, rate: float, doubted: bool) -> None:
-    recording = read_fbx(clip(rate=keys, settings=said))
+def test_frame_rates(settings: dict[str, Any], keys: float, rate: float, has_caution: bool) -> None:
+    recording = read_fbx(clip(rate=keys, settings=settings))
     assert recording.frame_rate == pytest.approx(rate, rel=1e-6)
     count = round((FRAMES - 1) * rate / keys) + 1
     assert len(recording.positions) == count
     step = (count - 1) // (FRAMES - 1)
     assert np.allclose(recording.positions[::step], expected(CHAIN), atol=1e-3)
     codes = [caution.code for caution in recording.cautions]
-    assert codes == (["frame_rate_from_keys"] if doubted else [])
+    assert codes == (["frame_rate_from_keys"] if has_caution else [])
 
 
-def test_sparse_keys_are_sampled_at_the_scenes_rate() -> None:
+def test_sparse_keys_are_sampled_at_the_rate_of_the_scene() -> None:
     turn = {(1, "Lcl Rotation"): {"Y": Curve([0, 0.7, 2.0], [0, 70, 200])}}
     recording = read_fbx(fbx(CHAIN, [Take("t", [turn])], settings={"TimeMode": 6}))
     assert len(recording.positions) == 61
@@ -187,7 +193,7 @@ def test_sparse_keys_are_sampled_at_the_scenes_rate() -> None:
     )
 
 
-def test_only_the_stacks_span_is_read() -> None:
+def test_only_the_span_of_the_stack_is_read() -> None:
     take = Take("t", [curves(SWAY)], span=(1 / 30, 4 / 30))
     recording = read_fbx(fbx(CHAIN, [take], settings={"TimeMode": 6}))
     assert np.allclose(recording.positions, expected(CHAIN)[1:5], atol=1e-3)
@@ -204,7 +210,7 @@ def test_axes_without_curves_keep_their_value() -> None:
     assert np.allclose(recording.positions, expected(bones, still), atol=1e-3)
 
 
-def test_the_longest_stack_is_read_and_another_when_it_is_asked_for() -> None:
+def test_the_longest_stack_is_read_by_default() -> None:
     short = {key: values[:3] + 1 for key, values in SWAY.items()}
     content = fbx(
         CHAIN,
@@ -224,14 +230,14 @@ def test_the_longest_stack_is_read_and_another_when_it_is_asked_for() -> None:
         read_fbx(content, "empty")
 
 
-def test_a_stack_is_found_by_its_name_as_a_form_sends_it() -> None:
+def test_a_stack_is_found_by_the_name_that_a_form_sends() -> None:
     name = "Ka\u0308mpfer|Schlag "
     content = fbx(CHAIN, [Take("a", [curves(SWAY)]), Take(name, [curves(SWAY)])])
     (caution,) = read_fbx(content, "K\u00e4mpfer|Schlag").cautions
     assert f"{name} was read" in caution.detail
 
 
-def test_so_many_stacks_that_not_all_are_listed() -> None:
+def test_a_message_lists_a_limited_number_of_stacks() -> None:
     content = fbx(CHAIN, [Take(f"take{i}", [curves(SWAY)]) for i in range(103)])
     (caution,) = read_fbx(content).cautions
     assert "take99 and 3 more" in caution.detail

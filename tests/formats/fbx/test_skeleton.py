@@ -1,4 +1,4 @@
-"""Which nodes of an FBX file are the body, what is refused by name, and real people."""
+"""The nodes of an FBX file that are the body, unsupported files, and real clips."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_nodes_above_the_body_carry_it() -> None:
     assert np.allclose(recording.positions, expected(bones, animated)[:, 1:], rtol=1e-5, atol=1e-2)
 
 
-def test_a_null_that_carries_the_body_is_a_joint_where_it_moves() -> None:
+def test_a_moving_null_that_carries_the_body_is_a_joint() -> None:
     bones = [Bone("Reference", -1, {}, "Null")]
     bones += [replace(bone, parent=bone.parent + 1) for bone in CHAIN]
     animated = {(0, "Lcl Translation"): np.linspace([0, 0, 0], [50, 0, 10], FRAMES)}
@@ -59,7 +59,7 @@ def test_a_body_of_moving_nulls() -> None:
     assert recording.skeleton.names == ("Hips", "Spine")
 
 
-def test_of_several_skeletons_the_one_that_moves_most_is_read() -> None:
+def test_the_skeleton_with_the_most_moving_joints_is_read() -> None:
     bones = [Bone("Prop"), Bone("Tip", 0), Bone("Handle", 1), Bone("Grip", 2)]
     bones += [replace(b, parent=b.parent + 4 if b.parent >= 0 else -1) for b in CHAIN]
     animated = {(bone + 4, name): values for (bone, name), values in SWAY.items()}
@@ -69,14 +69,14 @@ def test_of_several_skeletons_the_one_that_moves_most_is_read() -> None:
     assert [caution.code for caution in recording.cautions] == ["skeleton_chosen"]
 
 
-def test_meshes_beside_the_body_do_not_matter() -> None:
+def test_meshes_are_ignored() -> None:
     bones = [*CHAIN, Bone("Shirt", -1, {}, "Mesh"), Bone("Camera", 2, {}, "Camera")]
     recording = read_fbx(clip(bones))
     assert recording.skeleton.names == ("Hips", "Spine", "Head")
 
 
 @pytest.mark.parametrize(
-    ("bones", "take", "place"),
+    ("bones", "take", "location"),
     [
         (CHAIN, [], "AnimationStack"),
         (CHAIN, [Take("t", [{}])], "AnimationCurve"),
@@ -91,12 +91,14 @@ def test_meshes_beside_the_body_do_not_matter() -> None:
         (changed(1, {"Lcl Scaling": (1e9, 1e9, 1e9)}), [WALK], "Model"),
     ],
 )
-def test_what_cannot_be_read_is_named(bones: list[Bone], take: list[Take], place: str) -> None:
+def test_an_unreadable_node_is_named_in_the_error(
+    bones: list[Bone], take: list[Take], location: str
+) -> None:
     with pytest.raises(Unreadable) as caught:
         read_fbx(fbx(bones, take))
     (found,) = caught.value.places
     assert found.location.startswith("node Objects/")
-    assert place in found.location
+    assert location in found.location
     assert "expected" in found.message
 
 
@@ -124,12 +126,12 @@ REPEATED = {
         (fbx(CHAIN, [Take("t", [{**curves(SWAY), (2, "Lcl Rotation"): REPEATED}])]), "Extrapola"),
     ],
 )
-def test_what_we_do_not_know_is_refused_by_name(content: bytes, word: str) -> None:
+def test_unsupported_files_are_refused_by_name(content: bytes, word: str) -> None:
     with pytest.raises(FormatNotSupported, match=word):
         read_fbx(content)
 
 
-def test_layers_without_edits_and_muted_ones_do_not_matter() -> None:
+def test_layers_without_edits_and_muted_layers_are_ignored() -> None:
     neutral = {(1, "Lcl Rotation"): {"X": Curve([0, 1], [0, 0])}}
     recording = read_fbx(fbx(CHAIN, [Take("t", [curves(SWAY), neutral])], settings={"TimeMode": 6}))
     assert np.allclose(recording.positions, expected(CHAIN), atol=1e-3)
@@ -145,7 +147,7 @@ def test_steps(flags: int, value: float) -> None:
     )
 
 
-def test_a_stray_key_far_away_does_not_eat_memory() -> None:
+def test_a_single_far_key_does_not_use_memory() -> None:
     far = {(1, "Lcl Rotation"): {"Z": Curve([0, 1e8], [10, 50])}}
     with pytest.raises(TooLarge):
         read_fbx(fbx(CHAIN, [Take("t", [far])], settings={"TimeMode": 6}))
@@ -155,7 +157,7 @@ def test_a_stray_key_far_away_does_not_eat_memory() -> None:
 @pytest.mark.parametrize("axes", [*RIGHT_HANDED[:2], LEFT_HANDED[0]])
 def test_a_person_becomes_a_canonical_motion(convention: str, axes: dict[str, int]) -> None:
     bones = person_bones(CONVENTIONS[convention])
-    # the person stands along Y; a node above turns it to the file's own axes
+    # The person stands along Y. A node above turns it to the axes of the file.
     turn = np.zeros((3, 3))
     for row, name in enumerate(("CoordAxis", "UpAxis", "FrontAxis")):
         turn[row, axes[name]] = axes[f"{name}Sign"]
@@ -205,7 +207,7 @@ def skeletons(draw: st.DrawFn) -> list[Bone]:
 
 @settings(max_examples=40, deadline=None)
 @given(bones=skeletons(), seed=st.integers(0, 2**32 - 1), wide=st.booleans())
-def test_what_is_written_is_read(bones: list[Bone], seed: int, wide: bool) -> None:
+def test_any_written_file_is_read(bones: list[Bone], seed: int, wide: bool) -> None:
     rng = np.random.default_rng(seed)
     animated = {
         (index, name): rng.uniform(-180, 180, (4, 3)).astype(np.float32).astype(float)

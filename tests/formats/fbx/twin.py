@@ -1,4 +1,4 @@
-"""The textbook's way through an FBX skeleton: 4x4 matrices, node by node, frame by frame."""
+"""The slow twin of the FBX transforms: 4x4 matrices, node by node, frame by frame."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def scaled(vector: Sequence[float]) -> FloatArray:
 
 
 def turned(degrees: Sequence[float], order: str = "XYZ") -> FloatArray:
-    """The first axis of the order turns first."""
+    """The 4x4 matrix of Euler angles; the first axis of the order turns first."""
     matrix = np.eye(4)
     for axis in order:
         index = "XYZ".index(axis)
@@ -38,7 +38,7 @@ def turned(degrees: Sequence[float], order: str = "XYZ") -> FloatArray:
 def world_positions(
     bones: Sequence[Bone], animated: Mapping[tuple[int, str], Sequence[float]]
 ) -> FloatArray:
-    """(bones, 3) of one frame; `animated` replaces properties by (bone, name)."""
+    """(bones, 3) the positions in one frame; `animated` replaces properties by (bone, name)."""
     world: list[tuple[FloatArray, FloatArray, FloatArray]] = []
     result = []
     for index, bone in enumerate(bones):
@@ -54,7 +54,7 @@ def _world(
     animated: Mapping[tuple[int, str], Sequence[float]],
     above: tuple[FloatArray, FloatArray, FloatArray] | None,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """World matrix, world rotation, own scale: the sample "Transformations" of the FBX SDK."""
+    """World matrix, world rotation and own scale, as in the sample "Transformations" of the SDK."""
 
     def get(name: str, default: float = 0.0) -> Sequence[float]:
         value = animated.get((index, name), bone.properties.get(name, (default,) * 3))

@@ -1,4 +1,4 @@
-"""Reading a GLB file back, as plainly as its specification tells; and judging it."""
+"""Reads GLB files in a simple way by the specification, and runs the Khronos validator."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ _TYPES = {5126: "<f4", 5123: "<u2", 5125: "<u4"}
 _SIZES = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 NPM_SECONDS = 120.0
 PACKAGE = "gltf-validator@2.0.0-dev.3.10"
-"""It has no version but of this kind."""
+"""The validator has only development versions."""
 
 
 class Glb:
-    """A GLB file's JSON object and its arrays."""
+    """The JSON object of a GLB file, and its arrays."""
 
     def __init__(self, content: bytes) -> None:
         magic, version, length = struct.unpack_from("<4sII", content)
@@ -38,21 +38,21 @@ class Glb:
         assert len(self.binary) == binary_size == self.document["buffers"][0]["byteLength"]
 
     def array(self, accessor: int) -> FloatArray:
-        """(count, numbers of an element)."""
-        told = self.document["accessors"][accessor]
-        view = self.document["bufferViews"][told["bufferView"]]
+        """(count, numbers of an element) the numbers of an accessor."""
+        entry = self.document["accessors"][accessor]
+        view = self.document["bufferViews"][entry["bufferView"]]
         part = self.binary[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]
-        numbers = np.frombuffer(part, _TYPES[told["componentType"]])
-        return numbers.reshape(told["count"], _SIZES[told["type"]])
+        numbers = np.frombuffer(part, _TYPES[entry["componentType"]])
+        return numbers.reshape(entry["count"], _SIZES[entry["type"]])
 
     def times(self) -> FloatArray:
-        """Seconds of the keys, which all samplers share."""
+        """The times of the keys in seconds. All samplers share them."""
         (animation,) = self.document["animations"]
         (keys,) = {sampler["input"] for sampler in animation["samplers"]}
         return self.array(keys)[:, 0]
 
     def world(self) -> FloatArray:
-        """(frames, nodes, 4, 4): where each node is at each key."""
+        """(frames, nodes, 4, 4) the world matrix of each node at each key."""
         nodes = self.document["nodes"]
         frames = len(self.times()) if "animations" in self.document else 1
         moves = np.zeros((frames, len(nodes), 3))
@@ -125,10 +125,10 @@ class Validator:
         """All that it finds fault with: errors, warnings, infos and hints."""
         file = self.folder / "some.glb"
         file.write_bytes(content)
-        told = subprocess.run(
+        done = subprocess.run(
             ["node", "judge.js", file.name],
             cwd=self.folder, capture_output=True, text=True, timeout=60.0, check=True,
         )  # fmt: skip
-        report = json.loads(told.stdout)
+        report = json.loads(done.stdout)
         messages: list[dict[str, Any]] = report["issues"]["messages"]
         return messages

@@ -1,4 +1,4 @@
-"""GLB files play the motion: nodes, skin and animation, by the specification."""
+"""GLB files have the motion as nodes, skin and animation, by the specification."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ ANIMATIONS = {f.__name__: f for f in (a_person, stretching, markers, one_still_j
 
 
 @pytest.mark.parametrize("name", ANIMATIONS)
-def test_nodes_are_where_the_joints_are_at_every_key(name: str) -> None:
+def test_nodes_have_the_positions_of_the_joints_at_each_key(name: str) -> None:
     animation = ANIMATIONS[name]()
     glb = Glb(write_glb(animation))
     joints = len(animation.skeleton)
@@ -61,13 +61,13 @@ def test_nodes_are_where_the_joints_are_at_every_key(name: str) -> None:
     )
 
 
-def test_keys_stand_at_the_frames_times() -> None:
+def test_keys_have_the_times_of_the_frames() -> None:
     times = Glb(write_glb(stretching())).times()
     np.testing.assert_allclose(times, np.arange(10) / 29.97, rtol=1e-6)
 
 
 @pytest.mark.parametrize("name", ["a_person", "stretching", "on_one_body"])
-def test_sticks_begin_and_end_at_joints_however_these_move(name: str) -> None:
+def test_sticks_start_and_end_at_joints_in_all_poses(name: str) -> None:
     animation = ANIMATIONS[name]()
     glb = Glb(write_glb(animation))
     corners, positions = glb.skinned(), animation.positions()
@@ -82,7 +82,7 @@ def test_sticks_begin_and_end_at_joints_however_these_move(name: str) -> None:
     assert sticks.shape[1] == len(bones) + len(animation.skeleton.end_parents)
 
 
-def test_faces_look_outwards() -> None:
+def test_triangles_face_outward() -> None:
     glb = Glb(write_glb(a_person(2)))
     (primitive,) = glb.document["meshes"][0]["primitives"]
     corners = glb.array(primitive["attributes"]["POSITION"]).astype(float)
@@ -93,12 +93,12 @@ def test_faces_look_outwards() -> None:
             assert np.dot(np.cross(b - a, c - a), (a + b + c) / 3 - middle) > 0
 
 
-def test_what_does_not_move_is_not_animated() -> None:
+def test_joints_that_do_not_move_are_not_animated() -> None:
     animation = a_person(40)
-    held = replace(animation, rotations=np.repeat(animation.rotations[:1], 40, axis=0))
-    assert "animations" not in Glb(write_glb(replace(held, translations=_still(held)))).document
-    (told,) = Glb(write_glb(animation)).document["animations"]
-    moved = [c["target"]["node"] for c in told["channels"] if c["target"]["path"] != "rotation"]
+    still = replace(animation, rotations=np.repeat(animation.rotations[:1], 40, axis=0))
+    assert "animations" not in Glb(write_glb(replace(still, translations=_still(still)))).document
+    (written,) = Glb(write_glb(animation)).document["animations"]
+    moved = [c["target"]["node"] for c in written["channels"] if c["target"]["path"] != "rotation"]
     assert moved == []
 
 
@@ -106,7 +106,7 @@ def _still(animation: Animation) -> FloatArray:
     return np.repeat(animation.translations[:1], len(animation.translations), axis=0)
 
 
-def test_quaternions_are_unit_and_never_jump() -> None:
+def test_quaternions_have_unit_length_and_never_jump() -> None:
     glb = Glb(write_glb(stretching()))
     (animation,) = glb.document["animations"]
     for channel in animation["channels"]:
@@ -116,7 +116,7 @@ def test_quaternions_are_unit_and_never_jump() -> None:
             assert (np.sum(turns[1:] * turns[:-1], axis=1) >= 0).all()
 
 
-def test_the_license_goes_along() -> None:
+def test_the_license_is_written() -> None:
     document = Glb(write_glb(a_person(10), "a clip", "CC-BY-4.0")).document
     assert document["asset"]["copyright"] == "CC-BY-4.0"
     assert document["animations"][0]["name"] == "a clip"
@@ -133,7 +133,7 @@ def test_hundreds_of_joints_are_written() -> None:
 
 
 @pytest.mark.slow
-def test_khronos_validator_finds_no_fault(tmp_path_factory: pytest.TempPathFactory) -> None:
+def test_the_khronos_validator_finds_no_error(tmp_path_factory: pytest.TempPathFactory) -> None:
     validator = Validator(tmp_path_factory.mktemp("gltf"))
     assert validator.messages(write_glb(a_person())[:-4]) != []
     for name, make in ANIMATIONS.items():

@@ -1,4 +1,4 @@
-"""NPZ and NPY content for tests, from whole arrays or from parts that lie."""
+"""Writes NPZ and NPY files for tests, from arrays, or with wrong declared sizes."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def zipped(members: dict[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> byt
 
 
 def lying_npy(descr: str, shape: str, data: bytes = b"\0" * 24, fortran: str = "False") -> bytes:
-    """An NPY file whose header says what it likes."""
+    """An NPY file with any header."""
     header = f"{{'descr': {descr}, 'fortran_order': {fortran}, 'shape': {shape}, }}\n"
     return b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header.encode() + data
 

@@ -1,4 +1,4 @@
-"""Arrays are read as numpy wrote them, or refused before they cost anything."""
+"""Arrays are read as numpy wrote them, or refused before memory is allocated."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from tests.formats.npz.files import lying_npy, npy, npz, zipped
     ),
     st.booleans(),
 )  # fmt: skip
-def test_what_numpy_writes_is_read(array: np.ndarray, fortran: bool) -> None:
+def test_arrays_are_read_as_numpy_wrote_them(array: np.ndarray, fortran: bool) -> None:
     written = np.asfortranarray(array) if fortran else array
     for content in (npy(written), zipped({"array.npy": npy(written)})):
         found = read_npy(content) if content[:2] != b"PK" else Archive(content).read("array")
@@ -36,7 +36,7 @@ def test_what_numpy_writes_is_read(array: np.ndarray, fortran: bool) -> None:
         assert found.dtype == array.dtype
 
 
-def test_text_is_read_in_either_kind() -> None:
+def test_text_is_read_as_unicode_and_as_bytes() -> None:
     assert texts(read_npy(npy(np.array(["Hüfte", "b"]))), "names") == ["Hüfte", "b"]
     assert texts(read_npy(npy(np.array([b"a", "é".encode()]))), "names") == ["a", "é"]
     assert texts(read_npy(npy(np.str_("m"))), "unit") == ["m"]
@@ -69,7 +69,7 @@ LIES = {
 
 
 @pytest.mark.parametrize("lie", LIES)
-def test_what_lies_is_refused_by_name_at_no_cost(lie: str) -> None:
+def test_a_wrong_declaration_is_refused_by_name_without_cost(lie: str) -> None:
     for read in (
         lambda: read_npy(LIES[lie], "poses"),
         lambda: Archive(zipped({"poses.npy": LIES[lie]})).read("poses"),
@@ -82,12 +82,12 @@ def test_what_lies_is_refused_by_name_at_no_cost(lie: str) -> None:
         assert refused.value.places[0].location == "poses"
 
 
-def test_objects_are_refused_with_what_to_do() -> None:
+def test_objects_are_refused_with_advice() -> None:
     with pytest.raises(Unreadable, match=r"never unpickled.*dtype=str"):
         read_npy(LIES["objects"])
 
 
-def test_bombs_are_refused_before_they_unpack() -> None:
+def test_decompression_bombs_are_refused_before_they_are_unpacked() -> None:
     bomb = npz(compressed=True, positions=np.zeros((200_000, 50, 3), dtype=np.float32))
     assert len(bomb) < 200_000
     tracemalloc.start()
@@ -97,7 +97,7 @@ def test_bombs_are_refused_before_they_unpack() -> None:
     tracemalloc.stop()
 
 
-def test_a_member_that_unpacks_to_more_than_it_says_is_cut_off() -> None:
+def test_a_member_larger_than_declared_is_refused() -> None:
     content = zipped({"a.npy": lying_npy("'<f4'", "(2, 3)", b"\0" * 50_000_000)})
     tracemalloc.start()
     with pytest.raises(Unreadable, match="expected 24 bytes"):
@@ -113,19 +113,19 @@ def test_archives_of_too_many_arrays_are_refused_quickly() -> None:
 
 
 @pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
-def test_other_compressions_are_refused(method: int) -> None:
+def test_other_compression_methods_are_refused(method: int) -> None:
     with pytest.raises(Unreadable, match="deflate"):
         Archive(zipped({"a.npy": npy(np.zeros(3))}, method)).read("a")
 
 
-def test_every_truncation_is_refused() -> None:
+def test_every_truncated_file_is_refused() -> None:
     content = npz(a=np.arange(5.0))
     for length in range(len(content)):
         with pytest.raises(Unreadable):
             Archive(content[:length])
 
 
-def test_wrong_kinds_are_refused() -> None:
+def test_wrong_types_of_elements_are_refused() -> None:
     with pytest.raises(Unreadable):
         numbers(np.array(["a"]), "key")
     for array in (np.zeros(3), np.array([["a"]]), np.array([b"\xff"])):
@@ -138,7 +138,7 @@ def test_wrong_kinds_are_refused() -> None:
 
 @settings(max_examples=150, deadline=2000)
 @given(st.data())
-def test_mutated_archives_raise_nothing_but_our_own_failures(data: st.DataObject) -> None:
+def test_damaged_archives_raise_only_our_own_errors(data: st.DataObject) -> None:
     content = bytearray(npz(compressed=data.draw(st.booleans()), a=np.arange(6.0), b="text"))
     for _ in range(data.draw(st.integers(1, 4))):
         start = data.draw(st.integers(0, len(content)))

@@ -1,4 +1,4 @@
-"""Orders of joints are told apart by the body that they make, or not at all."""
+"""Joint orders are recognized by the body that they give."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ BY_TITLE = {layout.title: layout for layout in LAYOUTS}
 
 
 def moving(layout: JointLayout, frames: int = 40) -> FloatArray:
-    """A body in that order: joints grow outwards from the person's joints of like names."""
+    """A body in this order. Joints are placed outward from joints of the person with like names."""
     rest = _rest(layout)
     sway = person(frames=frames, seed=2).positions
-    tilt = sway[:, 3] - sway[:, 0]  # hips to head: leans a little
+    tilt = sway[:, 3] - sway[:, 0]  # from the hips to the head, which leans a little
     lean = np.linalg.norm(tilt, axis=-1, keepdims=True)[:, None]
     spin = np.linspace(0, 1, frames)[:, None]
     x, y, z = np.moveaxis(rest * (lean / lean.mean()), -1, 0)
@@ -32,7 +32,7 @@ def moving(layout: JointLayout, frames: int = 40) -> FloatArray:
 
 
 def _rest(layout: JointLayout) -> FloatArray:
-    """(joints, 3): a T-pose whose bones all differ in length but are alike left and right."""
+    """(joints, 3) a T-pose whose bones have different lengths, but equal ones left and right."""
     rng = np.random.default_rng(7)
     pairs = dict(layout.paired_bones())
     offsets = np.zeros((len(layout.names), 3))
@@ -52,7 +52,7 @@ def _rest(layout: JointLayout) -> FloatArray:
 
 
 @pytest.mark.parametrize("title", BY_TITLE)
-def test_each_order_is_known_by_its_own_body(title: str) -> None:
+def test_each_order_is_recognized_by_its_body(title: str) -> None:
     layout = BY_TITLE[title]
     assert layout_of(moving(layout)) is layout
 
@@ -66,7 +66,7 @@ def test_each_order_is_a_tree_with_left_and_right(title: str) -> None:
     assert 2 * len(layout.paired_bones()) >= 0.6 * len(layout.names)
 
 
-def test_another_order_of_as_many_joints_is_not_taken_for_a_known_one() -> None:
+def test_another_order_with_the_same_number_of_joints_is_not_recognized() -> None:
     shuffled = moving(BY_TITLE["SMPL"])[:, np.random.default_rng(0).permutation(24)]
     assert layout_of(shuffled) is None
     assert layout_of(np.zeros((5, 24, 3))) is None

@@ -1,4 +1,4 @@
-"""NPZ and NPY motions: read rightly, or refused with the key, frame or joint."""
+"""NPZ and NPY files are read correctly, or refused with the key, frame or joint."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def test_any_kind_of_numbers_and_order(positions: np.ndarray) -> None:
     np.testing.assert_array_equal(recording.positions, positions.astype(np.float32))
 
 
-def test_joints_stand_after_their_parents_in_whatever_order_they_came() -> None:
+def test_joints_come_after_their_parents() -> None:
     order = np.random.default_rng(5).permutation(len(PERSON.skeleton))
     new_index = np.argsort(order)
     parents = PERSON.skeleton.parents[order]
@@ -101,22 +101,22 @@ def test_joints_stand_after_their_parents_in_whatever_order_they_came() -> None:
     assert canonicalize(recording).missing_roles == ()
 
 
-def test_without_parents_names_tell_the_roles() -> None:
+def test_roles_are_found_by_names_without_parents() -> None:
     recording = read_npz(npz(**{k: v for k, v in ARRAYS.items() if k != "parents"}))
     assert set(recording.skeleton.parents.tolist()) == {-1}
     assert set(canonicalize(recording).roles) >= set(SUN_ROLES)
 
 
-def test_a_root_is_told_as_minus_one_as_itself_or_as_smpl_does() -> None:
+def test_a_root_has_the_parent_minus_one_or_itself_or_that_of_smpl() -> None:
     parents = PERSON.skeleton.parents
     table = np.stack([parents, np.arange(len(parents))]).astype(np.uint32)
     itself = np.where(parents < 0, np.arange(len(parents)), parents)
-    for told in (parents.astype(np.int8), itself, table):
-        recording = read_npz(npz(**ARRAYS | {"parents": told}))
+    for written_parents in (parents.astype(np.int8), itself, table):
+        recording = read_npz(npz(**ARRAYS | {"parents": written_parents}))
         assert recording.skeleton.parents.tolist() == parents.tolist()
 
 
-def test_z_up_centimetres_come_out_upright_in_metres() -> None:
+def test_z_up_centimeters_become_y_up_meters() -> None:
     x, y, z = np.moveaxis(PERSON.positions, -1, 0)
     turned = {"positions": 100 * np.stack([x, -z, y], axis=-1), "unit": "cm", "up_axis": "Z"}
     motion = canonicalize(read_npz(npz(**ARRAYS | turned)))
@@ -149,13 +149,13 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_what_is_wrong_is_named(name: str) -> None:
+def test_the_error_names_the_key_frame_or_joint(name: str) -> None:
     changes, location = WRONG[name]
     assert place_of(npz(**ARRAYS | changes))[0] == location
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 1e12])
-def test_numbers_that_are_none_are_refused_with_frame_and_joint(bad: float) -> None:
+def test_nan_and_large_numbers_are_refused_with_frame_and_joint(bad: float) -> None:
     positions = PERSON.positions.copy()
     positions[7, 3, 2] = bad
     location, message = place_of(npz(**ARRAYS | {"positions": positions}))
@@ -163,7 +163,7 @@ def test_numbers_that_are_none_are_refused_with_frame_and_joint(bad: float) -> N
     assert "positions[7, 3, 2]" in message
 
 
-def test_an_archive_of_something_else_says_what_it_found() -> None:
+def test_the_error_for_another_archive_names_its_arrays() -> None:
     with pytest.raises(FormatNotSupported) as caught:
         read_recording(npz(weights=np.zeros(3), bias=np.zeros(3)))
     (place,) = caught.value.places
@@ -175,14 +175,14 @@ def test_an_archive_of_something_else_says_what_it_found() -> None:
     )
 
 
-def test_monsters_are_too_large() -> None:
+def test_very_large_arrays_are_refused() -> None:
     for shape in ((1, 2001, 3), (100_000, 201, 3)):
         content = npz(positions=np.zeros(shape, dtype=np.int8))
         with pytest.raises(TooLarge):
             read_npz(content)
 
 
-def test_a_bare_array_without_a_known_order_takes_roles_that_are_sent() -> None:
+def test_an_array_without_a_known_order_accepts_roles_of_the_client() -> None:
     recording = read_recording(npy(PERSON.positions))
     assert recording.format == "npy"
     assert recording.frame_rate is None
@@ -196,7 +196,7 @@ def test_a_bare_array_without_a_known_order_takes_roles_that_are_sent() -> None:
     assert motion.roles == roles
 
 
-def test_a_bare_array_must_be_positions() -> None:
+def test_an_array_alone_must_be_positions() -> None:
     assert place_of(npy(np.zeros((10, 263))))[0] == "array"
     assert place_of(npy(np.zeros((10, 3, 24))))[0] == "array"
 
@@ -214,7 +214,7 @@ names_and_parents = st.integers(1, 9).flatmap(
 
 @settings(max_examples=80, deadline=None)
 @given(skeleton=names_and_parents, frames=st.integers(1, 6), data=st.data())
-def test_what_is_written_reads_back(
+def test_a_written_file_is_read_back(
     skeleton: tuple[list[str], tuple[int, ...]], frames: int, data: st.DataObject
 ) -> None:
     names, parents = skeleton
@@ -261,10 +261,10 @@ def check_mutations(count: int, seed: int) -> None:
             assert np.isfinite(read_recording(content).positions).all()
 
 
-def test_mutations_raise_nothing_but_our_own_failures() -> None:
+def test_damaged_files_raise_only_our_own_errors() -> None:
     check_mutations(400, seed=1)
 
 
 @pytest.mark.slow
-def test_ten_thousand_mutations_raise_nothing_but_our_own_failures() -> None:
+def test_ten_thousand_damaged_files_raise_only_our_own_errors() -> None:
     check_mutations(10_000, seed=2)

@@ -1,4 +1,4 @@
-"""SMPL parameters: angles exact on a body that is said to be generic."""
+"""SMPL parameters: exact angles on a generic body, with a caution."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.formats.npz.files import npz
 
 R = JointRole
 UPRIGHT = np.array([np.pi / 2, 0, 0])
-"""AMASS stands its Y-up model in a Z-up world by turning the root."""
+"""AMASS has a Y-up model in a Z-up world. The rotation of the root turns it."""
 
 
 def poses(frames: int = 5, numbers: int = 156, seed: int = 0) -> FloatArray:
@@ -26,7 +26,7 @@ def poses(frames: int = 5, numbers: int = 156, seed: int = 0) -> FloatArray:
     return result
 
 
-def test_rotation_vectors_are_turned_as_scipy_does() -> None:
+def test_rotation_vectors_agree_with_scipy() -> None:
     vectors = np.random.default_rng(1).uniform(-4, 4, (50, 3))
     vectors[:2] = [[0, 0, 0], [1e-12, 0, 0]]
     found = rotation_vectors_to_quaternions(vectors)
@@ -34,15 +34,15 @@ def test_rotation_vectors_are_turned_as_scipy_does() -> None:
     np.testing.assert_allclose(found * np.sign(found[:, :1]), expected, atol=1e-12)
 
 
-def test_positions_are_those_of_the_textbook_with_the_generic_body() -> None:
-    told, trans = poses(seed=3), np.random.default_rng(4).uniform(-2, 2, (5, 3))
-    recording = read_smpl(told, trans, 120.0)
+def test_positions_agree_with_4x4_matrices() -> None:
+    angles, trans = poses(seed=3), np.random.default_rng(4).uniform(-2, 2, (5, 3))
+    recording = read_smpl(angles, trans, 120.0)
     body = generic_body()
     for frame in range(5):
         matrices: list[FloatArray] = []
         for joint, parent in enumerate(body.parents):
             local = np.eye(4)
-            vector = told[frame, 3 * joint : 3 * joint + 3] if joint < 22 else np.zeros(3)
+            vector = angles[frame, 3 * joint : 3 * joint + 3] if joint < 22 else np.zeros(3)
             local[:3, :3] = Rotation.from_rotvec(vector).as_matrix()
             local[:3, 3] = body.offsets[joint] + (trans[frame] if parent < 0 else 0)
             matrices.append(local if parent < 0 else matrices[parent] @ local)
@@ -50,7 +50,7 @@ def test_positions_are_those_of_the_textbook_with_the_generic_body() -> None:
         np.testing.assert_allclose(recording.positions[frame], expected, atol=1e-5)
 
 
-def test_an_amass_file_stands_upright_with_all_roles_and_says_what_lacks() -> None:
+def test_an_amass_file_is_upright_with_all_roles_and_a_caution() -> None:
     still = np.zeros((60, 156))
     still[:, :3] = UPRIGHT
     content = npz(
@@ -70,7 +70,7 @@ def test_an_amass_file_stands_upright_with_all_roles_and_says_what_lacks() -> No
     assert first[R.LEFT_HAND][0] > first[R.RIGHT_HAND][0]
 
 
-def test_who_lies_is_not_stood_up() -> None:
+def test_a_lying_person_stays_lying() -> None:
     lying = np.zeros((60, 72))
     trans = np.tile([0.0, 0.0, 0.2], (60, 1))
     motion = canonicalize(read_npz(npz(poses=lying, trans=trans, mocap_framerate=60)))
@@ -78,7 +78,7 @@ def test_who_lies_is_not_stood_up() -> None:
     assert [c.code for c in motion.cautions] == ["body_model_missing"]
 
 
-def test_y_up_parameters_come_out_upright() -> None:
+def test_y_up_parameters_are_upright() -> None:
     motion = canonicalize(read_npz(npz(poses=np.zeros((60, 72)), fps=60, up_axis="y")))
     assert motion.positions[0, motion.roles[R.HEAD], 1] > motion.positions[0, 0, 1] + 0.3
     assert [c.code for c in motion.cautions] == ["body_model_missing"]
@@ -87,17 +87,17 @@ def test_y_up_parameters_come_out_upright() -> None:
 @pytest.mark.parametrize("numbers", [66, 72, 156, 165])
 def test_the_body_is_the_same_in_every_model(numbers: int) -> None:
     body = poses(seed=8)[:, :66]
-    told = np.concatenate([body, np.zeros((5, numbers - 66))], axis=1)
+    angles = np.concatenate([body, np.zeros((5, numbers - 66))], axis=1)
     np.testing.assert_allclose(
-        read_smpl(told, None, 30).positions, read_smpl(body, None, 30).positions, atol=1e-6
+        read_smpl(angles, None, 30).positions, read_smpl(body, None, 30).positions, atol=1e-6
     )
 
 
-def test_parameters_in_parts_or_by_joint_read_the_same() -> None:
-    told = poses(numbers=72)
-    whole = read_npz(npz(poses=told, fps=30)).positions
-    by_joint = read_npz(npz(poses=told.reshape(5, 24, 3), fps=30)).positions
-    parts = read_npz(npz(root_orient=told[:, :3], body_pose=told[:, 3:], fps=30)).positions
+def test_parameters_in_parts_or_by_joint_give_the_same_recording() -> None:
+    angles = poses(numbers=72)
+    whole = read_npz(npz(poses=angles, fps=30)).positions
+    by_joint = read_npz(npz(poses=angles.reshape(5, 24, 3), fps=30)).positions
+    parts = read_npz(npz(root_orient=angles[:, :3], body_pose=angles[:, 3:], fps=30)).positions
     np.testing.assert_array_equal(whole, by_joint)
     np.testing.assert_array_equal(whole, parts)
 
@@ -114,13 +114,13 @@ def test_parameters_in_parts_or_by_joint_read_the_same() -> None:
         ({"poses": np.where(np.arange(72) == 4, np.nan, np.zeros((5, 72)))}, "frame 0"),
     ],
 )
-def test_what_is_wrong_is_named(arrays: dict[str, FloatArray], location: str) -> None:
+def test_the_error_names_the_key(arrays: dict[str, FloatArray], location: str) -> None:
     with pytest.raises(Unreadable) as refused:
         read_npz(npz(fps=30, **arrays))
     assert refused.value.places[0].location == location
 
 
-def test_the_generic_body_is_symmetric_and_as_tall_as_it_says() -> None:
+def test_the_generic_body_is_symmetric_and_has_its_stature() -> None:
     body = generic_body()
     rest = dict(zip(body.names, rest_positions(body), strict=True))
     for name, place in rest.items():

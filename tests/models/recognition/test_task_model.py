@@ -20,7 +20,7 @@ def test_weights_grow_with_the_links_to_the_centre() -> None:
     assert sum(weights.values()) == pytest.approx(1.0)
     for role in SUN_ROLES:
         if role is not JointRole.HIPS:
-            assert weights[role] > weights[role.towards_trunk()]
+            assert weights[role] > weights[role.toward_trunk()]
     assert set(LINKS) == set(SUN_ROLES)
 
 

@@ -1,4 +1,4 @@
-"""One form for every recording: meters, Y up, roles, rate and unit settled."""
+"""Every recording gets one form: meters, Y up, with roles, frame rate and unit."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ R = JointRole
 
 
 def without(recording: Recording, *parts: str) -> Recording:
-    """The recording without the joints whose role ends so."""
+    """The recording without the joints of roles with these endings."""
     keep = [i for i, role in enumerate(ROLES) if not role.endswith(parts)]
     renumber = {old: new for new, old in enumerate(keep)}
     skeleton = recording.skeleton
@@ -47,7 +47,7 @@ def test_a_person_in_centimetres_and_z_up() -> None:
     assert motion.missing_roles == ()
 
 
-def test_what_the_client_says_wins() -> None:
+def test_hints_of_the_client_have_priority() -> None:
     motion = canonicalize(
         person(CONVENTIONS["DAZ"]),
         frame_rate=60,
@@ -60,7 +60,7 @@ def test_what_the_client_says_wins() -> None:
 
 
 @pytest.mark.parametrize("value", [0, -1, float("nan"), float("inf"), 1e9])
-def test_impossible_words_of_a_client_are_refused(value: float) -> None:
+def test_impossible_hints_are_refused(value: float) -> None:
     for field in ("frame_rate", "metres_per_unit"):
         with pytest.raises(BadField) as caught:
             canonicalize(person(), **{field: value})
@@ -72,7 +72,7 @@ def test_an_unknown_role_is_refused() -> None:
         canonicalize(person(), roles={"tail": "j0"})
 
 
-def test_no_frame_rate_is_refused_unless_the_client_knows() -> None:
+def test_a_missing_frame_rate_is_refused_without_a_hint() -> None:
     silent = person(frame_rate=None)
     doubt = Caution("frame_time_unusable", "line 9: expected a frame time in seconds, found '0'")
     with pytest.raises(Unreadable, match="line 9"):
@@ -81,14 +81,14 @@ def test_no_frame_rate_is_refused_unless_the_client_knows() -> None:
 
 
 @pytest.mark.parametrize("rate", [0.01, 0.99, 2001.0, 1e9])
-def test_a_frame_rate_of_the_file_that_cannot_be_is_refused(rate: float) -> None:
+def test_an_impossible_frame_rate_of_the_file_is_refused(rate: float) -> None:
     with pytest.raises(Unreadable, match="1 to 2000 Hz") as caught:
         canonicalize(person(frame_rate=rate))
     assert caught.value.places[0].location == "frame_rate"
     assert canonicalize(person(frame_rate=rate), frame_rate=25).frame_rate == 25
 
 
-def test_no_arms_are_analyzed_as_far_as_it_goes() -> None:
+def test_a_body_without_arms_is_accepted_with_a_caution() -> None:
     armless = without(person(CONVENTIONS["MotionBuilder"]), "shoulder", "elbow", "hand")
     motion = canonicalize(armless)
     missing = {role for role in SUN_ROLES if role.endswith(("shoulder", "elbow", "hand"))}
@@ -97,7 +97,7 @@ def test_no_arms_are_analyzed_as_far_as_it_goes() -> None:
     assert motion.role_positions().shape == (40, 13, 3)
 
 
-def test_no_legs_are_no_human() -> None:
+def test_a_body_without_legs_is_refused() -> None:
     legless = without(person(CONVENTIONS["MotionBuilder"]), "leg", "knee", "foot", "toes")
     with pytest.raises(NotHuman, match="left_knee, right_knee"):
         canonicalize(legless)
@@ -108,7 +108,7 @@ NAMES = sorted({name for names in CONVENTIONS.values() for name in names.values(
 
 @settings(max_examples=100, deadline=None)
 @given(data=st.data(), frames=st.integers(1, 40), size=st.sampled_from([0.0, 1e-20, 1.0, 1e8]))
-def test_strange_skeletons_end_in_a_motion_or_our_own_failure(
+def test_strange_skeletons_give_a_motion_or_our_own_error(
     data: st.DataObject, frames: int, size: float
 ) -> None:
     names = data.draw(st.lists(st.sampled_from(NAMES), min_size=1, max_size=30))
@@ -138,7 +138,7 @@ def test_the_shortest_clips(frames: int) -> None:
     assert np.isfinite(motion.positions).all()
 
 
-def test_of_two_people_in_a_file_one_is_taken_and_it_is_said() -> None:
+def test_one_of_two_people_is_used_with_a_caution() -> None:
     one, other = person(), person(seed=1)
     skeleton = one.skeleton
     count = len(skeleton)
@@ -159,7 +159,7 @@ def test_of_two_people_in_a_file_one_is_taken_and_it_is_said() -> None:
     assert len(same_tree) == 1
 
 
-def test_a_prop_beside_the_body_is_no_second_person() -> None:
+def test_a_prop_is_not_a_second_person() -> None:
     body = person()
     names = (*body.skeleton.names, *(f"rope{i}" for i in range(12)))
     parents = [*body.skeleton.parents.tolist(), -1, *range(len(body.skeleton), len(names) - 1)]

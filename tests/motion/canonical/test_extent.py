@@ -1,4 +1,4 @@
-"""Positions beyond human measure are refused, by joint and frame, whatever the unit."""
+"""Positions beyond human limits are refused, with joint and frame, in any unit."""
 
 from __future__ import annotations
 
@@ -41,7 +41,9 @@ def moved(
     ],
     ids=["hand", "far hand", "all far", "all far the other way", "jump"],
 )
-def test_a_body_beyond_human_measure(recording: Recording, location: str, found: str) -> None:
+def test_a_body_beyond_human_limits_is_refused(
+    recording: Recording, location: str, found: str
+) -> None:
     with pytest.raises(BadContent) as caught:
         canonicalize(recording, metres_per_unit=1.0)
     (place,) = caught.value.places
@@ -49,7 +51,7 @@ def test_a_body_beyond_human_measure(recording: Recording, location: str, found:
     assert found in place.message
 
 
-def test_the_units_of_a_client_are_judged_by_what_they_make_of_the_body() -> None:
+def test_the_unit_of_a_client_is_checked_by_the_size_of_the_body() -> None:
     canonicalize(person(scale=100.0), metres_per_unit=0.01)
     with pytest.raises(BadContent, match="Is the unit right"):
         canonicalize(person(scale=1000.0), metres_per_unit=1.0)
@@ -58,12 +60,12 @@ def test_the_units_of_a_client_are_judged_by_what_they_make_of_the_body() -> Non
         canonicalize(moved(2000.0, slice(12, None)), metres_per_unit=1e-3)
 
 
-def test_a_walk_far_from_the_origin_and_a_cut_are_no_reason() -> None:
+def test_a_walk_far_from_the_origin_and_a_cut_are_accepted() -> None:
     assert canonicalize(moved(4_000.0), metres_per_unit=1.0).cautions == ()
     canonicalize(moved(30.0, slice(12, None)), metres_per_unit=1.0)
 
 
-def test_a_joint_that_is_no_part_of_the_body_is_only_doubted() -> None:
+def test_a_far_joint_outside_the_body_only_gives_a_caution() -> None:
     plain = person(CONVENTIONS["DAZ"])
     skeleton = Skeleton(
         names=(*plain.skeleton.names, "camera"),
@@ -96,7 +98,7 @@ MAGNITUDES = st.floats(-9, 12).map(lambda power: 10.0**power)
     until=st.integers(1, 40),
     joint=st.none() | st.integers(0, len(ROLES) - 1),
 )
-def test_what_is_not_refused_can_be_described(
+def test_every_accepted_motion_can_be_described(
     unit: float | None,
     rate: float,
     stretch: float,
@@ -105,7 +107,7 @@ def test_what_is_not_refused_can_be_described(
     until: int,
     joint: int | None,
 ) -> None:
-    # Warnings are errors here: an overflow on the way to float16 would be one.
+    # An overflow in the conversion to float16 would give a warning, which is an error here.
     plain = moved(min(far, 1e9), slice(frame, frame + until), joint)
     positions = np.clip(plain.positions * np.float32(stretch), -1e9, 1e9)
     try:

@@ -1,4 +1,4 @@
-"""The body frame: what it is, and what it must not depend on."""
+"""The body frame: its axes, and what does not change it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LEFT_HAND, LEFT_SHOULDER, HEAD, HIPS = (
 )
 
 
-def test_the_left_is_x_up_is_y_and_forward_is_z() -> None:
+def test_left_is_x_up_is_y_and_forward_is_z() -> None:
     track = body_track(motion_of(walking()))
     np.testing.assert_allclose(track.local[:, HIPS], 0.0, atol=1e-12)
     assert (track.local[:, LEFT_SHOULDER, 0] > 0.1).all()
@@ -33,7 +33,7 @@ def test_the_left_is_x_up_is_y_and_forward_is_z() -> None:
     scale=st.floats(0.3, 3),
 )  # fmt: skip
 @settings(max_examples=40, deadline=None)
-def test_place_heading_and_size_change_nothing_local(
+def test_position_heading_and_size_do_not_change_local_positions(
     turn: float, x: float, y: float, z: float, scale: float
 ) -> None:
     body = walking(turn=0.5)
@@ -46,20 +46,20 @@ def test_place_heading_and_size_change_nothing_local(
 
 
 @pytest.mark.parametrize("rate", [25.0, 48.0, 60.0, 100.0, 120.0])
-def test_frame_rate_changes_nothing_local(rate: float) -> None:
+def test_the_frame_rate_does_not_change_local_positions(rate: float) -> None:
     one = body_track(motion_of(walking(rate=30.0, turn=0.3)))
     other = body_track(motion_of(walking(rate=rate, turn=0.3), rate))
     assert other.frames == one.frames
     assert np.abs(other.local - one.local)[3:-3].max() < 0.01
 
 
-def test_heading_is_followed_round_and_round() -> None:
+def test_the_heading_is_continuous_over_several_turns() -> None:
     track = body_track(motion_of(walking(seconds=10.0, turn=2.0)))
     assert track.heading[-1] - track.heading[0] == pytest.approx(20.0, abs=0.01)
     np.testing.assert_allclose(track.yaw_rate(), 2.0, atol=1e-3)
 
 
-def test_heading_is_bridged_where_the_shoulders_are_upright() -> None:
+def test_the_heading_is_interpolated_while_the_shoulders_are_upright() -> None:
     body = standing(60)
     left, right = (SUN_ROLES.index(JointRole(f"{side}_shoulder")) for side in ("left", "right"))
     body[20:40, left] = [0.001, 1.6, 0.0]
@@ -67,7 +67,7 @@ def test_heading_is_bridged_where_the_shoulders_are_upright() -> None:
     np.testing.assert_allclose(body_track(motion_of(body)).heading, 0.0, atol=1e-9)
 
 
-def test_without_shoulders_the_knees_tell_left_from_right() -> None:
+def test_the_knees_give_left_and_right_without_shoulders() -> None:
     motion = motion_of(turned_about_y(standing(), 1.0))
     roles = {role: i for role, i in motion.roles.items() if "shoulder" not in role}
     track = body_track(replace(motion, roles=roles))
@@ -75,7 +75,7 @@ def test_without_shoulders_the_knees_tell_left_from_right() -> None:
     assert np.isfinite(track.local).all()
 
 
-def test_a_body_without_width_looks_along_z() -> None:
+def test_a_body_without_width_faces_z() -> None:
     body = standing()
     body[..., 0] = 0.0
     assert (body_track(motion_of(body)).heading == 0).all()
@@ -90,17 +90,17 @@ def test_missing_head_and_feet_hardly_change_the_size() -> None:
 
 
 @pytest.mark.parametrize(("frames", "rate"), [(1, 30.0), (2, 120.0), (4, 240.0)])
-def test_too_short_is_refused(frames: int, rate: float) -> None:
+def test_a_motion_that_is_too_short_is_refused(frames: int, rate: float) -> None:
     with pytest.raises(TooShort, match=f"{frames} frames"):
         body_track(motion_of(standing(frames), rate))
 
 
-def test_a_body_of_no_size_is_refused() -> None:
+def test_a_body_without_size_is_refused() -> None:
     with pytest.raises(NotHuman):
         body_track(motion_of(np.zeros((60, 13, 3))))
 
 
-def test_a_part_keeps_the_frame_of_the_whole() -> None:
+def test_a_part_has_the_body_frame_of_the_whole() -> None:
     track = body_track(motion_of(waving()))
     part = track.part(30, 60)
     assert part.frames == 30

@@ -1,4 +1,4 @@
-"""Single poses in the body frame: the same as a motion of that pose alone, wherever it is."""
+"""Single poses in the body frame are the same as a motion of this pose alone."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ def _at(role: JointRole) -> int:
 
 
 def _alone(positions: np.ndarray) -> np.ndarray:
-    """The slow twin: (13, 3) of a motion that holds one pose (13, 3)."""
+    """The slow twin: (13, 3) the local positions of a motion with one pose (13, 3)."""
     return body_track(motion_of(np.stack([positions, positions]))).local[0]
 
 
-def test_a_pose_is_what_a_motion_of_it_alone_is() -> None:
+def test_a_pose_equals_a_motion_of_this_pose_alone() -> None:
     body = np.concatenate([walking(2.0, turn=0.8), waving(2.0)]).astype(np.float32)
     body[::2] += [30.0, -2.0, 11.0]
     found = body_poses(body)
@@ -32,7 +32,7 @@ def test_a_pose_is_what_a_motion_of_it_alone_is() -> None:
     np.testing.assert_allclose(found, [_alone(pose) for pose in body], atol=2e-6)
 
 
-def test_a_pose_does_not_depend_on_those_beside_it() -> None:
+def test_a_pose_does_not_depend_on_other_poses() -> None:
     body = walking(1.0)
     together = body_poses(body)
     assert all(
@@ -45,7 +45,7 @@ def test_a_pose_does_not_depend_on_those_beside_it() -> None:
     scale=st.floats(0.01, 100),
 )  # fmt: skip
 @settings(max_examples=40, deadline=None)
-def test_place_heading_and_size_change_nothing(
+def test_position_heading_and_size_do_not_change_a_pose(
     turn: float, x: float, y: float, z: float, scale: float
 ) -> None:
     body = walking(1.0)
@@ -54,7 +54,7 @@ def test_place_heading_and_size_change_nothing(
 
 
 def test_a_missing_joint_counts_with_its_usual_proportion() -> None:
-    """As in a motion that lacks it, where its neighbor stands in for it."""
+    """This is as in a motion without the joint, where it has the position of its neighbor."""
     motion = motion_of(walking(1.0))
     lacking = (R.HEAD, R.LEFT_FOOT, R.RIGHT_FOOT)
     roles = {role: joint for role, joint in motion.roles.items() if role not in lacking}
@@ -66,7 +66,7 @@ def test_a_missing_joint_counts_with_its_usual_proportion() -> None:
     np.testing.assert_allclose(body_poses(less.role_positions()), track.local, atol=2e-3)
 
 
-def test_where_the_shoulders_stand_upright_the_knees_tell_the_heading() -> None:
+def test_the_knees_give_the_heading_if_the_shoulders_are_upright() -> None:
     body = standing()[:1].copy()
     for shoulder, height in ((R.LEFT_SHOULDER, 0.6), (R.RIGHT_SHOULDER, 0.2)):
         body[:, _at(shoulder)] = body[:, _at(R.HIPS)] + np.array([0.0, height, 0.0])
@@ -75,7 +75,7 @@ def test_where_the_shoulders_stand_upright_the_knees_tell_the_heading() -> None:
     assert body_poses(turned)[0, _at(R.LEFT_KNEE), 0] > 0
 
 
-def test_where_nothing_is_level_what_is_most_so_tells_the_heading() -> None:
+def test_the_more_level_pair_gives_the_heading_if_none_is_level() -> None:
     body = standing()[:1].copy()
     for left, right, lean in (
         (R.LEFT_SHOULDER, R.RIGHT_SHOULDER, 0.01),
@@ -85,7 +85,7 @@ def test_where_nothing_is_level_what_is_most_so_tells_the_heading() -> None:
     np.testing.assert_allclose(body_poses(turned_about_y(body, 2.0)), body_poses(body), atol=1e-9)
 
 
-def test_a_pose_of_no_size_or_with_no_sides_is_nan() -> None:
+def test_a_pose_without_size_or_sides_is_nan() -> None:
     body = standing()[:3].copy()
     body[0] = [1.0, 2.0, 3.0]
     for left, right in ((R.LEFT_SHOULDER, R.RIGHT_SHOULDER), (R.LEFT_KNEE, R.RIGHT_KNEE)):

@@ -16,8 +16,10 @@ RATE = 30.0
 
 
 def steps(slide: float = 0.0, seconds: float = 4.0) -> np.ndarray:
-    """(n, 2, 3) feet that stand and swing in turn, half a second each; those that stand slide
-    forward by `slide` m/s."""
+    """(n, 2, 3) feet that stand and swing alternately, half a second each.
+
+    slide: the forward speed of a standing foot in m/s.
+    """
     t = np.arange(round(seconds * RATE)) / RATE
     feet = np.zeros((len(t), 2, 3))
     for foot in range(2):
@@ -29,7 +31,7 @@ def steps(slide: float = 0.0, seconds: float = 4.0) -> np.ndarray:
     return feet
 
 
-def test_feet_that_stand_do_not_skate_and_those_that_slide_do() -> None:
+def test_standing_feet_do_not_skate_and_sliding_feet_do() -> None:
     still = np.zeros((30, 2, 3))
     assert skating(still, RATE) == 0.0
     sliding = np.array(still)
@@ -49,7 +51,7 @@ def test_a_foot_in_the_air_does_not_stand() -> None:
     assert all(6 <= stance.stop - stance.first <= 20 for stance in found)
 
 
-def test_the_hips_are_carried_so_that_standing_feet_stay() -> None:
+def test_the_hips_are_moved_so_that_standing_feet_stay() -> None:
     feet = steps(0.2)
     hips = np.stack([0 * feet[:, 0, 0], np.full(len(feet), 0.9), feet[:, :, 2].mean(axis=1)], 1)
     moved = carried_by_feet(hips, feet, RATE)
@@ -59,15 +61,15 @@ def test_the_hips_are_carried_so_that_standing_feet_stay() -> None:
     np.testing.assert_array_equal(carried_by_feet(hips[:1], feet[:1], RATE), hips[:1])
 
 
-def test_feet_are_planted_without_a_jump() -> None:
+def test_standing_feet_are_fixed_without_a_jump() -> None:
     feet = steps(0.2)
-    held = planted(feet, RATE)
+    fixed_feet = planted(feet, RATE)
     for stance in stances(feet, RATE):
-        inside = held[stance.first : stance.stop, stance.foot][:, [0, 2]]
+        inside = fixed_feet[stance.first : stance.stop, stance.foot][:, [0, 2]]
         np.testing.assert_allclose(inside, inside[:1].repeat(len(inside), 0), atol=1e-9)
-    np.testing.assert_array_equal(held[..., 1], feet[..., 1])
-    led = np.linalg.norm(np.diff(held - feet, axis=0), axis=-1)
-    assert led.max() * RATE < 0.6  # m/s beside the feet's own way
+    np.testing.assert_array_equal(fixed_feet[..., 1], feet[..., 1])
+    step_lengths = np.linalg.norm(np.diff(fixed_feet - feet, axis=0), axis=-1)
+    assert step_lengths.max() * RATE < 0.6  # m/s, added to the speed of the feet
     flying = np.array(feet)
     flying[..., 1] = np.arange(len(feet))[:, None]
     flying[..., 2] = 5 * np.arange(len(feet))[:, None] / RATE

@@ -1,4 +1,4 @@
-"""Gait cycles: found in walks of any speed and length, and in nothing else."""
+"""Gait cycles are found in walks of any speed and length, and in no other movements."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.bodies import motion_of, standing, walking, waving
 
 @pytest.mark.parametrize("steps_hz", [0.6, 0.9, 1.4])
 @pytest.mark.parametrize("turn", [0.0, 0.8])
-def test_a_walk_is_cut_into_its_cycles(steps_hz: float, turn: float) -> None:
+def test_a_walk_has_its_cycles(steps_hz: float, turn: float) -> None:
     track = body_track(motion_of(walking(8.0, steps_hz=steps_hz, turn=turn)))
     cycles = gait_cycles(track)
     assert len(cycles) in {int(8 * steps_hz) - 1, int(8 * steps_hz)}
@@ -23,13 +23,13 @@ def test_a_walk_is_cut_into_its_cycles(steps_hz: float, turn: float) -> None:
 
 
 @pytest.mark.parametrize("body", [standing(), waving(), walking(speed=0.0)], ids=range(3))
-def test_what_does_not_travel_has_no_cycles(body: np.ndarray) -> None:
+def test_movements_on_the_spot_have_no_cycles(body: np.ndarray) -> None:
     assert gait_cycles(body_track(motion_of(body))) == []
 
 
-def test_a_clip_of_one_stride_has_its_one_cycle() -> None:
+def test_a_clip_of_one_stride_has_one_cycle() -> None:
     whole = walking(4.0, steps_hz=0.9)
-    part = whole[46:97]  # a cycle lasts 33 frames; upward crossings lie at 67 and 100
+    part = whole[46:97]  # a cycle lasts 33 frames; upward crossings are at 67 and 100
     cycles = gait_cycles(body_track(motion_of(part)))
     assert len(cycles) == 1
     first, stop = cycles[0]

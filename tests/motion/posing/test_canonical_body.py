@@ -1,4 +1,4 @@
-"""Clips of all sorts on one body: bones of one length, pointing as theirs, feet on the floor."""
+"""Clips on the canonical body: fixed bone lengths, directions of the clip, feet on the floor."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def demo_motion(actor: str, task: str) -> Motion:
 
 
 def angle(one: FloatArray, other: FloatArray) -> FloatArray:
-    """Degrees between (frames, 3) and (frames, 3)."""
+    """(frames,) the angles in degrees between vectors (frames, 3)."""
     cosine = np.sum(one * other, axis=-1) / (
         np.linalg.norm(one, axis=-1) * np.linalg.norm(other, axis=-1)
     )
@@ -49,7 +49,7 @@ def bone(positions: FloatArray, start: JointRole, end: JointRole) -> FloatArray:
 
 
 def check(motion: Motion) -> None:
-    """Fixed bones that point as the clip's do, and a lower foot where the clip's is."""
+    """Check that lengths are fixed, directions are those of the clip, and so is the lower foot."""
     animation = on_canonical_body(motion)
     positions = animation.positions()
     body = canonical_body()
@@ -59,12 +59,14 @@ def check(motion: Motion) -> None:
     )
     for start, end in BONES:
         if start in motion.roles and end in motion.roles:
-            told = motion.positions[:, motion.roles[end]] - motion.positions[:, motion.roles[start]]
-            assert angle(bone(positions, start, end), told).max() < TENTHS_OF_A_DEGREE
+            bone_of_clip = (
+                motion.positions[:, motion.roles[end]] - motion.positions[:, motion.roles[start]]
+            )
+            assert angle(bone(positions, start, end), bone_of_clip).max() < TENTHS_OF_A_DEGREE
     lower = positions[:, FEET, 1].min(axis=1)
     assert np.percentile(lower, 5) == pytest.approx(ANKLE_HEIGHT, abs=1e-6)
-    told = motion.positions[:, [motion.roles[R.LEFT_FOOT], motion.roles[R.RIGHT_FOOT]], 1]
-    heights = told.min(axis=1).astype(float)
+    feet_of_clip = motion.positions[:, [motion.roles[R.LEFT_FOOT], motion.roles[R.RIGHT_FOOT]], 1]
+    heights = feet_of_clip.min(axis=1).astype(float)
     slope = np.ptp(lower) / np.ptp(heights)
     np.testing.assert_allclose(lower - lower[0], slope * (heights - heights[0]), atol=1e-4)
 
@@ -72,16 +74,16 @@ def check(motion: Motion) -> None:
 @pytest.mark.parametrize(
     ("actor", "task"), [("ada", "walk"), ("bruno", "jump"), ("chika", "kick"), ("dele", "bow")]
 )
-def test_demo_people_play_on_the_one_body(actor: str, task: str) -> None:
+def test_demo_motions_are_moved_to_the_canonical_body(actor: str, task: str) -> None:
     check(demo_motion(actor, task))
 
 
 @pytest.mark.parametrize("name", CONVENTIONS)
-def test_skeletons_of_every_convention_play_on_it(name: str) -> None:
+def test_skeletons_of_all_conventions_are_moved_to_it(name: str) -> None:
     check(canonicalize(person(CONVENTIONS[name])))
 
 
-def test_a_taller_person_makes_the_same_movement() -> None:
+def test_a_taller_person_gives_the_same_movement() -> None:
     motion = demo_motion("ada", "walk")
     taller = replace(motion, positions=motion.positions * np.float32(1.3))
     np.testing.assert_allclose(
@@ -89,7 +91,7 @@ def test_a_taller_person_makes_the_same_movement() -> None:
     )
 
 
-def test_standing_feet_do_not_slide_more_than_the_clips() -> None:
+def test_standing_feet_slide_no_more_than_in_the_clip() -> None:
     motion = demo_motion("ada", "walk")
     columns = [motion.roles[R.LEFT_FOOT], motion.roles[R.RIGHT_FOOT]]
     speed = np.linalg.norm(np.diff(motion.positions[:, columns], axis=0), axis=-1)
@@ -101,7 +103,7 @@ def test_standing_feet_do_not_slide_more_than_the_clips() -> None:
     assert np.median(slides) < 0.004
 
 
-def test_roles_that_lack_keep_the_rest_pose() -> None:
+def test_missing_roles_keep_the_rest_pose() -> None:
     motion = demo_motion("ada", "walk")
     bare = replace(motion, roles={r: j for r, j in motion.roles.items() if r in ESSENTIAL_ROLES})
     animation = on_canonical_body(bare)
@@ -115,7 +117,7 @@ def test_roles_that_lack_keep_the_rest_pose() -> None:
     assert np.abs((full - full[:, :1])[:, hands] - (without - without[:, :1])[:, hands]).max() < 0.1
 
 
-def test_a_body_of_no_size_does_no_harm() -> None:
+def test_a_body_without_size_gives_finite_poses() -> None:
     motion = demo_motion("ada", "walk")
     point = replace(motion, positions=np.zeros_like(motion.positions[:3]))
     assert np.isfinite(on_canonical_body(point).positions()).all()
@@ -131,7 +133,7 @@ def test_the_body_stands_on_the_floor_and_is_symmetric() -> None:
 
 
 @pytest.mark.slow
-def test_real_clips_play_on_it() -> None:
+def test_real_clips_are_moved_to_it() -> None:
     folder, rows = real_clips(), manifest()
     bvh = [row["path"] for row in rows if row["path"].endswith(".bvh")]
     for path in bvh[:: len(bvh) // 40]:

@@ -1,4 +1,4 @@
-"""A file's own rotations, turned and scaled as its positions were."""
+"""The rotations of a file, turned and scaled in the same way as its positions."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from tests.people import CONVENTIONS, body_skeleton, person
 
 
 def lying_on(axis: str, recording: Recording) -> Recording:
-    """The same recording in a world whose up axis is another one; its rest pose too."""
-    matrix = to_y_up(np.eye(3), axis)  # rows: where each axis goes, transposed
+    """The same recording and rest pose in a world with another up axis."""
+    matrix = to_y_up(np.eye(3), axis)  # row i: the new direction of axis i
     turn = matrices_to_quaternions(matrix)
     assert recording.rotations is not None
     back = turn * [1, -1, -1, -1]
@@ -35,7 +35,7 @@ def lying_on(axis: str, recording: Recording) -> Recording:
 
 @pytest.mark.parametrize("axis", UP_AXES)
 @pytest.mark.parametrize("scale", [1.0, 100.0, 1 / 0.056444])
-def test_positions_come_back_and_rotations_are_the_files(axis: str, scale: float) -> None:
+def test_positions_and_the_rotations_of_the_file_are_returned(axis: str, scale: float) -> None:
     upright = person(CONVENTIONS["MotionBuilder"], scale=scale)
     recording = lying_on(axis, upright)
     motion = canonicalize(recording, metres_per_unit=1 / scale)
@@ -48,17 +48,17 @@ def test_positions_come_back_and_rotations_are_the_files(axis: str, scale: float
     assert same.min() > 1 - 1e-6
 
 
-def test_near_gimbal_lock_a_file_of_single_precision_still_comes_back_in_place() -> None:
+def test_positions_are_exact_near_gimbal_lock() -> None:
     skeleton = body_skeleton(CONVENTIONS["MotionBuilder"])
     angles = np.zeros((200, len(skeleton), 3))
     angles[..., 1] = np.pi / 2 + np.linspace(-2e-3, 2e-3, 200)[:, None]
     angles[:, ::2] = 0.1
     rotations = euler_to_quaternions(angles, "ZXY").astype(np.float32)
-    held = np.repeat(skeleton.offsets[None], 200, axis=0)
+    fixed_offsets = np.repeat(skeleton.offsets[None], 200, axis=0)
     recording = _with_positions(
         replace(
             person(CONVENTIONS["MotionBuilder"], frames=200),
-            skeleton=skeleton, rotations=rotations, translations=held,
+            skeleton=skeleton, rotations=rotations, translations=fixed_offsets,
         )
     )  # fmt: skip
     motion = canonicalize(recording, metres_per_unit=1.0)
@@ -72,8 +72,8 @@ def test_joints_that_move_keep_their_translations() -> None:
     recording = person(CONVENTIONS["MotionBuilder"])
     moved = np.repeat(recording.skeleton.offsets[None], 40, axis=0)
     moved[:, 3, 1] += np.linspace(0, 0.1, 40)
-    told = replace(recording, translations=moved.astype(np.float32))
-    again = _with_positions(told)
+    with_translations = replace(recording, translations=moved.astype(np.float32))
+    again = _with_positions(with_translations)
     animation = animation_of_recording(again, canonicalize(again, metres_per_unit=1.0))
     assert animation is not None
     assert np.flatnonzero(animation.moving_joints()).tolist() == [0, 3]
@@ -95,7 +95,7 @@ def _with_positions(recording: Recording) -> Recording:
     return replace(recording, positions=world[..., :3, 3].astype(np.float32))
 
 
-def test_where_offsets_do_not_lead_there_translations_do() -> None:
+def test_translations_replace_offsets_that_do_not_fit() -> None:
     recording = person(CONVENTIONS["MotionBuilder"])
     scaled = recording.positions.copy()
     scaled[:, 5:] += 0.01
@@ -105,7 +105,7 @@ def test_where_offsets_do_not_lead_there_translations_do() -> None:
     assert np.abs(animation.positions() - motion.positions).max() < 1e-6
 
 
-def test_several_roots_each_go_where_they_went() -> None:
+def test_several_roots_have_their_own_paths() -> None:
     recording = person(CONVENTIONS["MotionBuilder"])
     parents = recording.skeleton.parents.copy()
     parents[1] = -1
@@ -114,14 +114,14 @@ def test_several_roots_each_go_where_they_went() -> None:
     apart = replace(
         recording, skeleton=replace(recording.skeleton, parents=parents, offsets=offsets)
     )
-    # the trunk now has a root of its own, which moves as before
+    # The trunk now has its own root, which moves as before.
     motion = canonicalize(apart, metres_per_unit=1.0)
     animation = animation_of_recording(apart, motion)
     assert animation is not None
     assert np.abs(animation.positions() - motion.positions).max() < 1e-5
 
 
-def test_what_is_not_the_same_recording_is_none() -> None:
+def test_another_recording_gives_none() -> None:
     recording = person(CONVENTIONS["MotionBuilder"])
     motion = canonicalize(recording, metres_per_unit=1.0)
     moved = replace(recording, positions=recording.positions + np.float32(1.0))

@@ -6,7 +6,7 @@ from app.motion.posing.posed_start import without_posed_start
 from tests.bodies import motion_of, standing, waving
 
 
-def test_a_pose_from_which_the_body_is_thrown_into_the_motion_is_left_out() -> None:
+def test_a_first_pose_before_a_jump_is_removed() -> None:
     wave = waving(4.0)
     posed = np.concatenate([wave[:1] + np.array([0.5, 0.0, 0.0]), wave])
     np.testing.assert_allclose(
@@ -14,7 +14,7 @@ def test_a_pose_from_which_the_body_is_thrown_into_the_motion_is_left_out() -> N
     )
 
 
-def test_what_begins_as_it_goes_on_stays_whole() -> None:
+def test_a_motion_without_a_jump_is_not_changed() -> None:
     for positions in (waving(4.0), standing(60), standing(2)):
         motion = motion_of(positions)
         assert without_posed_start(motion) is motion

@@ -1,4 +1,4 @@
-"""Names of every convention tell roles and sides."""
+"""Names in all conventions give roles and sides."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ R = JointRole
 
 
 @pytest.mark.parametrize("convention", sorted(CONVENTIONS))
-def test_each_convention_is_understood(convention: str) -> None:
+def test_each_naming_convention_is_understood(convention: str) -> None:
     names = CONVENTIONS[convention]
     found = roles_by_name([names[role] for role in ROLES])
     wrong = {role.value: names[role] for role, joint in found.items() if ROLES[joint] != role}
@@ -42,7 +42,7 @@ def test_side_and_word(name: str, side: str | None, word: str) -> None:
     assert side_and_word(name) == (side, word)
 
 
-def test_shoulder_means_the_collar_beside_an_upper_arm_only() -> None:
+def test_a_shoulder_is_the_collar_bone_only_next_to_an_upper_arm() -> None:
     assert roles_by_name(["LeftShoulder", "LeftArm"])[R.LEFT_SHOULDER] == 1
     assert roles_by_name(["LeftCollar", "LeftShoulder"])[R.LEFT_SHOULDER] == 1
 

@@ -1,10 +1,15 @@
-"""Labels of markers as the marker sets write them."""
+"""Labels of markers in the common marker sets."""
 
 from __future__ import annotations
 
 import pytest
 
-from app.motion.roles.marker_names import is_marker, place_of, places_of, subject_and_label
+from app.motion.roles.marker_names import (
+    is_marker,
+    markers_by_place,
+    place_on_body,
+    subject_and_label,
+)
 
 
 @pytest.mark.parametrize(
@@ -18,22 +23,22 @@ from app.motion.roles.marker_names import is_marker, place_of, places_of, subjec
         ("LTHI", None), ("", None), ("L", None), ("LEFT", None), ("\N{KELVIN SIGN}", None),
     ],
 )  # fmt: skip
-def test_places(label: str, place: str | None) -> None:
-    assert place_of(label) == place
+def test_the_place_of_each_label(label: str, place: str | None) -> None:
+    assert place_on_body(label) == place
 
 
-def test_subjects() -> None:
+def test_the_subject_of_a_label() -> None:
     assert subject_and_label("Bob:LKNE") == ("Bob", "LKNE")
     assert subject_and_label(" LKNE ") == ("", "LKNE")
     assert subject_and_label("Lab:Bob: LKNE") == ("Lab:Bob", "LKNE")
 
 
-def test_what_is_no_marker() -> None:
+def test_labels_that_are_not_markers() -> None:
     for label in ("", "*12", "*", "U12", "Unlabeled 7", "LKneeAngles", "RGroundReactionForce"):
         assert not is_marker(label), label
     for label in ("LKNE", "C7", "M1", "Ulna", "Forehead"):
         assert is_marker(label), label
 
 
-def test_the_first_of_a_place_counts() -> None:
-    assert places_of(["LTHI", "LASI", "L.ASIS", "C7"]) == {"LASI": 1, "C7": 3}
+def test_the_first_marker_of_a_place_is_used() -> None:
+    assert markers_by_place(["LTHI", "LASI", "L.ASIS", "C7"]) == {"LASI": 1, "C7": 3}

@@ -1,4 +1,4 @@
-"""Roles by client, name and shape; left stays left, also in the mirror."""
+"""Roles by client, name and shape. Left stays left, also for a mirrored body."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_every_convention_gives_every_role(convention: str) -> None:
 
 @settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 10_000), yaw=st.floats(-3, 3), scale=st.sampled_from([0.01, 1, 100]))
-def test_shape_alone_tells_roles_whatever_the_heading(seed: int, yaw: float, scale: float) -> None:
+def test_shape_alone_gives_roles_for_any_heading(seed: int, yaw: float, scale: float) -> None:
     recording = person(seed=seed, scale=scale)
     c, s = np.cos(yaw), np.sin(yaw)
     turned = recording.positions @ np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]])
@@ -42,20 +42,20 @@ def test_shape_alone_tells_roles_whatever_the_heading(seed: int, yaw: float, sca
 
 @settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 10_000))
-def test_shape_swaps_sides_in_the_mirror(seed: int) -> None:
+def test_a_mirrored_shape_has_mirrored_sides(seed: int) -> None:
     recording = person(seed=seed)
     mirrored = recording.positions * np.array([-1, 1, 1], dtype=np.float32)
     expected = {role.mirrored(): joint for role, joint in EXPECTED.items()}
     assert roles_by_shape(recording.skeleton.parents, mirrored) == expected
 
 
-def test_names_win_over_the_mirror() -> None:
+def test_names_have_priority_over_a_mirrored_shape() -> None:
     recording = person(CONVENTIONS["MotionBuilder"])
     mirrored = recording.positions * np.array([-1, 1, 1], dtype=np.float32)
     assert roles_of(replace(recording, positions=mirrored)) == EXPECTED
 
 
-def test_shape_fills_what_names_leave_open_on_the_side_that_names_tell() -> None:
+def test_shape_adds_roles_on_the_sides_given_by_names() -> None:
     names = {role: name for role, name in CONVENTIONS["DAZ"].items() if "ARM" not in name.upper()}
     names = {role: name for role, name in names.items() if role not in (R.LEFT_KNEE, R.HEAD)}
     recording = person(names)
@@ -64,7 +64,7 @@ def test_shape_fills_what_names_leave_open_on_the_side_that_names_tell() -> None
     assert roles_of(replace(recording, positions=mirrored)) == EXPECTED
 
 
-def test_a_root_above_the_hips_is_not_taken_for_them() -> None:
+def test_a_root_above_the_hips_is_not_the_hips() -> None:
     recording = person(CONVENTIONS["Bandai Namco"])
     names = ("joint_Root", *recording.skeleton.names)
     parents = np.concatenate([[-1], recording.skeleton.parents + 1])
@@ -74,7 +74,7 @@ def test_a_root_above_the_hips_is_not_taken_for_them() -> None:
     assert find_roles(nameless, parents, positions)[R.HIPS] == 1
 
 
-def test_no_arms_still_gives_trunk_and_legs() -> None:
+def test_a_body_without_arms_has_trunk_and_legs() -> None:
     recording = person()
     keep = [i for i, role in enumerate(ROLES) if not role.endswith(("shoulder", "elbow", "hand"))]
     renumber = {old: new for new, old in enumerate(keep)}
@@ -86,18 +86,18 @@ def test_no_arms_still_gives_trunk_and_legs() -> None:
 
 
 @pytest.mark.parametrize("parents", [[-1], [-1, 0, 1, 2], [-1, -1, -1], [-1, 0, 0, 0, 0]])
-def test_what_is_no_body_gives_no_legs(parents: list[int]) -> None:
+def test_other_trees_have_no_legs(parents: list[int]) -> None:
     positions = np.random.default_rng(0).normal(size=(5, len(parents), 3))
     found = find_roles(["x"] * len(parents), np.array(parents), positions)
     assert R.LEFT_KNEE not in found
 
 
-def test_a_body_without_size_gives_no_roles_by_shape() -> None:
+def test_a_body_without_size_has_no_roles_by_shape() -> None:
     recording = person()
     assert R.LEFT_KNEE not in roles_of(replace(recording, positions=0 * recording.positions))
 
 
-def test_the_clients_mapping_is_obeyed() -> None:
+def test_the_mapping_of_the_client_is_used() -> None:
     recording = person(CONVENTIONS["DAZ"])
     names = recording.skeleton.names
     given = given_roles(names, {"left_hand": "lForeArm", "hips": "chest"})

@@ -1,4 +1,4 @@
-"""Rotations and translations that lead to the positions, whatever these are."""
+"""Rotations and translations give the positions, for all positions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from app.motion.skeleton.animation import (
-    STILL,
+    MAX_STILL_DISTANCE,
     Animation,
     animation_of_positions,
     animation_of_rotations,
@@ -38,7 +38,7 @@ def parents_and_positions() -> st.SearchStrategy[tuple[FloatArray, FloatArray]]:
 
 @settings(max_examples=80, deadline=None)
 @given(parents_and_positions())
-def test_any_positions_come_back(drawn: tuple[FloatArray, FloatArray]) -> None:
+def test_any_positions_are_recovered(drawn: tuple[FloatArray, FloatArray]) -> None:
     parents, positions = drawn
     names = [f"j{joint}" for joint in range(len(parents))]
     animation = animation_of_positions(names, parents, positions, 30.0)
@@ -46,23 +46,23 @@ def test_any_positions_come_back(drawn: tuple[FloatArray, FloatArray]) -> None:
     np.testing.assert_allclose(np.linalg.norm(animation.rotations, axis=-1), 1, atol=1e-9)
 
 
-def test_a_body_of_firm_bones_turns_only_its_joints() -> None:
+def test_a_body_with_fixed_bone_lengths_has_no_translations() -> None:
     recording = person(CONVENTIONS["MotionBuilder"], frames=60)
     skeleton = recording.skeleton
     animation = animation_of_positions(skeleton.names, skeleton.parents, recording.positions, 30.0)
     moving = np.flatnonzero(animation.moving_joints())
     assert moving.tolist() == [0]
     assert np.abs(animation.positions() - recording.positions).max() < 2e-6
-    held = Animation(
+    fixed_bones = Animation(
         animation.skeleton,
         animation.rotations,
         local_translations(animation.skeleton, animation.translations[:, 0]),
         30.0,
     )
-    assert np.abs(held.positions() - recording.positions).max() < TENTH_OF_MM
+    assert np.abs(fixed_bones.positions() - recording.positions).max() < TENTH_OF_MM
 
 
-def test_a_bone_that_stretches_moves_its_joint() -> None:
+def test_a_bone_that_stretches_has_a_translation() -> None:
     positions = np.zeros((4, 3, 3), dtype=np.float32)
     positions[:, 1, 1] = 1
     positions[:, 2, 1] = [2, 2, 2.5, 2]
@@ -70,7 +70,7 @@ def test_a_bone_that_stretches_moves_its_joint() -> None:
     assert animation.moving_joints().tolist() == [True, False, True]
 
 
-def test_solved_rotations_are_near_the_true_ones_where_bones_tell() -> None:
+def test_solved_rotations_are_near_the_true_ones_if_bones_determine_them() -> None:
     skeleton = body_skeleton()
     rotations = swaying_rotations(30, len(skeleton), seed=4)
     roots = np.zeros((30, 3))
@@ -78,13 +78,13 @@ def test_solved_rotations_are_near_the_true_ones_where_bones_tell() -> None:
     positions = truth.positions()
     bones = positions - positions[:, skeleton.parents.clip(0)]
     solved = solve_rotations(skeleton, bones)
-    # hips and chest have three children each, which leave nothing open
+    # Hips and chest have three children each, which determine their rotations.
     for joint in (0, 1):
         same = np.abs(np.sum(solved[:, joint] * rotations[:, joint], axis=-1))
         assert same.min() > 1 - 1e-9
 
 
-def test_a_single_bone_turns_by_the_shortest_way() -> None:
+def test_a_single_bone_turns_by_the_shortest_rotation() -> None:
     skeleton = Skeleton(("a", "b"), np.array([-1, 0]), np.array([[0.0, 0, 0], [0, 1, 0]]))
     angles = np.linspace(0, 3.1, 20)
     bones = np.zeros((20, 2, 3))
@@ -94,7 +94,7 @@ def test_a_single_bone_turns_by_the_shortest_way() -> None:
     np.testing.assert_allclose(solved[:, 0], expected, atol=1e-5)
 
 
-def test_bones_of_no_length_and_reversed_ones_do_no_harm() -> None:
+def test_bones_without_length_and_reversed_bones_give_finite_rotations() -> None:
     skeleton = Skeleton(("a", "b"), np.array([-1, 0]), np.array([[0.0, 0, 0], [0, 1, 0]]))
     bones = np.array([[[0.0, 0, 0], [0, 0, 0]], [[0, 0, 0], [0, -1, 0]]])
     solved = solve_rotations(skeleton, bones)
@@ -102,7 +102,7 @@ def test_bones_of_no_length_and_reversed_ones_do_no_harm() -> None:
     assert np.isfinite(solved).all()
 
 
-def test_rotations_of_a_file_are_kept_and_lead_to_other_positions_by_translations() -> None:
+def test_translations_lead_from_given_rotations_to_given_positions() -> None:
     skeleton, rotations = body_skeleton(), swaying_rotations(20, 18, seed=1)
     positions = np.random.default_rng(0).normal(size=(20, 18, 3))
     animation = animation_of_rotations(skeleton, rotations, positions, 30.0)
@@ -116,10 +116,10 @@ def test_rotations_of_a_file_are_kept_and_lead_to_other_positions_by_translation
         ).positions(),
         30.0,
     )
-    assert np.abs(true.translations[:, 1:] - skeleton.offsets[1:]).max() < STILL
+    assert np.abs(true.translations[:, 1:] - skeleton.offsets[1:]).max() < MAX_STILL_DISTANCE
 
 
-def test_signs_are_continuous_and_turns_the_same() -> None:
+def test_signs_are_continuous_and_rotations_do_not_change() -> None:
     rotations = swaying_rotations(40, 3, seed=2, size=3.0)
     flipped = rotations * np.random.default_rng(0).choice([-1, 1], size=(40, 3, 1))
     smooth = continuous(flipped)
@@ -128,7 +128,7 @@ def test_signs_are_continuous_and_turns_the_same() -> None:
 
 
 @pytest.mark.parametrize("rate", [15.0, 24.0, 60.0, 120.0])
-def test_resampling_keeps_bones_firm_and_movement_in_place(rate: float) -> None:
+def test_resampling_keeps_bone_lengths_and_positions(rate: float) -> None:
     recording = person(frames=90, seed=3)
     assert recording.rotations is not None
     skeleton = recording.skeleton

@@ -1,4 +1,4 @@
-"""Forward kinematics against its slow twin."""
+"""Forward kinematics agrees with its slow twin."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.people import body_skeleton, swaying_rotations
 def naive_forward_kinematics(
     skeleton: Skeleton, rotations: FloatArray, translations: FloatArray
 ) -> FloatArray:
-    """One 4x4 matrix a joint and frame."""
+    """The positions by 4x4 matrices, one for each joint and frame."""
     positions = np.zeros(translations.shape)
     for frame in range(len(rotations)):
         worlds: list[FloatArray] = []
@@ -27,7 +27,7 @@ def naive_forward_kinematics(
     return positions
 
 
-def test_agrees_with_matrices_joint_by_joint() -> None:
+def test_positions_agree_with_4x4_matrices() -> None:
     skeleton = body_skeleton()
     rng = np.random.default_rng(0)
     rotations = swaying_rotations(7, len(skeleton), size=2.0)
@@ -37,7 +37,7 @@ def test_agrees_with_matrices_joint_by_joint() -> None:
     assert np.allclose(found, naive_forward_kinematics(skeleton, rotations, translations))
 
 
-def test_several_roots_stand_on_their_own() -> None:
+def test_several_roots_are_independent() -> None:
     skeleton = Skeleton(
         ("a", "b", "c"), np.array([-1, -1, 1]), np.array([[0.0, 0, 0], [1, 0, 0], [0, 2, 0]])
     )
@@ -48,7 +48,7 @@ def test_several_roots_stand_on_their_own() -> None:
     assert np.allclose(found[:, 1], [1, 0, 0])
 
 
-def test_joints_by_depth_holds_each_joint_once_after_its_parent() -> None:
+def test_joints_by_depth_has_each_joint_once_after_its_parent() -> None:
     parents = body_skeleton().parents
     levels = joints_by_depth(parents)
     assert sorted(np.concatenate(levels)) == list(range(len(parents)))

@@ -1,4 +1,4 @@
-"""Gaps: short ones filled near the truth, long ones told, what was seen untouched."""
+"""Short gaps are filled near the true positions, and long gaps are reported."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from app.numerics.arrays import FloatArray
 
 
 def circle(frames: int = 200) -> FloatArray:
-    """(frames, 1, 3): round a meter's circle in two seconds at 100 Hz, millimeters."""
+    """(frames, 1, 3) a helix of 1 m radius, a turn in two seconds at 100 Hz, in millimeters."""
     t = np.arange(frames) * np.pi / 100
     return np.stack([np.cos(t), np.sin(t), t], axis=-1)[:, None] * 1000
 
@@ -27,7 +27,7 @@ def test_a_short_gap_is_filled_near_the_truth(length: int) -> None:
     assert (filled.frames, filled.long_gaps) == (length, ())
 
 
-def test_a_long_gap_is_told_and_left() -> None:
+def test_a_long_gap_is_reported_and_not_filled() -> None:
     holed = circle()
     holed[80:106] = np.nan
     holed[:3] = np.nan
@@ -40,7 +40,7 @@ def test_a_long_gap_is_told_and_left() -> None:
 
 
 @pytest.mark.parametrize("rate", [10.0, 50.0, 240.0])
-def test_what_is_long_is_a_matter_of_seconds(rate: float) -> None:
+def test_the_limit_of_gaps_is_in_seconds(rate: float) -> None:
     most = round(MAX_GAP * rate)
     for length, long_gaps in ((most, 0), (most + 1, 1)):
         holed = circle()
@@ -50,7 +50,9 @@ def test_what_is_long_is_a_matter_of_seconds(rate: float) -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(st.booleans(), min_size=1, max_size=60), st.integers(0, 1000))
-def test_what_was_seen_stays_and_nothing_strange_comes(flags: list[bool], seed: int) -> None:
+def test_seen_positions_do_not_change_and_filled_ones_are_finite(
+    flags: list[bool], seed: int
+) -> None:
     truth = np.random.default_rng(seed).normal(size=(len(flags), 2, 3))
     holed = truth.copy()
     holed[np.array(flags), 0] = np.nan
@@ -64,7 +66,7 @@ def test_what_was_seen_stays_and_nothing_strange_comes(flags: list[bool], seed: 
 
 
 @given(st.lists(st.booleans(), max_size=40))
-def test_runs_are_those_of_the_slow_twin(flags: list[bool]) -> None:
+def test_runs_agree_with_the_slow_twin(flags: list[bool]) -> None:
     slow: list[list[int]] = []
     for index, flag in enumerate(flags):
         if flag and index and flags[index - 1]:

@@ -1,4 +1,4 @@
-"""Resampling by time: counts, first sample, exactness, no folding, no loss."""
+"""Resampling: number of samples, first sample, exactness, no aliasing, no loss."""
 
 from __future__ import annotations
 
@@ -16,9 +16,7 @@ from app.numerics.arrays import FloatArray
 
 @given(frames=st.integers(1, 400), source=st.floats(5, 240), target=st.floats(5, 240))
 @settings(max_examples=100, deadline=None)
-def test_as_many_samples_as_fit_and_straight_movement_stays_straight(
-    frames: int, source: float, target: float
-) -> None:
+def test_straight_movement_stays_straight(frames: int, source: float, target: float) -> None:
     line = np.arange(frames)[:, None] / source * np.array([1.0, -2.0]) + 5.0
     found = resample(line, source, target)
     if source != target:
@@ -37,13 +35,13 @@ def test_a_movement_of_3_hz_is_the_same_from_any_rate(source: float) -> None:
     assert np.abs(found - expected)[5:-5].max() < (0.05 if source < 30 else 0.01)
 
 
-def test_what_the_lower_rate_cannot_carry_does_not_fold_into_it() -> None:
+def test_high_frequencies_do_not_alias() -> None:
     t = np.arange(481) / 120
     found = resample(np.sin(2 * np.pi * 28 * t), 120.0, 30.0)
     assert np.abs(found[10:-10]).max() < 0.02
 
 
-def test_the_first_sample_stays_and_type_and_shape_are_kept() -> None:
+def test_the_first_sample_the_type_and_the_shape_do_not_change() -> None:
     samples = np.random.default_rng(0).normal(size=(50, 13, 3)).astype(np.float32)
     found = resample(samples, 120.0, 30.0)
     assert found.dtype == np.float32
@@ -67,7 +65,7 @@ def test_a_count_of_samples_includes_both_ends() -> None:
     assert resample_to(ramp, 1).shape == (1, 1)
 
 
-def test_reading_outside_the_clip_holds_its_ends() -> None:
+def test_times_outside_the_clip_give_its_ends() -> None:
     np.testing.assert_allclose(sample_at(np.array([1.0, 2.0, 4.0]), np.array([-3.0, 9.0])), [1, 4])
 
 
@@ -78,7 +76,7 @@ def test_a_rate_must_be_positive() -> None:
 
 @given(frames=st.integers(9, 700), count=st.integers(1, 40), single=st.booleans())
 @settings(max_examples=40, deadline=None)
-def test_few_moments_of_many_frames_are_read_as_from_the_whole(
+def test_few_times_of_a_long_clip_agree_with_the_filtered_whole(
     frames: int, count: int, single: bool
 ) -> None:
     kind = np.float32 if single else np.float64
@@ -91,7 +89,7 @@ def test_few_moments_of_many_frames_are_read_as_from_the_whole(
 
 
 def naive_resample(samples: FloatArray, ratio: float, count: int) -> FloatArray:
-    """The whole clip through the whole filter, frame by frame, then read."""
+    """All frames are filtered by the whole filter, one by one, and then read."""
     reach = int(np.ceil(resampling.LOW_PASS_REACH * ratio))
     offsets = np.arange(-reach, reach + 1)
     kernel = np.sinc(offsets / ratio) * np.cos(0.5 * np.pi * offsets / (reach + 1)) ** 2
@@ -102,13 +100,13 @@ def naive_resample(samples: FloatArray, ratio: float, count: int) -> FloatArray:
 
 @given(frames=st.integers(2, 300), ratio=st.floats(1.01, 400.0))
 @settings(max_examples=60, deadline=None)
-def test_any_ratio_of_rates_gives_what_the_naive_twin_gives(frames: int, ratio: float) -> None:
+def test_any_ratio_of_rates_agrees_with_the_naive_twin(frames: int, ratio: float) -> None:
     samples = np.random.default_rng(frames).normal(size=(frames, 2))
     found = resample(samples, ratio, 1.0)
     np.testing.assert_allclose(found, naive_resample(samples, ratio, len(found)), atol=1e-9)
 
 
-def test_a_filter_that_reaches_far_never_passes_over_the_whole_clip(
+def test_a_long_filter_is_not_applied_to_the_whole_clip(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     taps: list[int] = []
@@ -121,10 +119,10 @@ def test_a_filter_that_reaches_far_never_passes_over_the_whole_clip(
     samples = np.zeros((20_000, 3))
     for rate in (1.0, 5.0, 60.0, 100.0, 500.0, 999.0):
         resample(samples, 1000.0, rate)
-    assert max(taps) <= 2 * resampling.LOW_PASS_REACH * resampling.FAR_APART + 1
+    assert max(taps) <= 2 * resampling.LOW_PASS_REACH * resampling.MIN_FAR_RATIO + 1
 
 
-def test_blocks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_size_of_blocks_does_not_change_the_result(monkeypatch: pytest.MonkeyPatch) -> None:
     samples = np.random.default_rng(0).normal(size=(500, 4, 3)).astype(np.float32)
     whole = [resample(samples, 120.0, rate) for rate in (30.0, 100.0, 240.0)]
     monkeypatch.setattr(resampling, "NUMBERS_AT_ONCE", 200)
@@ -132,7 +130,7 @@ def test_blocks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
         np.testing.assert_array_equal(resample(samples, 120.0, rate), expected)
 
 
-def test_a_long_clip_can_be_given_up_between_blocks() -> None:
+def test_the_deadline_is_checked_between_blocks() -> None:
     with within(Deadline()) as deadline:
         deadline.abandon()
         for rate in (1.0, 30.0, 500.0):

@@ -1,4 +1,4 @@
-"""Rotations agree with matrices of the textbook, whatever the order."""
+"""Rotations agree with the matrices of a textbook, for all orders of axes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def textbook(axis: str, angle: float) -> FloatArray:
 
 
 @pytest.mark.parametrize("order", [*ORDERS, "ZXZ", "Y", "ZZ", ""])
-def test_euler_angles_turn_in_the_order_listed(order: str) -> None:
+def test_euler_angles_turn_in_the_given_order(order: str) -> None:
     angles = np.random.default_rng(0).uniform(-3, 3, (20, len(order)))
     expected = []
     for row in angles:
@@ -44,7 +44,7 @@ def test_euler_angles_turn_in_the_order_listed(order: str) -> None:
 
 
 @pytest.mark.parametrize("order", ORDERS)
-def test_euler_angles_come_back(order: str) -> None:
+def test_euler_angles_are_recovered(order: str) -> None:
     angles = np.random.default_rng(1).uniform(-1, 1, (50, 3)) * [3.1, 1.5, 3.1]
     found = quaternions_to_euler(euler_to_quaternions(angles, order), order)
     assert np.allclose(found, angles, atol=1e-6)
@@ -52,7 +52,7 @@ def test_euler_angles_come_back(order: str) -> None:
 
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize("middle", [np.pi / 2, -np.pi / 2])
-def test_gimbal_lock_keeps_the_rotation(order: str, middle: float) -> None:
+def test_the_rotation_is_exact_in_gimbal_lock(order: str, middle: float) -> None:
     angles = np.array([[0.4, middle, -1.1], [2.0, middle, 0.3]])
     turned = euler_to_quaternions(angles, order)
     again = euler_to_quaternions(quaternions_to_euler(turned, order), order)
@@ -68,7 +68,7 @@ def test_matrices_and_products_agree() -> None:
     assert np.allclose(rotate(a, v), np.einsum("nij,nj->ni", quaternions_to_matrices(a), v))
 
 
-def test_quaternions_come_back_from_matrices_even_of_half_turns() -> None:
+def test_quaternions_are_recovered_from_matrices_also_for_half_turns() -> None:
     rng = np.random.default_rng(3)
     half_turns = np.eye(4)[1:]
     some = np.concatenate([rng.normal(size=(100, 4)), half_turns, np.eye(4)[:1]])

@@ -1,9 +1,9 @@
-"""The records of a binary FBX file. Each is read only when it is needed.
+"""Reads the records of a binary FBX file, each only when it is needed.
 
-A record is a header (end, number of properties, their length, name), its properties and
-its children; a header of zeros ends a list of children. Offsets are 32 bits wide before
-version 7500, then 64. Nothing is parsed before it is asked for, so depth costs nothing,
-and no number of the file is trusted with memory before it is held against its bytes.
+A record has a header (end, number of properties, their length, name), properties, and children. A
+header of zeros ends a list of children. Offsets have 32 bits before version 7500, and then 64.
+Children are only read on request, so that deep files need no recursion. Memory is allocated only
+after a declared size was compared with the bytes of the file.
 
 Source: "FBX binary file format specification" (Blender developers' blog, 2013), and files.
 """
@@ -17,21 +17,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.errors import FormatNotSupported, Place, Unreadable
-from app.formats.common.failures import too_large
+from app.errors import FormatNotSupported
+from app.formats.common.failures import too_large, unreadable_byte
 from app.formats.common.numbers import excerpt
 from app.numerics.arrays import FloatArray, IntArray
 
 MAGIC = b"Kaydara FBX Binary  \x00\x1a\x00"
-FIRST_VERSION, LAST_VERSION = 7000, 7999
-WIDE_VERSION = 7500
-"""From here on offsets have 64 bits."""
+MIN_VERSION, MAX_VERSION = 7000, 7999
+MIN_WIDE_VERSION = 7500
+"""From this version on, offsets have 64 bits."""
 MAX_ARRAY_BYTES = 64_000_000
-"""The largest decompressed size of one array: more keys than a curve may have frames."""
+"""The largest decompressed size of an array. A curve with MAX_FRAMES keys is smaller."""
 MAX_DEFLATE_RATIO = 1040
-"""The largest ratio of sizes that deflate can reach."""
+"""The largest ratio of decompressed to compressed size that deflate can reach."""
 MAX_INFLATED_RATIO = 200
-"""The largest ratio of the size of all decompressed arrays to that of the file. The first
+"""The largest ratio of the decompressed size of all arrays to the size of the file. The first
 MAX_ARRAY_BYTES do not count."""
 
 _HEADER_BYTES = len(MAGIC) + 4
@@ -49,7 +49,7 @@ _ARRAYS = {"f": "<f4", "d": "<f8", "i": "<i4", "l": "<i8", "b": "|u1", "c": "|u1
 
 @dataclass(frozen=True, slots=True)
 class ArrayProperty:
-    """Where an array stands: `count` numbers of `dtype` in `length` bytes from `offset`."""
+    """The position of an array: `count` numbers of `dtype` in `length` bytes from `offset` on."""
 
     dtype: str
     count: int
@@ -62,20 +62,20 @@ Property = bool | int | float | bytes | ArrayProperty
 
 
 class FbxFile:
-    """The bytes of a binary FBX file of version 7, and what was inflated of them."""
+    """A binary FBX file of version 7. It counts the bytes that were decompressed."""
 
     def __init__(self, content: bytes) -> None:
-        """Raises FormatNotSupported for text, encryption and versions other than 7, Unreadable."""
+        """Raises FormatNotSupported for text and for versions other than 7, and Unreadable."""
         if not content.startswith(MAGIC[:18]):
             raise FormatNotSupported("This is an FBX file in text form; save it as binary FBX")
         if len(content) < _HEADER_BYTES:
             raise unreadable_byte(len(content), "expected the version, found the end of the file")
         self.content = content
         self.version = int.from_bytes(content[len(MAGIC) : _HEADER_BYTES], "little")
-        if not FIRST_VERSION <= self.version <= LAST_VERSION:
+        if not MIN_VERSION <= self.version <= MAX_VERSION:
             shown = f"{self.version / 1000:.1f}"
             raise FormatNotSupported(f"This is FBX {shown}; save it as binary FBX 7")
-        wide = self.version >= WIDE_VERSION
+        wide = self.version >= MIN_WIDE_VERSION
         self.header = struct.Struct("<QQQB" if wide else "<IIIB")
         self._inflatable = MAX_ARRAY_BYTES + MAX_INFLATED_RATIO * len(content)
 
@@ -110,34 +110,35 @@ class FbxFile:
         name = self.content[names_at:properties_at].decode("ascii", errors="replace")
         return FbxRecord(self, name, offset, properties_at, count, children_at, end)
 
-    def array(self, place: ArrayProperty) -> FloatArray | IntArray:
-        """The numbers (count,) of an array. Raises Unreadable, TooLarge."""
-        size = place.count * np.dtype(place.dtype).itemsize
-        stored = self.content[place.offset : place.offset + place.length]
-        if not place.deflated:
+    def array(self, at: ArrayProperty) -> FloatArray | IntArray:
+        """(count,) the numbers of an array. Raises Unreadable, TooLarge."""
+        size = at.count * np.dtype(at.dtype).itemsize
+        stored = self.content[at.offset : at.offset + at.length]
+        if not at.deflated:
             if size != len(stored):
-                raise unreadable_byte(place.offset, f"expected {size} bytes, found {len(stored)}")
-            return np.frombuffer(stored, dtype=place.dtype)
-        return np.frombuffer(self._inflated(place, stored, size), dtype=place.dtype)
+                raise unreadable_byte(at.offset, f"expected {size} bytes, found {len(stored)}")
+            return np.frombuffer(stored, dtype=at.dtype)
+        return np.frombuffer(self._inflated(at, stored, size), dtype=at.dtype)
 
-    def _inflated(self, place: ArrayProperty, stored: bytes, size: int) -> bytes:
+    def _inflated(self, at: ArrayProperty, stored: bytes, size: int) -> bytes:
         if size > MAX_DEFLATE_RATIO * (len(stored) + 1):
-            raise unreadable_byte(place.offset, f"expected {size} bytes in {len(stored)}")
+            raise unreadable_byte(at.offset, f"expected {size} bytes in {len(stored)}")
         self._inflatable -= size
         if size > MAX_ARRAY_BYTES or self._inflatable < 0:
-            raise too_large(f"byte {place.offset}", "expected smaller arrays")
+            raise too_large(f"byte {at.offset}", "expected smaller arrays")
         try:
+            # One byte more shows whether the data is longer than the file declares.
             data = zlib.decompressobj().decompress(stored, size + 1)
         except zlib.error as error:
-            raise unreadable_byte(place.offset, f"expected deflated numbers ({error})") from None
+            raise unreadable_byte(at.offset, f"expected deflated numbers ({error})") from None
         if len(data) != size:
-            raise unreadable_byte(place.offset, f"expected {size} inflated bytes")
+            raise unreadable_byte(at.offset, f"expected {size} inflated bytes")
         return data
 
 
 @dataclass(frozen=True, slots=True)
 class FbxRecord:
-    """A record: its name, where it stands, and where its parts begin."""
+    """A record: its name, its offset in the file, and the offsets of its parts."""
 
     file: FbxFile
     name: str
@@ -148,7 +149,7 @@ class FbxRecord:
     end: int
 
     def children(self, name: str | None = None) -> Iterator[FbxRecord]:
-        """Its children, or those of one name."""
+        """The children; only those with a name if one is given."""
         found = self.file.records_between(self.children_at, self.end)
         return (child for child in found if name is None or child.name == name)
 
@@ -157,7 +158,7 @@ class FbxRecord:
         return next(self.children(name), None)
 
     def properties(self, limit: int = 16) -> list[Property]:
-        """Its first properties; text as bytes, arrays as the place where they stand."""
+        """The first `limit` properties. Text is given as bytes, an array as its position."""
         found: list[Property] = []
         offset = self.properties_at
         for _ in range(min(self.property_count, limit)):
@@ -166,7 +167,7 @@ class FbxRecord:
         return found
 
     def array(self) -> FloatArray | IntArray:
-        """(n,) the array that is the first property; empty if there is none."""
+        """(n,) the numbers of the first property, which must be an array; empty without any."""
         first = self.properties(1)
         if not first:
             return np.zeros(0)
@@ -194,16 +195,10 @@ class FbxRecord:
         if encoding not in (0, 1):
             raise unreadable_byte(offset, f"expected encoding 0 or 1, found {encoding}")
         self._bytes(offset + 13, length)
-        place = ArrayProperty(_ARRAYS[code], count, encoding == 1, offset + 13, length)
-        return place, offset + 13 + length
+        at = ArrayProperty(_ARRAYS[code], count, encoding == 1, offset + 13, length)
+        return at, offset + 13 + length
 
     def _bytes(self, offset: int, length: int) -> bytes:
         if offset + length > self.children_at:
             raise unreadable_byte(offset, f"expected {length} bytes in {self.name}")
         return self.file.content[offset : offset + length]
-
-
-def unreadable_byte(offset: int, message: str) -> Unreadable:
-    """An Unreadable with the byte, counted from 0."""
-    location = f"byte {offset}"
-    return Unreadable(f"{location}: {message}", places=[Place(location, message)])

@@ -1,10 +1,11 @@
-"""Joint centers from markers, simply: means of the markers around a joint.
+"""Computes joint centers from markers, as the mean of the markers around a joint.
 
-Hips are the mean of the pelvis markers, the neck that of C7 and the clavicle, the head that
-of its band, knee, ankle, elbow and wrist the middle between their two markers, or the outer
-one alone: up to 5 cm beside the true center, always on the same side. The hip joints lie by
-Bell, Pedersen and Brand (1990) 14 % of the distance between the front pelvis markers
-inwards, 30 % down and 22 % back from them. No model of the person is fitted.
+The center of the hips is the mean of the pelvis markers. That of the neck is the mean of C7 and the
+clavicle, and that of the head is the mean of the markers of its band. Knee, ankle, elbow and wrist
+are the middle of their two markers, or the outer marker alone. The outer marker is up to 5 cm away
+from the true center, but always on the same side. By Bell, Pedersen and Brand (1990), a hip joint
+is inward, below and behind the front pelvis marker by 14 %, 30 % and 22 % of the distance between
+the two front pelvis markers. No model of the person is fitted.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from app.numerics.arrays import FloatArray
 
 _R = JointRole
 Recipe = tuple[str, ...]
-"""Names of marker places. The mean of these markers is a joint's center."""
+"""Places of markers on the body (see `marker_names.py`). Their mean is the center of a joint."""
 
 _SIDED: dict[str, tuple[Recipe, ...]] = {
     "knee": (("?KJC",), ("?KNE", "?KNM"), ("?KNE",)),
@@ -47,13 +48,17 @@ RECIPES: dict[JointRole, tuple[Recipe, ...]] = {
         for side in ("left", "right")
     },
 }  # fmt: skip
-"""By role: what to take the mean of, the best first."""
-_INWARDS, _DOWN, _BACK = 0.14, 0.30, 0.22
+"""The recipes of each role, the best one first."""
+_INWARD, _DOWN, _BACK = 0.14, 0.30, 0.22
+"""The distances of a hip joint from the front pelvis marker, as shares of the pelvis width."""
 
 
 @dataclass(frozen=True, slots=True)
 class Center:
-    """A joint's center (frames, 3) and the places of the markers that it comes from."""
+    """The center of a joint, and the places of the markers from which it is computed.
+
+    positions: (frames, 3) float64 in the unit and axes of the markers.
+    """
 
     positions: FloatArray
     places: Recipe
@@ -62,20 +67,20 @@ class Center:
 def joint_centers(markers: Mapping[str, FloatArray]) -> dict[JointRole, Center]:
     """The joint centers that can be computed from `markers`, in their unit and axes.
 
-    markers: (frames, 3) for each marker place.
+    markers: (frames, 3) for each place on the body.
     """
     found: dict[JointRole, Center] = {}
     for role, recipes in RECIPES.items():
-        recipe = chosen(recipes, markers.__contains__)
+        recipe = best_recipe(recipes, markers.__contains__)
         if recipe is not None:
             found[role] = Center(_mean(markers, recipe), recipe)
-    pelvis = chosen(_PELVES, markers.__contains__)
+    pelvis = best_recipe(_PELVES, markers.__contains__)
     if pelvis is not None:
         _add_hip_joints(found, markers, pelvis)
     return {role: found[role] for role in JointRole if role in found}
 
 
-def chosen(recipes: tuple[Recipe, ...], has: Callable[[str], bool]) -> Recipe | None:
+def best_recipe(recipes: tuple[Recipe, ...], has: Callable[[str], bool]) -> Recipe | None:
     """The first recipe for which all markers exist; None if there is none."""
     return next((recipe for recipe in recipes if all(map(has, recipe))), None)
 
@@ -83,16 +88,18 @@ def chosen(recipes: tuple[Recipe, ...], has: Callable[[str], bool]) -> Recipe | 
 def _add_hip_joints(
     found: dict[JointRole, Center], markers: Mapping[str, FloatArray], pelvis: Recipe
 ) -> None:
+    """Add the hip joints of Bell, Pedersen and Brand (1990), for roles without a center."""
     left, right = markers["LASI"].astype(np.float64), markers["RASI"].astype(np.float64)
     back = _mean(markers, pelvis[2:])
     width = np.linalg.norm(left - right, axis=-1, keepdims=True)
-    outwards = _unit(left - right)
+    left_axis = _unit(left - right)
     forward: FloatArray = (left + right) / 2 - back
-    forward = _unit(forward - np.sum(forward * outwards, axis=-1, keepdims=True) * outwards)
-    up = np.cross(forward, outwards)
+    # The axes of the pelvis: left, forward at right angles to it, and up.
+    forward = _unit(forward - np.sum(forward * left_axis, axis=-1, keepdims=True) * left_axis)
+    up = np.cross(forward, left_axis)
     for role, front, side in ((_R.LEFT_UPPER_LEG, left, 1.0), (_R.RIGHT_UPPER_LEG, right, -1.0)):
-        inwards = -side * _INWARDS * outwards
-        center = front + width * (inwards - _DOWN * up - _BACK * forward)
+        inward = -side * _INWARD * left_axis
+        center = front + width * (inward - _DOWN * up - _BACK * forward)
         found.setdefault(role, Center(center, pelvis))
 
 

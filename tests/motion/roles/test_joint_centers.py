@@ -1,11 +1,11 @@
-"""Joint centers: left stays left, and turning or scaling the markers does so to the joints."""
+"""Joint centers: left stays left, and they move with the markers."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from app.motion.roles.joint_centres import RECIPES, joint_centers
+from app.motion.roles.joint_centers import RECIPES, joint_centers
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.rotations import euler_to_quaternions, rotate
 from tests.formats.c3d.files import marker_person
@@ -13,12 +13,12 @@ from tests.formats.c3d.files import marker_person
 TRACKS, _ = marker_person(frames=10)
 
 
-def test_every_role_has_a_recipe_of_places() -> None:
+def test_every_role_has_a_recipe() -> None:
     assert set(RECIPES) == set(JointRole)
     assert set(joint_centers(TRACKS)) == set(JointRole)
 
 
-def test_turning_moving_and_scaling() -> None:
+def test_centers_are_turned_moved_and_scaled_with_the_markers() -> None:
     turn = euler_to_quaternions(np.array([0.3, 1.0, -2.0]), "XYZ")
     moved = {place: 2 * rotate(turn, track) + [1, 2, 3] for place, track in TRACKS.items()}
     before, after = joint_centers(TRACKS), joint_centers(moved)
@@ -38,7 +38,7 @@ def test_a_mirrored_person_has_mirrored_joints() -> None:
 
 
 @pytest.mark.parametrize("missing", ["LASI", "LKNE", "C7", "LWRA", "LFHD"])
-def test_without_a_marker_only_its_joints_change(missing: str) -> None:
+def test_a_missing_marker_changes_only_its_joints(missing: str) -> None:
     fewer = {place: track for place, track in TRACKS.items() if place != missing}
     before, after = joint_centers(TRACKS), joint_centers(fewer)
     for role, center in before.items():
@@ -46,6 +46,6 @@ def test_without_a_marker_only_its_joints_change(missing: str) -> None:
             assert np.array_equal(after[role].positions, center.positions)
 
 
-def test_markers_in_one_point_have_no_direction() -> None:
+def test_markers_at_one_point_give_finite_centers() -> None:
     here = {place: np.zeros((3, 3)) for place in TRACKS}
     assert all(np.array_equal(c.positions, np.zeros((3, 3))) for c in joint_centers(here).values())

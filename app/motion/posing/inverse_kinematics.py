@@ -1,8 +1,8 @@
-"""Brings a skeleton into poses of which only the joint roles are known.
+"""Inverse kinematics: poses of a skeleton whose joint roles are at given targets.
 
-This is inverse kinematics by damped Gauss-Newton on the turns of joints, for all frames at once.
-Joints above a role turn so that the role comes to its target. They stay near the poses from which
-they start. These poses decide what the roles do not determine (twists, fingers, toes).
+The method is damped Gauss-Newton on the rotations of joints, for all frames at once. Joints above a
+role turn so that the role comes near its target. They stay near the pose from which they start,
+which decides what the targets do not determine (twists, fingers, toes).
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from app.motion.skeleton.rotations import conjugate, multiply, rotate
 from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray, IntArray
 
-ITERATIONS = 12
+MAX_ITERATIONS = 12
 DAMPING = 3e-3
 """Square meters per square radian: the damping of a step."""
 
-STAYING = 1e-3
-"""Square meters per square radian: the cost of leaving the pose of the start."""
+START_WEIGHT = 1e-3
+"""Square meters per square radian: the cost of turning a joint away from its start."""
 
 MAX_STEP = 0.4
 """Radians: the largest turn of a joint in one step."""
@@ -40,16 +40,16 @@ _WEIGHTS = {
     JointRole.LEFT_KNEE: 0.7,
     JointRole.RIGHT_KNEE: 0.7,
 }
-"""The weights of joint roles; other roles have weight 1. Feet must stand, the shoulders' line is
-the body's heading, and knees matter less, because proportions differ."""
+"""The weights of joint roles; other roles have weight 1. Feet must not slide, and the shoulders
+show the heading of the body. Targets of knees are less exact, because proportions differ."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Body:
     """A skeleton prepared for inverse kinematics.
 
-    turning: (t,) the joints that may turn. targeted: (w,) the joints that have a target.
-    weights: (w,) theirs. moves: (w, t) whether a turn moves a targeted joint.
+    turning: (t,) the joints that may turn. targeted: (w,) the joints that have a target. weights:
+    (w,) the weight of each target. moves: (w, t) 1 if the turn of a joint moves a target, else 0.
     """
 
     turning: IntArray
@@ -59,24 +59,25 @@ class _Body:
 
 
 def pose_to(start: Animation, joints: dict[JointRole, int], targets: FloatArray) -> Animation:
-    """The poses near `start` whose roles come nearest to their targets.
+    """The poses near `start` whose roles are nearest to their targets (least squares).
 
-    joints: the joint of each role. targets: (frames, 13, 3) meters, in SUN_ROLES order; roles
-    that the skeleton does not have are ignored. Only the place of the first root changes, and
-    the turns of the hips and of the joints below them.
+    start: an animation with as many frames as `targets`. joints: the joint of each role. targets:
+    (frames, 13, 3) in the world, meters, Y up, in SUN_ROLES order; targets of roles without a joint
+    are ignored. Only the translation of the first root, and the rotations of the hips and of joints
+    below them, are changed.
     """
     body = _body(start.skeleton, joints)
     columns = [SUN_ROLES.index(role) for role in SUN_ROLES if role in joints]
     aim = np.asarray(targets, dtype=np.float64)[:, columns]
     rotations = np.array(start.rotations, dtype=np.float64)
     translations = np.array(start.translations, dtype=np.float64)
-    left = np.zeros((len(aim), 3 * len(body.turning)))
-    for _ in range(ITERATIONS):
-        places, above = _world(start.skeleton, rotations, translations)
-        step = _step(body, places, aim, left)
+    total_turns = np.zeros((len(aim), 3 * len(body.turning)))
+    for _ in range(MAX_ITERATIONS):
+        positions, above = _world(start.skeleton, rotations, translations)
+        step = _step(body, positions, aim, total_turns)
         translations[:, 0] += step[:, :3]
         turns = step[:, 3:]
-        left += turns
+        total_turns += turns
         _turn(rotations, above, body.turning, turns.reshape(len(aim), -1, 3))
         if np.abs(step).max() < MIN_STEP:
             break
@@ -84,7 +85,7 @@ def pose_to(start: Animation, joints: dict[JointRole, int], targets: FloatArray)
 
 
 def ancestors(skeleton: Skeleton, joint: int) -> list[int]:
-    """The joints on the way from a joint's parent to its root."""
+    """The joints above a joint, from its parent to its root."""
     found = []
     parent = int(skeleton.parents[joint])
     while parent >= 0:
@@ -99,7 +100,7 @@ def _body(skeleton: Skeleton, joints: dict[JointRole, int]) -> _Body:
     below = np.zeros((len(skeleton), len(roles)))
     for column, joint in enumerate(targeted):
         below[ancestors(skeleton, joint), column] = 1.0
-    # what is above the hips is no part of the body: it would turn the world
+    # Joints above the hips do not turn, because they would turn the whole world.
     below[ancestors(skeleton, joints[JointRole.HIPS])] = 0.0
     turning = np.flatnonzero(below.sum(axis=1))
     weights = np.array([_WEIGHTS.get(role, 1.0) for role in roles])
@@ -109,43 +110,57 @@ def _body(skeleton: Skeleton, joints: dict[JointRole, int]) -> _Body:
 def _world(
     skeleton: Skeleton, rotations: FloatArray, translations: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """World positions (frames, joints, 3) and world turns of the joints' parents (.., 4)."""
-    places = forward_kinematics(skeleton, rotations, translations)
+    """World positions (frames, joints, 3), and world rotations of parents (frames, joints, 4)."""
+    positions = forward_kinematics(skeleton, rotations, translations)
     world, above = np.array(rotations), np.zeros_like(rotations)
     above[..., 0] = 1.0
     for joints in joints_by_depth(skeleton.parents)[1:]:
         above[:, joints] = world[:, skeleton.parents[joints]]
         world[:, joints] = multiply(above[:, joints], world[:, joints])
-    return places, above
+    return positions, above
 
 
-def _step(body: _Body, places: FloatArray, aim: FloatArray, left: FloatArray) -> FloatArray:
-    """(frames, 3 + 3 t) a damped Gauss-Newton step: the root's way, then turns in the world."""
+def _step(
+    body: _Body, positions: FloatArray, aim: FloatArray, total_turns: FloatArray
+) -> FloatArray:
+    """(frames, 3 + 3 t) a damped Gauss-Newton step.
+
+    It is a translation of the root in meters, then rotation vectors of the joints in the world, in
+    radians. positions: (frames, joints, 3). aim: (frames, w, 3) the targets. total_turns: (frames,
+    3 t) the sum of the turns of earlier steps.
+    """
     frames, count = len(aim), len(body.turning)
-    off = (aim - places[:, body.targeted]) * body.weights[:, None]
-    arms = places[:, body.targeted][:, :, None] - places[:, body.turning][:, None]
-    arms = arms * (body.moves * body.weights[:, None])[:, :, None]  # (frames, w, t, 3)
+    errors = (aim - positions[:, body.targeted]) * body.weights[:, None]
+    # arms (frames, w, t, 3): from each joint that turns to each target that it moves
+    arms = positions[:, body.targeted][:, :, None] - positions[:, body.turning][:, None]
+    arms = arms * (body.moves * body.weights[:, None])[:, :, None]
+    # slope (frames, w, 3, 3 + 3 t): the derivatives of the targets' positions
     slope = np.zeros((frames, len(body.targeted), 3, 3 + 3 * count))
     slope[:, :, [0, 1, 2], [0, 1, 2]] = body.weights[:, None]
-    # d place = turn x arm
+    # A small turn moves a target by the cross product turn x arm.
     crossed = np.zeros((frames, len(body.targeted), 3, count, 3))
     for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         crossed[:, :, a, :, b] = arms[..., c]
         crossed[:, :, a, :, c] = -arms[..., b]
     slope[..., 3:] = crossed.reshape(frames, len(body.targeted), 3, 3 * count)
     rows = slope.reshape(frames, -1, 3 + 3 * count)
-    across = rows.transpose(0, 2, 1)
-    normal = across @ rows
-    damping = np.concatenate([np.zeros(3), np.full(3 * count, DAMPING + STAYING)])
-    aimed = (across @ off.reshape(frames, -1, 1))[..., 0]
-    aimed[:, 3:] -= STAYING * left
-    step = np.linalg.solve(normal + np.diag(damping + 1e-9), aimed[..., None])[..., 0]
+    # The normal equations: (J' J + damping) step = J' errors - the pull to the start.
+    transposed = rows.transpose(0, 2, 1)
+    normal = transposed @ rows
+    damping = np.concatenate([np.zeros(3), np.full(3 * count, DAMPING + START_WEIGHT)])
+    right = (transposed @ errors.reshape(frames, -1, 1))[..., 0]
+    right[:, 3:] -= START_WEIGHT * total_turns
+    # 1e-9 keeps the matrix invertible, because translations are not damped.
+    step = np.linalg.solve(normal + np.diag(damping + 1e-9), right[..., None])[..., 0]
     step[:, 3:] = np.clip(step[:, 3:], -MAX_STEP, MAX_STEP)
     return np.asarray(step)
 
 
 def _turn(rotations: FloatArray, above: FloatArray, joints: IntArray, turns: FloatArray) -> None:
-    """Turn `joints` by rotation vectors (frames, t, 3) of the world."""
+    """Turn `joints` (t,) of `rotations` in place, by rotation vectors (frames, t, 3) of the world.
+
+    above: (frames, joints, 4) the world rotations of parents.
+    """
     parents = above[:, joints]
     seen = rotate(conjugate(parents), turns)
     angle = np.linalg.norm(seen, axis=-1, keepdims=True)

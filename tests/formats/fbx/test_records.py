@@ -1,4 +1,4 @@
-"""The records of FBX: nothing that a file declares is believed before it is checked."""
+"""The records of FBX files: declared sizes are checked before they are used."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import zlib
 import pytest
 
 from app.errors import KinedexError, TooLarge, Unreadable
-from app.formats.fbx import nodes as fbx_nodes
-from app.formats.fbx.nodes import MAX_ARRAY_BYTES, FbxFile
+from app.formats.fbx import records as fbx_records
 from app.formats.fbx.reader import read_fbx
+from app.formats.fbx.records import MAX_ARRAY_BYTES, FbxFile
 from tests.cpu_time import cpu_seconds_below
 from tests.formats.fbx.files import Array, Record, document
 from tests.formats.fbx.test_reader import clip
@@ -36,14 +36,14 @@ def test_arrays(deflate: bool) -> None:
     assert record.array().tolist() == [1, -2, 3]
 
 
-def test_every_cut_of_a_file_is_refused() -> None:
+def test_every_truncated_file_is_refused() -> None:
     content = clip()
     for length in range(30, len(content) - 20, 37):
         with pytest.raises(KinedexError):
             read_fbx(content[:length])
 
 
-def test_a_place_names_the_byte() -> None:
+def test_the_error_has_the_byte() -> None:
     content = clip()
     with pytest.raises(Unreadable) as caught:
         read_fbx(content[: len(content) // 2])
@@ -52,7 +52,7 @@ def test_a_place_names_the_byte() -> None:
 
 
 def bomb(count: int, stored: bytes) -> bytes:
-    """A clip one of whose arrays of times is `stored`, said to hold `count` numbers."""
+    """A clip with `stored` as the bytes of an array of times, and `count` as its declared size."""
     content = clip(deflate=True)
     start = content.index(b"KeyTimel") + len(b"KeyTimel")
     length = struct.unpack_from("<I", content, start + 8)[0]
@@ -62,7 +62,7 @@ def bomb(count: int, stored: bytes) -> bytes:
 
 
 @pytest.mark.parametrize("count", [7, 1_000, 2**31, 2**32 - 1])
-def test_arrays_that_lie_about_their_size(count: int) -> None:
+def test_arrays_with_a_wrong_declared_size(count: int) -> None:
     tracemalloc.start()
     with pytest.raises((Unreadable, TooLarge)):
         read_fbx(bomb(count, b""))
@@ -70,7 +70,7 @@ def test_arrays_that_lie_about_their_size(count: int) -> None:
     tracemalloc.stop()
 
 
-def test_a_bomb_of_zeros_is_not_inflated() -> None:
+def test_a_decompression_bomb_is_not_decompressed() -> None:
     count = 2 * MAX_ARRAY_BYTES // 8
     zeros = zlib.compressobj(9)
     stored = b"".join(zeros.compress(bytes(1_000_000)) for _ in range(count * 8 // 1_000_000))
@@ -84,10 +84,10 @@ def test_a_bomb_of_zeros_is_not_inflated() -> None:
     tracemalloc.stop()
 
 
-def test_many_arrays_share_one_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_arrays_share_one_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     content = clip(deflate=True)
-    monkeypatch.setattr(fbx_nodes, "MAX_ARRAY_BYTES", 500)
-    monkeypatch.setattr(fbx_nodes, "MAX_INFLATED_RATIO", 0)
+    monkeypatch.setattr(fbx_records, "MAX_ARRAY_BYTES", 500)
+    monkeypatch.setattr(fbx_records, "MAX_INFLATED_RATIO", 0)
     with pytest.raises(TooLarge, match="byte"):
         read_fbx(content)
 
