@@ -26,7 +26,7 @@ from app.errors import ConfigurationError, Place
 ENV_PREFIX = "KINEDEX_"
 CONFIG_FILE_ENV = "KINEDEX_CONFIG_FILE"
 CONFIG_FILE_DEFAULT = "kinedex.toml"
-OTHER_NAMES = frozenset({CONFIG_FILE_ENV, "KINEDEX_DATA_SET"})
+OTHER_VARIABLES = frozenset({CONFIG_FILE_ENV, "KINEDEX_DATA_SET"})
 """What else may be in the environment; the second names the real clips that tests read."""
 HEARTBEATS_IN_LEASE = 2.0
 """At least, so that one late heartbeat does not give a job to another worker."""
@@ -34,7 +34,7 @@ LOOPBACK_HOSTS = frozenset({"127.0.0.1", "::1", "localhost"})
 MIB = 1024 * 1024
 _ESCAPED_IN_URLS = str.maketrans({"%": "%25", "?": "%3F"})
 DAY_S = 24 * 3600.0
-LONGEST_DAYS = 36_500
+MAX_RETENTION_DAYS = 36_500
 """A century; beyond it a date cannot be reckoned with."""
 
 
@@ -138,13 +138,13 @@ class Settings(BaseSettings):
     job_retention_days: int = Field(
         30,
         ge=0,
-        le=LONGEST_DAYS,
+        le=MAX_RETENTION_DAYS,
         description="Days after which a job that has ended is removed; 0 keeps all jobs.",
     )
     quarantine_days: float = Field(
         30.0,
         gt=0,
-        le=LONGEST_DAYS,
+        le=MAX_RETENTION_DAYS,
         description="Days that files which the database does not name are kept in the quarantine.",
     )
     refit_growth: float = Field(
@@ -229,7 +229,7 @@ def load_settings(**flags: Any) -> Settings:
 
 def _refuse_unknown(environ: Iterable[str]) -> None:
     """Raises ConfigurationError: a mistyped name would leave its setting at the default."""
-    known = {ENV_PREFIX + name.upper() for name in Settings.model_fields} | OTHER_NAMES
+    known = {ENV_PREFIX + name.upper() for name in Settings.model_fields} | OTHER_VARIABLES
     ours = (name for name in sorted(environ) if name.upper().startswith(ENV_PREFIX))
     places = [Place(name, _no_such(name)) for name in ours if name.upper() not in known]
     if places:

@@ -16,7 +16,7 @@ MAX_DETAIL = 2000
 MAX_LOCATION = 600
 MAX_MESSAGE = 1000
 """Characters of what a failure says: it may quote what a client sent."""
-MOST_KEPT_PLACES = 20
+MAX_STORED_PLACES = 20
 """Places of a failure that is stored with a clip, a job or a file of an import."""
 
 
@@ -60,7 +60,7 @@ class KinedexError(Exception):
             "code": self.code,
             "errors": [
                 {"location": place.location, "message": place.message}
-                for place in self.places[:MOST_KEPT_PLACES]
+                for place in self.places[:MAX_STORED_PLACES]
             ],
         }
 

@@ -19,7 +19,7 @@ from contextlib import contextmanager, suppress
 from types import TracebackType
 from typing import Any, TextIO, cast
 
-from app.logs import blotted, configure_logging
+from app.logs import configure_logging, mask_keys_in_json
 
 log = logging.getLogger("stderr")
 
@@ -93,7 +93,7 @@ def _pass_on(reading: int, lines: _Lines) -> None:
             text = raw.decode("utf-8", "backslashreplace").strip()
             told = _read_json(text)
             if told is not None:
-                lines.write(json.dumps(blotted(told)) + "\n")
+                lines.write(json.dumps(mask_keys_in_json(told)) + "\n")
             elif text:
                 log.warning("%s", text)
 

@@ -1,8 +1,8 @@
 """Logs as JSON lines, carrying the request's and the job's id.
 
-What is logged never holds a file's content: callers pass names, ids, counts and durations. Should
-a key come into a line by any way, it is blotted out. Warnings of Python are lines too. Standard
-library only, so that API and worker share it.
+The callers log names, ids, counts and durations, never the content of a file. If an API key gets
+into a line, it is replaced by KEY_MASK. Warnings of Python become lines too. This module uses the
+standard library only, so that the API and the worker share it.
 """
 
 from __future__ import annotations
@@ -27,34 +27,34 @@ KEY = re.compile(r"(?i)kx_[a-z0-9_-]{8,}")
 """An API key (`app.store.keys`), or the greater part of one; also in another case."""
 _TOKEN = re.compile(r"[A-Za-z0-9_%-]{11,}")
 """What may be a key whose characters are percent-encoded, once or several times."""
-MOST_ENCODINGS = 8
+MAX_ENCODINGS = 8
 """Times that a key may be percent-encoded; no program decodes so often."""
-BLOT = "[key]"
+KEY_MASK = "[key]"
 
 
-def without_keys(text: str) -> str:
-    """`text` with BLOT in the place of every word that holds an API key."""
+def mask_keys(text: str) -> str:
+    """`text` with KEY_MASK in the place of every word that holds an API key."""
     if "%" not in text and not KEY.search(text):
         return text
-    return _TOKEN.sub(lambda found: BLOT if _holds_key(found[0]) else found[0], text)
+    return _TOKEN.sub(lambda found: KEY_MASK if _holds_key(found[0]) else found[0], text)
 
 
 def _holds_key(token: str) -> bool:
-    for _ in range(MOST_ENCODINGS):
+    for _ in range(MAX_ENCODINGS):
         if "%" not in token:
             break
         token = unquote(token)
     return bool(KEY.search(token))
 
 
-def blotted(value: Any) -> Any:
+def mask_keys_in_json(value: Any) -> Any:
     """A value of JSON in which no text holds an API key."""
     if isinstance(value, str):
-        return without_keys(value)
+        return mask_keys(value)
     if isinstance(value, dict):
-        return {blotted(key): blotted(each) for key, each in value.items()}
+        return {mask_keys_in_json(key): mask_keys_in_json(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
-        return [blotted(each) for each in value]
+        return [mask_keys_in_json(each) for each in value]
     return value
 
 
@@ -75,7 +75,7 @@ class JsonFormatter(logging.Formatter):
         if record.exc_info:
             line["exception"] = self.formatException(record.exc_info)
         # ASCII: some readers end lines at U+0085 too.
-        return json.dumps(blotted(line), default=lambda value: without_keys(str(value)))
+        return json.dumps(mask_keys_in_json(line), default=lambda value: mask_keys(str(value)))
 
 
 def configure_logging(level: str = "INFO", stream: TextIO | None = None) -> None:

@@ -8,7 +8,7 @@ from app.demo.dances import sounds
 from app.demo.dances.music import STYLES, clicks, music
 from app.demo.dances.sounds import SAMPLE_RATE
 from app.numerics.arrays import FloatArray
-from tests.unheard_music import UNHEARD
+from tests.held_out_music import HELD_OUT_STYLES
 
 CLICKS = "clicks"
 
@@ -21,7 +21,7 @@ def piece(
     beats = beats_at(draw, bpm, seconds, drift)
     if style == CLICKS:
         return clicks(draw, beats, seconds), beats
-    return music(draw, beats, seconds, (STYLES | UNHEARD)[style]), beats
+    return music(draw, beats, seconds, (STYLES | HELD_OUT_STYLES)[style]), beats
 
 
 def beats_at(draw: np.random.RandomState, bpm: float, seconds: float, drift: float) -> FloatArray:

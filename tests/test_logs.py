@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.api.guard.access_log import identity_of
-from app.logs import without_keys
+from app.logs import mask_keys
 from app.store import keys
 from app.store.database.engine import Database
 from app.store.database.schema import prepare
@@ -38,7 +38,7 @@ SAID = [
 
 
 def test_what_is_written_past_logging_becomes_json() -> None:
-    program = [sys.executable, "-c", "from tests.noise import main; main()"]
+    program = [sys.executable, "-c", "from tests.noisy_program import main; main()"]
     ended = subprocess.run(program, capture_output=True, timeout=120, check=False)
     assert ended.returncode == 1
     lines: list[dict[str, Any]] = [json.loads(line) for line in ended.stderr.splitlines()]
@@ -73,7 +73,7 @@ def test_the_pattern_finds_the_keys_that_are_made(tmp_path: Path) -> None:
     with database.write() as tx:
         for _ in range(20):
             secret = keys.create(tx, KeyRole.READ, "a").secret
-            assert without_keys(f"a {secret}, b") == "a [key], b"
+            assert mask_keys(f"a {secret}, b") == "a [key], b"
     database.close()
 
 
@@ -99,7 +99,7 @@ def _encoded(key: str, times: int, every: int) -> str:
 def test_no_disguise_saves_a_key(
     before: str, after: str, times: int, every: int, case: Any
 ) -> None:
-    hidden = without_keys(before + _encoded(case(KEY), times, every) + after)
+    hidden = mask_keys(before + _encoded(case(KEY), times, every) + after)
     assert hidden.endswith("[key]" + after)
     for _ in range(times):
         hidden = urllib.parse.unquote(hidden)

@@ -12,7 +12,7 @@ from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.settings import open_store
 
 if TYPE_CHECKING:
-    from app.store.upkeep.verify import Verified
+    from app.store.upkeep.verify import VerificationReport
 
 FAILURE = 1
 
@@ -37,7 +37,7 @@ def verify(context: typer.Context, as_json: AsJson = False) -> None:
         raise typer.Exit(FAILURE)
 
 
-def _show(found: Verified) -> None:
+def _show(found: VerificationReport) -> None:
     typer.echo(f"{found.files} files and {found.arrays} arrays were read.")
     for noun, names in (
         ("damage of the database", found.damage),

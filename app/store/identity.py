@@ -24,7 +24,7 @@ WHAT_TO_DO = (
 
 
 @dataclass(frozen=True, slots=True)
-class Adopted:
+class AdoptionReport:
     """What a database found in a folder that it was given.
 
     present, missing: files that the database names; unknown: others, which go to the quarantine.
@@ -80,7 +80,7 @@ def is_database_there(database_url: str) -> bool:
     return not schema.state(database_url).is_empty
 
 
-def adopt(database_url: str, files_dir: Path) -> Adopted:
+def adopt(database_url: str, files_dir: Path) -> AdoptionReport:
     """Makes the folder that of the database's library, whatever it was before.
 
     Raises LibraryMismatch where there is no database; DatabaseOutOfDate; StorageError.
@@ -96,7 +96,7 @@ def adopt(database_url: str, files_dir: Path) -> Adopted:
         database.close()
     present = set(files)
     _write_id(files_dir, ours, replaces=True)
-    return Adopted(len(needed & present), len(needed - present), len(present - needed))
+    return AdoptionReport(len(needed & present), len(needed - present), len(present - needed))
 
 
 def _checked(database_url: str, files_dir: Path, *, writes: bool) -> str:

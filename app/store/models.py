@@ -17,7 +17,7 @@ from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
 from app.store.database.tables import model_arrays, models
 
-OF_CLIPS = "clips."
+CLIP_ARRAY_PREFIX = "clips."
 """How the names of those arrays begin that hold what a model made of the clips it was fitted on."""
 
 KEPT_VERSIONS = 2
@@ -133,7 +133,7 @@ def load_arrays(
         model_arrays.c.name, model_arrays.c.dtype, model_arrays.c.shape, model_arrays.c.data
     ).where(model_arrays.c.model_id == model_id)
     name = model_arrays.c.name
-    wanted = name.not_like(f"{OF_CLIPS}%") if names is None else name.in_(names)
+    wanted = name.not_like(f"{CLIP_ARRAY_PREFIX}%") if names is None else name.in_(names)
     found = tx.execute(query.where(wanted))
     return {name: from_blob(dtype, shape, data) for name, dtype, shape, data in found}
 

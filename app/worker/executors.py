@@ -19,7 +19,7 @@ from app.services.training.fit_process import fit_in_child
 from app.store.clips.record import ClipRecord
 from app.store.jobs import outcomes
 from app.store.jobs.record import ClaimedJob, JobKind
-from app.worker.running import Running, RunningFit, RunningIngest, RunningThread
+from app.worker.running import RunningFit, RunningImport, RunningIngest, RunningJob
 
 
 class JobExecutors:
@@ -31,7 +31,7 @@ class JobExecutors:
         self._analyses = AnalysisPool(ingest_limits(lib.settings), size=self.slots)
         self._threads = ThreadPoolExecutor(1, thread_name_prefix="import")
 
-    def begin(self, claimed: ClaimedJob, clip: ClipRecord | None) -> Running:
+    def begin(self, claimed: ClaimedJob, clip: ClipRecord | None) -> RunningJob:
         """Begin a job, an ingest with its clip as it is now."""
         if clip is not None:
             return self._begin_ingest(claimed, clip)
@@ -48,18 +48,18 @@ class JobExecutors:
         self._analyses.close()
         self._threads.shutdown()
 
-    def _begin_ingest(self, claimed: ClaimedJob, clip: ClipRecord) -> Running:
+    def _begin_ingest(self, claimed: ClaimedJob, clip: ClipRecord) -> RunningJob:
         try:
             request = ingest.analysis_request(self.lib, clip)
             # What died beside others again and again may have been killed for the others' sake.
-            is_alone = claimed.kills >= outcomes.MOST_KILLS
+            is_alone = claimed.kills >= outcomes.MAX_KILLS
             future = self._analyses.submit(request, is_alone=is_alone)
         except KinedexError as problem:
             future = Future()
             future.set_exception(problem)
         return RunningIngest(self.lib, self._analyses, claimed, clip, future)
 
-    def _begin_import(self, claimed: ClaimedJob) -> Running:
+    def _begin_import(self, claimed: ClaimedJob) -> RunningJob:
         stopping = threading.Event()
         told: list[tuple[float, str]] = [(0.0, "")]
 
@@ -67,7 +67,7 @@ class JobExecutors:
             told[0] = (done / max(total, 1), f"{done} of {total} files: {path}")
 
         future = self._threads.submit(imports.unpack, self.lib, claimed, progress, stopping.is_set)
-        return RunningThread(claimed, future, stopping, told)
+        return RunningImport(claimed, future, stopping, told)
 
 
 def _fit_in_process(lib: Library) -> Future[dict[str, Any]]:

@@ -27,11 +27,11 @@ from app.store.clips import repository as clips
 from app.store.clips.record import ClipRecord
 from app.store.database.engine import Tx
 from app.store.jobs import leases, outcomes, owners, queue
-from app.store.jobs.abandoned import Watch
+from app.store.jobs.abandoned_jobs import Watch
 from app.store.jobs.record import ClaimedJob, JobKind
 from app.worker.executors import JobExecutors
 from app.worker.expiry import Expiry
-from app.worker.running import Running
+from app.worker.running import RunningJob
 from app.worker.sweeps import Sweeps
 
 _log = logging.getLogger(__name__)
@@ -81,7 +81,7 @@ class Worker:
         settings = lib.settings
         self.owner = owners.new_owner("worker")
         self.executors = JobExecutors(lib)
-        self._running: list[Running] = []
+        self._running: list[RunningJob] = []
         self._last_beat = time.monotonic()
         self._watch = Watch(self.owner, settings.job_lease_s)
         self._look_s = min(settings.job_heartbeat_s, settings.job_lease_s / LOOKS_PER_LEASE)
@@ -119,7 +119,7 @@ class Worker:
         self.executors.close()
 
     @property
-    def held(self) -> tuple[Running, ...]:
+    def held(self) -> tuple[RunningJob, ...]:
         """The jobs in hand."""
         return tuple(self._running)
 
@@ -141,14 +141,14 @@ class Worker:
             self._begin(each, clip_of.get(each.clip_id or ""))
         return bool(finished or claimed)
 
-    def _settle_all(self, tx: Tx, finished: list[Running]) -> None:
+    def _settle_all(self, tx: Tx, finished: list[RunningJob]) -> None:
         for running in finished:
             with _job_named(running.claimed.job.id):
                 self._settle(tx, running)
         ids = [running.claimed.clip_id for running in finished]
         outcomes.settle_imports(tx, [clip_id for clip_id in ids if clip_id is not None])
 
-    def _settle(self, tx: Tx, running: Running) -> None:
+    def _settle(self, tx: Tx, running: RunningJob) -> None:
         """Settle one; what is not ours any more says so before it changes anything."""
         try:
             running.settle(tx)
@@ -191,12 +191,12 @@ class Worker:
             for job in queue.recover(tx, self._watch, abandoned):
                 _log.warning("the worker of job %s is dead; the job is %s", job.id, job.state)
 
-    def _cancel(self, running: Running) -> None:
+    def _cancel(self, running: RunningJob) -> None:
         self._drop(running)
         with suppress(LeaseLost), self.lib.store.write() as tx:
             outcomes.finish_canceled(tx, running.claimed)
 
-    def _drop(self, running: Running) -> None:
+    def _drop(self, running: RunningJob) -> None:
         running.stop()
         self._running.remove(running)
 
@@ -208,7 +208,7 @@ class Worker:
         with self.lib.store.read() as tx:
             return queue.is_work_waiting(tx, kinds)
 
-    def _claim_all(self, tx: Tx, without: list[Running]) -> list[ClaimedJob]:
+    def _claim_all(self, tx: Tx, without: list[RunningJob]) -> list[ClaimedJob]:
         """Claim what there is room for, when these are settled."""
         held = [running.claimed for running in self._running if running not in without]
         claimed: list[ClaimedJob] = []
@@ -255,7 +255,7 @@ class Worker:
             stop.wait(pause)
 
 
-def _futures(running: Iterable[Running]) -> list[Future[Any]]:
+def _futures(running: Iterable[RunningJob]) -> list[Future[Any]]:
     return [each.future for each in running]
 
 

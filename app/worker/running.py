@@ -29,7 +29,7 @@ RETRY_DELAY_S = 5.0
 """Before an import or a fit that the store failed is tried again."""
 
 
-class Running(Protocol):
+class RunningJob(Protocol):
     """A job in hand."""
 
     claimed: ClaimedJob
@@ -81,7 +81,7 @@ class RunningIngest:
 
 
 @dataclass(slots=True)
-class RunningThread:
+class RunningImport:
     """An import, in a thread of this process; it settles itself when all goes well."""
 
     claimed: ClaimedJob

@@ -33,7 +33,7 @@ WORKER = ("-P", "-m", "app.worker")
 POLL_S = 0.2
 STEADY_S = 10.0
 """A process that ran so long has started well; its next death is its first again."""
-FIRST_DELAY_S, LONGEST_DELAY_S = 0.5, 30.0
+FIRST_DELAY_S, MAX_DELAY_S = 0.5, 30.0
 """Before a process that died is started again: doubled each time it dies young."""
 GRACE_S = 15.0
 """To finish after SIGTERM, before SIGKILL."""
@@ -41,7 +41,7 @@ _PR_SET_PDEATHSIG = 1
 
 
 @dataclass(slots=True)
-class Kept:
+class SupervisedProcess:
     """A process that is to run: its name and Python's arguments, and how it fares."""
 
     name: str
@@ -59,9 +59,9 @@ def supervise(settings: Settings, with_worker: bool = True) -> int:
     Call it from the main thread. 0 after a signal; else the code of a process that could not
     start.
     """
-    kept = [Kept("api", API)]
+    kept = [SupervisedProcess("api", API)]
     if with_worker:
-        kept.append(Kept("worker", WORKER))
+        kept.append(SupervisedProcess("worker", WORKER))
     stop = threading.Event()
     before = {s: signal.signal(s, lambda *_: stop.set()) for s in (signal.SIGTERM, signal.SIGINT)}
     try:
@@ -71,7 +71,9 @@ def supervise(settings: Settings, with_worker: bool = True) -> int:
             signal.signal(sign, handler)
 
 
-def keep_running(kept: Sequence[Kept], environ: dict[str, str], stop: threading.Event) -> int:
+def keep_running(
+    kept: Sequence[SupervisedProcess], environ: dict[str, str], stop: threading.Event
+) -> int:
     """Start each process, and again when it dies, until `stop`; then end them all."""
     try:
         while not stop.is_set():
@@ -101,7 +103,7 @@ def _written(value: object) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _look_after(one: Kept, environ: dict[str, str]) -> int | None:
+def _look_after(one: SupervisedProcess, environ: dict[str, str]) -> int | None:
     """Start what is to run and does not; its exit code where it cannot start."""
     now = time.monotonic()
     if one.process is None:
@@ -119,11 +121,11 @@ def _look_after(one: Kept, environ: dict[str, str]) -> int | None:
         return code
     _log.warning("%s died (exit code %d); again in %.1f s", one.name, code, one.delay)
     one.next_start = now + one.delay
-    one.delay = min(2 * one.delay, LONGEST_DELAY_S)
+    one.delay = min(2 * one.delay, MAX_DELAY_S)
     return None
 
 
-def _start(one: Kept, environ: dict[str, str]) -> None:
+def _start(one: SupervisedProcess, environ: dict[str, str]) -> None:
     # A session of its own: a terminal's Ctrl-C reaches us alone, and we pass it on once.
     one.process = subprocess.Popen(  # noqa: S603 - our own interpreter and modules
         [sys.executable, *one.arguments],
@@ -141,7 +143,7 @@ def _die_with_supervisor() -> None:
         prctl(_PR_SET_PDEATHSIG, int(signal.SIGTERM), 0, 0, 0)
 
 
-def _end(kept: Sequence[Kept]) -> None:
+def _end(kept: Sequence[SupervisedProcess]) -> None:
     alive = [one.process for one in kept if one.process is not None]
     for process in alive:
         process.terminate()

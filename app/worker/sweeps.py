@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 from app.store.store import Store
-from app.store.upkeep.sweep import Swept, try_to_sweep
+from app.store.upkeep.sweep import SweepReport, try_to_sweep
 
 EVERY_S = 3600.0
 
@@ -19,7 +19,7 @@ class Sweeps:
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._sweep_hourly, name="sweep", daemon=True)
 
-    def begin(self) -> Swept:
+    def begin(self) -> SweepReport:
         """Sweep now, and from now on every hour; what this sweep did."""
         swept = try_to_sweep(self._store, self._retention_days)
         self._thread.start()

@@ -9,7 +9,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.errors import MAX_DETAIL, MOST_KEPT_PLACES, KinedexError, Place
+from app.errors import MAX_DETAIL, MAX_STORED_PLACES, KinedexError, Place
 from tests.api.conftest import assert_problem
 from tests.live import Live
 
@@ -111,7 +111,7 @@ def test_a_failure_that_quotes_much_is_cut() -> None:
     places = [Place(LONG, LONG) for _ in range(1000)]
     told = KinedexError(LONG, places=places).as_problem()
     assert len(told["detail"]) == MAX_DETAIL
-    assert len(told["errors"]) == MOST_KEPT_PLACES
+    assert len(told["errors"]) == MAX_STORED_PLACES
     assert len(json.dumps(told)) < 50_000
 
 

@@ -5,7 +5,7 @@ Run: pytest -m bench -s tests/bench/test_beats.py
 Pieces and dances of `app.demo.dances`, of seeds that chose nothing: weights and
 thresholds were fitted on seeds below 10,000 (pieces below 40,000). Half of all drift. The
 weights for recordings were fitted on other pieces of the same styles; those of
-`tests.unheard_music` chose nothing at all and are told apart.
+`tests.held_out_music` chose nothing at all and are told apart.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import body_track
 from tests.bench.page import Section
+from tests.held_out_music import HELD_OUT_STYLES
 from tests.recordings import CLICKS, WITHOUT_BEAT, f_score, piece, without_beat
-from tests.unheard_music import UNHEARD
 
 FIGURES = Section(
     "beats",
@@ -53,7 +53,7 @@ PIECES, DANCES, OFFSETS = 90_000, 91_000, 92_000
 @lru_cache
 def pieces(kind: str) -> tuple[tuple[int, np.ndarray, np.ndarray], ...]:
     """(tempo, samples, beats), two of each tempo, the second one drifting by 5 %."""
-    first = PIECES + 100 * [CLICKS, *STYLES, *UNHEARD].index(kind)
+    first = PIECES + 100 * [CLICKS, *STYLES, *HELD_OUT_STYLES].index(kind)
     return tuple(
         (bpm, *piece(first + 2 * i + half, kind, bpm, drift=0.05 * half))
         for i, bpm in enumerate(TEMPI)
@@ -71,7 +71,7 @@ def test_beats_of_recordings() -> None:
 
 def test_beats_of_styles_never_heard() -> None:
     """None of them chose anything, and no target was set for them."""
-    FIGURES.print(f"music never heard {np.mean(list(_told(tuple(UNHEARD)).values())):.3f}")
+    FIGURES.print(f"music never heard {np.mean(list(_told(tuple(HELD_OUT_STYLES)).values())):.3f}")
 
 
 def _told(kinds: tuple[str, ...]) -> dict[str, float]:
@@ -104,12 +104,14 @@ def _near(ratios: list[float], wanted: tuple[float, ...]) -> float:
 def test_the_peer_on_the_same_recordings() -> None:
     librosa = pytest.importorskip("librosa")
     scores = defaultdict(list)
-    for kind in (CLICKS, *STYLES, *UNHEARD):
+    for kind in (CLICKS, *STYLES, *HELD_OUT_STYLES):
         for _, samples, beats in pieces(kind):
             heard = samples.astype(np.float32)
             _, found = librosa.beat.beat_track(y=heard, sr=SAMPLE_RATE, units="time")
             scores[kind].append(f_score(found, beats))
-    known, unheard = (np.mean([np.mean(scores[s]) for s in some]) for some in (STYLES, UNHEARD))
+    known, unheard = (
+        np.mean([np.mean(scores[s]) for s in some]) for some in (STYLES, HELD_OUT_STYLES)
+    )
     clicks = np.mean(scores[CLICKS])
     FIGURES.print(
         f"\nlibrosa's beat_track: clicks {clicks:.3f}, music {known:.3f}, unheard {unheard:.3f}"

@@ -9,7 +9,7 @@ from app.store.clips.record import ClipRecord, ClipState
 from app.store.database.engine import Tx
 from app.store.jobs import queue
 from app.store.jobs import repository as jobs
-from app.store.jobs.abandoned import Watch
+from app.store.jobs.abandoned_jobs import Watch
 from app.store.jobs.record import ClaimedJob, JobKind, JobState, NewJob
 from tests.store.conftest import new_clip
 

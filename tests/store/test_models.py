@@ -52,7 +52,11 @@ def test_old_ones_go_with_their_arrays(store: Store) -> None:
 
 
 def test_what_was_made_of_clips_is_only_read_when_it_is_asked_for(store: Store) -> None:
-    arrays = {"weights": np.ones(2), f"{models.OF_CLIPS}ids": np.ones(9), "clips": np.ones(3)}
+    arrays = {
+        "weights": np.ones(2),
+        f"{models.CLIP_ARRAY_PREFIX}ids": np.ones(9),
+        "clips": np.ones(3),
+    }
     with store.write() as tx:
         saved = models.save(tx, "words", meta={}, arrays=arrays, library_version=1, library_size=1)
     with store.read() as tx:

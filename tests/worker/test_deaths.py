@@ -133,7 +133,7 @@ def test_more_kills_of_its_child_than_attempts_fail_no_clip(
 def test_after_many_kills_a_clip_is_tried_alone_and_then_given_up(
     lib: Library, endless_clip: DemoClip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(outcomes, "MOST_KILLS", 1)
+    monkeypatch.setattr(outcomes, "MAX_KILLS", 1)
     alone: list[bool] = []
     submit = analysis_pool.AnalysisPool.submit
 

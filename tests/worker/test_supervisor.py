@@ -19,13 +19,13 @@ import pytest
 from app.config import Settings
 from app.services.exposure import CANNOT_START
 from app.worker import supervisor
-from app.worker.supervisor import Kept, environment, keep_running
+from app.worker.supervisor import SupervisedProcess, environment, keep_running
 
 SLEEPER = "import os, sys, time; open(sys.argv[1], 'a').write(f'{os.getpid()}\\n'); time.sleep(60)"
 
 
-def _kept(log: Path) -> Kept:
-    return Kept("sleeper", ("-c", SLEEPER, str(log)))
+def _kept(log: Path) -> SupervisedProcess:
+    return SupervisedProcess("sleeper", ("-c", SLEEPER, str(log)))
 
 
 def _pids(log: Path) -> list[int]:
@@ -60,7 +60,7 @@ def test_a_process_that_is_killed_is_started_again_and_ended_with_the_rest(
 
 def test_a_process_that_cannot_start_ends_the_whole(tmp_path: Path) -> None:
     ending = f"import sys, time; time.sleep(1); sys.exit({CANNOT_START})"
-    hopeless = Kept("hopeless", ("-c", ending))
+    hopeless = SupervisedProcess("hopeless", ("-c", ending))
     log = tmp_path / "pids"
     assert keep_running([_kept(log), hopeless], dict(os.environ), threading.Event()) == CANNOT_START
     assert not any(psutil.pid_exists(pid) for pid in _pids(log))
@@ -68,7 +68,7 @@ def test_a_process_that_cannot_start_ends_the_whole(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("code", [1, 2, 3, 255])
 def test_one_that_crashes_young_is_started_again(code: int) -> None:
-    one = Kept("crasher", ("-c", f"import sys; sys.exit({code})"))
+    one = SupervisedProcess("crasher", ("-c", f"import sys; sys.exit({code})"))
     for _ in range(2):
         one.next_start = 0.0
         assert supervisor._look_after(one, dict(os.environ)) is None
@@ -79,7 +79,7 @@ def test_one_that_crashes_young_is_started_again(code: int) -> None:
 
 
 def test_one_that_dies_young_waits_longer_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    one = Kept("dier", ("-c", "import os; os.kill(os.getpid(), 9)"))
+    one = SupervisedProcess("dier", ("-c", "import os; os.kill(os.getpid(), 9)"))
     delays = []
     for _ in range(3):
         one.next_start = 0.0
@@ -127,8 +127,8 @@ def test_a_taken_port_cannot_be_listened_on(tmp_path: Path) -> None:
 SUPERVISOR = """
 import os, sys, threading
 from pathlib import Path
-from app.worker.supervisor import Kept, keep_running
-sleeper = Kept("sleeper", ("-c", sys.argv[2], sys.argv[1]))
+from app.worker.supervisor import SupervisedProcess, keep_running
+sleeper = SupervisedProcess("sleeper", ("-c", sys.argv[2], sys.argv[1]))
 keep_running([sleeper], dict(os.environ), threading.Event())
 """
 

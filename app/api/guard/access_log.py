@@ -10,7 +10,7 @@ from starlette.datastructures import Headers
 from starlette.types import Scope
 
 from app.api.guard.methods import METHODS
-from app.logs import without_keys
+from app.logs import mask_keys
 
 log = logging.getLogger("app.api.access")
 
@@ -47,4 +47,4 @@ def log_request(scope: Scope, status: int, seconds: float) -> None:
 
 def _shown(path: str) -> str:
     # A person's name is not to be kept, least of all of one who is forgotten.
-    return without_keys(_PERSON.sub(r"\1{name}", path))[:LONGEST_PATH]
+    return mask_keys(_PERSON.sub(r"\1{name}", path))[:LONGEST_PATH]

@@ -14,7 +14,7 @@ from app.store.database.tables import clip_words, clips
 
 
 @dataclass(frozen=True, slots=True)
-class Count:
+class CountBySource:
     """A label, and how many clips carry it, in any state.
 
     of_source: clips of the source that the caller names; others: all other clips.
@@ -43,17 +43,17 @@ _KINDS: dict[LabelKind, tuple[ColumnElement[Any], FromClause]] = {
 }
 
 
-def persons(tx: Tx, source: str) -> tuple[Count, ...]:
+def persons(tx: Tx, source: str) -> tuple[CountBySource, ...]:
     """The persons, by name; the clips of `source` are counted separately."""
     return _counts(tx, *_KINDS[LabelKind.PERSON], source)
 
 
-def tasks(tx: Tx, source: str) -> tuple[Count, ...]:
+def tasks(tx: Tx, source: str) -> tuple[CountBySource, ...]:
     """The tasks, as `persons`."""
     return _counts(tx, *_KINDS[LabelKind.TASK], source)
 
 
-def words(tx: Tx, source: str) -> tuple[Count, ...]:
+def words(tx: Tx, source: str) -> tuple[CountBySource, ...]:
     """The words, as `persons`."""
     return _counts(tx, *_KINDS[LabelKind.WORD], source)
 
@@ -66,7 +66,7 @@ def person_names(tx: Tx) -> frozenset[str]:
 
 def page(
     tx: Tx, kind: LabelKind, source: str, limit: int, cursor: str | None = None
-) -> Page[Count]:
+) -> Page[CountBySource]:
     """At most `limit` labels of a kind, by name; raises BadField at "cursor"."""
     name, carriers = _KINDS[kind]
     after = None if cursor is None else read_cursor(cursor, kind.value, str).value
@@ -85,9 +85,11 @@ def _counts(
     *,
     after: Any = None,
     limit: int | None = None,
-) -> tuple[Count, ...]:
+) -> tuple[CountBySource, ...]:
     of_source = func.sum(case((clips.c.source == source, 1), else_=0))
     query = select(name, func.count(), of_source).select_from(carriers)
     query = query.where(name.is_not(None) if after is None else name > after)
     rows = tx.execute(query.group_by(name).order_by(name).limit(limit))
-    return tuple(Count(label, int(every) - int(some), int(some)) for label, every, some in rows)
+    return tuple(
+        CountBySource(label, int(every) - int(some), int(some)) for label, every, some in rows
+    )

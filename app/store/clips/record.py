@@ -228,7 +228,7 @@ class AddOutcome(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Added:
+class AddResult:
     """The answer to `clips.add_or_get`."""
 
     clip: ClipRecord

@@ -12,8 +12,8 @@ from app.errors import ClipNotFound, Place
 from app.store.clips import versions as library
 from app.store.clips.record import (
     AUDIO_HINTS,
-    Added,
     AddOutcome,
+    AddResult,
     AnalysisInput,
     ClipChanges,
     ClipFacts,
@@ -23,7 +23,7 @@ from app.store.clips.record import (
     NewClip,
     Reanalysis,
 )
-from app.store.clips.rows import changed_input, said_by_client, to_columns, to_record
+from app.store.clips.rows import changed_input, client_fields, to_columns, to_record
 from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
 from app.store.database.tables import clip_words, clips
@@ -44,7 +44,7 @@ _WORDS = (
 )
 
 
-def add_or_get(tx: Tx, new: NewClip) -> Added:
+def add_or_get(tx: Tx, new: NewClip) -> AddResult:
     """Adds a clip in the state queued, or finds the clip with the same content.
 
     A failed one is queued again, with the labels and hints that are given now; any other is queued
@@ -54,13 +54,13 @@ def add_or_get(tx: Tx, new: NewClip) -> Added:
     library.lock(tx)
     found = find_by_content(tx, new.content_key)
     if found is None:
-        return Added(_insert(tx, new), AddOutcome.ADDED)
+        return AddResult(_insert(tx, new), AddOutcome.ADDED)
     is_failed = found.state is ClipState.FAILED
     if is_failed or (new.audio is not None and new.audio.sha256 != found.audio_sha256):
         again = _requeue_with(tx, found, new, None if is_failed else ("audio", *AUDIO_HINTS))
         replaced = found.audio_sha256 if again.audio_sha256 != found.audio_sha256 else None
-        return Added(again, AddOutcome.REQUEUED, replaced)
-    return Added(found, AddOutcome.EXISTS)
+        return AddResult(again, AddOutcome.REQUEUED, replaced)
+    return AddResult(found, AddOutcome.EXISTS)
 
 
 def get(tx: Tx, clip_id: str) -> ClipRecord:
@@ -177,7 +177,7 @@ def delete_clip(tx: Tx, clip_id: str) -> ClipRecord:
     """
     gone = get(tx, clip_id)
     if gone.changed_version:
-        library.bury(tx, clip_id)
+        library.record_deletion(tx, clip_id)
     tx.execute(delete(clips).where(clips.c.id == clip_id))
     return gone
 
@@ -191,7 +191,7 @@ def in_batches(ids: Iterable[str], size: int = IDS_PER_QUERY) -> Iterator[list[s
 
 def _insert(tx: Tx, new: NewClip) -> ClipRecord:
     clip_id = new_id("clip")
-    values = to_columns(said_by_client(new)) | {
+    values = to_columns(client_fields(new)) | {
         "id": clip_id,
         "sha256": new.sha256,
         "file_name": new.file_name,
@@ -213,7 +213,7 @@ def _requeue_with(
     """Queue again with what is given now; `only`: names of the fields that may change."""
     given = {
         name: value
-        for name, value in said_by_client(new).items()
+        for name, value in client_fields(new).items()
         if value not in (None, ()) and (only is None or name in only)
     }
     patch(tx, found.id, given)

@@ -32,7 +32,7 @@ _AUDIO_COLUMNS = {field.name: f"audio_{field.name}" for field in fields(Attached
 _RECORD_COLUMNS = tuple(field.name for field in fields(ClipRecord) if field.name in clips.c)
 
 
-def said_by_client(new: NewClip) -> dict[str, Any]:
+def client_fields(new: NewClip) -> dict[str, Any]:
     """Labels, hints and recording of a new clip, by the names that `ClipChanges` has."""
     return {**_values(new.labels), **_values(new.hints), "audio": new.audio}
 

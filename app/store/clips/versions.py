@@ -62,7 +62,7 @@ def bump(tx: Tx) -> int:
     return int(tx.execute(_RAISE).scalar_one())
 
 
-def bury(tx: Tx, clip_id: str) -> None:
+def record_deletion(tx: Tx, clip_id: str) -> None:
     """Records that a clip that searches may know was deleted."""
     tx.execute(insert(tombstones).values(clip_id=clip_id, version=bump(tx)))
 
@@ -82,12 +82,12 @@ def changed_since(tx: Tx, since: int) -> LibraryChanges:
         changed=tuple(row.id for row in touched if row.state == ClipState.READY),
         removed=(
             *(row.id for row in touched if row.state != ClipState.READY),
-            *buried_since(tx, since),
+            *deleted_since(tx, since),
         ),
     )
 
 
-def buried_since(tx: Tx, since: int) -> tuple[str, ...]:
+def deleted_since(tx: Tx, since: int) -> tuple[str, ...]:
     """Ids of the clips that searches may know from version `since` and that were deleted."""
     return tuple(
         tx.execute(

@@ -122,7 +122,7 @@ class Database:
                 connection.cursor().execute(f"PRAGMA busy_timeout = {round(1000 * BUSY_TIMEOUT_S)}")
                 connection.close()
 
-    def forget_damage(self) -> None:
+    def clear_damage(self) -> None:
         """Says that the database, which was damaged, is whole again.
 
         Connections of the pool may have kept damaged pages in memory, so new ones are opened.

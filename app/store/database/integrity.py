@@ -6,7 +6,7 @@ import sqlite3
 
 from app.errors import StorageError
 
-MOST_FINDINGS = 100
+MAX_FINDINGS = 100
 """More tell nothing new."""
 
 DAMAGED = frozenset({sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_IOERR})
@@ -21,8 +21,8 @@ def find_damage(connection: sqlite3.Connection, *, quick: bool = False) -> tuple
     """
     check = "quick_check" if quick else "integrity_check"
     try:
-        told = [row[0] for row in connection.execute(f"PRAGMA {check}({MOST_FINDINGS})")]
-        dangling = connection.execute("PRAGMA foreign_key_check").fetchmany(MOST_FINDINGS)
+        told = [row[0] for row in connection.execute(f"PRAGMA {check}({MAX_FINDINGS})")]
+        dangling = connection.execute("PRAGMA foreign_key_check").fetchmany(MAX_FINDINGS)
     except sqlite3.Error as error:
         if not is_damage(error):
             raise StorageError(f"The database cannot be checked: {error}") from error

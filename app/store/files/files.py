@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import BinaryIO, Protocol
 
 from app.errors import BadField, DiskFull, NotFound, Place, StorageError, TooLarge
-from app.store.files.checked import SHA256, Checked
+from app.store.files.hash_check import SHA256, HashChecker
 from app.store.files.id_file import read_id
 from app.store.files.locked_file import create_locked, remove_if_abandoned
 from app.store.files.quarantine import FOLDER, Quarantine
@@ -68,7 +68,7 @@ class FileStore:
         self.library_id = library_id
         self.quarantine = Quarantine(root / FOLDER)
         self._temporaries = root / "tmp"
-        self._checked = Checked()
+        self._checked = HashChecker()
 
     def check_identity(self) -> None:
         """Raises StorageError where the folder is not, or no more, that of the library.

@@ -19,13 +19,13 @@ FOLDER = "quarantine"
 NAME_LENGTH = 64
 """Of a SHA-256 in hex."""
 DAY_S = 24 * 3600.0
-LONGEST_GAP_S = DAY_S
+MAX_PURGE_GAP_S = DAY_S
 """Time between two purges counts up to this; so a clock that jumps ahead ends no retention."""
 _LAST_PURGE = "last-purge"
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class QuarantineContent:
     """What the quarantine holds. oldest: when its first file came, seconds since 1970."""
 
     names: tuple[str, ...]
@@ -69,7 +69,7 @@ class Quarantine:
         (self.folder / sha256).unlink(missing_ok=True)
 
     def purge(self, older_than_s: float) -> tuple[str, ...]:
-        """Removes what has been here longer; the names. Call it often: see LONGEST_GAP_S."""
+        """Removes what has been here longer; the names. Call it often: see MAX_PURGE_GAP_S."""
         if not self.folder.is_dir():
             return ()
         now = time.time()
@@ -79,17 +79,19 @@ class Quarantine:
             path.unlink(missing_ok=True)
         return tuple(path.name for path in old)
 
-    def held(self) -> Held:
+    def content(self) -> QuarantineContent:
         """What is here."""
         told = {path.name: path.stat() for path in self._files()}
         oldest = min((each.st_mtime for each in told.values()), default=None)
-        return Held(tuple(sorted(told)), sum(each.st_size for each in told.values()), oldest)
+        return QuarantineContent(
+            tuple(sorted(told)), sum(each.st_size for each in told.values()), oldest
+        )
 
     def _discount_jump(self, now: float) -> None:
         """Moves all times along with a clock that was set, or while no purge was made."""
         mark = self.folder / _LAST_PURGE
         last = mark.stat().st_mtime if mark.exists() else now
-        jump = (now - last) - min(max(now - last, 0.0), LONGEST_GAP_S)
+        jump = (now - last) - min(max(now - last, 0.0), MAX_PURGE_GAP_S)
         if jump:
             for path in self._files():
                 moved = path.stat().st_mtime + jump

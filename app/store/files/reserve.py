@@ -14,7 +14,7 @@ from pathlib import Path
 
 _log = logging.getLogger(__name__)
 
-LEAST, MOST = 2**20, 64 * 2**20
+MIN_BYTES, MAX_BYTES = 2**20, 64 * 2**20
 """Bytes. A deletion writes no more than the database holds; and no clip is larger than a few
 tens of MiB there, but for one of an hour."""
 ROOM = 4
@@ -24,7 +24,7 @@ SHARE_TAKEN_BACK = 0.75
 
 
 class Reserve:
-    """A file beside a database, as large as that is between LEAST and MOST; or none."""
+    """A file beside a database, as large as that is between MIN_BYTES and MAX_BYTES; or none."""
 
     def __init__(self, database: Path) -> None:
         self.path = database.with_name(f"{database.name}.reserve")
@@ -43,7 +43,7 @@ class Reserve:
         disk would fill that too, and the next deletion needs it."""
         with suppress(OSError):
             size = min(self._wanted(), int(SHARE_TAKEN_BACK * self._free()))
-            if size >= LEAST and not self.path.exists():
+            if size >= MIN_BYTES and not self.path.exists():
                 self._allocate(size)
 
     def give_up(self) -> bool:
@@ -56,7 +56,7 @@ class Reserve:
         return True
 
     def _wanted(self) -> int:
-        return min(max(self._database.stat().st_size, LEAST), MOST)
+        return min(max(self._database.stat().st_size, MIN_BYTES), MAX_BYTES)
 
     def _free(self) -> int:
         return shutil.disk_usage(self.path.parent).free

@@ -96,7 +96,9 @@ def waiting_clips(tx: Tx, job_id: str) -> tuple[str, ...]:
     return tuple(tx.execute(query).scalars())
 
 
-def give_turn(tx: Tx, lease: Lease, progress: float, detail: str, lowest: int) -> JobRecord:
+def requeue_behind_others(
+    tx: Tx, lease: Lease, progress: float, detail: str, lowest: int
+) -> JobRecord:
     """Back into the queue behind other imports, one step less urgent, but not below `lowest`.
 
     No attempt is counted, and the progress stays. Raises LeaseLost.

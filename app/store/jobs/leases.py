@@ -31,7 +31,7 @@ from app.store.database.tables import jobs
 from app.store.jobs import repository as job_repository
 from app.store.jobs.record import ClaimedJob, JobKind, JobRecord, JobState, Lease
 
-LONGEST_DELAY_S = 60.0
+MAX_DELAY_S = 60.0
 """No job waits longer for its next try. One that is to wait longer by the clock on the wall is
 due at once: then the clock was set back."""
 
@@ -111,11 +111,11 @@ def give_back(tx: Tx, lease: Lease) -> JobRecord:
 
 
 def retry_later(tx: Tx, lease: Lease, delay_s: float, **counters: int) -> JobRecord:
-    """Back into the queue for a while, at most LONGEST_DELAY_S.
+    """Back into the queue for a while, at most MAX_DELAY_S.
 
     counters: new values of `failures` or `kills`.
     """
-    later = utc_now() + timedelta(seconds=min(delay_s, LONGEST_DELAY_S))
+    later = utc_now() + timedelta(seconds=min(delay_s, MAX_DELAY_S))
     values = {"state": JobState.QUEUED.value, "not_before": later, "progress": 0.0}
     return job_repository.to_record(_change(tx, lease, values | _FREE | counters))
 
@@ -142,7 +142,7 @@ def as_claimed(row: RowMapping) -> ClaimedJob:
 
 
 def _asked(kinds: Collection[JobKind], now: datetime) -> dict[str, Any]:
-    far = now + timedelta(seconds=LONGEST_DELAY_S)
+    far = now + timedelta(seconds=MAX_DELAY_S)
     return {"kinds": [kind.value for kind in kinds], "now": now, "far": far}
 
 

@@ -27,7 +27,7 @@ from app.store.jobs import imports, leases, owners, removals
 from app.store.jobs import repository as jobs
 from app.store.jobs.record import ClaimedJob, JobKind, JobRecord, JobState, Lease
 
-MOST_KILLS = 8
+MAX_KILLS = 8
 """A job whose child process is killed from outside so often is tried once more, alone."""
 KILL_DELAY_S = 0.5
 """Before the first new try; doubled each time."""
@@ -97,11 +97,11 @@ def retry_or_fail(
 def retry_after_kill(tx: Tx, claimed: ClaimedJob, problem: dict[str, Any]) -> JobRecord:
     """Its child process was killed from outside: try again, without counting it as a failure.
 
-    After MOST_KILLS in a row it is tried alone; `problem` is the reason if that fails too.
+    After MAX_KILLS in a row it is tried alone; `problem` is the reason if that fails too.
     Raises LeaseLost.
     """
     kills = jobs.get_row(tx, claimed.job.id)["kills"] + 1
-    if kills > MOST_KILLS:
+    if kills > MAX_KILLS:
         return fail_job(tx, claimed, problem)
     delay_s = KILL_DELAY_S * 2 ** (kills - 1)
     waiting = leases.retry_later(tx, claimed.lease, delay_s, kills=kills)

@@ -8,7 +8,7 @@ from app.errors import ClipNotFound
 from app.store.clips import repository as clips
 from app.store.database.engine import Tx
 from app.store.jobs import leases, outcomes
-from app.store.jobs.abandoned import Held, Watch
+from app.store.jobs.abandoned_jobs import HeldJob, Watch
 from app.store.jobs.record import ClaimedJob, JobKind, JobRecord
 
 
@@ -31,7 +31,7 @@ def take(tx: Tx, kinds: Collection[JobKind], owner: str) -> ClaimedJob | None:
     return None
 
 
-def recover(tx: Tx, watch: Watch, abandoned: Collection[Held]) -> tuple[JobRecord, ...]:
+def recover(tx: Tx, watch: Watch, abandoned: Collection[HeldJob]) -> tuple[JobRecord, ...]:
     """Ends, or puts back into the queue, those that are still as `Watch.look` saw them."""
     taken = [watch.take(tx, held) for held in abandoned]
     return tuple(outcomes.recover(tx, claimed) for claimed in taken if claimed is not None)

@@ -31,8 +31,8 @@ from app.errors import (
 )
 from app.store.clips import versions as library
 from app.store.database.engine import Database
-from app.store.files.checked import refuse_damage
 from app.store.files.files import NO_SPACE, FileStore
+from app.store.files.hash_check import refuse_damage
 from app.store.files.id_file import write_id
 from app.store.files.locked_file import locked_folder, remove_if_abandoned
 from app.store.folders import sync_folder
@@ -45,7 +45,7 @@ DATABASE, FILES = "kinedex.sqlite3", "files"
 PART = ".part"
 """Ending of a copy that is being made."""
 
-MOST_TRIES = 10
+MAX_TRIES = 10
 """Each time a file was both added and deleted while its turn had not come."""
 
 Progress = Callable[[int, int], None]
@@ -136,7 +136,7 @@ def _copy(store: Store, part: Path, progress: Progress | None) -> frozenset[str]
     files = _Files(store.files, FileStore(part / FILES))
     _add(files, needed, progress)
     lost: set[str] = set()
-    for _ in range(MOST_TRIES):
+    for _ in range(MAX_TRIES):
         needed, before = _copy_database(store.database, part / DATABASE), lost
         _add(files, needed, progress)
         lost = files.missing | files.damaged

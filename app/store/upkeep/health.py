@@ -25,7 +25,7 @@ from app.store.store import Store
 
 _log = logging.getLogger(__name__)
 
-LEAST_FREE = 4 * 2**20
+MIN_FREE_BYTES = 4 * 2**20
 """Bytes: with less on the disk, hardly a clip can be stored."""
 WRITE_EVERY_S = 5.0
 """Between two attempts to write."""
@@ -133,7 +133,7 @@ class Health:
             was_damaged = self._is_damaged or self._store.database.damage is not None
             self._is_damaged = bool(damage)
             if was_damaged and not damage:
-                self._store.database.forget_damage()
+                self._store.database.clear_damage()
         self._checked_at = time.monotonic()
         self._check_took = self._checked_at - began
 
@@ -149,7 +149,7 @@ class Health:
 def _room_troubles(folders: list[Path]) -> tuple[Place, ...]:
     for folder in folders:
         try:
-            is_full = shutil.disk_usage(folder).free < LEAST_FREE
+            is_full = shutil.disk_usage(folder).free < MIN_FREE_BYTES
             if not is_full:
                 _try_to_write(folder)
         except OSError as error:

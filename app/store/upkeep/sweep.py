@@ -25,7 +25,7 @@ NAMES_SHOWN, NAME_SHOWN = 10, 12
 
 
 @dataclass(frozen=True, slots=True)
-class Swept:
+class SweepReport:
     """How many files of each kind a sweep dealt with."""
 
     temporaries: int = 0
@@ -35,7 +35,7 @@ class Swept:
     purged: int = 0
 
 
-def sweep(store: Store, retention_days: float) -> Swept:
+def sweep(store: Store, retention_days: float) -> SweepReport:
     """Tidies the folder of files, while others use it; safe to call at any time.
 
     Raises StorageError, where the folder is not that of the database too: then nothing is done.
@@ -53,7 +53,7 @@ def sweep(store: Store, retention_days: float) -> Swept:
     if purged:
         _tell("files were removed after %g days in the quarantine", retention_days, purged)
     store.make_reserve()
-    return Swept(temporaries, removed, len(set_aside), len(brought_back), len(purged))
+    return SweepReport(temporaries, removed, len(set_aside), len(brought_back), len(purged))
 
 
 def _bring_back(store: Store, names: Collection[str]) -> list[str]:
@@ -88,10 +88,10 @@ def _tell(text: str, *told: object) -> None:
     _log.warning(text, *values, extra={"fields": fields})
 
 
-def try_to_sweep(store: Store, retention_days: float) -> Swept:
+def try_to_sweep(store: Store, retention_days: float) -> SweepReport:
     """As `sweep`; a failure goes to the log, since the next sweep tries again."""
     try:
         return sweep(store, retention_days)
     except StorageError as problem:
         _log.error("the files could not be swept: %s", problem.detail)
-        return Swept()
+        return SweepReport()

@@ -10,8 +10,8 @@ from sqlalchemy import select
 from app.errors import DatabaseDamaged, FileDamaged, NotFound
 from app.store.database.blobs import from_blob
 from app.store.database.tables import clip_arrays, model_arrays
-from app.store.files.checked import Checked
-from app.store.files.quarantine import Held
+from app.store.files.hash_check import HashChecker
+from app.store.files.quarantine import QuarantineContent
 from app.store.jobs import references
 from app.store.store import Store
 
@@ -23,7 +23,7 @@ Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Verified:
+class VerificationReport:
     """What was looked at and what is wrong.
 
     damage: of the database, a sentence each; unreadable: arrays, as `<id of clip or model>/<name>`;
@@ -39,7 +39,7 @@ class Verified:
     missing: tuple[str, ...]
     damaged: tuple[str, ...]
     unknown: tuple[str, ...]
-    quarantine: Held
+    quarantine: QuarantineContent
 
     @property
     def is_whole(self) -> bool:
@@ -47,7 +47,7 @@ class Verified:
         return not (self.damage or self.unreadable or self.missing or self.damaged)
 
 
-def verify(store: Store, progress: Progress | None = None) -> Verified:
+def verify(store: Store, progress: Progress | None = None) -> VerificationReport:
     """Reads everything, while others use the library. Raises StorageError."""
     damage = list(store.database.find_damage())
     try:
@@ -59,7 +59,7 @@ def verify(store: Store, progress: Progress | None = None) -> Verified:
     unknown = () if damage else tuple(sorted(set(store.files) - needed))
     arrays, unreadable = _read_arrays(store)
     missing, damaged = _hash_all(store, needed, progress)
-    return Verified(
+    return VerificationReport(
         files=len(needed),
         arrays=arrays,
         damage=tuple(damage),
@@ -67,7 +67,7 @@ def verify(store: Store, progress: Progress | None = None) -> Verified:
         missing=missing,
         damaged=damaged,
         unknown=unknown,
-        quarantine=store.files.quarantine.held(),
+        quarantine=store.files.quarantine.content(),
     )
 
 
@@ -75,7 +75,7 @@ def _hash_all(
     store: Store, names: frozenset[str], progress: Progress | None
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The files that are missing, and those that are damaged or cannot be read."""
-    checked = Checked()
+    checked = HashChecker()
     missing, damaged = [], []
     for done, sha256 in enumerate(sorted(names), 1):
         try:

@@ -16,7 +16,7 @@ from app.services.clips import jobs
 from app.services.imports import imports
 from app.services.library.library import Library
 from app.store.jobs import queue
-from app.store.jobs.abandoned import Watch
+from app.store.jobs.abandoned_jobs import Watch
 from app.store.jobs.record import ClaimedJob, JobKind, JobState
 from tests.libraries import settings_for, work
 

@@ -59,8 +59,8 @@ def test_only_what_changed_since_and_in_the_order_of_the_changes(
         (made[1].id, False),
     ]
     with store.read() as tx:
-        assert library.buried_since(tx, before) == (made[0].id,)
-        assert library.buried_since(tx, library.version(tx)) == ()
+        assert library.deleted_since(tx, before) == (made[0].id,)
+        assert library.deleted_since(tx, library.version(tx)) == ()
 
 
 def test_a_change_is_looked_up_without_reading_all_clips(store: Store) -> None:

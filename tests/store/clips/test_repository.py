@@ -14,7 +14,7 @@ from app.errors import ClipNotFound
 from app.store.clips import arrays, labels
 from app.store.clips import repository as clips
 from app.store.clips import versions as library
-from app.store.clips.labels import Count
+from app.store.clips.labels import CountBySource
 from app.store.clips.record import AddOutcome, AnalysisHints, AttachedAudio, ClipState
 from app.store.store import Store
 from tests.store.conftest import AddClip, facts, new_clip
@@ -112,7 +112,7 @@ def test_patch_changes_only_what_is_given(store: Store, add_clip: AddClip) -> No
     assert (changed.name, changed.person, changed.task) == ("New", "anna", None)
     assert changed.words == ("run",)
     with store.read() as tx:
-        assert labels.words(tx, "us") == (Count("run", 1, 0),)
+        assert labels.words(tx, "us") == (CountBySource("run", 1, 0),)
 
 
 @pytest.mark.parametrize("act", ["get", "patch", "requeue", "delete_clip"])
@@ -128,7 +128,7 @@ def test_deletion_takes_words_and_arrays_along(store: Store, add_clip: AddClip) 
         for each in (clip, other):
             arrays.put_many(tx, each.id, {"v": np.zeros(3)}, version=1)
         assert clips.delete_clip(tx, clip.id) == clip
-        assert labels.words(tx, "us") == (Count("run", 1, 0),)
+        assert labels.words(tx, "us") == (CountBySource("run", 1, 0),)
         assert array_versions(tx, clip.id) == {}
         assert set(arrays.get_many(tx, [clip.id, other.id], "v")) == {other.id}
 
@@ -151,9 +151,9 @@ def test_labels_are_counted(store: Store, add_clip: AddClip) -> None:
     add_clip("3", person="ben", source="them")
     add_clip("4")
     with store.read() as tx:
-        assert labels.persons(tx, "us") == (Count("anna", 1, 1), Count("ben", 1, 0))
-        assert labels.tasks(tx, "us") == (Count("walk", 1, 0),)
-        assert labels.words(tx, "us") == (Count("slow", 1, 0), Count("walk", 1, 1))
+        assert labels.persons(tx, "us") == (CountBySource("anna", 1, 1), CountBySource("ben", 1, 0))
+        assert labels.tasks(tx, "us") == (CountBySource("walk", 1, 0),)
+        assert labels.words(tx, "us") == (CountBySource("slow", 1, 0), CountBySource("walk", 1, 1))
         assert labels.person_names(tx) == {"anna", "ben"}
 
 

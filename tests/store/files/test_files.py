@@ -14,8 +14,8 @@ import pytest
 
 from app.errors import BadField, DiskFull, FileDamaged, NotFound, StorageError, TooLarge
 from app.store.files import locked_file
-from app.store.files.checked import read_whole
 from app.store.files.files import FileStore
+from app.store.files.hash_check import read_whole
 
 
 @pytest.fixture
@@ -213,7 +213,7 @@ def test_a_file_that_was_whole_is_not_hashed_for_every_part_of_it(
 ) -> None:
     sha256, hashed = put(files, b"song"), []
     monkeypatch.setattr(
-        "app.store.files.checked.refuse_damage", lambda *names: hashed.append(names)
+        "app.store.files.hash_check.refuse_damage", lambda *names: hashed.append(names)
     )
     for _ in range(5):
         files.checked_path(sha256)

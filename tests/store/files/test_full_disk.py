@@ -16,7 +16,7 @@ from app.store import identity
 from app.store.clips import arrays
 from app.store.clips import repository as clips
 from app.store.clips.record import ClipLabels, ClipRecord, NewClip
-from app.store.files.reserve import LEAST
+from app.store.files.reserve import MIN_BYTES
 from app.store.jobs import outcomes
 from app.store.store import Store
 from tests.full_disk import fill, small_disk
@@ -93,7 +93,7 @@ def test_a_deletion_is_tried_again_with_the_reserve(tmp_path: Path) -> None:
     store = open_store(tmp_path)
     store.make_reserve()
     reserve = tmp_path / "kinedex.sqlite3.reserve"
-    assert reserve.stat().st_size == LEAST
+    assert reserve.stat().st_size == MIN_BYTES
     work = Full(store, reserve)
     assert store.write_even_when_full(work) == "deleted"
     assert work.calls == 2
@@ -111,7 +111,7 @@ def test_the_reserve_does_not_take_the_last_space(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     store = open_store(tmp_path)
-    usage = type("Usage", (), {"free": 3 * LEAST})
+    usage = type("Usage", (), {"free": 3 * MIN_BYTES})
     monkeypatch.setattr("app.store.files.reserve.shutil.disk_usage", lambda _: usage)
     store.make_reserve()
     assert not (tmp_path / "kinedex.sqlite3.reserve").exists()

@@ -15,7 +15,7 @@ from app.errors import LeaseLost
 from app.store.database.ids import utc_now
 from app.store.jobs import leases, owners
 from app.store.jobs import repository as jobs
-from app.store.jobs.abandoned import Watch
+from app.store.jobs.abandoned_jobs import Watch
 from app.store.jobs.record import ClaimedJob, JobKind, JobState, NewJob
 from app.store.store import Store
 from tests.store.conftest import AddJob

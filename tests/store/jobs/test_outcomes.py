@@ -228,7 +228,7 @@ def test_a_child_killed_from_outside_does_not_count_and_is_given_up_in_the_end(
 ) -> None:
     with store.write() as tx:
         clip = add(tx, "walk", max_attempts=1)
-        for number in range(1, outcomes.MOST_KILLS + 1):
+        for number in range(1, outcomes.MAX_KILLS + 1):
             claimed = take_whenever(tx)
             outcomes.retry_after_kill(tx, claimed, PROBLEM)
             assert states(tx, clip, claimed) == (ClipState.QUEUED, JobState.QUEUED)

@@ -24,7 +24,7 @@ from app.store.jobs import repository as jobs
 from app.store.jobs.imports import ImportOutcome, NewEntry
 from app.store.jobs.record import JobKind, JobRecord, NewJob
 from app.store.store import Store
-from app.store.upkeep.sweep import Swept, sweep
+from app.store.upkeep.sweep import SweepReport, sweep
 from tests.store.conftest import facts
 
 RETENTION_DAYS = 30.0
@@ -201,7 +201,7 @@ def test_files_that_nobody_names_are_set_aside_and_come_back(
     assert sweep(store, RETENTION_DAYS).brought_back == 1
     assert store.files.path(named.sha256).read_bytes() == b"orphan 7"
     assert set(store.files.quarantine) == orphans - {named.sha256}
-    assert sweep(store, RETENTION_DAYS) == Swept()
+    assert sweep(store, RETENTION_DAYS) == SweepReport()
 
 
 def test_what_is_forgotten_does_not_stay_in_the_quarantine(store: Store) -> None:

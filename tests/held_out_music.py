@@ -11,7 +11,7 @@ from app.demo.dances.music import Style, every
 _BACKBEAT = ((1, 1.0), (3, 1.0))
 _TRIPLETS = tuple((third / 3, 0.9 if third % 3 == 0 else 0.5) for third in range(6))
 
-UNHEARD: dict[str, Style] = {
+HELD_OUT_STYLES: dict[str, Style] = {
     "shuffle": Style(
         4, ((0, 1.0), (2, 0.9), (3.5, 0.6)), _BACKBEAT, every(0.5), every(0.5, gain=0.8),
         ((0, 1.0), (2.5, 0.6)), swing=1 / 6,

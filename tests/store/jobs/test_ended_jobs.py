@@ -6,8 +6,7 @@ from datetime import UTC, datetime, timedelta
 
 from app.store.database.engine import Tx
 from app.store.database.ids import utc_now
-from app.store.jobs import ended as ended_jobs
-from app.store.jobs import imports, leases, outcomes
+from app.store.jobs import ended_jobs, imports, leases, outcomes
 from app.store.jobs import repository as jobs
 from app.store.jobs.import_files import ImportOutcome
 from app.store.jobs.imports import NewEntry

@@ -18,13 +18,13 @@ SHA256 = re.compile(r"[0-9a-f]{64}")
 """The name of a stored file."""
 VALID_S = 600.0
 """After this a file is hashed again: a disk can go bad under a file that nobody touches."""
-MOST_KEPT = 1024
+MAX_REMEMBERED_FILES = 1024
 """Files that are remembered."""
 
 _State = tuple[int, int, int, int]
 
 
-class Checked:
+class HashChecker:
     """Remembers which files were whole, as long as nothing about them changes."""
 
     def __init__(self) -> None:
@@ -40,7 +40,7 @@ class Checked:
         with path.open("rb") as file:
             refuse_damage(path.name, hashlib.file_digest(file, "sha256").hexdigest())
         with self._lock:
-            if len(self._seen) >= MOST_KEPT:
+            if len(self._seen) >= MAX_REMEMBERED_FILES:
                 self._seen.clear()
             self._seen[state] = now
 

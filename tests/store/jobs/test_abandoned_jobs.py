@@ -6,7 +6,7 @@ import pytest
 
 from app.store.jobs import leases, outcomes, queue
 from app.store.jobs import repository as jobs
-from app.store.jobs.abandoned import Held, Watch
+from app.store.jobs.abandoned_jobs import HeldJob, Watch
 from app.store.jobs.record import ClaimedJob, JobKind, JobState
 from app.store.store import Store
 from tests.store.conftest import AddJob
@@ -41,7 +41,7 @@ def claim(store: Store, owner: str = "holder") -> ClaimedJob:
     return claimed
 
 
-def look(store: Store, watch: Watch) -> tuple[Held, ...]:
+def look(store: Store, watch: Watch) -> tuple[HeldJob, ...]:
     with store.read() as tx:
         return watch.look(tx)
 

@@ -22,7 +22,7 @@ from app.store.jobs.record import ClaimedJob, JobState
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class HeldJob:
     """A job that somebody holds, as it was when it was seen."""
 
     job_id: str
@@ -45,11 +45,11 @@ class Watch:
         """`me`: the watcher's own name as an owner."""
         self._me, self._lease_s = me, lease_s
         self._clock, self._is_gone = clock, is_gone
-        self._first_seen: dict[Held, float] = {}
+        self._first_seen: dict[HeldJob, float] = {}
 
-    def look(self, tx: Tx) -> tuple[Held, ...]:
+    def look(self, tx: Tx) -> tuple[HeldJob, ...]:
         """What others hold and seem to have abandoned; a read."""
-        held = [Held(*row) for row in tx.execute(_HELD, {"me": self._me})]
+        held = [HeldJob(*row) for row in tx.execute(_HELD, {"me": self._me})]
         now = self._clock()
         self._first_seen = {one: self._first_seen.get(one, now) for one in held}
         return tuple(
@@ -58,7 +58,7 @@ class Watch:
             if now - seen >= self._lease_s or self._is_gone(one.owner)
         )
 
-    def take(self, tx: Tx, held: Held) -> ClaimedJob | None:
+    def take(self, tx: Tx, held: HeldJob) -> ClaimedJob | None:
         """The job for this watcher, with one more death of its worker; None where it moved on."""
         asked = {
             "the_id": held.job_id,
