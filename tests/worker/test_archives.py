@@ -89,7 +89,7 @@ def test_a_damaged_file_is_not_analyzed(lib: Library, some_demo_clips: list[Demo
 
 
 def test_the_worker_sweeps_again_and_again(lib: Library, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.worker.sweeps.EVERY_S", 0.05)
+    monkeypatch.setattr("app.worker.sweeps.SWEEP_INTERVAL_S", 0.05)
     sweeps = Sweeps(lib.store, 30.0)
     sweeps.begin()
     try:

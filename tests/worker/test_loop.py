@@ -155,7 +155,7 @@ def test_a_stopped_worker_gives_back_what_it_had(lib: Library, kicks: list[DemoC
         upload(lib, clip)
     worker = Worker(lib)
     assert worker.turn()
-    held = [running.claimed for running in worker.held]
+    held = [running.claimed for running in worker.running]
     worker.close()
     assert held
     states = {jobs.get_job(lib, claimed.job.id).state for claimed in held}
@@ -218,13 +218,13 @@ def test_a_worker_that_lost_its_lease_changes_nothing(lib: Library, kicks: list[
     upload(lib, kicks[0])
     slow = Worker(lib)
     slow.turn()
-    (running,) = slow.held
+    (running,) = slow.running
     running.future.result()
     _work_to_the_end(lib)  # another worker, to which this one seems dead
     with pytest.raises(LeaseLost), lib.store.write() as tx:
         running.settle(tx)
     slow.turn()
-    assert slow.held == ()
+    assert slow.running == ()
     slow.close()
     assert [clip.state for clip in _all_clips(lib)] == [ClipState.READY]
 
@@ -254,5 +254,5 @@ def test_a_library_that_has_grown_is_fitted_unasked_and_only_then(
 
 
 def _until_settled(worker: Worker) -> None:
-    wait([running.future for running in worker.held])
+    wait([running.future for running in worker.running])
     assert worker.turn()
