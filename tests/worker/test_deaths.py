@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import signal
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -18,7 +15,7 @@ import psutil
 import pytest
 
 from app.config import Settings
-from app.demo import DemoClip, demo_clips
+from app.demo import DemoClip
 from app.services.clips import catalogue as clips
 from app.services.clips import jobs
 from app.services.library import analysis_pool
@@ -39,6 +36,7 @@ from tests.busy_processes import (
 )
 from tests.libraries import settings_for, upload
 from tests.live import wait_until
+from tests.worker.worker_process import worker_process
 
 NET_S = 120.0
 
@@ -48,11 +46,6 @@ def lib(tmp_path: Path) -> Iterator[Library]:
     opened = Library.open(settings_for(tmp_path, job_lease_s=2.0, job_heartbeat_s=0.2))
     yield opened
     opened.close()
-
-
-@pytest.fixture(scope="session")
-def kicks() -> list[DemoClip]:
-    return list(demo_clips(tasks=("kick",), takes=2))
 
 
 @pytest.fixture(scope="session")
@@ -70,20 +63,9 @@ def endless_clip(kicks: list[DemoClip]) -> DemoClip:
 @contextmanager
 def _worker(settings: Settings) -> Iterator[psutil.Process]:
     """A worker process; it must live to the end."""
-    environ = os.environ | {
-        "KINEDEX_DATA_DIR": str(settings.data_dir),
-        "KINEDEX_JOB_LEASE_S": str(settings.job_lease_s),
-        "KINEDEX_JOB_HEARTBEAT_S": str(settings.job_heartbeat_s),
-        "KINEDEX_ANALYSIS_PROCESSES": str(settings.analysis_processes),
-        "KINEDEX_LOG_LEVEL": "error",
-    }
-    process = subprocess.Popen([sys.executable, "-m", "app.worker"], env=environ)
-    try:
+    with worker_process(settings) as process:
         yield psutil.Process(process.pid)
         assert process.poll() is None
-    finally:
-        process.kill()
-        process.wait()
 
 
 @contextmanager

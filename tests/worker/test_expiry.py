@@ -16,13 +16,13 @@ from app.store.database.ids import utc_now
 from app.store.database.tables import jobs as table
 from app.worker.expiry import Expiry
 from tests.libraries import settings_for
-from tests.services.imports.test_large_imports import archive_of
+from tests.zip_archives import zip_archive
 
 
 def _library(folder: Path, **settings: Any) -> tuple[Library, str]:
     """With a job that ended long ago, as far as the clock knows."""
     lib = Library.open(settings_for(folder, **settings))
-    job = imports.start_import(lib, archive_of([("a.bvh", b"")]), "a.zip")
+    job = imports.start_import(lib, zip_archive([("a.bvh", b"")]), "a.zip")
     jobs.cancel_or_remove(lib, job.id)
     long_ago = utc_now().replace(year=2020)
     with lib.store.write() as tx:
@@ -46,7 +46,7 @@ def test_a_round_is_not_done_again_at_once(tmp_path: Path) -> None:
     lib, _ = _library(tmp_path / "a")
     expiry = Expiry(lib)
     expiry.remove_if_due()
-    job = imports.start_import(lib, archive_of([("b.bvh", b"")]), "b.zip")
+    job = imports.start_import(lib, zip_archive([("b.bvh", b"")]), "b.zip")
     jobs.cancel_or_remove(lib, job.id)
     with lib.store.write() as tx:
         tx.execute(update(table).values(finished_at=utc_now().replace(year=2020)))

@@ -3,23 +3,16 @@
 from __future__ import annotations
 
 import io
-import os
 import signal
-import subprocess
-import sys
 import threading
-import time
-import zipfile
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import wait
-from contextlib import contextmanager
 from pathlib import Path
 
 import psutil
 import pytest
 
-from app.config import Settings
 from app.demo import DemoClip, demo_clips
 from app.errors import LeaseLost
 from app.services.clips import catalogue as clips
@@ -31,7 +24,11 @@ from app.store.clips.record import ClipRecord, ClipState
 from app.store.jobs.record import JobKind, JobRecord, JobState
 from app.worker.loop import Worker, run_worker
 from tests.libraries import settings_for, upload, work
+from tests.live import wait_until
+from tests.worker.worker_process import worker_process
+from tests.zip_archives import zip_archive
 
+TIMEOUT_S = 60.0
 SHORT_LEASES = {"job_lease_s": 1.0, "job_heartbeat_s": 0.2}
 
 
@@ -42,37 +39,10 @@ def lib(tmp_path: Path) -> Iterator[Library]:
     opened.close()
 
 
-@pytest.fixture(scope="session")
-def kicks() -> list[DemoClip]:
-    return list(demo_clips(tasks=("kick",), takes=2))
-
-
 def _archive(demo: list[DemoClip]) -> io.BytesIO:
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w") as archive:
-        for clip in demo:
-            archive.writestr(clip.path, clip.content)
-        archive.writestr("bad.bvh", b"HIERARCHY\nROOT\n")
-        archive.writestr("notes.txt", b"not a motion")
-    made.seek(0)
-    return made
-
-
-@contextmanager
-def _worker_process(settings: Settings) -> Iterator[subprocess.Popen[bytes]]:
-    environ = os.environ | {
-        "KINEDEX_DATA_DIR": str(settings.data_dir),
-        "KINEDEX_JOB_LEASE_S": str(settings.job_lease_s),
-        "KINEDEX_JOB_HEARTBEAT_S": str(settings.job_heartbeat_s),
-        "KINEDEX_ANALYSIS_PROCESSES": str(settings.analysis_processes),
-        "KINEDEX_LOG_LEVEL": "error",
-    }
-    process = subprocess.Popen([sys.executable, "-m", "app.worker"], env=environ)
-    try:
-        yield process
-    finally:
-        process.kill()
-        process.wait()
+    """The clips, a file that cannot be read, and a file that is no motion."""
+    clip_files = {clip.path: clip.content for clip in demo}
+    return zip_archive(clip_files | {"bad.bvh": b"HIERARCHY\nROOT\n", "notes.txt": b"not a motion"})
 
 
 def _all_clips(lib: Library) -> list[ClipRecord]:
@@ -83,19 +53,11 @@ def _ended(lib: Library) -> int:
     return sum(c.state in (ClipState.READY, ClipState.FAILED) for c in _all_clips(lib))
 
 
-def _wait_until(condition: object, seconds: float = 60.0) -> None:
-    deadline = time.monotonic() + seconds
-    while not condition():  # type: ignore[operator]
-        if time.monotonic() > deadline:
-            raise TimeoutError
-        time.sleep(0.02)
-
-
 def _kill_in_the_middle(lib: Library) -> None:
     """Start a worker, let it end another clip or two, then kill it without warning."""
     before = _ended(lib)
-    with _worker_process(lib.settings) as process:
-        _wait_until(lambda: _ended(lib) > before or not _is_open(lib))
+    with worker_process(lib.settings) as process:
+        wait_until(lambda: _ended(lib) > before or not _is_open(lib), TIMEOUT_S)
         children = psutil.Process(process.pid).children(recursive=True)
         process.send_signal(signal.SIGKILL)
         process.wait()
@@ -168,8 +130,8 @@ def test_a_stopped_worker_gives_back_what_it_had(lib: Library, kicks: list[DemoC
 def test_sigterm_ends_a_worker_process_cleanly(lib: Library, kicks: list[DemoClip]) -> None:
     for clip in kicks:
         upload(lib, clip)
-    with _worker_process(lib.settings) as process:
-        _wait_until(lambda: _ended(lib) > 0)
+    with worker_process(lib.settings) as process:
+        wait_until(lambda: _ended(lib) > 0, TIMEOUT_S)
         process.terminate()
         assert process.wait(20) == 0
     open_states = {j.state for j in jobs.list_jobs(lib, limit=100).items if j.is_open}

@@ -9,8 +9,6 @@ import sqlite3
 import subprocess
 import sys
 import threading
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import psutil
@@ -20,7 +18,9 @@ from app.config import Settings
 from app.services.exposure import CANNOT_START
 from app.worker import supervisor
 from app.worker.supervisor import SupervisedProcess, environment, keep_running
+from tests.live import wait_until
 
+TIMEOUT_S = 20.0
 SLEEPER = "import os, sys, time; open(sys.argv[1], 'a').write(f'{os.getpid()}\\n'); time.sleep(60)"
 
 
@@ -30,13 +30,6 @@ def _kept(log: Path) -> SupervisedProcess:
 
 def _pids(log: Path) -> list[int]:
     return [int(line) for line in log.read_text().splitlines()] if log.exists() else []
-
-
-def _wait_until(condition: Callable[[], bool], seconds: float = 20.0) -> None:
-    deadline = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < deadline, "waited in vain"
-        time.sleep(0.02)
 
 
 def test_a_process_that_is_killed_is_started_again_and_ended_with_the_rest(
@@ -49,9 +42,9 @@ def test_a_process_that_is_killed_is_started_again_and_ended_with_the_rest(
         target=lambda: codes.append(keep_running(kept, dict(os.environ), stop))
     )
     thread.start()
-    _wait_until(lambda: len(_pids(log)) == 1)
+    wait_until(lambda: len(_pids(log)) == 1, TIMEOUT_S)
     os.kill(_pids(log)[0], signal.SIGKILL)
-    _wait_until(lambda: len(_pids(log)) == 2)
+    wait_until(lambda: len(_pids(log)) == 2, TIMEOUT_S)
     stop.set()
     thread.join(20)
     assert codes == [0]
@@ -137,9 +130,9 @@ def test_a_killed_supervisor_leaves_nothing_behind(tmp_path: Path) -> None:
     log = tmp_path / "pids"
     command = [sys.executable, "-c", SUPERVISOR, str(log), SLEEPER]
     with subprocess.Popen(command) as process:
-        _wait_until(lambda: len(_pids(log)) == 1)
+        wait_until(lambda: len(_pids(log)) == 1, TIMEOUT_S)
         process.kill()
-    _wait_until(lambda: not _is_running(_pids(log)[0]))
+    wait_until(lambda: not _is_running(_pids(log)[0]), TIMEOUT_S)
 
 
 def _is_running(pid: int) -> bool:
