@@ -1,4 +1,4 @@
-"""The library's labels: persons, tasks and words, with how many clips carry each."""
+"""The labels of a library (persons, tasks and words) with the number of clips of each."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from app.store.database.tables import clip_words, clips
 
 @dataclass(frozen=True, slots=True)
 class CountBySource:
-    """A label, and how many clips carry it, in any state.
+    """A label and the number of clips that have it, in any state.
 
-    of_source: clips of the source that the caller names; others: all other clips.
+    of_source: clips from the source that the caller names; others: all other clips.
     """
 
     name: str
@@ -26,14 +26,14 @@ class CountBySource:
 
 
 class LabelKind(StrEnum):
-    """What a label says."""
+    """The kinds of labels that are counted."""
 
     PERSON = "person"
-    """Who moves."""
+    """The person who moves."""
     TASK = "task"
-    """What is done."""
+    """The action in the clip."""
     WORD = "word"
-    """A word for it."""
+    """A word that describes the clip."""
 
 
 _KINDS: dict[LabelKind, tuple[ColumnElement[Any], FromClause]] = {
@@ -44,7 +44,7 @@ _KINDS: dict[LabelKind, tuple[ColumnElement[Any], FromClause]] = {
 
 
 def persons(tx: Tx, source: str) -> tuple[CountBySource, ...]:
-    """The persons, by name; the clips of `source` are counted separately."""
+    """The persons, sorted by name; the clips of `source` are counted separately."""
     return _counts(tx, *_KINDS[LabelKind.PERSON], source)
 
 
@@ -59,7 +59,7 @@ def words(tx: Tx, source: str) -> tuple[CountBySource, ...]:
 
 
 def person_names(tx: Tx) -> frozenset[str]:
-    """The persons that any clip is labeled with."""
+    """The names of all persons in the labels of clips."""
     found = select(clips.c.person).where(clips.c.person.is_not(None)).distinct()
     return frozenset(tx.execute(found).scalars())
 
@@ -67,7 +67,7 @@ def person_names(tx: Tx) -> frozenset[str]:
 def page(
     tx: Tx, kind: LabelKind, source: str, limit: int, cursor: str | None = None
 ) -> Page[CountBySource]:
-    """At most `limit` labels of a kind, by name; raises BadField at "cursor"."""
+    """At most `limit` labels of a kind, sorted by name; raises BadField at "cursor"."""
     name, carriers = _KINDS[kind]
     after = None if cursor is None else read_cursor(cursor, kind.value, str).value
     found = _counts(tx, name, carriers, source, after=after, limit=limit + 1)

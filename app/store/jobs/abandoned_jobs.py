@@ -1,10 +1,11 @@
-"""Jobs whose holder is dead: found by watching, without the clock on the wall.
+"""Finds jobs whose worker is dead by watching their heartbeats, without the system time.
 
-Nobody writes down until when a lease holds: clocks jump, and the clocks of two machines differ.
-As in the leader election of Kubernetes, each worker watches what the others hold. Every
-heartbeat raises the `beats` of a job. A job whose beats have not changed for a whole lease, by
-the watcher's own monotonic clock, is abandoned. The watcher takes it by an UPDATE that demands
-exactly what it saw, so that one watcher alone gets it, and none if the holder has come back.
+A lease has no end time in the database, because clocks jump, and the clocks of two machines
+differ. As in the leader election of Kubernetes, each worker watches the jobs of the others. Every
+heartbeat raises the `beats` of a job. If the beats do not change during a whole lease, by the
+watcher's own monotonic clock, the job is abandoned. The watcher takes it by an UPDATE with the
+values that it saw as conditions. So only one watcher gets the job, and none gets it if its worker
+has sent another heartbeat.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from app.store.jobs.record import ClaimedJob, JobState
 
 @dataclass(frozen=True, slots=True)
 class HeldJob:
-    """A job that somebody holds, as it was when it was seen."""
+    """A job of another worker, with the values that a watcher saw."""
 
     job_id: str
     owner: str
@@ -32,7 +33,7 @@ class HeldJob:
 
 
 class Watch:
-    """What one worker has seen of the jobs that others hold."""
+    """The jobs of other workers, as one worker has seen them over time."""
 
     def __init__(
         self,
@@ -42,15 +43,17 @@ class Watch:
         clock: Callable[[], float] = time.monotonic,
         is_gone: Callable[[str], bool] = owners.is_gone,
     ) -> None:
-        """`me`: the watcher's own name as an owner."""
+        """me: the watcher's own name as an owner; lease_s: seconds without a heartbeat after which
+        a job is abandoned; is_gone: whether an owner is certainly dead."""
         self._me, self._lease_s = me, lease_s
         self._clock, self._is_gone = clock, is_gone
         self._first_seen: dict[HeldJob, float] = {}
 
     def look(self, tx: Tx) -> tuple[HeldJob, ...]:
-        """What others hold and seem to have abandoned; a read."""
+        """The jobs of other workers that are abandoned now. It only reads."""
         held = [HeldJob(*row) for row in tx.execute(_HELD, {"me": self._me})]
         now = self._clock()
+        # `beats` is part of the key, so a heartbeat starts the time of its job again.
         self._first_seen = {one: self._first_seen.get(one, now) for one in held}
         return tuple(
             one
@@ -59,15 +62,18 @@ class Watch:
         )
 
     def take(self, tx: Tx, held: HeldJob) -> ClaimedJob | None:
-        """The job for this watcher, with one more death of its worker; None where it moved on."""
-        asked = {
+        """Gives the job to this watcher and counts a death of its worker.
+
+        Returns None if the job has changed since it was seen.
+        """
+        parameters = {
             "the_id": held.job_id,
             "holder": held.owner,
             "attempt": held.attempt,
             "seen": held.beats,
             "me": self._me,
         }
-        row = tx.execute(_TAKE, asked).mappings().one_or_none()
+        row = tx.execute(_TAKE, parameters).mappings().one_or_none()
         return None if row is None else leases.as_claimed(row)
 
 

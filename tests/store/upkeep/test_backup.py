@@ -185,7 +185,7 @@ def test_rows_that_refer_to_nothing_are_damage(store: Store, add: Add, tmp_path:
     with pytest.raises(DatabaseDamaged) as refused:
         back_up(store, tmp_path / "copy")
     (place,) = refused.value.places
-    assert "clip_words refers to a row of clips that is not there" in place.message
+    assert "clip_words refers to a row of clips that does not exist" in place.message
 
 
 def overwrite_pages(store: Store) -> None:
