@@ -99,7 +99,7 @@ def fail(
         outcomes.retry_after_kill(tx, claimed, _never_left_alone(problem).as_problem())
     elif isinstance(problem, ChildDied | StorageError):
         outcomes.retry_or_fail(
-            tx, claimed, problem.as_problem(), delay_s=RETRY_DELAY_S, most=max_failures
+            tx, claimed, problem.as_problem(), delay_s=RETRY_DELAY_S, max_failures=max_failures
         )
     else:
         outcomes.fail_job(tx, claimed, problem.as_problem(), is_verdict=_is_verdict(problem))
