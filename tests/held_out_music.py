@@ -1,7 +1,7 @@
-"""Styles of music that chose nothing: written once the beat tracker's weights were settled.
+"""Held-out styles of music, written after the weights of the beat tracker were final.
 
-Other feels than the demo's: triplets, off-beats, syncopes, sixteenths, bars of five, and tones
-that swell instead of being struck.
+Their rhythms differ from those of the demo: triplets, off-beats, syncopation, sixteenths, bars of
+five, and tones that begin slowly.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Every line is JSON, whoever writes it, and none holds a key."""
+"""Every line of the log is JSON, even output of other programs, and none holds an API key."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tests.live import serve
 
 SECRET = "Ab_-" + "x9Z" * 13
 KEY = f"kx_0123456789ab_{SECRET}"
-SAID = [
+EXPECTED_TEXTS = [
     "past Python",
     "of libc",
     "RuntimeWarning: overflow encountered",
@@ -37,20 +37,20 @@ SAID = [
 ]
 
 
-def test_what_is_written_past_logging_becomes_json() -> None:
+def test_output_without_logging_becomes_json() -> None:
     program = [sys.executable, "-c", "from tests.noisy_program import main; main()"]
     ended = subprocess.run(program, capture_output=True, timeout=120, check=False)
     assert ended.returncode == 1
     lines: list[dict[str, Any]] = [json.loads(line) for line in ended.stderr.splitlines()]
     assert all(line["level"] and line["time"] for line in lines)
     text = ended.stderr.decode()
-    assert [said for said in SAID if said not in text] == []
+    assert [expected for expected in EXPECTED_TEXTS if expected not in text] == []
     assert text.count("RuntimeWarning: overflow encountered") == 2
     assert "ssss" not in text
 
 
 def test_a_log_that_cannot_be_written_stops_nothing() -> None:
-    """The disk that holds it is full: /dev/full is such a file."""
+    """The disk of the log is full: every write to /dev/full fails with that error."""
     program = (
         "import logging, os, sys\n"
         "from app.json_stderr import json_stderr\n"
@@ -96,7 +96,7 @@ def _encoded(key: str, times: int, every: int) -> str:
     every=st.integers(1, 3),
     case=st.sampled_from([str, str.upper, str.lower]),
 )
-def test_no_disguise_saves_a_key(
+def test_encoded_keys_are_masked_too(
     before: str, after: str, times: int, every: int, case: Any
 ) -> None:
     hidden = mask_keys(before + _encoded(case(KEY), times, every) + after)
@@ -131,7 +131,7 @@ def test_an_id_that_may_hold_a_key_is_replaced(sent: str) -> None:
         "f" * 64,
     ],
 )
-def test_ids_in_use_are_kept(sent: str) -> None:
+def test_usual_ids_are_not_replaced(sent: str) -> None:
     assert identity_of({"type": "http", "headers": [(b"x-request-id", sent.encode())]}) == sent
 
 

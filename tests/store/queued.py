@@ -1,4 +1,4 @@
-"""Clips with ingest jobs, taken by workers that may die."""
+"""Clips with ingest jobs, which workers claim and which may lose their worker."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def take(tx: Tx) -> ClaimedJob:
 
 
 def die(tx: Tx) -> None:
-    """The holders of all jobs are dead, and another worker sees it."""
+    """The workers of all claimed jobs die, and another worker recovers the jobs."""
     watch = Watch("watcher", 0.0)
     queue.recover(tx, watch, watch.look(tx))
 

@@ -1,4 +1,4 @@
-"""The archive of an import goes when the import needs it no more, whichever process ends it."""
+"""The archive of an import is removed when no import needs it, by any process."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def stored(lib: Library) -> set[str]:
     return set(lib.store.files)
 
 
-def test_an_archive_goes_while_the_worker_runs(
+def test_an_archive_is_removed_while_the_worker_runs(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     demo = some_demo_clips[:2]
@@ -60,7 +60,7 @@ def test_an_archive_goes_while_the_worker_runs(
     assert list(lib.store.files.quarantine) == []
 
 
-def test_an_archive_goes_when_the_api_cancels_its_import(
+def test_an_archive_is_removed_when_the_api_cancels_its_import(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     job = imports.start_import(lib, _archive(some_demo_clips[0]), "demo.zip")
@@ -70,7 +70,7 @@ def test_an_archive_goes_when_the_api_cancels_its_import(
 
 
 def test_a_damaged_file_is_not_analyzed(lib: Library, some_demo_clips: list[DemoClip]) -> None:
-    """A number that changed would make another motion, and nobody would know."""
+    """With one changed digit the file is another motion, and no reader can see that."""
     clip = upload(lib, some_demo_clips[0]).clip
     path = lib.store.files.path(clip.sha256)
     content = bytearray(path.read_bytes())

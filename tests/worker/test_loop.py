@@ -1,4 +1,4 @@
-"""Workers that are killed, stopped, raced and cancelled: every clip still ends once."""
+"""Every clip ends exactly once, even if workers are killed, stopped, too slow or canceled."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def _ended(lib: Library) -> int:
 
 
 def _kill_in_the_middle(lib: Library) -> None:
-    """Start a worker, let it end another clip or two, then kill it without warning."""
+    """Start a worker, wait until it has ended at least one more clip, and kill it by SIGKILL."""
     before = _ended(lib)
     with worker_process(lib.settings) as process:
         wait_until(lambda: _ended(lib) > before or not _is_open(lib), TIMEOUT_S)
@@ -92,7 +92,7 @@ def _work_to_the_end(lib: Library) -> None:
     run_worker(lib.settings, threading.Event(), until=lambda _: not _is_open(lib))
 
 
-def test_every_clip_of_an_import_ends_once_though_its_worker_is_killed(
+def test_every_clip_of_an_import_ends_once_if_its_worker_is_killed(
     lib: Library, kicks: list[DemoClip]
 ) -> None:
     job = imports.start_import(lib, _archive(kicks), "kicks.zip")
@@ -103,7 +103,7 @@ def test_every_clip_of_an_import_ends_once_though_its_worker_is_killed(
 
 
 @pytest.mark.slow
-def test_every_clip_ends_once_though_its_worker_is_killed_ten_times(lib: Library) -> None:
+def test_every_clip_ends_once_if_its_worker_is_killed_ten_times(lib: Library) -> None:
     demo = list(demo_clips(tasks=("kick", "bow", "punch"), takes=3))
     job = imports.start_import(lib, _archive(demo), "many.zip")
     for _ in range(10):
@@ -112,7 +112,7 @@ def test_every_clip_ends_once_though_its_worker_is_killed_ten_times(lib: Library
     _check_that_all_ended_once(lib, demo, job)
 
 
-def test_a_stopped_worker_gives_back_what_it_had(lib: Library, kicks: list[DemoClip]) -> None:
+def test_a_stopped_worker_puts_its_jobs_back(lib: Library, kicks: list[DemoClip]) -> None:
     for clip in kicks[:4]:
         upload(lib, clip)
     worker = Worker(lib)
@@ -162,7 +162,7 @@ def test_a_frame_rate_changed_during_the_analysis_wins(lib: Library, kicks: list
     assert clips.get_clip(lib, clip.id).frame_rate == 21.0
 
 
-def test_a_cancelled_analysis_fails_its_clip_and_says_so(
+def test_a_canceled_analysis_fails_its_clip_with_the_reason(
     lib: Library, kicks: list[DemoClip]
 ) -> None:
     created = upload(lib, kicks[0])
@@ -182,7 +182,7 @@ def test_a_worker_that_lost_its_lease_changes_nothing(lib: Library, kicks: list[
     slow.turn()
     (running,) = slow.running
     running.future.result()
-    _work_to_the_end(lib)  # another worker, to which this one seems dead
+    _work_to_the_end(lib)  # another worker, for which this one seems dead
     with pytest.raises(LeaseLost), lib.store.write() as tx:
         running.settle(tx)
     slow.turn()
@@ -191,7 +191,7 @@ def test_a_worker_that_lost_its_lease_changes_nothing(lib: Library, kicks: list[
     assert [clip.state for clip in _all_clips(lib)] == [ClipState.READY]
 
 
-def test_a_library_that_has_grown_is_fitted_unasked_and_only_then(
+def test_a_fit_is_due_only_after_the_library_has_changed_enough(
     lib: Library, kicks: list[DemoClip]
 ) -> None:
     for clip in kicks[:10]:
@@ -212,7 +212,7 @@ def test_a_library_that_has_grown_is_fitted_unasked_and_only_then(
         assert not refit.is_fit_due(tx, 0.2)
     clips.delete_clip(lib, some[1].id)
     with lib.store.read() as tx:
-        assert refit.is_fit_due(tx, 0.2)  # a clip that is gone counts too
+        assert refit.is_fit_due(tx, 0.2)  # a deleted clip counts as a change too
 
 
 def _until_settled(worker: Worker) -> None:

@@ -1,4 +1,4 @@
-"""The supervisor keeps processes running, gives up on hopeless ones, and takes all down."""
+"""The supervisor keeps processes running, and ends all if one of them cannot start."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_a_process_that_is_killed_is_started_again_and_ended_with_the_rest(
     assert not any(psutil.pid_exists(pid) for pid in _pids(log))
 
 
-def test_a_process_that_cannot_start_ends_the_whole(tmp_path: Path) -> None:
+def test_a_process_that_cannot_start_ends_all_processes(tmp_path: Path) -> None:
     ending = f"import sys, time; time.sleep(1); sys.exit({CANNOT_START})"
     hopeless = SupervisedProcess("hopeless", ("-c", ending))
     log = tmp_path / "pids"
@@ -60,7 +60,7 @@ def test_a_process_that_cannot_start_ends_the_whole(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("code", [1, 2, 3, 255])
-def test_one_that_crashes_young_is_started_again(code: int) -> None:
+def test_a_process_that_crashes_early_is_started_again(code: int) -> None:
     one = SupervisedProcess("crasher", ("-c", f"import sys; sys.exit({code})"))
     for _ in range(2):
         one.next_start = 0.0
@@ -71,7 +71,7 @@ def test_one_that_crashes_young_is_started_again(code: int) -> None:
     assert one.process is None
 
 
-def test_one_that_dies_young_waits_longer_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_early_death_doubles_the_delay(monkeypatch: pytest.MonkeyPatch) -> None:
     one = SupervisedProcess("dier", ("-c", "import os; os.kill(os.getpid(), 9)"))
     delays = []
     for _ in range(3):
@@ -93,7 +93,7 @@ def _database_of_another_version(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("arguments", [supervisor.API, supervisor.WORKER], ids=["api", "worker"])
-def test_a_database_of_another_version_cannot_be_started_on(
+def test_no_process_starts_on_a_database_of_another_version(
     arguments: tuple[str, ...], tmp_path: Path
 ) -> None:
     _database_of_another_version(tmp_path / "data")
@@ -104,7 +104,7 @@ def test_a_database_of_another_version_cannot_be_started_on(
     assert (ended.returncode, "newer Kinedex" in ended.stderr) == (CANNOT_START, True)
 
 
-def test_a_taken_port_cannot_be_listened_on(tmp_path: Path) -> None:
+def test_a_port_in_use_ends_the_api(tmp_path: Path) -> None:
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
@@ -142,19 +142,19 @@ def _is_running(pid: int) -> bool:
         return False
 
 
-def test_the_settings_in_force_reach_the_processes(tmp_path: Path) -> None:
+def test_all_settings_reach_the_processes(tmp_path: Path) -> None:
     settings = Settings(
         data_dir=tmp_path, port=8123, require_keys=True, database_url="sqlite:///x.sqlite3"
     )
-    told = environment(settings)
-    assert told["KINEDEX_DATA_DIR"] == str(tmp_path)
-    assert told["KINEDEX_PORT"] == "8123"
-    assert told["KINEDEX_REQUIRE_KEYS"] == "true"
-    assert told["KINEDEX_DATABASE_URL"] == "sqlite:///x.sqlite3"
+    variables = environment(settings)
+    assert variables["KINEDEX_DATA_DIR"] == str(tmp_path)
+    assert variables["KINEDEX_PORT"] == "8123"
+    assert variables["KINEDEX_REQUIRE_KEYS"] == "true"
+    assert variables["KINEDEX_DATABASE_URL"] == "sqlite:///x.sqlite3"
 
 
 @pytest.mark.parametrize("arguments", [supervisor.API, supervisor.WORKER], ids=["api", "worker"])
-def test_a_folder_named_app_where_it_is_started_does_not_matter(
+def test_a_folder_named_app_in_the_working_directory_is_ignored(
     arguments: tuple[str, ...], tmp_path: Path
 ) -> None:
     (tmp_path / "app").mkdir()

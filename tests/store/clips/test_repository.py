@@ -1,4 +1,4 @@
-"""Clips: one row for one content, states, labels, removal."""
+"""Clips: one row for each content; states, labels and deletion."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ HINTS = AnalysisHints(
 )
 
 
-def test_a_new_clip_comes_back_as_it_was_given(store: Store) -> None:
+def test_a_new_clip_is_read_as_it_was_added(store: Store) -> None:
     new = new_clip(
         "Größe",
         person="anna",
@@ -79,9 +79,7 @@ def test_the_same_file_with_another_skeleton_is_another_clip(store: Store) -> No
     assert len({clip.sha256 for clip in added}) == 1
 
 
-def test_a_failed_clip_is_queued_again_with_what_is_given_now(
-    store: Store, add_clip: AddClip
-) -> None:
+def test_a_failed_clip_is_queued_again_with_the_new_labels(store: Store, add_clip: AddClip) -> None:
     clip = add_clip("walk", person="anna", words=("walk",))
     with store.write() as tx:
         clips.set_failed(tx, clip.id, {"code": "unreadable"})
@@ -96,7 +94,7 @@ def test_a_failed_clip_is_queued_again_with_what_is_given_now(
     assert again.clip.hints.metres_per_unit == 0.01
 
 
-def test_ready_tells_what_the_analysis_found(add_clip: AddClip) -> None:
+def test_a_ready_clip_has_the_facts_of_its_analysis(add_clip: AddClip) -> None:
     clip = add_clip("walk", ready=True)
     found = facts()
     assert clip.state is ClipState.READY
@@ -105,7 +103,7 @@ def test_ready_tells_what_the_analysis_found(add_clip: AddClip) -> None:
     assert (clip.frames, clip.duration, clip.joints, clip.format) == (90, 3.0, 22, "bvh")
 
 
-def test_patch_changes_only_what_is_given(store: Store, add_clip: AddClip) -> None:
+def test_patch_changes_only_the_given_fields(store: Store, add_clip: AddClip) -> None:
     clip = add_clip("walk", person="anna", task="walk", words=("walk", "slow"))
     with store.write() as tx:
         changed = clips.patch(tx, clip.id, {"name": "New", "task": None, "words": ["run"]})
@@ -122,7 +120,7 @@ def test_unknown_ids(store: Store, act: str) -> None:
         getattr(clips, act)(tx, "nobody", *arguments)
 
 
-def test_deletion_takes_words_and_arrays_along(store: Store, add_clip: AddClip) -> None:
+def test_deleting_a_clip_deletes_its_words_and_arrays(store: Store, add_clip: AddClip) -> None:
     clip, other = add_clip("walk", words=("walk",)), add_clip("run", words=("run",))
     with store.write() as tx:
         for each in (clip, other):
@@ -133,7 +131,7 @@ def test_deletion_takes_words_and_arrays_along(store: Store, add_clip: AddClip) 
         assert set(arrays.get_many(tx, [clip.id, other.id], "v")) == {other.id}
 
 
-def test_get_many_keeps_the_order_and_leaves_out_what_is_not_there(
+def test_get_many_keeps_the_order_and_leaves_out_unknown_clips(
     store: Store, add_clip: AddClip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(clips, "IDS_PER_QUERY", 2)

@@ -1,4 +1,4 @@
-"""On a full disk nothing half is stored, and what is there can be deleted."""
+"""On a full disk nothing is stored in part, and clips can still be deleted."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from app.store.store import Store
 from tests.full_disk import fill, small_disk
 
 ARRAY_BYTES = 3 * 2**20
-"""Of one clip: more than the database's log has room for by chance."""
+"""Size of the array of one clip: more than the free space that the log may have by chance."""
 
 
 @pytest.fixture
@@ -97,7 +97,7 @@ def test_a_deletion_is_tried_again_with_the_reserve(tmp_path: Path) -> None:
     work = Full(store, reserve)
     assert store.write_even_when_full(work) == "deleted"
     assert work.calls == 2
-    assert reserve.exists()  # there is room again
+    assert reserve.exists()  # there is free space again
 
     def always_full(tx: Any) -> None:
         raise DiskFull
