@@ -36,7 +36,7 @@ MIB = 1024 * 1024
 _ESCAPED_IN_URLS = str.maketrans({"%": "%25", "?": "%3F"})
 DAY_S = 24 * 3600.0
 MAX_RETENTION_DAYS = 36_500
-"""A century. The date so long ago is still one that Python can compute."""
+"""A century. Python can still compute a date a century ago."""
 
 
 class Settings(BaseSettings):

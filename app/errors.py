@@ -164,7 +164,7 @@ class BadField(KinedexError):
 
 
 class NotFound(KinedexError):
-    """There is no such thing."""
+    """There is nothing with this id or name."""
 
     code = "not_found"
 

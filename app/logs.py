@@ -36,7 +36,7 @@ def mask_keys(text: str) -> str:
     """`text`, in which KEY_MASK replaces every word that holds an API key."""
     if "%" not in text and not KEY.search(text):
         return text
-    return _TOKEN.sub(lambda found: KEY_MASK if _holds_key(found[0]) else found[0], text)
+    return _TOKEN.sub(lambda match: KEY_MASK if _holds_key(match[0]) else match[0], text)
 
 
 def _holds_key(token: str) -> bool:

@@ -126,8 +126,8 @@ def list_current(tx: Tx) -> tuple[ModelRecord, ...]:
 
 def person_names(tx: Tx) -> frozenset[str]:
     """The names of all persons in stored models, in every version."""
-    found = tx.execute(select(models.c.meta["model"]["persons"])).scalars()
-    return frozenset(name for names in found for name in names or ())
+    name_lists = tx.execute(select(models.c.meta["model"]["persons"])).scalars()
+    return frozenset(name for names in name_lists for name in names or ())
 
 
 def remove(tx: Tx, kinds: Collection[str]) -> int:

@@ -99,6 +99,7 @@ def list_pairs(tx: Tx, *, limit: int = 50, cursor: str | None = None) -> Page[Pa
     if cursor is not None:
         position = read_cursor(cursor, NEWEST_FIRST, datetime)
         query = query.where(after(created, row_id, position, descending=True))
+    # One row more than the page shows whether there is another page.
     query = query.order_by(created.desc(), row_id.desc()).limit(limit + 1)
     items = [_to_pair(row) for row in tx.execute(query).mappings()]
     shown = tuple(items[:limit])

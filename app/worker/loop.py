@@ -224,7 +224,7 @@ class Worker:
         return claimed
 
     def _kinds_with_room(self, running: Iterable[ClaimedJob]) -> list[JobKind]:
-        """Kinds of which one more job may run: one import, one fit, and analyses ahead."""
+        """The kinds of jobs to claim: one import, one fit, and some analyses ahead."""
         running_kinds = [claimed.job.kind for claimed in running]
         busy = running_kinds.count(JobKind.INGEST) + running_kinds.count(JobKind.FIT)
         kinds = []

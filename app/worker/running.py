@@ -76,7 +76,7 @@ class RunningIngest:
             _log.info("clip %s was deleted while it was analyzed", self.clip.id)
 
     def progress(self) -> tuple[float | None, str | None]:
-        """No progress is known: an analysis is short."""
+        """Nothing, because an analysis is short."""
         return None, None
 
 

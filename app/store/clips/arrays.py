@@ -61,11 +61,11 @@ def get_one(tx: Tx, clip_id: str, name: str) -> NDArray[Any]:
 
 def get_named(tx: Tx, clip_id: str, names: Collection[str]) -> dict[str, NDArray[Any]]:
     """Some arrays of a clip by name, read-only, in the order of `names`; raises NotFound."""
-    found = get_some(tx, clip_id, names)
+    arrays = get_some(tx, clip_id, names)
     for name in names:
-        if name not in found:
+        if name not in arrays:
             raise NotFound(f"The clip {clip_id!r} has no array {name!r}")
-    return {name: found[name] for name in names}
+    return {name: arrays[name] for name in names}
 
 
 def get_some(tx: Tx, clip_id: str, names: Collection[str]) -> dict[str, NDArray[Any]]:
@@ -82,7 +82,7 @@ def get_many(
     Clips without the array are left out. With `version`, clips whose array has another version
     are left out too.
     """
-    found: dict[str, NDArray[Any]] = {}
+    array_of: dict[str, NDArray[Any]] = {}
     for batch in in_batches(clip_ids):
         parameters = {"ids": batch, "the_name": name}
         if version is None:
@@ -90,8 +90,8 @@ def get_many(
         else:
             rows = tx.execute(_OF_VERSION, parameters | {"the_version": version})
         for clip_id, dtype, shape, data in rows.all():
-            found[clip_id] = from_blob(dtype, shape, data)
-    return {clip_id: found[clip_id] for clip_id in clip_ids if clip_id in found}
+            array_of[clip_id] = from_blob(dtype, shape, data)
+    return {clip_id: array_of[clip_id] for clip_id in clip_ids if clip_id in array_of}
 
 
 def delete_all(tx: Tx, clip_id: str) -> None:

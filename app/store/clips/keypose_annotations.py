@@ -34,13 +34,13 @@ def get(tx: Tx, clip_id: str) -> Times | None:
 
 def get_many(tx: Tx, clip_ids: Collection[str]) -> dict[str, Times]:
     """The annotations by clip id, in the order of `clip_ids`; clips without one are left out."""
-    found: dict[str, Times] = {}
+    times_of: dict[str, Times] = {}
     for batch in clips.in_batches(clip_ids):
         query = select(keypose_annotations.c.clip_id, keypose_annotations.c.times).where(
             keypose_annotations.c.clip_id.in_(batch)
         )
-        found |= {clip_id: tuple(times) for clip_id, times in tx.execute(query)}
-    return {clip_id: found[clip_id] for clip_id in clip_ids if clip_id in found}
+        times_of |= {clip_id: tuple(times) for clip_id, times in tx.execute(query)}
+    return {clip_id: times_of[clip_id] for clip_id in clip_ids if clip_id in times_of}
 
 
 def annotated(tx: Tx) -> tuple[str, ...]:

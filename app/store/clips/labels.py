@@ -60,8 +60,8 @@ def words(tx: Tx, source: str) -> tuple[CountBySource, ...]:
 
 def person_names(tx: Tx) -> frozenset[str]:
     """The names of all persons in the labels of clips."""
-    found = select(clips.c.person).where(clips.c.person.is_not(None)).distinct()
-    return frozenset(tx.execute(found).scalars())
+    query = select(clips.c.person).where(clips.c.person.is_not(None)).distinct()
+    return frozenset(tx.execute(query).scalars())
 
 
 def page(
@@ -70,10 +70,10 @@ def page(
     """At most `limit` labels of a kind, sorted by name; raises BadField at "cursor"."""
     name, carriers = _KINDS[kind]
     after = None if cursor is None else read_cursor(cursor, kind.value, str).value
-    found = _counts(tx, name, carriers, source, after=after, limit=limit + 1)
-    if len(found) <= limit:
-        return Page(found, None)
-    shown = found[:limit]
+    counts = _counts(tx, name, carriers, source, after=after, limit=limit + 1)
+    if len(counts) <= limit:
+        return Page(counts, None)
+    shown = counts[:limit]
     return Page(shown, write_cursor(kind.value, Position(shown[-1].name, "")))
 
 

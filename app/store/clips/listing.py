@@ -56,8 +56,8 @@ def list_clips(
 
 def count_clips(tx: Tx, filter: ClipFilter) -> int:
     """The number of clips that pass the filter."""
-    found = tx.execute(select(func.count()).select_from(clips).where(condition(filter)))
-    return int(found.scalar_one())
+    count = tx.execute(select(func.count()).select_from(clips).where(condition(filter)))
+    return int(count.scalar_one())
 
 
 def list_ids(tx: Tx, filter: ClipFilter) -> tuple[str, ...]:

@@ -65,16 +65,16 @@ def add_or_get(tx: Tx, new: NewClip) -> AddResult:
 
 def get(tx: Tx, clip_id: str) -> ClipRecord:
     """The clip; raises ClipNotFound."""
-    found = _load(tx, [clip_id])
-    if not found:
+    loaded = _load(tx, [clip_id])
+    if not loaded:
         raise _not_found(clip_id)
-    return found[0]
+    return loaded[0]
 
 
 def get_many(tx: Tx, clip_ids: Collection[str]) -> dict[str, ClipRecord]:
     """The existing clips among `clip_ids`, by id, in the order of `clip_ids`."""
-    found = {clip.id: clip for batch in in_batches(clip_ids) for clip in _load(tx, batch)}
-    return {clip_id: found[clip_id] for clip_id in clip_ids if clip_id in found}
+    clip_of = {clip.id: clip for batch in in_batches(clip_ids) for clip in _load(tx, batch)}
+    return {clip_id: clip_of[clip_id] for clip_id in clip_ids if clip_id in clip_of}
 
 
 def find_by_content(tx: Tx, content_key: str) -> ClipRecord | None:
@@ -277,8 +277,8 @@ def _load(tx: Tx, clip_ids: Collection[str]) -> list[ClipRecord]:
 
 def words_of(tx: Tx, clip_ids: Collection[str]) -> dict[str, tuple[str, ...]]:
     """Words by clip id, in the client's order."""
-    found: dict[str, list[str]] = {}
+    words_by_id: dict[str, list[str]] = {}
     for batch in in_batches(clip_ids):
         for clip_id, word in tx.execute(_WORDS, {"ids": batch}):
-            found.setdefault(clip_id, []).append(word)
-    return {clip_id: tuple(words) for clip_id, words in found.items()}
+            words_by_id.setdefault(clip_id, []).append(word)
+    return {clip_id: tuple(words) for clip_id, words in words_by_id.items()}

@@ -69,9 +69,9 @@ def upgrade(database_url: str) -> SchemaState:
     database = Database(database_url, foreign_keys=False)
     try:
         with database.migrate() as tx:
-            found = _state(tx)
-            _refuse_newer(found)
-            if found.current is None and not found.is_empty:
+            status = _state(tx)
+            _refuse_newer(status)
+            if status.current is None and not status.is_empty:
                 raise DatabaseOutOfDate(
                     "The database has tables but no schema version: another program made it, or "
                     "it is damaged"
@@ -94,21 +94,21 @@ def state(database_url: str) -> SchemaState:
 
 def check(database_url: str) -> None:
     """Raises DatabaseOutOfDate if the schema is not current; the message says what to do."""
-    found = state(database_url)
-    if found.is_current:
+    status = state(database_url)
+    if status.is_current:
         return
-    _refuse_newer(found)
+    _refuse_newer(status)
     raise DatabaseOutOfDate(
-        f"The database has schema {found.current or 'none'}, this Kinedex needs {found.needed}: "
+        f"The database has schema {status.current or 'none'}, this Kinedex needs {status.needed}: "
         "stop all its processes, make a copy, and run `kinedex db upgrade`"
     )
 
 
-def _refuse_newer(found: SchemaState) -> None:
-    if found.current is not None and found.current not in _known_revisions():
+def _refuse_newer(status: SchemaState) -> None:
+    if status.current is not None and status.current not in _revisions():
         raise DatabaseOutOfDate(
-            f"The database is from a newer Kinedex (its schema is {found.current}, this Kinedex "
-            f"needs {found.needed}): install the newer version"
+            f"The database is from a newer Kinedex (its schema is {status.current}, this Kinedex "
+            f"needs {status.needed}): install the newer version"
         )
 
 
@@ -128,7 +128,7 @@ def _config(tx: Tx) -> Config:
     return config
 
 
-def _known_revisions() -> frozenset[str]:
+def _revisions() -> frozenset[str]:
     files = (migrations_dir() / "versions").glob("[0-9]*_*.py")
     return frozenset(file.name.partition("_")[0] for file in files)
 
@@ -138,4 +138,4 @@ def _state(tx: Tx) -> SchemaState:
     current = None
     if REVISION_TABLE in tables:
         current = tx.execute(text(f"SELECT version_num FROM {REVISION_TABLE}")).scalar()  # noqa: S608
-    return SchemaState(current, max(_known_revisions()), is_empty=not tables)
+    return SchemaState(current, max(_revisions()), is_empty=not tables)

@@ -79,16 +79,16 @@ class FileStore:
         if self.library_id is None:
             return
         with _disk_failures():
-            found = read_id(self.root)
-        if found != self.library_id:
+            folder_id = read_id(self.root)
+        if folder_id != self.library_id:
             raise StorageError(
                 f"The folder {self.root} is not the one of this library: its id is "
-                f"{found or 'no id'}, and {self.library_id} is expected"
+                f"{folder_id or 'no id'}, and {self.library_id} is expected"
             )
 
     @contextmanager
     def stage(self, content: Readable, *, max_bytes: int | None = None) -> Iterator[StagedFile]:
-        """Streams content to a temporary file. After the block it is removed, unless kept.
+        """Streams content to a temporary file, which is removed after the block unless `keep` ran.
 
         Raises TooLarge if the content has more than `max_bytes`; DiskFull; StorageError. Then
         nothing is left on the disk.

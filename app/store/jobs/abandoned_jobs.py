@@ -51,26 +51,26 @@ class Watch:
 
     def look(self, tx: Tx) -> tuple[HeldJob, ...]:
         """The jobs of other workers that are abandoned now. It only reads."""
-        held = [HeldJob(*row) for row in tx.execute(_HELD, {"me": self._me})]
+        jobs_of_others = [HeldJob(*row) for row in tx.execute(_HELD, {"me": self._me})]
         now = self._clock()
         # `beats` is part of the key, so a heartbeat starts the time of its job again.
-        self._first_seen = {one: self._first_seen.get(one, now) for one in held}
+        self._first_seen = {one: self._first_seen.get(one, now) for one in jobs_of_others}
         return tuple(
             one
             for one, seen in self._first_seen.items()
             if now - seen >= self._lease_s or self._is_gone(one.owner)
         )
 
-    def take(self, tx: Tx, held: HeldJob) -> ClaimedJob | None:
+    def take(self, tx: Tx, seen: HeldJob) -> ClaimedJob | None:
         """Gives the job to this watcher and counts a death of its worker.
 
         Returns None if the job has changed since it was seen.
         """
         parameters = {
-            "the_id": held.job_id,
-            "holder": held.owner,
-            "attempt": held.attempt,
-            "seen": held.beats,
+            "the_id": seen.job_id,
+            "holder": seen.owner,
+            "attempt": seen.attempt,
+            "seen": seen.beats,
             "me": self._me,
         }
         row = tx.execute(_TAKE, parameters).mappings().one_or_none()

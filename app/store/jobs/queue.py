@@ -33,5 +33,5 @@ def take(tx: Tx, kinds: Collection[JobKind], owner: str) -> ClaimedJob | None:
 
 def recover(tx: Tx, watch: Watch, abandoned: Collection[HeldJob]) -> tuple[JobRecord, ...]:
     """Ends abandoned jobs or puts them back; skips jobs that changed since `Watch.look`."""
-    taken = [watch.take(tx, held) for held in abandoned]
+    taken = [watch.take(tx, job) for job in abandoned]
     return tuple(outcomes.recover(tx, claimed) for claimed in taken if claimed is not None)

@@ -76,6 +76,7 @@ def list_jobs(
     if cursor is not None:
         position = read_cursor(cursor, NEWEST_FIRST, datetime)
         query = query.where(after(jobs.c.created_at, jobs.c.id, position, descending=True))
+    # One row more than the page shows whether there is another page.
     query = query.order_by(jobs.c.created_at.desc(), jobs.c.id.desc()).limit(limit + 1)
     items = [to_record(row) for row in tx.execute(query).mappings()]
     shown = tuple(items[:limit])
