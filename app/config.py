@@ -1,6 +1,6 @@
 """The settings of an installation: flags, then `KINEDEX_*`, then a TOML file, then defaults.
 
-One table documents them all: `settings_table()`; a test holds the README against it.
+`settings_table()` documents all of them; a test compares the README with it.
 Secrets are `SecretStr`, so that neither a log line nor a traceback shows them.
 """
 
@@ -26,16 +26,17 @@ from app.errors import ConfigurationError, Place
 ENV_PREFIX = "KINEDEX_"
 CONFIG_FILE_ENV = "KINEDEX_CONFIG_FILE"
 CONFIG_FILE_DEFAULT = "kinedex.toml"
-OTHER_NAMES = frozenset({CONFIG_FILE_ENV, "KINEDEX_DATA_SET"})
-"""What else may be in the environment; the second names the real clips that tests read."""
-HEARTBEATS_IN_LEASE = 2.0
-"""At least, so that one late heartbeat does not give a job to another worker."""
+OTHER_VARIABLES = frozenset({CONFIG_FILE_ENV, "KINEDEX_DATA_SET"})
+"""Variables with our prefix that are no settings. The second names the folder of the real clips
+that tests read."""
+MIN_HEARTBEATS_PER_LEASE = 2.0
+"""With fewer, one late heartbeat would give a job to another worker."""
 LOOPBACK_HOSTS = frozenset({"127.0.0.1", "::1", "localhost"})
 MIB = 1024 * 1024
 _ESCAPED_IN_URLS = str.maketrans({"%": "%25", "?": "%3F"})
 DAY_S = 24 * 3600.0
-LONGEST_DAYS = 36_500
-"""A century; beyond it a date cannot be reckoned with."""
+MAX_RETENTION_DAYS = 36_500
+"""A century. Python can still compute a date a century ago."""
 
 
 class Settings(BaseSettings):
@@ -53,38 +54,45 @@ class Settings(BaseSettings):
     )
     host: str = Field(
         "127.0.0.1",
-        description="Address to listen on; off loopback an API key must exist.",
+        description="Address to listen on; if it is not loopback, an API key must exist.",
     )
     port: int = Field(8000, ge=0, le=65535, description="Port to listen on; 0 takes a free one.")
     require_keys: bool = Field(
-        False, description="Ask for an API key on loopback too (off loopback it is always asked)."
+        False, description="Require an API key on loopback too (elsewhere it is always required)."
     )
     log_level: Literal["debug", "info", "warning", "error"] = Field(
-        "info", description="Least severity that is logged."
+        "info", description="Lowest severity that is logged."
     )
 
     max_upload_bytes: int = Field(
-        200 * MIB, ge=1, description="Largest motion file taken, bytes; a larger one is a 413."
+        200 * MIB,
+        ge=1,
+        description="Largest motion file that is accepted, bytes; a larger one is answered 413.",
     )
     max_archive_bytes: int = Field(
-        4096 * MIB, ge=1, description="Largest ZIP archive taken by an import, bytes."
+        4096 * MIB, ge=1, description="Largest ZIP archive that an import accepts, bytes."
     )
     max_archive_entries: int = Field(
         100_000, ge=1, description="Most files in one imported archive."
     )
     max_archive_ratio: float = Field(
-        200.0, ge=1, description="Largest unpacked size of an archive, as a multiple of its own."
+        200.0,
+        ge=1,
+        description="Largest unpacked size of an archive, as a multiple of its packed size.",
     )
     max_frames: int = Field(500_000, ge=1, description="Most frames in one clip.")
     max_joints: int = Field(512, ge=1, description="Most joints in one clip.")
     max_concurrent_uploads: int = Field(
         16,
         ge=1,
-        description="Uploads received at once to store, and as many to search; more are answered "
-        "503 with Retry-After.",
+        description="Uploads to store that are received at once, and the same number to search "
+        "with; more are answered 503 with Retry-After.",
     )
     max_connections: int = Field(
-        1000, ge=1, description="Open connections in all; then the longest waiting one is closed."
+        1000,
+        ge=1,
+        description="Open connections in total; beyond it, the one that has waited longest is "
+        "closed.",
     )
     max_connections_per_address: int = Field(
         250,
@@ -98,14 +106,14 @@ class Settings(BaseSettings):
         description="Seconds a call may wait and work before it ends as 503 `deadline_exceeded`.",
     )
     query_timeout_s: float = Field(
-        30.0, gt=0, le=DAY_S, description="Seconds that analysing an uploaded query may take."
+        30.0, gt=0, le=DAY_S, description="Seconds that the analysis of an uploaded query may take."
     )
 
     analysis_timeout_s: float = Field(
         300.0,
         gt=0,
         le=DAY_S,
-        description="Seconds that analysing one file may take before it is stopped.",
+        description="Seconds that the analysis of one file may take before it is stopped.",
     )
     analysis_memory_mb: int = Field(
         2048, ge=256, description="Address space of an analysis process, MiB."
@@ -117,7 +125,7 @@ class Settings(BaseSettings):
         30.0,
         gt=0,
         le=DAY_S,
-        description="Seconds without a heartbeat after which a job is given again.",
+        description="Seconds without a heartbeat after which another worker may take a job.",
     )
     job_heartbeat_s: float = Field(
         5.0,
@@ -127,7 +135,7 @@ class Settings(BaseSettings):
     job_max_attempts: int = Field(
         3,
         ge=1,
-        description="Times a file is tried whose analysis process dies by its own work.",
+        description="Attempts to analyze a file whose own content makes the analysis process die.",
     )
     job_poll_s: float = Field(
         0.25,
@@ -138,29 +146,33 @@ class Settings(BaseSettings):
     job_retention_days: int = Field(
         30,
         ge=0,
-        le=LONGEST_DAYS,
+        le=MAX_RETENTION_DAYS,
         description="Days after which a job that has ended is removed; 0 keeps all jobs.",
     )
     quarantine_days: float = Field(
         30.0,
         gt=0,
-        le=LONGEST_DAYS,
-        description="Days that files which the database does not name are kept in the quarantine.",
+        le=MAX_RETENTION_DAYS,
+        description="Days that the quarantine keeps files which the database does not name.",
     )
     refit_growth: float = Field(
-        0.1, ge=0, description="Part by which the library must have changed to be fitted again."
+        0.1,
+        ge=0,
+        description="Share of the library that must have changed before the models are fitted "
+        "again.",
     )
     recognize_persons: bool = Field(
-        True, description="Recognise people by how they move; off: no model holds a person."
+        True, description="Recognize people by how they move; off: no model holds a person."
     )
     wordnet: bool = Field(
-        True, description="Look words' neighbours up in WordNet at a fit, where it is installed."
+        True,
+        description="Look up words of similar meaning in WordNet at a fit, if it is installed.",
     )
 
     @field_validator("data_dir", mode="before")
     @classmethod
     def _names_a_folder(cls, value: Any) -> Any:
-        if value == "":  # would be the folder that the program was started in
+        if value == "":  # Path("") would be the current working directory
             raise ValueError("is empty: name a folder, or leave it unset")
         return value
 
@@ -168,7 +180,7 @@ class Settings(BaseSettings):
     @classmethod
     def _beats_within_lease(cls, value: float, others: ValidationInfo) -> float:
         lease = others.data.get("job_lease_s")
-        if lease is not None and value * HEARTBEATS_IN_LEASE > lease:
+        if lease is not None and value * MIN_HEARTBEATS_PER_LEASE > lease:
             raise ValueError(f"must be at most half of {ENV_PREFIX}JOB_LEASE_S")
         return value
 
@@ -198,21 +210,21 @@ class Settings(BaseSettings):
         dotenv_settings: PydanticBaseSettingsSource,  # noqa: ARG003 - pydantic's signature
         file_secret_settings: PydanticBaseSettingsSource,  # noqa: ARG003
     ) -> tuple[PydanticBaseSettingsSource, ...]:
-        """Flags win over the environment, that over the file."""
+        """Flags override the environment, and the environment overrides the file."""
         path = Path(os.environ.get(CONFIG_FILE_ENV, CONFIG_FILE_DEFAULT))
         return init_settings, env_settings, TomlConfigSettingsSource(settings_cls, path)
 
 
 def sqlite_url(path: Path) -> str:
-    """The URL of the SQLite database at `path`, whatever characters the path holds."""
-    # Not by SQLAlchemy's URL, which cannot write names that are not UTF-8.
+    """The URL of the SQLite database at `path`, which may contain any characters."""
+    # SQLAlchemy's URL class cannot write file names that are not UTF-8.
     return f"sqlite:///{str(path).translate(_ESCAPED_IN_URLS)}"
 
 
 def load_settings(**flags: Any) -> Settings:
-    """The settings in force; a flag of None counts as not given.
+    """The settings of this process. A flag with the value None counts as not given.
 
-    Raises ConfigurationError that names each wrong setting, without its value.
+    Raises ConfigurationError, which names each wrong setting without its value.
     """
     given = {name: value for name, value in flags.items() if value is not None}
     named = os.environ.get(CONFIG_FILE_ENV)
@@ -222,38 +234,42 @@ def load_settings(**flags: Any) -> Settings:
     try:
         return Settings(**given)
     except ValidationError as error:
-        raise _explained(error) from None
+        raise _as_configuration_error(error) from None
     except ValueError as error:  # tomllib.TOMLDecodeError
         raise ConfigurationError(f"The settings file cannot be read: {error}") from None
 
 
 def _refuse_unknown(environ: Iterable[str]) -> None:
-    """Raises ConfigurationError: a mistyped name would leave its setting at the default."""
-    known = {ENV_PREFIX + name.upper() for name in Settings.model_fields} | OTHER_NAMES
+    """Raises ConfigurationError for a variable with our prefix that is no setting.
+
+    Otherwise a mistyped name would silently leave its setting at the default.
+    """
+    allowed = {ENV_PREFIX + name.upper() for name in Settings.model_fields} | OTHER_VARIABLES
     ours = (name for name in sorted(environ) if name.upper().startswith(ENV_PREFIX))
-    places = [Place(name, _no_such(name)) for name in ours if name.upper() not in known]
+    places = [Place(name, _unknown_message(name)) for name in ours if name.upper() not in allowed]
     if places:
-        raise _refused(places)
+        raise _configuration_error(places)
 
 
-def _no_such(name: str) -> str:
-    known = [row.env for row in settings_table()]
-    near = difflib.get_close_matches(name.upper(), known, n=1)
+def _unknown_message(name: str) -> str:
+    names = [row.env for row in settings_table()]
+    near = difflib.get_close_matches(name.upper(), names, n=1)
     return "there is no such setting" + (f"; did you mean {near[0]}?" if near else "")
 
 
-def _explained(error: ValidationError) -> ConfigurationError:
-    found = error.errors(include_input=False, include_url=False, include_context=False)
+def _as_configuration_error(error: ValidationError) -> ConfigurationError:
+    # Without the input: it may be a secret.
+    items = error.errors(include_input=False, include_url=False, include_context=False)
     places = []
-    for item in found:
+    for item in items:
         name = ENV_PREFIX + ".".join(str(part) for part in item["loc"]).upper()
         is_unknown = item["type"] == "extra_forbidden"
         message = item["msg"].removeprefix("Value error, ")
-        places.append(Place(name, _no_such(name) if is_unknown else message))
-    return _refused(places)
+        places.append(Place(name, _unknown_message(name) if is_unknown else message))
+    return _configuration_error(places)
 
 
-def _refused(places: list[Place]) -> ConfigurationError:
+def _configuration_error(places: list[Place]) -> ConfigurationError:
     detail = "; ".join(f"{place.location}: {place.message}" for place in places)
     return ConfigurationError(f"The settings do not allow this: {detail}", places=places)
 
@@ -268,9 +284,9 @@ class SettingRow:
 
 
 def settings_table() -> tuple[SettingRow, ...]:
-    """Every setting, in the order of the class, with its default as one would type it."""
+    """Every setting, in the order of the class, with its default as a user would type it."""
     rows = [
-        SettingRow(ENV_PREFIX + name.upper(), _shown(field.default), field.description or "")
+        SettingRow(ENV_PREFIX + name.upper(), _as_typed(field.default), field.description or "")
         for name, field in Settings.model_fields.items()
     ]
     rows.append(
@@ -279,7 +295,7 @@ def settings_table() -> tuple[SettingRow, ...]:
     return tuple(rows)
 
 
-def _shown(default: object) -> str:
+def _as_typed(default: object) -> str:
     if default is None:
         return ""
     if isinstance(default, bool):

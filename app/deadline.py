@@ -1,8 +1,8 @@
-"""How long the work at hand may go on, and whether anyone still waits for its result.
+"""A time limit for the current work, which also stops when nobody waits for its result.
 
-A thread cannot be stopped from outside. So whoever starts work for a request sets a deadline
-in the context (`within`), and every long loop calls `check` between its steps, at least once
-a second. Without a deadline (the worker, the commands) `check` does nothing.
+A thread cannot be stopped from outside. So the code that starts work for a request sets a
+deadline in the context (`within`), and every long loop calls `check` between its steps, at least
+once a second. Without a deadline (in the worker, in the commands) `check` does nothing.
 Standard library only.
 """
 
@@ -18,16 +18,16 @@ from typing import TypeVar
 
 from app.errors import ClientLeft, DeadlineExceeded
 
-LOOK_SECONDS = 0.1
-"""Between two checks while a result is waited for."""
+CHECK_INTERVAL_S = 0.1
+"""Time between two checks while a thread waits for a result."""
 
 _Result = TypeVar("_Result")
 
 
 class Deadline:
-    """A time limit that starts now, for work that may also be abandoned before.
+    """A time limit that starts now. The work may also be abandoned before its end.
 
-    One thread may work while another one abandons or restarts it.
+    One thread may work while another thread calls `abandon` or `restart`.
     """
 
     def __init__(self, seconds: float = math.inf) -> None:
@@ -36,19 +36,19 @@ class Deadline:
         self._is_abandoned = False
 
     def remaining(self) -> float:
-        """Seconds that are left; never below 0."""
+        """Seconds until the limit; never below 0."""
         return max(self._end - time.monotonic(), 0.0)
 
     def restart(self) -> None:
-        """Count all of the time again from now: there was progress."""
+        """Start the whole time limit again from now, because there was progress."""
         self._end = time.monotonic() + self.seconds
 
     def abandon(self) -> None:
-        """Nobody waits any more: the next check stops the work."""
+        """Make the next check stop the work, because nobody waits for it any more."""
         self._is_abandoned = True
 
     def check(self) -> None:
-        """Raises ClientLeft where the work was abandoned, DeadlineExceeded where time is up."""
+        """Raises ClientLeft if the work was abandoned, DeadlineExceeded if the time is up."""
         if self._is_abandoned:
             raise ClientLeft
         if time.monotonic() > self._end:
@@ -71,12 +71,12 @@ def within(deadline: Deadline) -> Iterator[Deadline]:
 
 
 def current() -> Deadline | None:
-    """The deadline of the work at hand, if it has one."""
+    """The deadline of the current work, if it has one."""
     return _current.get()
 
 
 def check() -> None:
-    """Stop the work at hand where it should not go on.
+    """Stop the current work if it should not go on.
 
     Raises ClientLeft, DeadlineExceeded.
     """
@@ -86,9 +86,10 @@ def check() -> None:
 
 
 def result_of(future: Future[_Result]) -> _Result:
-    """`future.result()`; where the work at hand should not go on, the future is cancelled.
+    """`future.result()`, with a check of the deadline every CHECK_INTERVAL_S.
 
-    Raises what the future raises, ClientLeft, DeadlineExceeded.
+    If the current work should not go on, the future is canceled. Raises ClientLeft,
+    DeadlineExceeded, and every exception of the future.
     """
     if _current.get() is None:
         return future.result()
@@ -96,9 +97,9 @@ def result_of(future: Future[_Result]) -> _Result:
         while True:
             check()
             try:
-                return future.result(LOOK_SECONDS)
+                return future.result(CHECK_INTERVAL_S)
             except TimeoutError:
-                # The future's own failure may be a TimeoutError too.
+                # The exception of a finished future may be a TimeoutError too.
                 if future.done():
                     return future.result()
     except (ClientLeft, DeadlineExceeded):

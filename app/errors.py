@@ -1,8 +1,7 @@
 """The tree of failures.
 
-A failure is a class; the first line of its docstring is its title and default
-detail, `code` is the machine's name for it. HTTP statuses are known only to
-`app.api`. Standard library only.
+A failure is a class. The first line of its docstring is its title and its default detail; `code`
+is its name for programs. Only `app.api` assigns HTTP statuses. Standard library only.
 """
 
 from __future__ import annotations
@@ -15,26 +14,26 @@ from typing import Any, ClassVar
 MAX_DETAIL = 2000
 MAX_LOCATION = 600
 MAX_MESSAGE = 1000
-"""Characters of what a failure says: it may quote what a client sent."""
-MOST_KEPT_PLACES = 20
-"""Places of a failure that is stored with a clip, a job or a file of an import."""
+"""Characters. A failure may quote what a client sent, which can have any length."""
+MAX_STORED_PLACES = 20
+"""Places of a failure that are stored with a clip, a job or a file of an import."""
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where something is wrong: a line, joint, frame or field, and what was expected."""
+    """Where something is wrong (a line, joint, frame or field), and what was expected there."""
 
     location: str
     message: str
 
     def shortened(self) -> Place:
-        """The same with texts that are not too long."""
+        """A copy whose texts are cut to MAX_LOCATION and MAX_MESSAGE characters."""
         return Place(shortened(self.location, MAX_LOCATION), shortened(self.message, MAX_MESSAGE))
 
 
-def shortened(text: str, most: int) -> str:
-    """A text of at most so many characters; of a longer one the beginning, and a mark."""
-    return text if len(text) <= most else f"{text[: most - 1]}…"
+def shortened(text: str, max_length: int) -> str:
+    """The text; if it has more than `max_length` characters, its beginning and an ellipsis."""
+    return text if len(text) <= max_length else f"{text[: max_length - 1]}…"
 
 
 class KinedexError(Exception):
@@ -53,19 +52,20 @@ class KinedexError(Exception):
         return (inspect.getdoc(cls) or cls.__name__).splitlines()[0].rstrip(".")
 
     def as_problem(self) -> dict[str, Any]:
-        """The members of an RFC 9457 problem that do not depend on HTTP, as it is stored."""
+        """The members of an RFC 9457 problem that do not depend on HTTP, as the store keeps it."""
         return {
             "title": self.title(),
             "detail": self.detail,
             "code": self.code,
             "errors": [
                 {"location": place.location, "message": place.message}
-                for place in self.places[:MOST_KEPT_PLACES]
+                for place in self.places[:MAX_STORED_PLACES]
             ],
         }
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Failures cross process boundaries; keyword-only arguments need help to be pickled.
+        # Failures are pickled to cross process boundaries, and pickle does not pass the
+        # keyword-only argument `places`.
         return (_rebuild, (type(self), self.detail, self.places))
 
 
@@ -86,7 +86,7 @@ class Unreadable(BadContent):
 
 
 class UnknownFormat(BadContent):
-    """The content is of no format that Kinedex knows."""
+    """The content has no format that Kinedex can read."""
 
     code = "unknown_format"
 
@@ -122,13 +122,13 @@ class SkeletonNotNeeded(BadContent):
 
 
 class NotHuman(BadContent):
-    """The skeleton lacks joints without which a body cannot be analysed."""
+    """The skeleton lacks joints without which a body cannot be analyzed."""
 
     code = "skeleton_not_human"
 
 
 class TooShort(BadContent):
-    """The motion is too short to be analysed."""
+    """The motion is too short to be analyzed."""
 
     code = "too_short"
 
@@ -164,7 +164,7 @@ class BadField(KinedexError):
 
 
 class NotFound(KinedexError):
-    """There is no such thing."""
+    """There is nothing with this id or name."""
 
     code = "not_found"
 
@@ -188,7 +188,7 @@ class StoredFileMissing(NotFound):
 
 
 class Conflict(KinedexError):
-    """The state of things does not allow this."""
+    """The current state does not allow this."""
 
     code = "conflict"
 
@@ -210,19 +210,19 @@ class ModelBeingFitted(ModelNotFitted):
 
 
 class NotEnoughLabels(Conflict):
-    """The library has too few labelled clips to fit this model."""
+    """The library has too few labeled clips to fit this model."""
 
     code = "not_enough_labels"
 
 
 class NotEnoughKeyposes(Conflict):
-    """Too few keyposes were found to make this of them."""
+    """Too few keyposes were found for this."""
 
     code = "not_enough_keyposes"
 
 
 class AlreadyVoted(Conflict):
-    """This voter has voted on this sequence."""
+    """This voter has already voted on this sequence."""
 
     code = "already_voted"
 
@@ -246,7 +246,7 @@ class Canceled(KinedexError):
 
 
 class DeadlineExceeded(KinedexError):
-    """The call took longer than it may."""
+    """The call took longer than its limit."""
 
     code = "deadline_exceeded"
 
@@ -264,7 +264,7 @@ class StorageError(KinedexError):
 
 
 class DiskFull(StorageError):
-    """There is no space left to store this; nothing was kept."""
+    """There is no space left to store this; nothing was stored."""
 
     code = "disk_full"
 
@@ -282,7 +282,7 @@ class DatabaseDamaged(StorageError):
 
 
 class FileDamaged(StorageError):
-    """The stored file is damaged: its bytes are not those that were stored."""
+    """The stored file is damaged: its bytes have changed since they were stored."""
 
     code = "file_damaged"
 

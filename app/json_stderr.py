@@ -1,8 +1,8 @@
-"""Whatever a process writes to standard error becomes lines of JSON.
+"""Turns everything that a process writes to standard error into lines of JSON.
 
-Libraries in C, the interpreter itself and child processes write there past `logging`. So the file
-descriptor becomes a pipe; a thread reads it and logs each line that is not JSON already. Our own
-lines go past the pipe, so that they are not lost when the process dies.
+Libraries in C, the interpreter and child processes write to standard error without `logging`. So
+a pipe replaces the file descriptor; a thread reads the pipe and logs each line that is not JSON
+yet. The lines of our loggers do not use the pipe, so that they are not lost if the process dies.
 """
 
 from __future__ import annotations
@@ -19,47 +19,53 @@ from contextlib import contextmanager, suppress
 from types import TracebackType
 from typing import Any, TextIO, cast
 
-from app.logs import blotted, configure_logging
+from app.logs import configure_logging, mask_keys_in_json
 
 log = logging.getLogger("stderr")
 
 STDERR = 2
-"""Its file descriptor, whatever `sys.stderr` is."""
-END_SECONDS = 1.0
-"""For the last lines at the end; a child that lives on may hold the pipe open."""
+"""The file descriptor of standard error; `sys.stderr` may be another stream."""
+JOIN_TIMEOUT_S = 1.0
+"""How long the end waits for the last lines. A child process that still runs may hold the pipe
+open."""
 
 
 class _Lines(io.TextIOBase):
-    """A stream into which threads write whole lines, one after the other.
+    """A stream to which several threads can write; their lines do not mix.
 
-    A line that cannot be written (the disk that holds the log is full) is lost. An exception
-    would be logged in its turn, end the thread that reads the pipe, and so stop the process.
+    A line that cannot be written, because the disk of the log is full, is lost. An exception here
+    would itself be logged. It would end the thread that reads the pipe, and then the process would
+    stop when the pipe is full.
     """
 
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
-        self._turn = threading.Lock()
+        self._lock = threading.Lock()
 
     def write(self, text: str) -> int:
         content = memoryview(text.encode("utf-8", "backslashreplace"))
-        with self._turn, suppress(OSError):
-            while content:
+        with self._lock, suppress(OSError):
+            while content:  # os.write may write a part only
                 content = content[os.write(self._descriptor, content) :]
         return len(text)
 
 
 @contextmanager
 def json_stderr() -> Iterator[None]:
-    """Let nothing but lines of JSON reach standard error within the block; see `set_level`."""
-    outside = os.dup(STDERR)
-    lines = _Lines(outside)
-    reading, writing = os.pipe()
-    os.dup2(writing, STDERR)
-    os.close(writing)
+    """Write only lines of JSON to standard error within the block; `set_level` sets the level.
+
+    An exception that leaves the block is logged and becomes SystemExit(1).
+    """
+    real_stderr = os.dup(STDERR)
+    lines = _Lines(real_stderr)
+    read_end, write_end = os.pipe()
+    os.dup2(write_end, STDERR)
+    os.close(write_end)
     configure_logging(stream=cast(TextIO, lines))
     log_uncaught()
-    faulthandler.enable(outside)
-    reader = threading.Thread(target=_pass_on, args=(reading, lines), daemon=True)
+    # A crash ends the reading thread too, so the crash report must not go through the pipe.
+    faulthandler.enable(real_stderr)
+    reader = threading.Thread(target=_log_pipe, args=(read_end, lines), daemon=True)
     reader.start()
     try:
         yield
@@ -67,15 +73,15 @@ def json_stderr() -> Iterator[None]:
         log.critical("the process ends", exc_info=error)
         raise SystemExit(1) from None
     finally:
-        os.dup2(outside, STDERR)
-        reader.join(END_SECONDS)
+        os.dup2(real_stderr, STDERR)
+        reader.join(JOIN_TIMEOUT_S)
 
 
 def log_uncaught() -> None:
-    """Let exceptions that nobody caught be logged, not printed."""
+    """Log exceptions that no code catches, instead of printing them."""
     sys.excepthook = _log_uncaught
-    threading.excepthook = lambda told: _log_uncaught(
-        told.exc_type, told.exc_value, told.exc_traceback
+    threading.excepthook = lambda args: _log_uncaught(
+        args.exc_type, args.exc_value, args.exc_traceback
     )
 
 
@@ -83,27 +89,27 @@ def _log_uncaught(
     kind: type[BaseException], error: BaseException | None, trace: TracebackType | None
 ) -> None:
     if not issubclass(kind, SystemExit | KeyboardInterrupt):
-        told = error if error is not None else kind()
-        log.critical("uncaught exception", exc_info=(kind, told, trace))
+        raised = error if error is not None else kind()
+        log.critical("uncaught exception", exc_info=(kind, raised, trace))
 
 
-def _pass_on(reading: int, lines: _Lines) -> None:
-    with os.fdopen(reading, "rb") as pipe:
+def _log_pipe(read_end: int, lines: _Lines) -> None:
+    with os.fdopen(read_end, "rb") as pipe:
         for raw in pipe:
             text = raw.decode("utf-8", "backslashreplace").strip()
-            told = _read_json(text)
-            if told is not None:
-                lines.write(json.dumps(blotted(told)) + "\n")
+            entry = _read_json(text)
+            if entry is not None:
+                lines.write(json.dumps(mask_keys_in_json(entry)) + "\n")
             elif text:
                 log.warning("%s", text)
 
 
 def _read_json(text: str) -> dict[str, Any] | None:
-    """A line that is an object of JSON already, as our children write them."""
+    """The object in a line of JSON, as our child processes write them; None for other lines."""
     if not text.startswith("{"):
         return None
     try:
-        told: dict[str, Any] = json.loads(text)
-    except (ValueError, RecursionError):
+        entry: dict[str, Any] = json.loads(text)
+    except (ValueError, RecursionError):  # too deeply nested JSON is a RecursionError
         return None
-    return told
+    return entry

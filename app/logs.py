@@ -1,8 +1,8 @@
 """Logs as JSON lines, carrying the request's and the job's id.
 
-What is logged never holds a file's content: callers pass names, ids, counts and durations. Should
-a key come into a line by any way, it is blotted out. Warnings of Python are lines too. Standard
-library only, so that API and worker share it.
+The callers log names, ids, counts and durations, never the content of a file. If an API key gets
+into a line, it is replaced by KEY_MASK. Warnings of Python become lines too. This module uses the
+standard library only, so that the API and the worker share it.
 """
 
 from __future__ import annotations
@@ -17,52 +17,55 @@ from typing import Any, TextIO
 from urllib.parse import unquote
 
 request_id: ContextVar[str | None] = ContextVar("request_id", default=None)
-"""The id of the request that is being answered, None outside of one."""
+"""The id of the current request; None outside of a request."""
 
 job_id: ContextVar[str | None] = ContextVar("job_id", default=None)
-"""The id of the job that is being done, None outside of one."""
+"""The id of the current job; None outside of a job."""
 
 
 KEY = re.compile(r"(?i)kx_[a-z0-9_-]{8,}")
-"""An API key (`app.store.keys`), or the greater part of one; also in another case."""
+"""An API key (`app.store.keys`) or its beginning, in upper or lower case."""
 _TOKEN = re.compile(r"[A-Za-z0-9_%-]{11,}")
-"""What may be a key whose characters are percent-encoded, once or several times."""
-MOST_ENCODINGS = 8
-"""Times that a key may be percent-encoded; no program decodes so often."""
-BLOT = "[key]"
+"""A word that may be a key, or a key that is percent-encoded once or several times."""
+MAX_ENCODINGS = 8
+"""How often a key may be percent-encoded. No program decodes that often."""
+KEY_MASK = "[key]"
 
 
-def without_keys(text: str) -> str:
-    """`text` with BLOT in the place of every word that holds an API key."""
+def mask_keys(text: str) -> str:
+    """`text`, in which KEY_MASK replaces every word that holds an API key."""
     if "%" not in text and not KEY.search(text):
         return text
-    return _TOKEN.sub(lambda found: BLOT if _holds_key(found[0]) else found[0], text)
+    return _TOKEN.sub(lambda match: KEY_MASK if _holds_key(match[0]) else match[0], text)
 
 
 def _holds_key(token: str) -> bool:
-    for _ in range(MOST_ENCODINGS):
+    for _ in range(MAX_ENCODINGS):
         if "%" not in token:
             break
         token = unquote(token)
     return bool(KEY.search(token))
 
 
-def blotted(value: Any) -> Any:
-    """A value of JSON in which no text holds an API key."""
+def mask_keys_in_json(value: Any) -> Any:
+    """A JSON value in which `mask_keys` was applied to every text, names of members included."""
     if isinstance(value, str):
-        return without_keys(value)
+        return mask_keys(value)
     if isinstance(value, dict):
-        return {blotted(key): blotted(each) for key, each in value.items()}
+        return {mask_keys_in_json(key): mask_keys_in_json(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
-        return [blotted(each) for each in value]
+        return [mask_keys_in_json(each) for each in value]
     return value
 
 
 class JsonFormatter(logging.Formatter):
-    """One JSON object a line: time, level, logger, message, ids, `extra={"fields": {...}}`."""
+    """Each line is one JSON object: time, level, logger, message and ids.
+
+    A caller adds members of its own by `extra={"fields": {...}}`.
+    """
 
     def format(self, record: logging.LogRecord) -> str:
-        """The record as a line."""
+        """The record as one line of JSON."""
         line: dict[str, Any] = {
             "time": datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds"),
             "level": record.levelname.lower(),
@@ -74,15 +77,15 @@ class JsonFormatter(logging.Formatter):
         line |= getattr(record, "fields", {})
         if record.exc_info:
             line["exception"] = self.formatException(record.exc_info)
-        # ASCII: some readers end lines at U+0085 too.
-        return json.dumps(blotted(line), default=lambda value: without_keys(str(value)))
+        # `dumps` writes ASCII only: some readers of lines also end a line at U+0085.
+        return json.dumps(mask_keys_in_json(line), default=lambda value: mask_keys(str(value)))
 
 
 def configure_logging(level: str = "INFO", stream: TextIO | None = None) -> None:
-    """Send every logger's lines to `stream` (standard error) as JSON; replaces other handlers.
+    """Send the lines of all loggers to `stream` (standard error) as JSON; remove other handlers.
 
-    uvicorn's access log is silenced: the API writes its own line a request. Warnings become
-    lines of the logger `py.warnings`.
+    The access log of uvicorn is off, because the API writes its own line for each request.
+    Warnings of Python become lines of the logger `py.warnings`.
     """
     handler = logging.StreamHandler(stream or sys.stderr)
     handler.setFormatter(JsonFormatter())
@@ -99,10 +102,10 @@ def configure_logging(level: str = "INFO", stream: TextIO | None = None) -> None
 
 
 def set_level(level: str) -> None:
-    """The least severity that is logged from now on."""
+    """Set the lowest severity that is logged from now on."""
     logging.getLogger().setLevel(level)
 
 
 def level_of_process() -> str:
-    """The level that this process logs at, for its children."""
+    """The lowest severity that this process logs; its child processes are given the same."""
     return logging.getLevelName(logging.getLogger().getEffectiveLevel())

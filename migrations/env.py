@@ -1,4 +1,4 @@
-"""Alembic's entry: runs on the connection that `app.store.database.schema` hands over."""
+"""The script that Alembic runs, on the connection from `app.store.database.schema`."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from app.store.database.tables import UtcDateTime, metadata
 
 
 def render_item(kind: str, item: Any, _context: Any) -> str | Literal[False]:
-    """Writes plain types into migrations: they must not change when the code does."""
+    """Writes plain types into migrations, which must not change when the code changes."""
     if kind == "type" and isinstance(item, UtcDateTime):
         return "sa.DateTime(timezone=True)"
     return False
 
 
-# Batch mode: SQLite changes a table by rebuilding it. The caller's transaction holds the whole
-# upgrade, so that a killed one leaves the old schema.
+# Batch mode, because SQLite changes a table by rebuilding it. The whole upgrade is in the caller's
+# transaction, so that the old schema stays if the process is killed.
 context.configure(
     connection=context.config.attributes["connection"],
     target_metadata=metadata,

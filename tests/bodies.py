@@ -1,4 +1,4 @@
-"""Bodies made of sines, known at any time: motions for tests of what must not change."""
+"""Motions of simple bodies, computed from sines at any frame rate, for tests of invariances."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ R = JointRole
 
 
 def motion_of(positions: FloatArray, frame_rate: float = 30.0) -> Motion:
-    """A canonical motion of Sun's 13 roles from (frames, 13, 3) metres."""
+    """A canonical motion of Sun's 13 roles from positions (frames, 13, 3) in meters."""
     return Motion(
         format="bvh",
         names=tuple(role.value for role in SUN_ROLES),
@@ -37,7 +37,10 @@ def walking(
     turn: float = 0.0,
     arm: float = 0.3,
 ) -> FloatArray:
-    """(frames, 13, 3): a walk along Z with `steps_hz` cycles a second, turning `turn` rad/s."""
+    """(frames, 13, 3) m: a walk along Z with `steps_hz` cycles per second.
+
+    speed: m/s; turn: rate of turning about Y, rad/s; arm: amplitude of the hands, m.
+    """
     t = np.arange(round(seconds * rate) + 1) / rate
     phase = 2 * np.pi * steps_hz * t
     body = _standing(len(t))
@@ -55,7 +58,7 @@ def walking(
 
 
 def waving(seconds: float = 4.0, rate: float = 30.0, *, hz: float = 1.5) -> FloatArray:
-    """(frames, 13, 3): standing, the raised right hand waving sideways."""
+    """(frames, 13, 3) m: the body stands, and the raised right hand waves sideways."""
     t = np.arange(round(seconds * rate) + 1) / rate
     body = _standing(len(t))
     _move(body, "right_elbow", x=-0.15 + 0 * t, y=0.25 + 0 * t)
@@ -64,19 +67,22 @@ def waving(seconds: float = 4.0, rate: float = 30.0, *, hz: float = 1.5) -> Floa
 
 
 def standing(frames: int = 60) -> FloatArray:
-    """(frames, 13, 3): nothing moves."""
+    """(frames, 13, 3) m: the body stands and nothing moves."""
     return _standing(frames)
 
 
 def turned_about_y(points: FloatArray, angle: FloatArray | float) -> FloatArray:
-    """(frames, 13, 3) turned by an angle for all or each of the frames, Z towards X."""
+    """(frames, 13, 3) turned about Y, from Z towards X.
+
+    angle: radians, one for all frames or one for each frame (frames,).
+    """
     a = np.broadcast_to(np.asarray(angle), len(points))[:, None]
     x, y, z = points[..., 0], points[..., 1], points[..., 2]
     return np.stack([np.cos(a) * x + np.sin(a) * z, y, np.cos(a) * z - np.sin(a) * x], -1)
 
 
 def _standing(frames: int) -> FloatArray:
-    places = {
+    positions = {
         R.HIPS: (0, 0.95, 0), R.NECK: (0, 1.45, 0), R.HEAD: (0, 1.65, 0.03),
         R.LEFT_KNEE: (0.1, 0.5, 0.02), R.RIGHT_KNEE: (-0.1, 0.5, 0.02),
         R.LEFT_FOOT: (0.1, 0.08, 0), R.RIGHT_FOOT: (-0.1, 0.08, 0),
@@ -84,7 +90,7 @@ def _standing(frames: int) -> FloatArray:
         R.LEFT_ELBOW: (0.22, 1.12, -0.02), R.RIGHT_ELBOW: (-0.22, 1.12, -0.02),
         R.LEFT_HAND: (0.24, 0.87, 0.05), R.RIGHT_HAND: (-0.24, 0.87, 0.05),
     }  # fmt: skip
-    return np.tile(np.array([places[role] for role in SUN_ROLES], dtype=float), (frames, 1, 1))
+    return np.tile(np.array([positions[role] for role in SUN_ROLES], dtype=float), (frames, 1, 1))
 
 
 def _move(body: FloatArray, role: str, **by: FloatArray) -> None:
@@ -92,6 +98,6 @@ def _move(body: FloatArray, role: str, **by: FloatArray) -> None:
         body[:, SUN_ROLES.index(JointRole(role)), "xyz".index(axis)] += values
 
 
-def place(body: FloatArray, role: JointRole, by: FloatArray) -> None:
-    """Move one joint of (frames, 13, 3) by (frames, 3), in place."""
+def move_joint(body: FloatArray, role: JointRole, by: FloatArray) -> None:
+    """Add (frames, 3) to one joint of `body` (frames, 13, 3), which is changed."""
     body[:, SUN_ROLES.index(role)] += by

@@ -1,4 +1,4 @@
-"""Large files that are nothing but large, and the child processes that are busy with them."""
+"""Large motion files, and the child processes that are busy with their analysis."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ BUSY_S = 0.3
 LONG, ENDLESS = 150, 400
 """Repetitions of a demo clip whose analysis takes 3.5 and 14 s of CPU time.
 
-A test that must kill a child in the middle has so much time to find it. With 60 repetitions
-(1 s) the analysis could end first on a machine with many processes.
+This is the time in which a test must find a child to kill it. With 60 repetitions (1 s) the
+analysis could end first on a machine with many processes.
 """
 
 
 def repeated(clip: DemoClip, times: int) -> bytes:
-    """The same motion over and over."""
+    """A BVH file with the motion of the clip, `times` times."""
     head, _, frames = clip.content.partition(b"Frame Time")
     line, _, rows = frames.partition(b"\n")
     count = rows.count(b"\n") * times
@@ -28,7 +28,7 @@ def repeated(clip: DemoClip, times: int) -> bytes:
 
 
 def server_of(parent: psutil.Process) -> psutil.Process | None:
-    """The process that forks a process's children."""
+    """The fork server of a process, which starts its children; None if there is none."""
     with suppress(psutil.Error):
         for child in parent.children():
             with suppress(psutil.Error):
@@ -46,7 +46,7 @@ def children_of(parent: psutil.Process) -> list[psutil.Process]:
 
 
 def busy_children(parent: psutil.Process, seconds: float = BUSY_S) -> list[psutil.Process]:
-    """Those that have worked for so long."""
+    """The analysis processes that have used at least `seconds` of CPU time."""
     found = []
     for child in children_of(parent):
         with suppress(psutil.Error):

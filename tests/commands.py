@@ -1,4 +1,4 @@
-"""Whether a `kinedex` command line that a document shows exists, without running it."""
+"""Checks that the `kinedex` command lines in a document exist, without running them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _INLINE = re.compile(r"`(kinedex\s[^`]+)`")
 
 
 def code_lines(markdown: str) -> list[str]:
-    """The lines of all code blocks, continued ones joined, comments cut."""
+    """The lines of all code blocks. Continued lines are joined, comments removed."""
     blocks = [_CONTINUED.sub(" ", block) for _, block in _FENCED.findall(markdown)]
     lines = [line.partition(" #")[0].strip() for block in blocks for line in block.splitlines()]
     return [line for line in lines if line and not line.startswith("#")]
@@ -30,9 +30,9 @@ def commands_in(markdown: str) -> list[list[str]]:
 
 
 def refusal(words: Sequence[str]) -> str | None:
-    """Why the command line does not know these words (after `kinedex`), or None.
+    """The error of the command line for these words (after `kinedex`), or None if they are valid.
 
-    Asks for help behind them, so that nothing is run; commands and options are looked up first.
+    `--help` is added, so that nothing runs; Typer checks commands and options before it.
     """
     answer = CliRunner().invoke(program, [*words, "--help"])
     return answer.output if answer.exit_code else None

@@ -1,4 +1,4 @@
-"""Services that run for the whole session; a test that changes settings starts its own."""
+"""Services that run for the whole session. A test that needs other settings starts its own."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from tests.live import Live, serve
 ACTORS = ("ada", "bruno")
 TASKS = ("walk", "wave", "kick")
 
-# WordNet takes seconds to load, in every fit of every library; it has a test of its own.
+# WordNet takes seconds to load, in every fit of every library; its own test sets this to true.
 os.environ.setdefault("KINEDEX_WORDNET", "false")
 
 
 @pytest.fixture(scope="session")
 def idle_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
-    """The API without a worker: what is uploaded stays queued. Files up to 300,000 bytes."""
+    """The API without a worker: uploaded clips stay queued. Files may have 300,000 bytes."""
     with serve(tmp_path_factory.mktemp("idle") / "data", max_upload_bytes=300_000) as live:
         yield live
 
 
 @pytest.fixture(scope="session")
 def demo_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
-    """API and worker over two actors' takes of three tasks, 12 clips, analysed and fitted."""
+    """API and worker with 12 ready clips (2 actors, 3 tasks, 2 takes) and fitted models."""
     with serve(tmp_path_factory.mktemp("demo") / "data", worker=True) as live:
         clips = demo_clips(ACTORS, TASKS, takes=2)
         answers = [live.upload(clip).json() for clip in clips]

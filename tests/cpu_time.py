@@ -1,4 +1,4 @@
-"""Limits on work in CPU time, which does not grow with the machine's load as wall time does."""
+"""Limits on the CPU time of work. Unlike wall time, it does not grow with the machine's load."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def cpu_seconds_below(limit: float, what: str = "this") -> Iterator[None]:
-    """Fail where the block takes `limit` seconds of this thread's CPU time or more."""
+    """Fail if the block takes `limit` seconds or more of this thread's CPU time."""
     began = time.thread_time()
     try:
         yield

@@ -1,4 +1,4 @@
-"""Dances that repeat themselves: a sequence of poses, danced several times, never quite alike."""
+"""Cyclic dances: a sequence of poses that is repeated several times with small differences."""
 
 from __future__ import annotations
 
@@ -9,15 +9,18 @@ import numpy as np
 
 from app.motion.roles.joint_roles import JointRole
 from app.numerics.arrays import FloatArray
-from tests.bodies import place, standing, turned_about_y
+from tests.bodies import move_joint, standing, turned_about_y
 from tests.dances import SWUNG
 
 
 @dataclass(frozen=True)
 class CyclicDance:
-    """positions (frames, 13, 3) metres at `rate`; stops (k,) seconds; cycles: (start, end) in
-    seconds of each time that the sequence is danced; labels (k,): the pose at each stop, -1
-    where it belongs to no sequence."""
+    """A dance with known stops and cycles.
+
+    positions: (frames, 13, 3) meters; rate: Hz; stops: (k,) seconds; cycles: start and end of each
+    repetition of the sequence, seconds; labels: (k,) index in the sequence of the pose at each
+    stop, -1 for poses outside of the sequence.
+    """
 
     positions: FloatArray
     rate: float
@@ -40,11 +43,11 @@ def cyclic_dance(
     rate: float = 60.0,
     dancer: int | None = None,
 ) -> CyclicDance:
-    """`before` poses, then a sequence of `poses` danced `times` times, then `after` more.
+    """`before` poses, then a sequence of `poses` poses `times` times, then `after` other poses.
 
-    drift: relative change of each beat (standard deviation); change: of each pose from time
-    to time, relative to its reach; dancer: seeds what is a dancer's own (drift and change),
-    so that others can dance the sequence of the same seed.
+    drift: standard deviation of the relative length of each beat; change: of each pose between two
+    repetitions, relative to its reach; dancer: seed of drift and change. So several dancers can
+    dance the sequence of the same `seed`.
     """
     choreography = np.random.default_rng(seed)
     own = np.random.default_rng([seed, seed if dancer is None else dancer])
@@ -61,7 +64,7 @@ def cyclic_dance(
     t = np.arange(int((stops[-1] + 0.5) * rate)) / rate
     body = standing(len(t))
     for column, role in enumerate(SWUNG):
-        place(body, JointRole(role), _eased(t, stops, aims[:, column]))
+        move_joint(body, JointRole(role), _eased(t, stops, aims[:, column]))
     body = turned_about_y(body, _eased(t, stops, turns[order][:, None])[:, 0])
     body = body + noise * own.normal(size=body.shape)
     firsts = [before + poses * k for k in range(times + 1)]
@@ -76,7 +79,7 @@ def cyclic_dance(
 
 
 def _eased(t: FloatArray, knots: FloatArray, values: FloatArray) -> FloatArray:
-    """(frames, d): values (k, d) at knots, held for a tenth of a second, eased between."""
+    """(frames, d): the values (k, d) at the knots for a tenth of a second, eased between them."""
     index = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
     start, stop = knots[index] + 0.05, knots[index + 1] - 0.05
     u = np.clip((t - start) / (stop - start), 0, 1)

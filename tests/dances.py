@@ -1,4 +1,4 @@
-"""Dances with known stops: poses held on beats, limbs moving smoothly between them."""
+"""Dances with known stops: the body rests in poses on beats and moves smoothly between them."""
 
 from __future__ import annotations
 
@@ -8,18 +8,22 @@ import numpy as np
 
 from app.motion.roles.joint_roles import JointRole
 from app.numerics.arrays import FloatArray
-from tests.bodies import place, standing, turned_about_y
+from tests.bodies import move_joint, standing, turned_about_y
 
 SWUNG = {
     "left_hand": 0.45, "right_hand": 0.45, "left_elbow": 0.22, "right_elbow": 0.22,
     "left_foot": 0.2, "right_foot": 0.2, "left_knee": 0.1, "right_knee": 0.1, "head": 0.03,
 }  # fmt: skip
-"""Metres that each joint swings from pose to pose."""
+"""Typical distance of each joint between two poses, meters."""
 
 
 @dataclass(frozen=True)
 class Dance:
-    """positions (frames, 13, 3) metres at `rate`; stops (k,) seconds, all on beats."""
+    """A dance with known stops and beats.
+
+    positions: (frames, 13, 3) meters; rate: Hz; stops, beats: (k,) and (b,) seconds, all stops on
+    beats; tempo: beats per minute.
+    """
 
     positions: FloatArray
     rate: float
@@ -38,9 +42,10 @@ def dance(
     passed: float = 0.15,
     turning: float = 0.3,
 ) -> Dance:
-    """A dance that stops on each beat but the share `passed`, through which it runs on.
+    """A dance that stops on the beats.
 
-    noise: metres (standard deviation) of white noise on every coordinate.
+    tempo: beats per minute; passed: share of beats on which it does not stop; noise: standard
+    deviation of white noise on every coordinate, meters.
     """
     rng = np.random.default_rng(seed)
     beat = 60.0 / tempo
@@ -53,7 +58,7 @@ def dance(
     body = standing(len(t))
     for role, reach in SWUNG.items():
         aims = rng.normal(size=(len(stops), 3)) * reach / np.sqrt(2)
-        place(body, JointRole(role), _eased(t, stops, aims, hold=0.12 * beat))
+        move_joint(body, JointRole(role), _eased(t, stops, aims, hold=0.12 * beat))
     sway = _eased(t, stops, rng.normal(size=(len(stops), 3)) * [0.08, 0.02, 0.08], hold=0.0)
     angle = _eased(t, stops, rng.normal(size=(len(stops), 1)) * turning, hold=0.0)[:, 0]
     body = turned_about_y(body, angle) + sway[:, None]
@@ -62,7 +67,7 @@ def dance(
 
 
 def _eased(t: FloatArray, knots: FloatArray, values: FloatArray, hold: float) -> FloatArray:
-    """(frames, d): values (k, d) at knots, at rest for `hold` s around each, eased between."""
+    """(frames, d): the values (k, d) at the knots for `hold` seconds, eased between them."""
     index = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
     start, stop = knots[index] + hold / 2, knots[index + 1] - hold / 2
     u = np.clip((t - start) / (stop - start), 0, 1)
@@ -73,7 +78,10 @@ def _eased(t: FloatArray, knots: FloatArray, values: FloatArray, hold: float) ->
 def precision_and_recall(
     found: FloatArray, true: FloatArray, within: float = 0.1
 ) -> tuple[float, float]:
-    """Share of `found` times that meet a true one, and of `true` ones found, one to one."""
+    """Share of `found` times that match a true one, and share of `true` times that are found.
+
+    within: largest difference of a match, seconds. Each time matches at most one other.
+    """
     free, hits = list(true), 0
     for time in found:
         near = min(free, key=lambda other: abs(other - time), default=None)
@@ -84,7 +92,7 @@ def precision_and_recall(
 
 
 def irregular(seed: int, tempo: float, *, stops: int = 20, rate: float = 60.0) -> FloatArray:
-    """(frames, 13, 3): stops as in a dance, but at intervals of .6 to 1.8 beats at random."""
+    """(frames, 13, 3) m: a dance with stops at random intervals of 0.6 to 1.8 beats."""
     rng = np.random.default_rng(seed)
     beat = 60.0 / tempo
     times = 0.5 + np.cumsum(beat * rng.uniform(0.6, 1.8, stops))
@@ -92,5 +100,5 @@ def irregular(seed: int, tempo: float, *, stops: int = 20, rate: float = 60.0) -
     body = standing(len(t))
     for role, reach in SWUNG.items():
         aims = rng.normal(size=(stops, 3)) * reach / np.sqrt(2)
-        place(body, JointRole(role), _eased(t, times, aims, hold=0.12 * beat))
+        move_joint(body, JointRole(role), _eased(t, times, aims, hold=0.12 * beat))
     return body + rng.normal(size=body.shape) * 0.005

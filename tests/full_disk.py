@@ -1,4 +1,4 @@
-"""A small disk of its own, to be filled: a file system in memory, which only root can mount."""
+"""A small file system in memory that a test can fill. Only root can mount it."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ def small_disk(folder: Path, megabytes: int) -> Iterator[Path]:
     try:
         mounted = subprocess.run(command, capture_output=True, text=True, check=False)
     except FileNotFoundError:
-        pytest.skip("SKIPPED: a full disk cannot be tried here, there is no mount")
+        pytest.skip("SKIPPED: no test of a full disk, because there is no program mount")
     if mounted.returncode:
-        pytest.skip(f"SKIPPED: a full disk cannot be tried here: {mounted.stderr.strip()}")
+        pytest.skip(f"SKIPPED: no test of a full disk: {mounted.stderr.strip()}")
     try:
         yield folder
     finally:
@@ -30,7 +30,7 @@ def small_disk(folder: Path, megabytes: int) -> Iterator[Path]:
 
 
 def fill(folder: Path) -> Path:
-    """Takes all the space that is left; the file that holds it."""
+    """Fills the disk with one file, and returns its path."""
     path = folder / "filler"
     with path.open("ab", buffering=0) as file:
         size = CHUNK

@@ -1,4 +1,4 @@
-"""Libraries on real databases: empty ones, and one of demo clips that a worker has analysed."""
+"""Libraries on real databases: empty ones, and one with demo clips that a worker has analyzed."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ def settings_for(folder: Path, **changes: Any) -> Settings:
 
 
 def work(settings: Settings) -> None:
-    """A worker, until there is nothing left to do."""
+    """Run a worker in this thread until there is no job left."""
     run_worker(settings, threading.Event(), until=lambda lib: True)
 
 
 def upload(lib: Library, clip: DemoClip, **fields: Any) -> Created:
-    said = {"person": clip.person, "task": clip.task, "words": clip.words} | fields
-    return clips.create_clip(lib, io.BytesIO(clip.content), clip.path, said)
+    labels = {"person": clip.person, "task": clip.task, "words": clip.words} | fields
+    return clips.create_clip(lib, io.BytesIO(clip.content), clip.path, labels)
 
 
 @pytest.fixture

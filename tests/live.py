@@ -1,4 +1,4 @@
-"""A running Kinedex: the real API process, and a worker, over a directory of its own."""
+"""A running Kinedex: a real API process, and a worker process, over a new data directory."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ from app.demo import DemoClip
 
 START_SECONDS = 60.0
 NO_TLS = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
-"""Reading the machine's certificates would take a tenth of a second for each client."""
+"""A context without certificates: to read them takes a tenth of a second for each client."""
 ENDED = {"succeeded", "failed", "canceled"}
 
 
 @dataclass(frozen=True)
 class Live:
-    """A service that answers at `url`; `log` is the file of the API's lines."""
+    """A running API. log: the file of its log."""
 
     url: str
     data_dir: Path
     log: Path
 
     def client(self, **options: Any) -> httpx2.Client:
-        """A client of it; no proxy of the machine comes between."""
+        """An HTTP client of the service, which ignores proxy settings of the machine."""
         return httpx2.Client(
             base_url=self.url, timeout=60.0, trust_env=False, verify=NO_TLS, **options
         )
 
     def upload(self, clip: DemoClip, **fields: str) -> httpx2.Response:
-        """Hand in a demo clip with its labels."""
+        """Upload a demo clip with its labels."""
         labels = {"person": clip.person, "task": clip.task, "words": " ".join(clip.words)}
         with self.client() as client:
             return client.post(
@@ -47,7 +47,7 @@ class Live:
             )
 
     def wait_for_job(self, job_id: str, seconds: float = 120.0) -> dict[str, Any]:
-        """The job when it has ended."""
+        """Wait until the job has ended, and return it."""
 
         def ended() -> dict[str, Any] | None:
             with self.client() as client:
@@ -57,23 +57,27 @@ class Live:
         return wait_until(ended, seconds)
 
 
-def wait_until(look: Callable[[], Any], seconds: float) -> Any:
-    """What `look` returns, as soon as that is true."""
+def wait_until(condition: Callable[[], Any], seconds: float) -> Any:
+    """Call `condition` until its result is true, and return the result. Raises TimeoutError."""
     deadline = time.monotonic() + seconds
-    while not (seen := look()):
+    while not (result := condition()):
         if time.monotonic() > deadline:
-            raise TimeoutError(f"waited {seconds} s in vain")
+            raise TimeoutError(f"the condition was not true within {seconds} s")
         time.sleep(0.05)
-    return seen
+    return result
 
 
 @contextmanager
 def serve(data_dir: Path, *, worker: bool = False, **settings: object) -> Iterator[Live]:
-    """An API process, with a worker if asked for; both end with the block."""
+    """An API process, and a worker process if `worker`; both end with the block.
+
+    settings: values of settings by their names in lower case, without the prefix.
+    """
     data_dir.mkdir(parents=True, exist_ok=True)
     port, log = _free_port(), data_dir.parent / f"{data_dir.name}.api.log"
-    told = {f"KINEDEX_{name.upper()}": str(value) for name, value in settings.items()}
-    environment = os.environ | told | {"KINEDEX_DATA_DIR": str(data_dir), "KINEDEX_PORT": str(port)}
+    variables = {f"KINEDEX_{name.upper()}": str(value) for name, value in settings.items()}
+    variables |= {"KINEDEX_DATA_DIR": str(data_dir), "KINEDEX_PORT": str(port)}
+    environment = os.environ | variables
     live = Live(f"http://127.0.0.1:{port}", data_dir, log)
     with _process("app.api.server", environment, log) as api:
         wait_until(lambda: _is_ready(live, api), START_SECONDS)

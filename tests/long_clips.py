@@ -1,4 +1,4 @@
-"""Ready clips so long that comparing two of them never ends: what overload is tested with."""
+"""Ready clips that are so long that comparing two of them takes minutes, for tests of overload."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from tests.bench.large_library import clip_row
 from tests.bodies import walking
 
 FRAMES = 60_000
-"""Their positions are more than a connection holds that nobody reads."""
+"""Their positions do not fit into the buffers of a connection whose client does not read."""
 COMPARED = 150_000
-"""Numbers of a clip's secondary vector: warping two takes minutes."""
+"""Length of the secondary vector of a clip: to warp two of them takes minutes."""
 COUNT = 3
 
 

@@ -1,4 +1,4 @@
-"""Dances in a folder whose manifest names their keyposes."""
+"""A folder of dances with a manifest that gives their keyposes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ TEMPI = (80.0, 110.0, 95.0)
 
 
 def write_dances(folder: Path, *, seed: int = 70, seconds: float = 10.0) -> list[DemoClip]:
-    """A dance for each of TEMPI as dance0.bvh and so on, and `unnamed.bvh` without keyposes."""
+    """Write a dance for each of TEMPI, dance0.bvh and so on, and `unnamed.bvh` without keyposes.
+
+    Returns the dances with keyposes. seconds: their length.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     made = [dance(seed + i, bpm=bpm, seconds=seconds) for i, bpm in enumerate(TEMPI)]
     rows = ["path,task,keyposes"]

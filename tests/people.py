@@ -1,4 +1,4 @@
-"""A jointed person in each naming convention, as recordings: tests of roles and readers."""
+"""Recordings of one person in many naming conventions, for tests of joint roles and readers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.numerics.arrays import FloatArray
 
 R = JointRole
 
-# role, parent role, offset in metres: left is +X, forward +Z, up +Y
+# Joint role, parent role, offset from the parent in meters. Left is +X, forward +Z, up +Y.
 BODY: tuple[tuple[JointRole, JointRole | None, tuple[float, float, float]], ...] = (
     (R.HIPS, None, (0, 0.95, 0)),
     (R.CHEST, R.HIPS, (0, 0.3, -0.02)),
@@ -47,7 +47,7 @@ def body_skeleton(names: dict[JointRole, str] | None = None, scale: float = 1.0)
 
 
 def swaying_rotations(frames: int, joints: int, seed: int = 0, size: float = 0.3) -> FloatArray:
-    """(frames, joints, 4): every joint sways by about `size` radians."""
+    """(frames, joints, 4) unit quaternions: every joint sways by about `size` radians."""
     rng = np.random.default_rng(seed)
     t = np.linspace(0, 2 * np.pi, frames)[:, None, None]
     phase = rng.uniform(0, 2 * np.pi, (1, joints, 3))
@@ -63,7 +63,7 @@ def person(
     seed: int = 0,
     frame_rate: float | None = 30.0,
 ) -> Recording:
-    """A recording of the person swaying on the spot, in units of 1 / scale metres."""
+    """A recording of the person, who stands and sways. One unit of length is 1 / scale meters."""
     skeleton = body_skeleton(names, scale)
     rotations = swaying_rotations(frames, len(skeleton), seed)
     roots = np.broadcast_to(skeleton.offsets[0], (frames, 3)).copy()
@@ -79,8 +79,12 @@ def person(
 
 
 def convention(middle: str, sided: str, left: str, right: str) -> dict[JointRole, str]:
-    """Names from "hips chest neck head" and "shoulder elbow hand upper_leg knee foot toes",
-    the latter as patterns with {} for the side."""
+    """Joint names by role.
+
+    middle: the names of hips, chest, neck and head; sided: patterns of the names of shoulder,
+    elbow, hand, upper leg, knee, foot and toes, with {} for the side and ~ for a space; left,
+    right: the texts that replace {}.
+    """
     names = dict(zip((R.HIPS, R.CHEST, R.NECK, R.HEAD), middle.split(), strict=True))
     parts = ("shoulder", "elbow", "hand", "upper_leg", "knee", "foot", "toes")
     for part, pattern in zip(parts, sided.split(), strict=True):

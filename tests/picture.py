@@ -1,6 +1,6 @@
-"""The README's picture: a search by example in the demo library, as the demo answers it.
+"""The README's picture: a search by example in the demo library.
 
-`make picture` makes the demo library in a directory that it removes again, asks it, and writes
+`make picture` makes the demo library in a temporary directory, searches it, and writes
 `.github/search.svg`.
 """
 
@@ -37,7 +37,7 @@ _TITLE = re.compile("<title>.*?</title>")
 
 @contextmanager
 def demo_library() -> Iterator[Library]:
-    """The whole demo library, analyzed; gone afterwards."""
+    """The whole demo library, analyzed, in a temporary directory."""
     with tempfile.TemporaryDirectory() as folder:
         files, data = Path(folder) / "files", Path(folder) / "data"
         write_demo(files)
@@ -52,7 +52,7 @@ def demo_library() -> Iterator[Library]:
 
 
 def search(lib: Library) -> tuple[ClipRecord, Hits]:
-    """The query clip and what is found for it."""
+    """The query clip and its hits."""
     with lib.store.read() as tx:
         page = clip_listing.list_clips(tx, ClipFilter(person=(PERSON,), q=NAME), limit=1)
     (query,) = page.items

@@ -1,4 +1,4 @@
-"""Queries of tests that vary their fields: those of the source and those of the search together."""
+"""Queries of tests. One call takes the fields of the source and of the search."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ _OF_SOURCE = {field.name for field in fields(QuerySource)}
 
 def motion_query(**given: Any) -> MotionQuery:
     """A search by example."""
-    source, rest = _apart(given)
+    source, rest = _split(given)
     return MotionQuery(QuerySource(**source), **rest)
 
 
 def pose_query(**given: Any) -> PoseQuery:
-    """A search by pose, without a source where neither a clip nor a file is given."""
-    source, rest = _apart(given)
+    """A search by pose; its source is None if neither a clip nor a file is given."""
+    source, rest = _split(given)
     has_motion = source.get("clip_id") is not None or source.get("content") is not None
     return PoseQuery(QuerySource(**source) if has_motion else None, **rest)
 
 
-def _apart(given: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+def _split(given: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     source = {name: value for name, value in given.items() if name in _OF_SOURCE}
     return source, {name: value for name, value in given.items() if name not in _OF_SOURCE}

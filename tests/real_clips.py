@@ -1,4 +1,4 @@
-"""Where the real clips are, for the tests that measure on them; nothing is copied."""
+"""The folder of real clips, for the tests that measure on them. No clip is copied."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def real_clips() -> Path:
-    """The folder of real clips, from KINEDEX_DATA_SET or beside the clone; else skips loudly."""
+    """The folder in KINEDEX_DATA_SET, or the one next to the clone. Skips the test without it."""
     folder = Path(os.environ.get("KINEDEX_DATA_SET") or ROOT / ".." / "shared" / "data")
     if not (folder / "manifest.csv").is_file():
         pytest.skip("REAL CLIPS ABSENT: set KINEDEX_DATA_SET to the folder with manifest.csv")

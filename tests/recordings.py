@@ -1,4 +1,4 @@
-"""Recordings for tests: pieces on known beats, and sounds in which there is no beat."""
+"""Audio recordings for tests: music with known beats, and sounds without beats."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from app.demo.dances import sounds
 from app.demo.dances.music import STYLES, clicks, music
 from app.demo.dances.sounds import SAMPLE_RATE
 from app.numerics.arrays import FloatArray
-from tests.unheard_music import UNHEARD
+from tests.held_out_music import HELD_OUT_STYLES
 
 CLICKS = "clicks"
 
@@ -16,12 +16,16 @@ CLICKS = "clicks"
 def piece(
     seed: int, style: str, bpm: float, *, drift: float = 0.0, seconds: float = 30.0
 ) -> tuple[FloatArray, FloatArray]:
-    """Samples at SAMPLE_RATE, and beats (b,) s; drift: greatest relative change of tempo."""
+    """Samples (n,) at SAMPLE_RATE, and beats (b,) in seconds.
+
+    style: CLICKS or a style of music; bpm: beats per minute; drift: largest relative change of the
+    tempo.
+    """
     draw = np.random.RandomState(seed)
     beats = beats_at(draw, bpm, seconds, drift)
     if style == CLICKS:
         return clicks(draw, beats, seconds), beats
-    return music(draw, beats, seconds, (STYLES | UNHEARD)[style]), beats
+    return music(draw, beats, seconds, (STYLES | HELD_OUT_STYLES)[style]), beats
 
 
 def beats_at(draw: np.random.RandomState, bpm: float, seconds: float, drift: float) -> FloatArray:
@@ -36,7 +40,7 @@ def beats_at(draw: np.random.RandomState, bpm: float, seconds: float, drift: flo
 
 
 def without_beat(seed: int, kind: str, seconds: float = 20.0) -> FloatArray:
-    """Samples of something that has no beat."""
+    """Samples (n,) at SAMPLE_RATE of a sound without beats; kind: one of WITHOUT_BEAT."""
     draw = np.random.RandomState(seed)
     track = 0.002 * draw.randn(round(seconds * SAMPLE_RATE))
     if kind == "hiss":
@@ -47,8 +51,8 @@ def without_beat(seed: int, kind: str, seconds: float = 20.0) -> FloatArray:
         for start in np.arange(0.0, seconds, 4.0):
             for step in (0, 4, 7):
                 pitch = sounds.note(50 + step + draw.randint(5))
-                held = sounds.tone(pitch, 6.0, attack=1.0, decay=10.0, bright=5)
-                sounds.put(track, held, start + draw.rand(), 0.2)
+                tone = sounds.tone(pitch, 6.0, attack=1.0, decay=10.0, bright=5)
+                sounds.put(track, tone, start + draw.rand(), 0.2)
     elif kind == "irregular":
         for time in np.cumsum(draw.uniform(0.3, 1.1, 60)):
             sounds.put(track, sounds.kick(), time, draw.uniform(0.3, 1.0))
@@ -61,7 +65,7 @@ WITHOUT_BEAT = ("hiss", "hum", "chords", "irregular", "speech")
 
 
 def _speak(draw: np.random.RandomState, track: FloatArray, seconds: float) -> None:
-    """Syllables of any length, in phrases, at any pitch."""
+    """Add syllables of random length and pitch, in phrases, to `track`."""
     time = 0.3
     while time < seconds:
         for _ in range(draw.randint(3, 12)):
@@ -74,7 +78,10 @@ def _speak(draw: np.random.RandomState, track: FloatArray, seconds: float) -> No
 
 
 def f_score(found: FloatArray, true: FloatArray, within: float = 0.07) -> float:
-    """Of beats found against true ones, matched one to one in the order of time."""
+    """F-score of the found beats; found and true beats are matched one to one in time order.
+
+    found, true: (b,) seconds, rising; within: largest difference of a match, seconds.
+    """
     hits, taken = 0, 0
     for beat in true:
         while taken < len(found) and found[taken] < beat - within:

@@ -1,6 +1,6 @@
-"""Long motions made of many, with pieces hidden in them: what searches in windows must find.
+"""Long motions that are joined from short ones, for tests of searches in windows.
 
-All bodies are (frames, 13, 3) positions in metres, at the rate that is told.
+All bodies are positions (frames, 13, 3) in meters.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from tests.bodies import motion_of, turned_about_y
 from tests.formats.npz.files import npz
 
 GAP_SECONDS = 0.6
-"""How long the body takes from the end of one piece to the start of the next."""
+"""Time from the end of one part to the start of the next, seconds."""
 
 HIPS = SUN_ROLES.index(JointRole.HIPS)
 
 
 @dataclass(frozen=True)
 class Stream:
-    """A long motion, and where in it each part stands: (start, end) in seconds."""
+    """A long motion. rate: Hz; spans: start and end of each part, seconds."""
 
     body: FloatArray
     rate: float
@@ -35,42 +35,42 @@ class Stream:
 
 
 def joined(parts: Sequence[FloatArray], rate: float, gap: float = GAP_SECONDS) -> Stream:
-    """The parts one after the other: each turned and moved to go on where the last ended.
+    """The parts one after the other. Each is turned and moved to continue where the last ended.
 
-    In between, every joint follows the cubic that continues both movements.
+    In the gap, every joint follows the cubic that continues both movements.
     """
-    laid: list[FloatArray] = [parts[0]]
+    pieces: list[FloatArray] = [parts[0]]
     firsts, count = [0], len(parts[0])
     frames = max(2, round(gap * rate))
     for part in parts[1:]:
-        placed = _continuing(laid[-1], part, rate, gap)
-        laid += [_bridge(laid[-1], placed, frames), placed]
+        moved = _continuing(pieces[-1], part, rate, gap)
+        pieces += [_bridge(pieces[-1], moved, frames), moved]
         firsts.append(count + frames)
-        count = firsts[-1] + len(placed)
+        count = firsts[-1] + len(moved)
     spans = [(f / rate, (f + len(p)) / rate) for f, p in zip(firsts, parts, strict=True)]
-    return Stream(np.concatenate(laid), rate, tuple(spans))
+    return Stream(np.concatenate(pieces), rate, tuple(spans))
 
 
 def warped(body: FloatArray, factor: float, bend: float = 0.0) -> FloatArray:
-    """`body` in `factor` times as many frames; its speed sways by `bend` (0.1: by 10 %)."""
-    passed = np.linspace(0.0, 1.0, max(2, round(len(body) * factor)))
-    passed = passed + bend * np.sin(2 * np.pi * passed) / (2 * np.pi)
-    return sample_at(body, passed * (len(body) - 1))
+    """`body` with `factor` times its frames; bend: relative change of its speed (0.1: 10 %)."""
+    share = np.linspace(0.0, 1.0, max(2, round(len(body) * factor)))
+    share = share + bend * np.sin(2 * np.pi * share) / (2 * np.pi)
+    return sample_at(body, share * (len(body) - 1))
 
 
 def at_rate(body: FloatArray, rate: float, other: float) -> FloatArray:
-    """`body` of `rate` Hz read at `other` Hz."""
+    """`body` with the frame rate `rate`, resampled at the frame rate `other` (Hz)."""
     times = np.arange(int((len(body) - 1) / rate * other + 1e-6) + 1) * (rate / other)
     return sample_at(body, times)
 
 
 def of_size(body: FloatArray, length: float = 1.1) -> FloatArray:
-    """`body` scaled to a body length (torso, neck to head and shin) in metres."""
+    """`body` scaled to a body length (torso, neck to head and shin) in meters."""
     return body * (length / body_length(motion_of(body)))
 
 
 def _continuing(before: FloatArray, part: FloatArray, rate: float, gap: float) -> FloatArray:
-    """`part` turned and moved along the ground to where `before` leads in `gap` seconds."""
+    """`part`, turned and moved along the ground to the end of a gap of `gap` seconds."""
     turned = turned_about_y(part, _heading(before[-2:], rate) - _heading(part[:2], rate))
     way = (before[-1, HIPS] - before[-2, HIPS]) + (turned[1, HIPS] - turned[0, HIPS])
     target = before[-1, HIPS] + way * (rate * gap / 2)
@@ -82,7 +82,7 @@ def _heading(two: FloatArray, rate: float) -> float:
 
 
 def _bridge(before: FloatArray, after: FloatArray, frames: int) -> FloatArray:
-    """(frames, 13, 3) between two bodies: cubic Hermite, with the speeds of both ends."""
+    """(frames, 13, 3) m between two bodies: cubic Hermite splines with the speeds of both ends."""
     steps = frames + 1
     u = (np.arange(1, steps) / steps)[:, None, None]
     leave, arrive = (before[-1] - before[-2]) * steps, (after[1] - after[0]) * steps
@@ -92,13 +92,13 @@ def _bridge(before: FloatArray, after: FloatArray, frames: int) -> FloatArray:
 
 
 def body_of(content: bytes, frame_rate: float | None = None) -> FloatArray:
-    """(frames, 13, 3) of a motion file at 30 Hz, of the usual size."""
+    """The body in a motion file, (frames, 13, 3) m, at 30 Hz and scaled by `of_size`."""
     motion = canonicalize(read_recording(content), frame_rate=frame_rate)
     return of_size(body_track(motion).positions)
 
 
 def npz_of(body: FloatArray, rate: float) -> bytes:
-    """A body as a file."""
+    """A body as an NPZ file."""
     return npz(
         positions=body.astype(np.float32),
         joint_names=np.array([role.value for role in SUN_ROLES]),

@@ -1,4 +1,4 @@
-"""The code base itself: layout, sizes, and what must never be committed."""
+"""The code base itself: its layout, the sizes of modules, and text that must not be committed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 ALLOWED_FOLDERS = {"app", "migrations", "tests", "docker"}
-LONGEST_MODULE = 350
+MAX_MODULE_LINES = 350
 MACHINE_PATH = re.compile(r"/(?:work|farm|root)/[A-Za-z.]")
 DOWNLOAD_ADDRESS = re.compile(
     r'"resolved"\s*:|^registry\s*=\s|\{ registry\b'
@@ -24,20 +24,20 @@ def _tracked() -> list[Path]:
         ["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False
     )
     if listing.returncode:
-        pytest.skip("not a git checkout: the layout cannot be judged")
+        pytest.skip("not a git checkout: there is no list of the committed files")
     return [ROOT / line for line in listing.stdout.splitlines() if (ROOT / line).is_file()]
 
 
-def test_only_the_agreed_folders_stand_at_the_top() -> None:
+def test_only_the_agreed_folders_are_at_the_top() -> None:
     top = {path.relative_to(ROOT).parts[0] for path in _tracked() if path.parent != ROOT}
     assert {name for name in top if not name.startswith(".")} <= ALLOWED_FOLDERS
 
 
-def test_no_module_outgrows_one_noun() -> None:
+def test_no_module_is_too_long() -> None:
     long = {
         str(path.relative_to(ROOT)): lines
         for path in _tracked()
-        if path.suffix == ".py" and (lines := len(path.read_text().splitlines())) > LONGEST_MODULE
+        if path.suffix == ".py" and (lines := len(path.read_text().splitlines())) > MAX_MODULE_LINES
     }
     assert not long
 
@@ -60,7 +60,7 @@ def test_nothing_of_a_machine_is_committed(pattern: re.Pattern[str]) -> None:
     assert not found
 
 
-def test_every_package_of_the_core_says_what_it_is_for() -> None:
+def test_every_module_has_a_docstring() -> None:
     silent = [
         str(path.relative_to(ROOT))
         for path in (ROOT / "app").rglob("*.py")
@@ -79,7 +79,7 @@ def test_no_pickle_no_eval_no_shell() -> None:
     assert not found
 
 
-def test_only_the_api_says_which_part_of_a_request_a_field_stands_in() -> None:
+def test_only_the_api_names_parts_of_a_request() -> None:
     located = re.compile(r"""["'](?:body|query|path|header)\.""")
     found = [
         str(path.relative_to(ROOT))

@@ -1,4 +1,4 @@
-"""Settings: where they come from, and what they never show."""
+"""Settings: their sources, their errors, and secrets that they never show."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def test_other_variables_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 @pytest.mark.parametrize(("lease", "beat"), [("30", "31"), ("30", "30"), ("4", "5"), ("9", "4.6")])
-def test_a_heartbeat_must_come_twice_in_a_lease(
+def test_a_lease_must_allow_two_heartbeats(
     monkeypatch: pytest.MonkeyPatch, lease: str, beat: str
 ) -> None:
     monkeypatch.setenv("KINEDEX_JOB_LEASE_S", lease)
@@ -128,7 +128,7 @@ def test_a_short_lease_alone_is_refused_too(monkeypatch: pytest.MonkeyPatch) -> 
         ("KINEDEX_DATA_DIR", ""),
     ],
 )
-def test_what_no_clock_and_no_folder_can_follow_is_refused(
+def test_impossible_times_and_folders_are_refused(
     monkeypatch: pytest.MonkeyPatch, name: str, value: str
 ) -> None:
     monkeypatch.setenv(name, value)
@@ -151,7 +151,7 @@ def test_the_table_lists_every_setting_with_its_description() -> None:
     assert CONFIG_FILE_ENV in rows
 
 
-def test_each_default_in_the_table_is_what_one_would_set(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_default_in_the_table_can_be_set(monkeypatch: pytest.MonkeyPatch) -> None:
     for row in settings_table():
         if row.default and row.env != CONFIG_FILE_ENV:
             monkeypatch.setenv(row.env, row.default)

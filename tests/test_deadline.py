@@ -12,7 +12,7 @@ from app.deadline import Deadline, check, current, result_of, within
 from app.errors import ClientLeft, DeadlineExceeded
 
 
-def test_work_without_a_deadline_goes_on_for_ever() -> None:
+def test_work_without_a_deadline_never_stops() -> None:
     assert current() is None
     check()
 
@@ -35,7 +35,7 @@ def test_work_stops_when_it_is_abandoned() -> None:
             check()
 
 
-def test_progress_starts_the_time_again() -> None:
+def test_a_restart_gives_the_whole_time_again() -> None:
     deadline = Deadline(60.0)
     deadline._end = 0.0
     deadline.restart()
@@ -66,14 +66,14 @@ def test_a_result_is_waited_for() -> None:
         assert result_of(pool.submit(lambda: 8)) == 8
 
 
-def test_the_failure_of_a_result_is_its_own_though_it_be_a_timeout() -> None:
+def test_a_timeout_inside_the_work_is_the_failure_of_its_result() -> None:
     late: Future[int] = Future()
     late.set_exception(TimeoutError("its own"))
     with within(Deadline(60.0)), pytest.raises(TimeoutError, match="its own"):
         result_of(late)
 
 
-def test_a_result_that_nobody_waits_for_is_cancelled() -> None:
+def test_a_result_that_nobody_waits_for_is_canceled() -> None:
     never: Future[int] = Future()
     with within(Deadline(60.0)) as deadline:
         threading.Timer(0.05, deadline.abandon).start()

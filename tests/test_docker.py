@@ -1,6 +1,6 @@
-"""The container files, without an engine: what they name exists in the code, and fits together.
+"""The container files, without a container engine: the names in them exist in the code.
 
-What this cannot show is that the image builds and runs; no engine was at hand.
+These tests cannot show that the image builds and runs.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ NOBODY_ROOT = {"root", "0", "0:0", "root:root", ""}
 
 @dataclass(frozen=True)
 class Step:
-    """One instruction: its word, and what follows."""
+    """One instruction of a Dockerfile: its keyword, and the rest of its line."""
 
     word: str
     rest: str
@@ -76,7 +76,7 @@ def _check_url() -> Any:
 
 
 def _is_ignored(path: str) -> bool:
-    """What .dockerignore says of a path: the last line that matches it or a folder above."""
+    """Whether .dockerignore excludes a path: its last line that matches the path decides."""
     ignored = False
     for line in (ROOT / ".dockerignore").read_text().split():
         pattern = re.escape(line.lstrip("!")).replace(r"\*\*/", "(?:.*/)?")
@@ -228,12 +228,12 @@ def test_services_have_no_more_rights_than_they_need() -> None:
 
 def test_the_files_and_the_readme_show_the_same_commands() -> None:
     readme = (ROOT / "README.md").read_text()
-    told = re.findall(
+    commands = re.findall(
         r"^#\s+(docker compose .+)$", (ROOT / "docker" / "compose.yaml").read_text(), re.M
     )
-    assert told
-    assert [line for line in told if line not in readme] == []
-    for line in told:
+    assert commands
+    assert [line for line in commands if line not in readme] == []
+    for line in commands:
         words = line.split()
         if "run" in words:
             after = words[words.index("--rm") + 1 :]

@@ -1,4 +1,4 @@
-"""Every line is JSON, whoever writes it, and none holds a key."""
+"""Every line of the log is JSON, even output of other programs, and none holds an API key."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.api.guard.access_log import identity_of
-from app.logs import without_keys
+from app.logs import mask_keys
 from app.store import keys
 from app.store.database.engine import Database
 from app.store.database.schema import prepare
@@ -23,7 +23,7 @@ from tests.live import serve
 
 SECRET = "Ab_-" + "x9Z" * 13
 KEY = f"kx_0123456789ab_{SECRET}"
-SAID = [
+EXPECTED_TEXTS = [
     "past Python",
     "of libc",
     "RuntimeWarning: overflow encountered",
@@ -37,20 +37,20 @@ SAID = [
 ]
 
 
-def test_what_is_written_past_logging_becomes_json() -> None:
-    program = [sys.executable, "-c", "from tests.noise import main; main()"]
+def test_output_without_logging_becomes_json() -> None:
+    program = [sys.executable, "-c", "from tests.noisy_program import main; main()"]
     ended = subprocess.run(program, capture_output=True, timeout=120, check=False)
     assert ended.returncode == 1
     lines: list[dict[str, Any]] = [json.loads(line) for line in ended.stderr.splitlines()]
     assert all(line["level"] and line["time"] for line in lines)
     text = ended.stderr.decode()
-    assert [said for said in SAID if said not in text] == []
+    assert [expected for expected in EXPECTED_TEXTS if expected not in text] == []
     assert text.count("RuntimeWarning: overflow encountered") == 2
     assert "ssss" not in text
 
 
 def test_a_log_that_cannot_be_written_stops_nothing() -> None:
-    """The disk that holds it is full: /dev/full is such a file."""
+    """The disk of the log is full: every write to /dev/full fails with that error."""
     program = (
         "import logging, os, sys\n"
         "from app.json_stderr import json_stderr\n"
@@ -73,7 +73,7 @@ def test_the_pattern_finds_the_keys_that_are_made(tmp_path: Path) -> None:
     with database.write() as tx:
         for _ in range(20):
             secret = keys.create(tx, KeyRole.READ, "a").secret
-            assert without_keys(f"a {secret}, b") == "a [key], b"
+            assert mask_keys(f"a {secret}, b") == "a [key], b"
     database.close()
 
 
@@ -96,10 +96,10 @@ def _encoded(key: str, times: int, every: int) -> str:
     every=st.integers(1, 3),
     case=st.sampled_from([str, str.upper, str.lower]),
 )
-def test_no_disguise_saves_a_key(
+def test_encoded_keys_are_masked_too(
     before: str, after: str, times: int, every: int, case: Any
 ) -> None:
-    hidden = without_keys(before + _encoded(case(KEY), times, every) + after)
+    hidden = mask_keys(before + _encoded(case(KEY), times, every) + after)
     assert hidden.endswith("[key]" + after)
     for _ in range(times):
         hidden = urllib.parse.unquote(hidden)
@@ -131,7 +131,7 @@ def test_an_id_that_may_hold_a_key_is_replaced(sent: str) -> None:
         "f" * 64,
     ],
 )
-def test_ids_in_use_are_kept(sent: str) -> None:
+def test_usual_ids_are_not_replaced(sent: str) -> None:
     assert identity_of({"type": "http", "headers": [(b"x-request-id", sent.encode())]}) == sent
 
 

@@ -1,4 +1,4 @@
-"""The README's picture shows what the demo answers."""
+"""The README's picture shows the hits and scores of the demo library."""
 
 from __future__ import annotations
 
@@ -25,6 +25,6 @@ def test_the_picture_has_a_query_and_five_hits_by_score() -> None:
 
 @pytest.mark.slow
 def test_the_picture_shows_the_scores_of_the_demo() -> None:
-    """Otherwise run `make picture`, look at the picture, and commit it."""
+    """If it fails, run `make picture`, look at the picture, and commit it."""
     with demo_library() as lib:
         assert captions(*search(lib)) == shown()

@@ -1,4 +1,4 @@
-"""The README says what is true: its settings, commands, calls and files exist."""
+"""The settings, commands, API calls and files that the README names exist."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_every_command_exists(words: list[str]) -> None:
     assert refusal(words) is None
 
 
-def test_commands_that_do_not_exist_are_noticed() -> None:
+def test_unknown_commands_are_recognized() -> None:
     assert refusal(["serve", "--no-worker"]) is None
     assert refusal(["dance"]) is not None
     assert refusal(["serve", "--with-tea"]) is not None
@@ -62,14 +62,14 @@ def test_every_call_of_the_tour_is_described(idle_service: Live) -> None:
     assert not unknown
 
 
-def test_every_file_that_is_linked_is_there() -> None:
+def test_every_linked_file_exists() -> None:
     links = re.findall(r"\]\(([^)#]+)\)", README)
     local = [link for link in links if "://" not in link]
     assert local
     assert [link for link in local if not (ROOT / link).is_file()] == []
 
 
-def test_every_path_of_the_architecture_page_is_there() -> None:
+def test_every_path_on_the_architecture_page_exists() -> None:
     page = (ROOT / "app" / "README.md").read_text()
     paths = re.findall(r"`((?:\.\./)?[a-z_]+/[\w/]*(?:\.py)?|[a-z]+\.py)`", page)
     assert len(paths) > 40
@@ -77,7 +77,7 @@ def test_every_path_of_the_architecture_page_is_there() -> None:
 
 
 def _calls(line: str) -> list[tuple[str, str]]:
-    """(method, path) of each curl command of a line; a line that goes on has no path there."""
+    """(method, path) of each curl command in a line."""
     found = []
     for command in line.split("curl")[1:]:
         method = _METHOD.search(command)

@@ -12,7 +12,7 @@ from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.settings import open_store
 
 if TYPE_CHECKING:
-    from app.store.upkeep.verify import Verified
+    from app.store.upkeep.verify import VerificationReport
 
 FAILURE = 1
 """The exit code for a damaged library."""
@@ -40,7 +40,7 @@ def verify(context: typer.Context, as_json: AsJson = False) -> None:
         raise typer.Exit(FAILURE)
 
 
-def _print_report(report: Verified) -> None:
+def _print_report(report: VerificationReport) -> None:
     typer.echo(f"{report.files} files and {report.arrays} arrays were read.")
     for noun, names in (
         ("damage of the database", report.damage),

@@ -1,1 +1,1 @@
-"""The database, one repository a noun, arrays and files."""
+"""The database, the arrays and the files of a library. Each repository module stores one noun."""

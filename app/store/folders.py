@@ -1,4 +1,4 @@
-"""Folders of the library: they are their maker's own, and on disk before anything is in them."""
+"""Folders of a library: private to their owner, and synced to disk before files go into them."""
 
 from __future__ import annotations
 
@@ -14,16 +14,19 @@ PRIVATE = 0o700
 
 
 def make_private(folder: Path) -> None:
-    """Makes a folder that only its owner can enter; one that is there stays as it is.
+    """Makes a folder that only its owner can enter; an existing folder stays as it is.
 
-    Folders above it that are missing are made too, with the usual mode. Raises OSError.
+    Missing parent folders are made with the usual mode. Raises OSError.
     """
     folder.parent.mkdir(parents=True, exist_ok=True)
     folder.mkdir(mode=PRIVATE, exist_ok=True)
 
 
 def make_private_synced(folder: Path) -> None:
-    """Makes a folder with its parents, all private, each synced into the one above it."""
+    """Makes a folder and its missing parents, all private; each name is synced to disk.
+
+    Raises OSError.
+    """
     if folder.is_dir():
         return
     make_private_synced(folder.parent)
@@ -32,7 +35,7 @@ def make_private_synced(folder: Path) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """Sees to it that the names in a folder are on disk."""
+    """Writes the names in a folder to disk, so that they survive a power cut. Raises OSError."""
     descriptor = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(descriptor)
@@ -41,9 +44,9 @@ def sync_folder(folder: Path) -> None:
 
 
 def warn_if_open(folder: Path) -> None:
-    """Logs a warning where every account of this machine can look into the folder.
+    """Logs a warning if every account of this machine can read the folder.
 
-    Only a warning: an operator may have made the folder so on purpose.
+    It is a warning only, because an operator may want these rights.
     """
     if not folder.is_dir():
         return

@@ -1,7 +1,8 @@
-"""Whether a database and a folder of files belong together.
+"""Checks that a database and a folder of files belong to the same library.
 
-Both hold the id of their library. A start without its database would otherwise take all files for
-leftovers, and one with a wrong folder would store new files where they are not found again.
+Both hold the id of their library. Without this check, a start with a wrong database would move all
+files to the quarantine, and a start with a wrong folder would store new files where a later start
+does not find them.
 """
 
 from __future__ import annotations
@@ -18,16 +19,17 @@ from app.store.files.id_file import read_id, write_id
 from app.store.jobs import references
 
 WHAT_TO_DO = (
-    "Put back what was moved, or set KINEDEX_DATABASE_URL and KINEDEX_DATA_DIR right. If you are "
-    "sure that they belong together, run `kinedex db adopt-files`."
+    "Move the database or the folder back, or correct KINEDEX_DATABASE_URL and KINEDEX_DATA_DIR. "
+    "If you are sure that they belong together, run `kinedex db adopt-files`."
 )
 
 
 @dataclass(frozen=True, slots=True)
-class Adopted:
-    """What a database found in a folder that it was given.
+class AdoptionReport:
+    """What `adopt` found in the folder of files.
 
-    present, missing: files that the database names; unknown: others, which go to the quarantine.
+    present, missing: numbers of files that the database names; unknown: number of other files,
+    which the next sweep moves to the quarantine.
     """
 
     present: int
@@ -36,10 +38,10 @@ class Adopted:
 
 
 def prepare(database_url: str, files_dir: Path) -> str:
-    """What a start does: makes an empty library, or checks one that is there; its id.
+    """Makes an empty library or checks the existing one; returns its id. Every start calls this.
 
-    Raises LibraryMismatch where files and database do not belong together, before anything is
-    changed; DatabaseOutOfDate; StorageError.
+    Raises LibraryMismatch, before any change, if files and database do not belong together;
+    DatabaseOutOfDate; StorageError.
     """
     if not is_database_there(database_url):
         _refuse_files(database_url, files_dir)
@@ -49,13 +51,13 @@ def prepare(database_url: str, files_dir: Path) -> str:
 
 
 def check(database_url: str, files_dir: Path) -> str:
-    """As `prepare`, but nothing is made."""
+    """As `prepare`, but makes nothing."""
     schema.check(database_url)
     return _checked(database_url, files_dir, writes=False)
 
 
 def refuse_files_without_database(database_url: str, files_dir: Path) -> None:
-    """Raises LibraryMismatch where a new database would be made for a folder that is in use."""
+    """Raises LibraryMismatch if there is no database, but the folder already holds files."""
     if not is_database_there(database_url):
         _refuse_files(database_url, files_dir)
 
@@ -65,28 +67,30 @@ def _refuse_files(database_url: str, files_dir: Path) -> None:
     if _read_id(files_dir) is None and next(iter(files), None) is None:
         return
     raise LibraryMismatch(
-        f"There is no library in {_named(database_url)}, but {files_dir} is the folder of files "
-        f"of one ({sum(1 for _ in files)} files). If the database was moved, put it back; if "
-        "KINEDEX_DATABASE_URL or KINEDEX_DATA_DIR names the wrong place, set it right. To begin a "
-        "new library, move that folder away; `kinedex import` can take in the files in it."
+        f"There is no library in {_database_name(database_url)}, but {files_dir} is the folder of "
+        f"files of a library ({sum(1 for _ in files)} files). If the database was moved, put it "
+        "back; if KINEDEX_DATABASE_URL or KINEDEX_DATA_DIR is wrong, correct it. To begin a new "
+        "library, move that folder away; `kinedex import` can import the files in it."
     )
 
 
 def is_database_there(database_url: str) -> bool:
-    """Whether there is a database with any table; makes none."""
+    """Whether there is a database with any table. It does not make a database file."""
     file = database_file(database_url)
     if file is not None and not file.is_there:
         return False
     return not schema.state(database_url).is_empty
 
 
-def adopt(database_url: str, files_dir: Path) -> Adopted:
-    """Makes the folder that of the database's library, whatever it was before.
+def adopt(database_url: str, files_dir: Path) -> AdoptionReport:
+    """Assigns the folder to the library of the database, even if it had another id.
 
-    Raises LibraryMismatch where there is no database; DatabaseOutOfDate; StorageError.
+    Raises LibraryMismatch if there is no database; DatabaseOutOfDate; StorageError.
     """
     if not is_database_there(database_url):
-        raise LibraryMismatch(f"There is no library in {_named(database_url)} to give files to.")
+        raise LibraryMismatch(
+            f"There is no library in {_database_name(database_url)} that could adopt files."
+        )
     schema.check(database_url)
     database, files = Database(database_url), FileStore(files_dir)
     try:
@@ -96,7 +100,7 @@ def adopt(database_url: str, files_dir: Path) -> Adopted:
         database.close()
     present = set(files)
     _write_id(files_dir, ours, replaces=True)
-    return Adopted(len(needed & present), len(needed - present), len(present - needed))
+    return AdoptionReport(len(needed & present), len(needed - present), len(present - needed))
 
 
 def _checked(database_url: str, files_dir: Path, *, writes: bool) -> str:
@@ -114,27 +118,30 @@ def _checked(database_url: str, files_dir: Path, *, writes: bool) -> str:
     if theirs is None or theirs == ours:
         return ours
     raise LibraryMismatch(
-        f"{_named(database_url)} is the database of the library {ours}, but {files_dir} is the "
-        f"folder of files of the library {theirs}. {WHAT_TO_DO}"
+        f"{_database_name(database_url)} is the database of the library {ours}, but {files_dir} is "
+        f"the folder of files of the library {theirs}. {WHAT_TO_DO}"
     )
 
 
 def _refuse_foreign_files(tx: Tx, files: FileStore, database_url: str) -> None:
-    """Of a folder without an id, as of an earlier Kinedex: most files that are named are there."""
+    """Checks a folder without an id: early versions of Kinedex wrote none.
+
+    It belongs to the database if it holds at least half of the files that the database names.
+    """
     needed = references.referenced(tx)
-    there = sum(1 for sha256 in needed if files.has(sha256))
-    is_any = next(iter(files), None) is not None
-    if not needed and not is_any:
+    present = sum(1 for sha256 in needed if files.has(sha256))
+    has_files = next(iter(files), None) is not None
+    if not needed and not has_files:
         return
-    if there and 2 * there >= len(needed):
+    if present and 2 * present >= len(needed):
         return
     raise LibraryMismatch(
-        f"{_named(database_url)} names {len(needed)} files, of which {there} are in {files.root}, "
-        f"where {'there are others' if is_any else 'there are none'}. {WHAT_TO_DO}"
+        f"{_database_name(database_url)} names {len(needed)} files. The folder {files.root} holds "
+        f"{present} of them{' and other files' if has_files else ''}. {WHAT_TO_DO}"
     )
 
 
-def _named(database_url: str) -> str:
+def _database_name(database_url: str) -> str:
     file = database_file(database_url)
     return "the database of KINEDEX_DATABASE_URL" if file is None else str(file.path)
 

@@ -1,4 +1,4 @@
-"""What an API key allows; without a database, so that `kinedex keys --help` starts at once."""
+"""The roles of API keys. This module imports no database, so that `kinedex keys --help` is fast."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from enum import StrEnum
 
 
 class KeyRole(StrEnum):
-    """What a key allows; each role allows what those before it do."""
+    """What a key allows. Each role includes the rights of the roles above it in this list."""
 
     READ = "read"
-    """Look, search, recognize."""
+    """Read, search, recognize."""
     WRITE = "write"
     """Also add, change and delete clips, fit models, cancel jobs."""
     ADMIN = "admin"
-    """Also whatever concerns the installation."""
+    """Also manage the installation."""
 
     def allows(self, needed: KeyRole) -> bool:
-        """Whether this role is enough where `needed` is asked for."""
+        """Whether this role has all rights of the role `needed`."""
         order = list(KeyRole)
         return order.index(self) >= order.index(needed)

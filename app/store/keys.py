@@ -1,7 +1,7 @@
 """API keys: shown once, stored as a hash, checked in constant time.
 
-A key is `kx_<public part>_<secret part>`: the public part finds the row, the hash of the whole
-is compared. The secret part has 256 random bits, so one round of SHA-256 is enough.
+A key is `kx_<public part>_<secret part>`. The public part selects the row; then the hash of the
+whole key is compared. The secret part has 256 random bits, so one round of SHA-256 is enough.
 """
 
 from __future__ import annotations
@@ -24,15 +24,16 @@ PREFIX = "kx"
 PUBLIC_BYTES = 6
 SECRET_BYTES = 32
 _NO_HASH = "0" * 64
+"""Compared if there is no such key, so that the answer takes the same time."""
 
-# Made once: every call asks these.
+# Built once, because every API call executes them.
 _IS_ANY = select(exists(select(api_keys.c.id)))
 _BY_ID = select(api_keys).where(api_keys.c.id == bindparam("the_id"))
 
 
 @dataclass(frozen=True, slots=True)
 class KeyRecord:
-    """A key as it may be shown: never its secret."""
+    """A key without its secret."""
 
     id: str
     name: str
@@ -43,7 +44,7 @@ class KeyRecord:
 
 @dataclass(frozen=True, slots=True)
 class CreatedKey:
-    """A new key with its secret, which cannot be had again; repr hides it."""
+    """A new key with its secret, which is not stored: nobody can read it later. repr hides it."""
 
     record: KeyRecord
     secret: str
@@ -53,7 +54,7 @@ class CreatedKey:
 
 
 def create(tx: Tx, role: KeyRole, name: str) -> CreatedKey:
-    """Makes a key; only the hash of its secret is stored."""
+    """Makes a key. The database stores only the hash of its secret."""
     key_id = secrets.token_hex(PUBLIC_BYTES)
     secret = f"{PREFIX}_{key_id}_{secrets.token_urlsafe(SECRET_BYTES)}"
     added = insert(api_keys).values(
@@ -67,7 +68,7 @@ def create(tx: Tx, role: KeyRole, name: str) -> CreatedKey:
 
 
 def verify(tx: Tx, secret: str) -> KeyRecord | None:
-    """The key that has this secret, unless it is unknown or revoked."""
+    """The key with this secret; None if it is unknown or revoked."""
     parts = secret.split("_", 2)
     key_id = parts[1] if len(parts) == 3 and parts[0] == PREFIX else ""
     row = tx.execute(_BY_ID, {"the_id": key_id}).mappings().one_or_none()
@@ -79,7 +80,7 @@ def verify(tx: Tx, secret: str) -> KeyRecord | None:
 
 
 def is_any(tx: Tx) -> bool:
-    """Whether a key was ever made, one that has been revoked too."""
+    """Whether there is any key, even a revoked one."""
     return bool(tx.execute(_IS_ANY).scalar_one())
 
 
@@ -95,7 +96,7 @@ def list_keys(tx: Tx) -> tuple[KeyRecord, ...]:
 
 
 def revoke(tx: Tx, key_id: str) -> KeyRecord:
-    """The key opens nothing from the commit on. Raises NotFound."""
+    """Revokes a key: after the commit it allows nothing. Raises NotFound."""
     revoked = (
         update(api_keys)
         .where(api_keys.c.id == key_id, api_keys.c.revoked_at.is_(None))

@@ -1,4 +1,7 @@
-"""Fitted models: versioned records of arrays, never pickled; the newest of a kind is in force."""
+"""Fitted models: versioned records with arrays, never pickled.
+
+The newest version of a kind is the current one.
+"""
 
 from __future__ import annotations
 
@@ -17,18 +20,20 @@ from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
 from app.store.database.tables import model_arrays, models
 
-OF_CLIPS = "clips."
-"""How the names of those arrays begin that hold what a model made of the clips it was fitted on."""
+CLIP_ARRAY_PREFIX = "clips."
+"""Prefix of the names of arrays with one row for each clip that the model was fitted on."""
 
 KEPT_VERSIONS = 2
-"""Of each kind: the one in force, and the one that searches may still be reading."""
+"""Versions of each kind that are stored: the current one, and the one before it, which searches
+may still be reading."""
 
 
 @dataclass(frozen=True, slots=True)
 class ModelRecord:
-    """A fitted model without its arrays. meta: JSON of the kind's own (figures, words...).
+    """A fitted model without its arrays.
 
-    library_version, library_size: the library that it was fitted on, size in ready clips.
+    meta: JSON whose members depend on the kind (figures, words...); library_version: of the
+    library that it was fitted on; library_size: its number of ready clips.
     """
 
     id: str
@@ -41,7 +46,7 @@ class ModelRecord:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """What a client has set for models of this kind; a fit carries it over."""
+        """The settings of a client for this kind of model; a new fit keeps them."""
         return dict(self.meta.get("settings", {}))
 
 
@@ -54,8 +59,11 @@ def save(
     library_version: int,
     library_size: int,
 ) -> ModelRecord:
-    """Stores a model, which is in force from the commit on; older ones than the last go."""
-    library.lock(tx)
+    """Stores a new version, which is the current one after the commit.
+
+    Versions before the last KEPT_VERSIONS are deleted.
+    """
+    library.lock(tx)  # so that two writers do not choose the same version
     latest = select(func.max(models.c.version)).where(models.c.kind == kind)
     version = (tx.execute(latest).scalar_one() or 0) + 1
     added = insert(models).values(
@@ -77,7 +85,7 @@ def save(
 
 
 def current(tx: Tx, kind: str) -> ModelRecord:
-    """The model of this kind that is in force; raises ModelNotFitted."""
+    """The current model of this kind; raises ModelNotFitted."""
     query = select(models).where(models.c.kind == kind).order_by(models.c.version.desc()).limit(1)
     row = tx.execute(query).mappings().one_or_none()
     if row is None:
@@ -86,10 +94,13 @@ def current(tx: Tx, kind: str) -> ModelRecord:
 
 
 def current_ids(tx: Tx) -> dict[str, tuple[str, dict[str, Any]]]:
-    """The id in force and its settings, by kind: cheap, to see whether a loaded model is out
-    of date."""
-    query = _in_force(select(models.c.kind, models.c.id, models.c.meta["settings"]))
-    return {kind: (model_id, dict(said or {})) for kind, model_id, said in tx.execute(query)}
+    """The id and the settings of the current model, by kind.
+
+    This is cheap: a caller can check with it whether a loaded model is out of date.
+    """
+    query = _newest_only(select(models.c.kind, models.c.id, models.c.meta["settings"]))
+    rows = tx.execute(query)
+    return {kind: (model_id, dict(settings or {})) for kind, model_id, settings in rows}
 
 
 def get(tx: Tx, model_id: str) -> ModelRecord:
@@ -101,44 +112,47 @@ def get(tx: Tx, model_id: str) -> ModelRecord:
 
 
 def set_settings(tx: Tx, model_id: str, settings: Mapping[str, Any]) -> ModelRecord:
-    """Changes what is set for a model; raises NotFound."""
+    """Replaces the settings of a model; raises NotFound."""
     meta = get(tx, model_id).meta | {"settings": dict(settings)}
     tx.execute(update(models).where(models.c.id == model_id).values(meta=meta))
     return get(tx, model_id)
 
 
 def list_current(tx: Tx) -> tuple[ModelRecord, ...]:
-    """The models in force, by kind."""
-    query = _in_force(select(models)).order_by(models.c.kind)
+    """The current models, sorted by kind."""
+    query = _newest_only(select(models)).order_by(models.c.kind)
     return tuple(_to_record(row) for row in tx.execute(query).mappings())
 
 
 def person_names(tx: Tx) -> frozenset[str]:
-    """Everybody whom a stored model knows by name, in any version of it."""
-    found = tx.execute(select(models.c.meta["model"]["persons"])).scalars()
-    return frozenset(name for names in found for name in names or ())
+    """The names of all persons in stored models, in every version."""
+    name_lists = tx.execute(select(models.c.meta["model"]["persons"])).scalars()
+    return frozenset(name for names in name_lists for name in names or ())
 
 
 def remove(tx: Tx, kinds: Collection[str]) -> int:
-    """Removes every version of the models of these kinds; how many there were."""
+    """Removes all versions of the models of these kinds; returns their number."""
     return tx.execute(delete(models).where(models.c.kind.in_(kinds))).rowcount
 
 
 def load_arrays(
     tx: Tx, model_id: str, names: Collection[str] | None = None
 ) -> dict[str, NDArray[Any]]:
-    """A model's arrays by name, read-only: those of these names that it has, by default all that
-    make the model itself, without what it made of clips."""
+    """Arrays of a model by name, read-only.
+
+    names: the arrays to load; those that the model does not have are left out. None loads all
+    arrays except those with a row for each clip (CLIP_ARRAY_PREFIX).
+    """
     query = select(
         model_arrays.c.name, model_arrays.c.dtype, model_arrays.c.shape, model_arrays.c.data
     ).where(model_arrays.c.model_id == model_id)
     name = model_arrays.c.name
-    wanted = name.not_like(f"{OF_CLIPS}%") if names is None else name.in_(names)
-    found = tx.execute(query.where(wanted))
-    return {name: from_blob(dtype, shape, data) for name, dtype, shape, data in found}
+    is_requested = name.not_like(f"{CLIP_ARRAY_PREFIX}%") if names is None else name.in_(names)
+    rows = tx.execute(query.where(is_requested))
+    return {name: from_blob(dtype, shape, data) for name, dtype, shape, data in rows}
 
 
-def _in_force(query: Select[Any]) -> Select[Any]:
+def _newest_only(query: Select[Any]) -> Select[Any]:
     newest = select(models.c.kind, func.max(models.c.version)).group_by(models.c.kind).subquery()
     is_newest = and_(models.c.kind == newest.c[0], models.c.version == newest.c[1])
     return query.join(newest, is_newest)

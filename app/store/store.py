@@ -1,4 +1,4 @@
-"""The store: a database and a file store that belong together."""
+"""The store: the database and the files of one library."""
 
 from __future__ import annotations
 
@@ -21,16 +21,17 @@ _Result = TypeVar("_Result")
 
 @dataclass(frozen=True, slots=True)
 class Store:
-    """One for each process; safe to share between threads."""
+    """The database and the files of a library. A process opens one; threads may share it."""
 
     database: Database
     files: FileStore
 
     @classmethod
     def open(cls, database_url: str, files_dir: Path, library_id: str | None = None) -> Self:
-        """Opens without looking: `identity.prepare` or `identity.check` do that.
+        """Opens a store without a check; call `identity.prepare` or `identity.check` before.
 
-        library_id: what they found; without it, files are taken to be the right ones.
+        library_id: the id that they returned. With None, nothing checks later that the folder of
+        files is the right one.
         """
         database = Database(database_url)
         if library_id is not None:
@@ -38,14 +39,14 @@ class Store:
         return cls(database, FileStore(files_dir, library_id))
 
     def read(self) -> AbstractContextManager[Tx]:
-        """A transaction that sees one snapshot."""
+        """A transaction that reads one snapshot of the database."""
         return self.database.read()
 
     @contextmanager
     def write(self) -> Iterator[Tx]:
         """A transaction that is committed durably at the end of the block; do not nest.
 
-        Files that it made unneeded (`removals.record`) are removed right after.
+        The files that it recorded for removal (`removals.record`) are removed after the commit.
         """
         with self.database.write() as tx:
             yield tx
@@ -54,10 +55,10 @@ class Store:
             self.finish_removals()
 
     def write_even_when_full(self, work: Callable[[Tx], _Result]) -> _Result:
-        """What `work` returns, of a write transaction that frees space.
+        """Runs `work`, which frees space, in a write transaction, and returns its result.
 
-        On a full disk it is tried again with the space that is kept in reserve for this, and
-        that of the database's log. Raises DiskFull where even that is not enough.
+        If the disk is full, `work` is called a second time, after the reserve (`Reserve`) and the
+        log of the database gave their space back. Raises DiskFull if that is not enough.
         """
         try:
             with self.write() as tx:
@@ -66,7 +67,7 @@ class Store:
             if self._reserve is None:
                 raise
             self._reserve.give_up()
-            with suppress(StorageError):  # it may help, by what the log gives back
+            with suppress(StorageError):  # this helps only if the log has space to give back
                 self.erase_traces()
             try:
                 with self.write() as tx:
@@ -77,9 +78,9 @@ class Store:
             self.make_reserve()
 
     def finish_removals(self) -> int:
-        """Removes the files that are recorded to be removed; returns how many.
+        """Removes the files that are recorded for removal; returns their number.
 
-        What cannot be removed now stays recorded, and a later call tries again.
+        A file that cannot be removed now stays recorded, and a later call tries again.
         """
         try:
             with self.database.write() as tx:
@@ -89,19 +90,20 @@ class Store:
             return 0
 
     def make_reserve(self) -> None:
-        """Keeps some disk space in reserve, when there is room (`Reserve`)."""
+        """Reserves disk space for deletions, if enough is free (`Reserve`)."""
         if self._reserve is not None:
             self._reserve.make()
 
     def erase_traces(self, wait_s: float = ERASE_WAIT_S) -> bool:
-        """Writes what was removed over, also where the database keeps its latest changes.
+        """Overwrites deleted data, also in the log of the database.
 
-        Waits so long for those who use it; whether nobody was in the way.
+        wait_s: seconds to wait for other users of the database. Returns False if they still used
+        it, and then the log may still hold the data.
         """
         return self.database.erase_traces(wait_s)
 
     def close(self) -> None:
-        """Gives back all connections."""
+        """Closes all connections."""
         self.database.close()
 
     @property

@@ -1,4 +1,4 @@
-"""The study of low-dimensional motions: pairs to be compared, and the votes on them."""
+"""The study of low-dimensional motions: pairs that people compare, and their votes."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ Keyposes = dict[str, list[int]]
 
 
 class Choice(StrEnum):
-    """What a voter found nearer to the original."""
+    """Which motion of a pair a voter finds closer to the original."""
 
     LEFT = "left"
     """The motion on the left."""
     RIGHT = "right"
     """The motion on the right."""
     SAME = "same"
-    """Neither: they cannot tell."""
+    """Neither: the voter sees no difference."""
 
 
 @dataclass(frozen=True, slots=True)
 class PairRecord:
     """Two low-dimensional versions of a clip, side by side.
 
-    keyposes: frames from which both models are made, by clip id; sequence: the same for all
-    pairs of the same clip, model and dimensions; left_basis: which one stands on the left.
+    keyposes: frames that both models are made from, by clip id; sequence: one text for all
+    pairs of the same clip, model and dimensions; left_basis: the basis of the motion on the left.
     """
 
     id: str
@@ -52,7 +52,7 @@ class PairRecord:
 
 @dataclass(frozen=True, slots=True)
 class VoteCount:
-    """How often a choice was made in the pairs of a sequence that show `left_basis` left."""
+    """The votes for a choice, in the pairs of a sequence that show `left_basis` on the left."""
 
     sequence: str
     clip_id: str
@@ -70,7 +70,7 @@ def add_pair(
     sequence: str,
     left_basis: str,
 ) -> PairRecord:
-    """Keeps a pair."""
+    """Stores a pair."""
     added = insert(study_pairs).values(
         id=new_id("pair"),
         clip_id=clip_id,
@@ -99,6 +99,7 @@ def list_pairs(tx: Tx, *, limit: int = 50, cursor: str | None = None) -> Page[Pa
     if cursor is not None:
         position = read_cursor(cursor, NEWEST_FIRST, datetime)
         query = query.where(after(created, row_id, position, descending=True))
+    # One row more than the page shows whether there is another page.
     query = query.order_by(created.desc(), row_id.desc()).limit(limit + 1)
     items = [_to_pair(row) for row in tx.execute(query).mappings()]
     shown = tuple(items[:limit])
@@ -114,16 +115,16 @@ def delete_pair(tx: Tx, pair_id: str) -> None:
 
 
 def add_vote(tx: Tx, pair: PairRecord, choice: Choice, voter_sha256: str | None) -> str:
-    """Keeps a vote and returns its id.
+    """Stores a vote and returns its id.
 
-    Raises AlreadyVoted where this voter has voted on the sequence, in whatever pair.
+    Raises AlreadyVoted if this voter has voted on any pair of the same sequence.
     """
     if voter_sha256 is not None:
-        library.lock(tx)  # so that no other process votes between the look and the vote
-        twin = select(study_votes.c.id).where(
+        library.lock(tx)  # so that no other process votes between this query and the insert
+        earlier = select(study_votes.c.id).where(
             study_votes.c.sequence == pair.sequence, study_votes.c.voter_sha256 == voter_sha256
         )
-        if tx.execute(twin).first() is not None:
+        if tx.execute(earlier).first() is not None:
             raise AlreadyVoted
     vote_id = new_id("vote")
     tx.execute(
@@ -140,7 +141,7 @@ def add_vote(tx: Tx, pair: PairRecord, choice: Choice, voter_sha256: str | None)
 
 
 def count_votes(tx: Tx, clip_id: str | None = None) -> tuple[VoteCount, ...]:
-    """Votes by sequence, side and choice, of one clip or of all."""
+    """Counts of votes by sequence, left basis and choice, for one clip or for all clips."""
     by = (
         study_pairs.c.sequence,
         study_pairs.c.clip_id,

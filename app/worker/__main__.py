@@ -17,7 +17,7 @@ log = logging.getLogger(__name__)
 
 
 def main() -> int:
-    """Work until told to stop; CANNOT_START where settings or database do not allow it."""
+    """Work until a signal; returns 0, or CANNOT_START if settings or database do not allow it."""
     stop = threading.Event()
     for sign in (signal.SIGTERM, signal.SIGINT):
         signal.signal(sign, lambda *_: stop.set())

@@ -1,4 +1,4 @@
-"""The processes and threads that a worker works with: each kind of claimed job begins here."""
+"""Starts each claimed job in a process or thread, by the job's kind."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from app.services.training.fit_process import fit_in_child
 from app.store.clips.record import ClipRecord
 from app.store.jobs import outcomes
 from app.store.jobs.record import ClaimedJob, JobKind
-from app.worker.running import Running, RunningFit, RunningIngest, RunningThread
+from app.worker.running import RunningFit, RunningImport, RunningIngest, RunningJob
 
 
 class JobExecutors:
-    """The processes and threads that a worker works with."""
+    """The processes and threads that do the jobs of one worker."""
 
     def __init__(self, lib: Library) -> None:
         self.lib = lib
@@ -31,8 +31,8 @@ class JobExecutors:
         self._analyses = AnalysisPool(ingest_limits(lib.settings), size=self.slots)
         self._threads = ThreadPoolExecutor(1, thread_name_prefix="import")
 
-    def begin(self, claimed: ClaimedJob, clip: ClipRecord | None) -> Running:
-        """Begin a job, an ingest with its clip as it is now."""
+    def begin(self, claimed: ClaimedJob, clip: ClipRecord | None) -> RunningJob:
+        """Begin a job. clip: of an ingest job, as it is stored now; None for other jobs."""
         if clip is not None:
             return self._begin_ingest(claimed, clip)
         if claimed.job.kind is JobKind.IMPORT:
@@ -40,7 +40,7 @@ class JobExecutors:
         return RunningFit(claimed, _fit_in_process(self.lib))
 
     def rest(self) -> None:
-        """Give back the memory of idle analysis processes."""
+        """End idle analysis processes, so that their memory is free."""
         self._analyses.rest()
 
     def close(self) -> None:
@@ -48,32 +48,33 @@ class JobExecutors:
         self._analyses.close()
         self._threads.shutdown()
 
-    def _begin_ingest(self, claimed: ClaimedJob, clip: ClipRecord) -> Running:
+    def _begin_ingest(self, claimed: ClaimedJob, clip: ClipRecord) -> RunningJob:
         try:
             request = ingest.analysis_request(self.lib, clip)
-            # What died beside others again and again may have been killed for the others' sake.
-            is_alone = claimed.kills >= outcomes.MOST_KILLS
+            # The kernel kills a process when memory is short, and that process may not be the one
+            # that needs it. A job that was killed often is therefore tried without others.
+            is_alone = claimed.kills >= outcomes.MAX_KILLS
             future = self._analyses.submit(request, is_alone=is_alone)
         except KinedexError as problem:
             future = Future()
             future.set_exception(problem)
         return RunningIngest(self.lib, self._analyses, claimed, clip, future)
 
-    def _begin_import(self, claimed: ClaimedJob) -> Running:
+    def _begin_import(self, claimed: ClaimedJob) -> RunningJob:
         stopping = threading.Event()
-        told: list[tuple[float, str]] = [(0.0, "")]
+        latest: list[tuple[float, str]] = [(0.0, "")]
 
         def progress(done: int, total: int, path: str) -> None:
-            told[0] = (done / max(total, 1), f"{done} of {total} files: {path}")
+            latest[0] = (done / max(total, 1), f"{done} of {total} files: {path}")
 
         future = self._threads.submit(imports.unpack, self.lib, claimed, progress, stopping.is_set)
-        return RunningThread(claimed, future, stopping, told)
+        return RunningImport(claimed, future, stopping, latest)
 
 
 def _fit_in_process(lib: Library) -> Future[dict[str, Any]]:
-    """A fit in a process of its own, so that its memory is given back."""
+    """A fit in its own process, so that its memory is free when it ends."""
     pool = ChildPool(1, log_like_parent, level_of_process())
     future = pool.submit(fit_in_child, lib.settings)
-    # Ended from a thread of its own: the callback runs in one that the end waits for.
+    # The callback runs in a thread that `close` waits for, so `close` needs another thread.
     future.add_done_callback(lambda _: threading.Thread(target=pool.close).start())
     return future

@@ -1,5 +1,7 @@
-"""Removing jobs that ended long ago, a few at a time, while the worker does other things; and
-what deletions left in the database's log."""
+"""Removes jobs that ended long ago, a few at a time, between the other work of a worker.
+
+It also removes deleted data from the log of the database.
+"""
 
 from __future__ import annotations
 
@@ -11,28 +13,28 @@ from app.services.library.library import Library
 
 _log = logging.getLogger(__name__)
 
-ROUND_S = 60.0
-"""Between two rounds."""
+ROUND_INTERVAL_S = 60.0
+"""Time between two rounds."""
 
 
 class Expiry:
-    """When a worker last removed old jobs."""
+    """Removes the old jobs of a library, in rounds."""
 
     def __init__(self, lib: Library) -> None:
         self._lib = lib
         self._next = time.monotonic()
 
     def remove_if_due(self) -> None:
-        """A round, if it is time for one; what it removes is logged. Raises StorageError.
+        """Do a round if it is due, and log the number of removed jobs. Raises StorageError.
 
-        After it, what was deleted before is in no file of the database, unless somebody reads.
+        After a round no file of the database holds deleted data, unless a reader was active.
         """
         if time.monotonic() < self._next:
             return
-        self._next = time.monotonic() + ROUND_S
+        self._next = time.monotonic() + ROUND_INTERVAL_S
         removed = jobs.remove_old_jobs(self._lib)
         if removed:
             days = self._lib.settings.job_retention_days
             _log.info("removed %d jobs that ended over %d days ago", removed, days)
-        # Without waiting, since heartbeats must go on: the next round tries again.
+        # It does not wait for readers, because heartbeats must go on. The next round tries again.
         self._lib.store.erase_traces(wait_s=0.0)

@@ -1,8 +1,8 @@
-"""The worker: claim a job, have it done, settle it; and beat while it lasts.
+"""The worker: it claims a job, starts it, sends heartbeats while it runs, and settles it.
 
-One thread does it all, so that a worker that hangs stops beating and its jobs go to another.
-What a killed worker had in hand goes back into the queue once another worker sees that it is
-dead. A worker that is told to stop gives its jobs back as if they had not been tried.
+One thread does all of this. So a worker that hangs sends no heartbeats, and its jobs go to another
+worker. The jobs of a killed worker go back into the queue when another worker sees that it is
+dead. A worker that gets a signal to stop puts its jobs back; that does not count as an attempt.
 """
 
 from __future__ import annotations
@@ -27,25 +27,25 @@ from app.store.clips import repository as clips
 from app.store.clips.record import ClipRecord
 from app.store.database.engine import Tx
 from app.store.jobs import leases, outcomes, owners, queue
-from app.store.jobs.abandoned import Watch
+from app.store.jobs.abandoned_jobs import Watch
 from app.store.jobs.record import ClaimedJob, JobKind
 from app.worker.executors import JobExecutors
 from app.worker.expiry import Expiry
-from app.worker.running import Running
+from app.worker.running import RunningJob
 from app.worker.sweeps import Sweeps
 
 _log = logging.getLogger(__name__)
 
 READ_AHEAD = 3
-"""Clips claimed for each process, so that none waits while others are stored together."""
+"""Clips claimed for each analysis process, so that none is idle while results are stored."""
 FIT_CHECK_S = 2.0
-"""Between looks at whether a fit is due, while there is nothing else to do."""
-STOP_WITHIN_S = 10.0
-"""For work in hand to end when the worker is told to stop."""
-LOOKS_PER_LEASE = 10
-"""How often in the time of a lease a worker looks at what others hold."""
+"""Time between two checks whether a fit is due, while there is nothing else to do."""
+STOP_TIMEOUT_S = 10.0
+"""How long a worker that stops waits for its running jobs."""
+WATCHES_PER_LEASE = 10
+"""How often in the time of a lease a worker looks at the jobs of other workers."""
 STORE_PAUSE_S = 1.0
-"""Before the store is tried again after it failed."""
+"""Time before another attempt after the store failed."""
 
 
 def run_worker(
@@ -54,7 +54,11 @@ def run_worker(
     *,
     until: Callable[[Library], bool] | None = None,
 ) -> None:
-    """Work until `stop_event` is set, or `until` holds (asked when there is nothing to claim)."""
+    """Work until `stop_event` is set, or until `until` returns True.
+
+    `until` is called only when the worker has no job and finds none to claim. Raises
+    ConfigurationError, StorageError if the library cannot be opened.
+    """
     lib = Library.open(settings)
     sweeps = Sweeps(lib.store, settings.quarantine_days)
     try:
@@ -74,23 +78,23 @@ def run_worker(
 
 
 class Worker:
-    """Works on a library's jobs."""
+    """Does the jobs of a library."""
 
     def __init__(self, lib: Library) -> None:
         self.lib = lib
         settings = lib.settings
         self.owner = owners.new_owner("worker")
         self.executors = JobExecutors(lib)
-        self._running: list[Running] = []
+        self._running: list[RunningJob] = []
         self._last_beat = time.monotonic()
         self._watch = Watch(self.owner, settings.job_lease_s)
-        self._look_s = min(settings.job_heartbeat_s, settings.job_lease_s / LOOKS_PER_LEASE)
-        self._last_look = -math.inf
+        self._watch_s = min(settings.job_heartbeat_s, settings.job_lease_s / WATCHES_PER_LEASE)
+        self._last_watch = -math.inf
         self._last_fit_check = 0.0
         self._expiry = Expiry(lib)
 
     def run(self, stop: threading.Event, until: Callable[[Library], bool] | None = None) -> None:
-        """Work until told to stop, or until `until` holds with nothing left to claim."""
+        """Work until `stop` is set, or until there is no job left and `until` returns True."""
         while not stop.is_set():
             try:
                 self._beat_if_due()
@@ -107,11 +111,11 @@ class Worker:
             self._wait(stop)
 
     def close(self) -> None:
-        """Give back what is in hand, and end the processes."""
+        """Put the running jobs back into the queue, and end the processes."""
         for running in self._running:
             running.stop()
         # An import's thread must have stopped before another worker goes on with it.
-        wait(_futures(self._running), timeout=STOP_WITHIN_S)
+        wait(_futures(self._running), timeout=STOP_TIMEOUT_S)
         for running in self._running:
             with suppress(LeaseLost, NotFound, StorageError), self.lib.store.write() as tx:
                 outcomes.give_back(tx, running.claimed)
@@ -119,14 +123,14 @@ class Worker:
         self.executors.close()
 
     @property
-    def held(self) -> tuple[Running, ...]:
-        """The jobs in hand."""
+    def running(self) -> tuple[RunningJob, ...]:
+        """The jobs that this worker has claimed and not settled yet."""
         return tuple(self._running)
 
     def turn(self) -> bool:
-        """Settle what is finished and claim what there is room for; whether there was any work.
+        """Settle finished jobs and claim new ones while there is room. False if there were none.
 
-        All in one transaction, because each transaction waits for the disk.
+        All of this is one transaction, because each transaction waits for the disk.
         """
         finished = [running for running in self._running if running.future.done()]
         if not finished and not self._is_work_waiting():
@@ -141,15 +145,15 @@ class Worker:
             self._begin(each, clip_of.get(each.clip_id or ""))
         return bool(finished or claimed)
 
-    def _settle_all(self, tx: Tx, finished: list[Running]) -> None:
+    def _settle_all(self, tx: Tx, finished: list[RunningJob]) -> None:
         for running in finished:
             with _job_named(running.claimed.job.id):
                 self._settle(tx, running)
         ids = [running.claimed.clip_id for running in finished]
         outcomes.settle_imports(tx, [clip_id for clip_id in ids if clip_id is not None])
 
-    def _settle(self, tx: Tx, running: Running) -> None:
-        """Settle one; what is not ours any more says so before it changes anything."""
+    def _settle(self, tx: Tx, running: RunningJob) -> None:
+        """Settle one job. If another worker has it, the lease fails before any change."""
         try:
             running.settle(tx)
         except LeaseLost:
@@ -179,10 +183,10 @@ class Worker:
                     self._cancel(running)
 
     def _recover_if_due(self) -> None:
-        """Look for jobs of dead workers; a read, unless there are any."""
-        if time.monotonic() - self._last_look < self._look_s:
+        """Put jobs of dead workers back. It writes only if there are any."""
+        if time.monotonic() - self._last_watch < self._watch_s:
             return
-        self._last_look = time.monotonic()
+        self._last_watch = time.monotonic()
         with self.lib.store.read() as tx:
             abandoned = self._watch.look(tx)
         if not abandoned:
@@ -191,49 +195,50 @@ class Worker:
             for job in queue.recover(tx, self._watch, abandoned):
                 _log.warning("the worker of job %s is dead; the job is %s", job.id, job.state)
 
-    def _cancel(self, running: Running) -> None:
+    def _cancel(self, running: RunningJob) -> None:
         self._drop(running)
         with suppress(LeaseLost), self.lib.store.write() as tx:
             outcomes.finish_canceled(tx, running.claimed)
 
-    def _drop(self, running: Running) -> None:
+    def _drop(self, running: RunningJob) -> None:
         running.stop()
         self._running.remove(running)
 
     def _is_work_waiting(self) -> bool:
-        """Whether there is anything to claim; an idle worker only reads."""
+        """Whether there is a job to claim. An idle worker only reads, so others can write."""
         kinds = self._kinds_with_room([running.claimed for running in self._running])
         if not kinds:
             return False
         with self.lib.store.read() as tx:
             return queue.is_work_waiting(tx, kinds)
 
-    def _claim_all(self, tx: Tx, without: list[Running]) -> list[ClaimedJob]:
-        """Claim what there is room for, when these are settled."""
-        held = [running.claimed for running in self._running if running not in without]
+    def _claim_all(self, tx: Tx, without: list[RunningJob]) -> list[ClaimedJob]:
+        """Claim jobs while there is room. The jobs of `without` do not count: they are settled."""
+        running = [each.claimed for each in self._running if each not in without]
         claimed: list[ClaimedJob] = []
-        while kinds := self._kinds_with_room([*held, *claimed]):
-            found = queue.take(tx, kinds, self.owner)
-            if found is None:
+        while kinds := self._kinds_with_room([*running, *claimed]):
+            next_job = queue.take(tx, kinds, self.owner)
+            if next_job is None:
                 break
-            claimed.append(found)
+            claimed.append(next_job)
         return claimed
 
-    def _kinds_with_room(self, held: Iterable[ClaimedJob]) -> list[JobKind]:
-        kinds_held = [claimed.job.kind for claimed in held]
-        busy = kinds_held.count(JobKind.INGEST) + kinds_held.count(JobKind.FIT)
+    def _kinds_with_room(self, running: Iterable[ClaimedJob]) -> list[JobKind]:
+        """The kinds of jobs to claim: one import, one fit, and some analyses ahead."""
+        running_kinds = [claimed.job.kind for claimed in running]
+        busy = running_kinds.count(JobKind.INGEST) + running_kinds.count(JobKind.FIT)
         kinds = []
         if busy < READ_AHEAD * self.executors.slots:
             kinds.append(JobKind.INGEST)
-        if JobKind.IMPORT not in kinds_held:
+        if JobKind.IMPORT not in running_kinds:
             kinds.append(JobKind.IMPORT)
-        if busy < self.executors.slots and JobKind.FIT not in kinds_held:
+        if busy < self.executors.slots and JobKind.FIT not in running_kinds:
             kinds.append(JobKind.FIT)
         return kinds
 
     def _begin(self, claimed: ClaimedJob, clip: ClipRecord | None) -> None:
         if claimed.job.kind is JobKind.FIT and not self._running:
-            self.executors.rest()
+            self.executors.rest()  # a fit needs much memory
         self._running.append(self.executors.begin(claimed, clip))
 
     def _request_fit_if_due(self) -> None:
@@ -247,7 +252,7 @@ class Worker:
                 models.enqueue_fit(tx)
 
     def _wait(self, stop: threading.Event) -> None:
-        """Until something finishes, or it is time to look for work again."""
+        """Wait until a job finishes, or until it is time to look for work again."""
         pause = self.lib.settings.job_poll_s
         if self._running:
             wait(_futures(self._running), timeout=pause, return_when=FIRST_COMPLETED)
@@ -255,13 +260,13 @@ class Worker:
             stop.wait(pause)
 
 
-def _futures(running: Iterable[Running]) -> list[Future[Any]]:
+def _futures(running: Iterable[RunningJob]) -> list[Future[Any]]:
     return [each.future for each in running]
 
 
 @contextmanager
 def _job_named(name: str) -> Iterator[None]:
-    """Logs within carry the job's id."""
+    """Log lines within the block carry the job's id."""
     token = job_id.set(name)
     try:
         yield

@@ -1,7 +1,7 @@
-"""Work in hand: one claimed job each, begun, watched and settled by the worker's loop.
+"""Running jobs, one class for each kind.
 
-Beginning and settling happen in the loop's thread; the work itself in a child process or a
-thread, behind a future, so that the loop is free for heartbeats.
+The worker's loop begins and settles them in its own thread. A child process or another thread does
+the work and sets a future, so that the loop can send heartbeats meanwhile.
 """
 
 from __future__ import annotations
@@ -26,25 +26,25 @@ from app.store.jobs.record import ClaimedJob
 _log = logging.getLogger(__name__)
 
 RETRY_DELAY_S = 5.0
-"""Before an import or a fit that the store failed is tried again."""
+"""Time before an import or a fit is tried again after the store failed."""
 
 
-class Running(Protocol):
-    """A job in hand."""
+class RunningJob(Protocol):
+    """A claimed job whose work has begun."""
 
     claimed: ClaimedJob
     future: Future[Any]
 
     def stop(self) -> None:
-        """Have the work end soon, without a result."""
+        """Make the work end soon, without a result."""
         ...
 
     def settle(self, tx: Tx) -> None:
-        """Record what the finished work came to. Raises LeaseLost, StorageError."""
+        """Store the result or the failure of the finished work. Raises LeaseLost, StorageError."""
         ...
 
     def progress(self) -> tuple[float | None, str | None]:
-        """How far it is, 0..1, and in words; None where that is not known."""
+        """The completed share, 0..1, and a text; None where the job cannot know it."""
         ...
 
 
@@ -63,73 +63,76 @@ class RunningIngest:
         self.future.cancel()
 
     def settle(self, tx: Tx) -> None:
-        """Ready, or failed for its own reason; nothing where the clip was deleted meanwhile."""
+        """Make the clip ready or failed; a clip that was deleted meanwhile stays deleted."""
         try:
             try:
-                found = self.pool.outcome(self.future)
+                analysis = self.pool.outcome(self.future)
             except KinedexError as problem:
-                most = self.lib.settings.job_max_attempts
-                ingest.fail(tx, self.claimed, self.clip, problem, most)
+                max_attempts = self.lib.settings.job_max_attempts
+                ingest.fail(tx, self.claimed, self.clip, problem, max_attempts)
             else:
-                ingest.finish(tx, self.claimed, self.clip, found)
+                ingest.finish(tx, self.claimed, self.clip, analysis)
         except ClipNotFound:
-            _log.info("clip %s was deleted while it was analysed", self.clip.id)
+            _log.info("clip %s was deleted while it was analyzed", self.clip.id)
 
     def progress(self) -> tuple[float | None, str | None]:
-        """Not known."""
+        """Nothing, because an analysis is short."""
         return None, None
 
 
 @dataclass(slots=True)
-class RunningThread:
-    """An import, in a thread of this process; it settles itself when all goes well."""
+class RunningImport:
+    """An import, in a thread of this process. The thread itself settles it if it succeeds.
+
+    latest_progress: one item, which the thread replaces: the completed share, and a text.
+    """
 
     claimed: ClaimedJob
     future: Future[None]
     stopping: threading.Event
-    told: list[tuple[float, str]] = field(default_factory=lambda: [(0.0, "")])
+    latest_progress: list[tuple[float, str]] = field(default_factory=lambda: [(0.0, "")])
 
     def stop(self) -> None:
-        """Asks the thread, which looks before each file."""
+        """Sets the event that the thread checks before each file."""
         self.stopping.set()
 
     def settle(self, tx: Tx) -> None:
-        """Records why it could not be done."""
+        """Stores the reason if the import failed."""
         _settle_failure(tx, self.claimed, self.future)
 
     def progress(self) -> tuple[float | None, str | None]:
-        """As the thread last told."""
-        return self.told[0]
+        """The progress that the thread reported last."""
+        return self.latest_progress[0]
 
 
 @dataclass(slots=True)
 class RunningFit:
-    """A fit of all models, in a child process; its result is the job's."""
+    """A fit of all models, in a child process; its result becomes the result of the job."""
 
     claimed: ClaimedJob
     future: Future[dict[str, Any]]
 
     def stop(self) -> None:
-        """Kills the child; models that it has saved are whole and stay."""
+        """Kills the child. Models that it has saved are complete and stay."""
         self.future.cancel()
 
     def settle(self, tx: Tx) -> None:
-        """Records the result, or why there is none."""
+        """Stores the result or the failure."""
         if not _settle_failure(tx, self.claimed, self.future):
             leases.succeed(tx, self.claimed.lease, self.future.result())
 
     def progress(self) -> tuple[float | None, str | None]:
-        """Not known."""
+        """A text only: a fit does not report how far it is."""
         return None, "fitting the models"
 
 
 def _settle_failure(tx: Tx, claimed: ClaimedJob, future: Future[Any]) -> bool:
-    """Record a failure of the work, if it failed; whether it did."""
+    """Store the failure of the work, if it failed; returns whether it failed."""
     failure = future.exception()
     if failure is None:
         return False
     if isinstance(failure, Canceled):
-        return True  # whoever stopped it settles it
+        return True  # the code that stopped the work settles the job
     problem = _as_problem(claimed, failure)
     if isinstance(problem, AnalysisInterrupted):
         outcomes.retry_after_kill(tx, claimed, problem.as_problem())
@@ -146,9 +149,9 @@ def _as_problem(claimed: ClaimedJob, failure: BaseException) -> KinedexError:
     if isinstance(failure, ChildEnded):
         return failure.as_failure()
     _log.error("job %s failed unexpectedly", claimed.job.id, exc_info=failure)
-    return KinedexError(_told(failure))
+    return KinedexError(_unexpected_message(failure))
 
 
-def _told(failure: BaseException) -> str:
-    """Its kind only: a text may quote what a file or a key says; the log has it."""
+def _unexpected_message(failure: BaseException) -> str:
+    # The message of the exception may quote a file or an API key, so only the log has it.
     return f"The work failed unexpectedly ({type(failure).__name__}); see the log."

@@ -1,9 +1,9 @@
-"""Keeps the processes of one machine running: the API and, unless elsewhere, a worker.
+"""Keeps the processes of one machine running: the API and, unless it runs elsewhere, a worker.
 
-A process that dies is started again, later each time it dies young. One that says that it
-cannot start (a taken port, an old database: exit code CANNOT_START) ends the whole. SIGTERM and
-SIGINT are passed on as SIGTERM, and the processes get time to finish; should the supervisor
-itself be killed, the kernel tells them.
+A process that dies is started again. If it dies soon after its start, the delay before the next
+start grows. If a process cannot start (exit code CANNOT_START: its port is in use, the database is
+old), all processes end. The supervisor forwards SIGTERM and SIGINT as SIGTERM, and the processes
+get time to finish. If the supervisor itself is killed, the kernel sends them SIGTERM.
 """
 
 from __future__ import annotations
@@ -28,21 +28,29 @@ _log = logging.getLogger(__name__)
 
 API = ("-P", "-m", "app.api.server")
 WORKER = ("-P", "-m", "app.worker")
-"""What Python runs for each; modules, so that this layer need not import the API."""
+"""Arguments of Python for each process. They name modules, because this layer cannot import the
+API."""
 
 POLL_S = 0.2
+"""Time between two looks at the processes."""
 STEADY_S = 10.0
-"""A process that ran so long has started well; its next death is its first again."""
-FIRST_DELAY_S, LONGEST_DELAY_S = 0.5, 30.0
-"""Before a process that died is started again: doubled each time it dies young."""
+"""A process that has run this long has started well: after its next death the delay is
+FIRST_DELAY_S again."""
+FIRST_DELAY_S, MAX_DELAY_S = 0.5, 30.0
+"""Delay before a dead process is started again; it doubles with each early death."""
 GRACE_S = 15.0
-"""To finish after SIGTERM, before SIGKILL."""
+"""Time to finish after SIGTERM, before SIGKILL."""
 _PR_SET_PDEATHSIG = 1
+"""Option of prctl(2): the signal that a process gets when its parent dies."""
 
 
 @dataclass(slots=True)
-class Kept:
-    """A process that is to run: its name and Python's arguments, and how it fares."""
+class SupervisedProcess:
+    """A process that the supervisor keeps running.
+
+    arguments: of Python; started, next_start: seconds of the monotonic clock; delay: seconds
+    before the next start after a death; has_been_steady: whether it ever ran for STEADY_S.
+    """
 
     name: str
     arguments: Sequence[str]
@@ -56,53 +64,61 @@ class Kept:
 def supervise(settings: Settings, with_worker: bool = True) -> int:
     """Run the API, and a worker, until SIGTERM or SIGINT; returns the exit code.
 
-    Call it from the main thread. 0 after a signal; else the code of a process that could not
-    start.
+    Call it from the main thread. The exit code is 0 after a signal, otherwise the code of a
+    process that could not start.
     """
-    kept = [Kept("api", API)]
+    processes = [SupervisedProcess("api", API)]
     if with_worker:
-        kept.append(Kept("worker", WORKER))
+        processes.append(SupervisedProcess("worker", WORKER))
     stop = threading.Event()
-    before = {s: signal.signal(s, lambda *_: stop.set()) for s in (signal.SIGTERM, signal.SIGINT)}
+    handlers = {s: signal.signal(s, lambda *_: stop.set()) for s in (signal.SIGTERM, signal.SIGINT)}
     try:
-        return keep_running(kept, environment(settings), stop)
+        return keep_running(processes, environment(settings), stop)
     finally:
-        for sign, handler in before.items():
+        for sign, handler in handlers.items():
             signal.signal(sign, handler)
 
 
-def keep_running(kept: Sequence[Kept], environ: dict[str, str], stop: threading.Event) -> int:
-    """Start each process, and again when it dies, until `stop`; then end them all."""
+def keep_running(
+    processes: Sequence[SupervisedProcess], environ: dict[str, str], stop: threading.Event
+) -> int:
+    """Start each process, and start it again when it dies, until `stop` is set; then end all.
+
+    Returns 0, or the exit code of a process that could not start.
+    """
     try:
         while not stop.is_set():
-            for one in kept:
-                code = _look_after(one, environ)
+            for process in processes:
+                code = _look_after(process, environ)
                 if code is not None:
                     return code
             stop.wait(POLL_S)
         return 0
     finally:
-        _end(kept)
+        _end(processes)
 
 
 def environment(settings: Settings) -> dict[str, str]:
-    """This process's environment with every setting in force, for processes to come."""
+    """The environment of this process with all settings as variables, for its child processes."""
     environ = dict(os.environ)
     for name in type(settings).model_fields:
         value = getattr(settings, name)
         if value is not None:
-            environ[ENV_PREFIX + name.upper()] = _written(value)
+            environ[ENV_PREFIX + name.upper()] = _as_variable(value)
     return environ
 
 
-def _written(value: object) -> str:
+def _as_variable(value: object) -> str:
     if isinstance(value, SecretStr):
         return value.get_secret_value()
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _look_after(one: Kept, environ: dict[str, str]) -> int | None:
-    """Start what is to run and does not; its exit code where it cannot start."""
+def _look_after(one: SupervisedProcess, environ: dict[str, str]) -> int | None:
+    """Start the process if it does not run and its delay is over.
+
+    Returns its exit code if it cannot start, None otherwise.
+    """
     now = time.monotonic()
     if one.process is None:
         if now >= one.next_start:
@@ -119,12 +135,12 @@ def _look_after(one: Kept, environ: dict[str, str]) -> int | None:
         return code
     _log.warning("%s died (exit code %d); again in %.1f s", one.name, code, one.delay)
     one.next_start = now + one.delay
-    one.delay = min(2 * one.delay, LONGEST_DELAY_S)
+    one.delay = min(2 * one.delay, MAX_DELAY_S)
     return None
 
 
-def _start(one: Kept, environ: dict[str, str]) -> None:
-    # A session of its own: a terminal's Ctrl-C reaches us alone, and we pass it on once.
+def _start(one: SupervisedProcess, environ: dict[str, str]) -> None:
+    # In its own session: a terminal's Ctrl-C reaches the supervisor only, which forwards it once.
     one.process = subprocess.Popen(  # noqa: S603 - our own interpreter and modules
         [sys.executable, *one.arguments],
         env=environ,
@@ -135,14 +151,17 @@ def _start(one: Kept, environ: dict[str, str]) -> None:
 
 
 def _die_with_supervisor() -> None:
-    """In the child: SIGTERM when the supervisor dies (Linux; elsewhere nothing)."""
+    """Runs in the child: makes the kernel send it SIGTERM when the supervisor dies.
+
+    Only Linux has this; on other systems nothing happens.
+    """
     prctl = getattr(ctypes.CDLL(None), "prctl", None)
     if prctl is not None:
         prctl(_PR_SET_PDEATHSIG, int(signal.SIGTERM), 0, 0, 0)
 
 
-def _end(kept: Sequence[Kept]) -> None:
-    alive = [one.process for one in kept if one.process is not None]
+def _end(processes: Sequence[SupervisedProcess]) -> None:
+    alive = [one.process for one in processes if one.process is not None]
     for process in alive:
         process.terminate()
     deadline = time.monotonic() + GRACE_S

@@ -1,4 +1,4 @@
-"""Clips keep the name of the FBX animation stack that a client picked."""
+"""Adds to clips the name of the FBX animation stack that a client has chosen."""
 
 from __future__ import annotations
 

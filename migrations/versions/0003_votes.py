@@ -1,4 +1,4 @@
-"""Pairs of low-dimensional motions that people compare, and their votes."""
+"""Adds pairs of low-dimensional motions that people compare, and their votes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Keyposes that people name: what thresholds are learned from and keyposes are judged by."""
+"""Adds keyposes that people annotate. Thresholds are learned from them and evaluated on them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Clips keep a recording, when it begins, and what a client says of their beats."""
+"""Adds to clips an audio recording, the time at which it begins, and a client's beats."""
 
 from __future__ import annotations
 

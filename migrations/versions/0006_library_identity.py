@@ -1,4 +1,4 @@
-"""The library gets an id, which its folder of files holds too; removals of files are recorded."""
+"""Adds the id of the library, which its folder of files holds too, and removals of files."""
 
 from __future__ import annotations
 

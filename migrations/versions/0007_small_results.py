@@ -1,4 +1,4 @@
-"""Results of imports hold counts only; ended jobs are found by when they ended."""
+"""Removes the list of files from the results of imports; adds an index of the end of jobs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MAX_PATH = 500
 _ENTRIES = sa.table("import_entries", sa.column("job_id", sa.String), sa.column("path", sa.String))
 
 
-# Done by the database: a result may be larger than what Python should hold as objects.
+# The database does this, because a result may be too large for Python objects.
 _SQLITE = """
 UPDATE jobs SET result = json_set(json_remove(result, '$.files'), '$.absent', 0)
 WHERE kind = 'import' AND result IS NOT NULL
@@ -34,7 +34,7 @@ def upgrade() -> None:
 
 
 def _shorten_paths() -> None:
-    """Paths are as long as a page's cursor can hold; before, an archive could have longer ones."""
+    """Shortens paths that do not fit into the cursor of a page. Earlier versions allowed them."""
     connection = op.get_bind()
     long = sa.select(_ENTRIES).where(sa.func.length(_ENTRIES.c.path) > MAX_PATH)
     for number, (job_id, path) in enumerate(connection.execute(long).all()):

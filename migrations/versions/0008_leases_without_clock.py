@@ -1,7 +1,7 @@
-"""Leases are counted in heartbeats, deaths by whose they were; ready clips stay ready.
+"""Replaces the end time of leases by counters of heartbeats and of failures by their cause.
 
-A ready clip that is analysed again says so in `reanalysis`; `is_changed` says that a client
-changed what its analysis depends on.
+It also adds the state of another analysis of a ready clip (`reanalysis`), and whether a client
+changed the input of the analysis (`is_changed`).
 """
 
 import sqlalchemy as sa

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import zipfile
-
 import httpx2
 
 from app.demo import demo_clips
@@ -12,26 +9,19 @@ from tests.api.conftest import assert_problem
 from tests.formats.npz.files import npy
 from tests.live import Live
 from tests.people import CONVENTIONS, person
-
-
-def _zip(files: dict[str, bytes]) -> bytes:
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in files.items():
-            archive.writestr(name, content)
-    return packed.getvalue()
+from tests.zip_archives import zip_archive
 
 
 def test_an_archive_with_a_manifest(demo_service: Live) -> None:
     clip = next(demo_clips(["farid"], ["bow"], takes=1))
     manifest = "path,person,task,words,license\nin/bow.bvh,farid,bow,bow polite,CC0-1.0\n"
-    content = _zip(
+    content = zip_archive(
         {
             "manifest.csv": manifest.encode(),
             "in/bow.bvh": clip.content,
             "in/broken.bvh": b"HIERARCHY\nROOT Hips\n{\n",
         }
-    )
+    ).getvalue()
     with demo_service.client() as client:
         answer = client.post("/v1/imports", files={"archive": ("a.zip", content)})
         assert answer.status_code == 202
@@ -49,7 +39,7 @@ def test_an_archive_with_a_manifest(demo_service: Live) -> None:
 
 def test_a_manifest_bomb_fails_at_once_and_lists_of_jobs_stay_small(demo_service: Live) -> None:
     rows = "".join(f"missing/clip_{i:06d}.bvh,ada,walk\n" for i in range(200_000))
-    content = _zip({"manifest.csv": f"path,person,task\n{rows}".encode()})
+    content = zip_archive({"manifest.csv": f"path,person,task\n{rows}".encode()}).getvalue()
     with demo_service.client() as client:
         bombs = [client.post("/v1/imports", files={"archive": ("a.zip", content)}) for _ in "123"]
         for bomb in bombs:
@@ -65,7 +55,9 @@ def test_the_files_of_a_large_import_are_paged(demo_service: Live) -> None:
     rows = "".join(f"gone_{i:06d}.bvh\n" for i in range(300))
     files = dict.fromkeys(names, b"") | {"manifest.csv": f"path\n{rows}".encode()}
     with demo_service.client() as client:
-        answer = client.post("/v1/imports", files={"archive": ("a.zip", _zip(files))})
+        answer = client.post(
+            "/v1/imports", files={"archive": ("a.zip", zip_archive(files).getvalue())}
+        )
         job = demo_service.wait_for_job(answer.json()["job"]["id"])
         counts = {k: v for k, v in job["result"].items() if k != "files"}
         assert counts == {
@@ -94,7 +86,7 @@ def test_the_files_of_a_large_import_are_paged(demo_service: Live) -> None:
 
 def test_a_zip_of_npy_clips_is_an_archive_and_not_a_clip(demo_service: Live) -> None:
     array = npy(person(CONVENTIONS["Kinect"], frames=20).positions)
-    content = _zip({"walk_01.npy": array, "walk_02.npy": array[:200]})
+    content = zip_archive({"walk_01.npy": array, "walk_02.npy": array[:200]}).getvalue()
     with demo_service.client() as client:
         answer = client.post("/v1/imports", files={"archive": ("a.zip", content)})
         assert answer.status_code == 202
@@ -119,7 +111,7 @@ def test_a_file_that_is_no_archive_is_refused(idle: httpx2.Client) -> None:
 
 
 def test_an_archive_that_is_cut_off_fails_with_a_reason(demo_service: Live) -> None:
-    content = _zip({"a.bvh": b"HIERARCHY"})[:-30]
+    content = zip_archive({"a.bvh": b"HIERARCHY"}).getvalue()[:-30]
     with demo_service.client() as client:
         answer = client.post("/v1/imports", files={"archive": ("a.zip", content)})
     assert answer.status_code == 202

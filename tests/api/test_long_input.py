@@ -9,7 +9,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.errors import MAX_DETAIL, MOST_KEPT_PLACES, KinedexError, Place
+from app.errors import MAX_DETAIL, MAX_STORED_PLACES, KinedexError, Place
 from tests.api.conftest import assert_problem
 from tests.live import Live
 
@@ -111,7 +111,7 @@ def test_a_failure_with_a_long_quote_is_shortened() -> None:
     places = [Place(LONG, LONG) for _ in range(1000)]
     problem = KinedexError(LONG, places=places).as_problem()
     assert len(problem["detail"]) == MAX_DETAIL
-    assert len(problem["errors"]) == MOST_KEPT_PLACES
+    assert len(problem["errors"]) == MAX_STORED_PLACES
     assert len(json.dumps(problem)) < 50_000
 
 

@@ -4,7 +4,7 @@ Run: pytest -m bench -s tests/bench/test_beats.py
 
 Generated pieces and dances of `app.demo.dances` with new seeds: weights and thresholds were fitted
 on seeds below 10,000 (pieces: below 40,000). Half of the pieces change their tempo. The weights for
-recordings were fitted on other pieces of the same styles. The styles of `tests.unheard_music` were
+recordings were fitted on other pieces of the same styles. The styles of `tests.held_out_music` were
 used for no fit, and their figures are printed separately.
 """
 
@@ -31,8 +31,8 @@ from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import body_track
 from tests.bench.page import Section
+from tests.held_out_music import HELD_OUT_STYLES
 from tests.recordings import CLICKS, WITHOUT_BEAT, f_score, piece, without_beat
-from tests.unheard_music import UNHEARD
 
 FIGURES = Section(
     "beats",
@@ -53,7 +53,7 @@ PIECES, DANCES, OFFSETS = 90_000, 91_000, 92_000
 @lru_cache
 def pieces(kind: str) -> tuple[tuple[int, np.ndarray, np.ndarray], ...]:
     """(tempo, samples, beats): two of each tempo. The tempo of the second one drifts by 5 %."""
-    first = PIECES + 100 * [CLICKS, *STYLES, *UNHEARD].index(kind)
+    first = PIECES + 100 * [CLICKS, *STYLES, *HELD_OUT_STYLES].index(kind)
     return tuple(
         (bpm, *piece(first + 2 * i + half, kind, bpm, drift=0.05 * half))
         for i, bpm in enumerate(TEMPI)
@@ -71,7 +71,9 @@ def test_beats_of_recordings() -> None:
 
 def test_beats_of_styles_never_heard() -> None:
     """These styles were used for no fit, and they have no target."""
-    FIGURES.print(f"music never heard {np.mean(list(_mean_scores(tuple(UNHEARD)).values())):.3f}")
+    FIGURES.print(
+        f"music never heard {np.mean(list(_mean_scores(tuple(HELD_OUT_STYLES)).values())):.3f}"
+    )
 
 
 def _mean_scores(kinds: tuple[str, ...]) -> dict[str, float]:
@@ -104,12 +106,14 @@ def _near(ratios: list[float], factors: tuple[float, ...]) -> float:
 def test_the_peer_on_the_same_recordings() -> None:
     librosa = pytest.importorskip("librosa")
     scores = defaultdict(list)
-    for kind in (CLICKS, *STYLES, *UNHEARD):
+    for kind in (CLICKS, *STYLES, *HELD_OUT_STYLES):
         for _, samples, beats in pieces(kind):
             heard = samples.astype(np.float32)
             _, found = librosa.beat.beat_track(y=heard, sr=SAMPLE_RATE, units="time")
             scores[kind].append(f_score(found, beats))
-    known, unheard = (np.mean([np.mean(scores[s]) for s in some]) for some in (STYLES, UNHEARD))
+    known, unheard = (
+        np.mean([np.mean(scores[s]) for s in some]) for some in (STYLES, HELD_OUT_STYLES)
+    )
     clicks = np.mean(scores[CLICKS])
     FIGURES.print(
         f"\nlibrosa's beat_track: clicks {clicks:.3f}, music {known:.3f}, unheard {unheard:.3f}"

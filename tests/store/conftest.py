@@ -1,4 +1,4 @@
-"""A store on the real database: SQLite files, made once and copied for each test."""
+"""A store on a real SQLite database, which is made once and copied for each test."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ LABELS = {field.name for field in dataclasses.fields(ClipLabels)}
 
 
 def new_clip(name: str, **fields: Any) -> NewClip:
-    """A clip that is called `name`; the other labels are keywords, too."""
+    """A clip with this name. Other labels and fields of NewClip are keywords."""
     sha256 = hashlib.sha256(name.encode()).hexdigest()
     labels = {key: fields.pop(key) for key in LABELS & fields.keys()}
     return NewClip(sha256, f"{name}.bvh", 7, ClipLabels(name, **labels), **fields)
@@ -71,7 +71,7 @@ def facts(**changes: Any) -> ClipFacts:
 ON_ONE_STORE = settings(
     max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
-"""For properties whose examples share a test's store."""
+"""Settings of properties whose examples share the store of a test."""
 
 AddClip = Callable[..., ClipRecord]
 AddJob = Callable[..., JobRecord]

@@ -1,4 +1,4 @@
-"""Clips with ingest jobs, taken by workers that may die."""
+"""Clips with ingest jobs, which workers claim and which may lose their worker."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from app.store.clips.record import ClipRecord, ClipState
 from app.store.database.engine import Tx
 from app.store.jobs import queue
 from app.store.jobs import repository as jobs
-from app.store.jobs.abandoned import Watch
+from app.store.jobs.abandoned_jobs import Watch
 from app.store.jobs.record import ClaimedJob, JobKind, JobState, NewJob
 from tests.store.conftest import new_clip
 
@@ -32,7 +32,7 @@ def take(tx: Tx) -> ClaimedJob:
 
 
 def die(tx: Tx) -> None:
-    """The holders of all jobs are dead, and another worker sees it."""
+    """The workers of all claimed jobs die, and another worker recovers the jobs."""
     watch = Watch("watcher", 0.0)
     queue.recover(tx, watch, watch.look(tx))
 

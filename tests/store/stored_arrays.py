@@ -1,4 +1,4 @@
-"""Which arrays the store holds of a clip."""
+"""The arrays that the store has of a clip."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A database and a folder of files that do not belong together are refused, untouched."""
+"""A database and a folder of files that do not belong together are refused and not changed."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ Open = Callable[..., Store]
 
 
 def open_library(folder: Path, database: str = "kinedex.sqlite3") -> Store:
-    """As every start does."""
+    """Opens a library in the way of every start."""
     url, files = sqlite_url(folder / database), folder / "files"
     return Store.open(url, files, identity.prepare(url, files))
 
 
 def add(store: Store, *names: str) -> list[str]:
-    """Clips with a file each, as uploads make them; the names of their files."""
+    """Adds clips with one file each, as uploads do; returns the names of the files."""
     made = []
     for name in names:
         with store.files.stage(io.BytesIO(name.encode())) as staged, store.write() as tx:
@@ -43,7 +43,7 @@ def add(store: Store, *names: str) -> list[str]:
 
 
 def state_of(folder: Path) -> dict[str, bytes]:
-    """Every file below a folder, with what is in it."""
+    """The content of every file below a folder, by path."""
     return {
         str(path.relative_to(folder)): path.read_bytes()
         for path in folder.rglob("*")
@@ -74,7 +74,7 @@ def test_a_new_library_has_one_id_on_both_sides(tmp_path: Path) -> None:
     other.close()
 
 
-def test_a_database_that_was_moved_away_is_missed(folder: Path) -> None:
+def test_a_start_without_its_moved_database_is_refused(folder: Path) -> None:
     moved = folder.parent / "elsewhere"
     moved.mkdir()
     for path in folder.glob("kinedex.sqlite3*"):
@@ -91,8 +91,10 @@ def test_a_database_that_was_moved_away_is_missed(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("leaves_id", [True, False])
-def test_a_new_database_never_gets_the_files_of_another(folder: Path, leaves_id: bool) -> None:
-    """As when the URL is mistyped; also where the folder is of a Kinedex that wrote no id."""
+def test_a_new_database_is_refused_for_a_used_folder_of_files(
+    folder: Path, leaves_id: bool
+) -> None:
+    """A wrong URL, also with a folder from an early Kinedex, which wrote no id."""
     if not leaves_id:
         (folder / "files" / NAME).unlink()
     with pytest.raises(LibraryMismatch):
@@ -105,7 +107,7 @@ def test_a_new_database_never_gets_the_files_of_another(folder: Path, leaves_id:
     assert {n: d for n, d in state_of(folder).items() if "files" in n} == before
 
 
-def test_a_library_that_never_had_a_clip_is_missed_too(tmp_path: Path) -> None:
+def test_an_empty_library_whose_database_was_moved_is_refused_too(tmp_path: Path) -> None:
     open_library(tmp_path).close()
     (tmp_path / "kinedex.sqlite3").unlink()
     with pytest.raises(LibraryMismatch):
@@ -122,17 +124,17 @@ def test_two_libraries_cannot_share_a_folder(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("how", ["gone", "empty"])
 def test_a_database_without_its_files_is_refused(folder: Path, how: str) -> None:
-    """A folder that is not mounted, or a data directory that is mistyped."""
+    """A folder that is not mounted, or a wrong data directory."""
     (folder / "files").rename(folder / "away")
     if how == "empty":
         (folder / "files").mkdir()
-    with pytest.raises(LibraryMismatch, match="names 3 files, of which 0 are in"):
+    with pytest.raises(LibraryMismatch, match=r"names 3 files\. The folder .* holds 0 of them"):
         open_library(folder)
     assert not (folder / "files" / NAME).exists()
 
 
 def test_an_old_library_gets_its_id(folder: Path) -> None:
-    """Upgraded from a schema without ids; with the archive of an import that nobody needs."""
+    """It is upgraded from a schema without ids, and has an archive that no import needs."""
     url = sqlite_url(folder / "kinedex.sqlite3")
     database = Database(url, foreign_keys=False)
     with database.migrate() as tx:
@@ -149,7 +151,7 @@ def test_an_old_library_gets_its_id(folder: Path) -> None:
     store.close()
 
 
-def test_a_start_that_was_cut_off_between_the_ids_goes_on(tmp_path: Path) -> None:
+def test_a_start_finishes_an_earlier_one_that_wrote_only_one_id(tmp_path: Path) -> None:
     url = sqlite_url(tmp_path / "kinedex.sqlite3")
     schema.prepare(url)  # and killed here
     store = open_library(tmp_path)
@@ -157,7 +159,7 @@ def test_a_start_that_was_cut_off_between_the_ids_goes_on(tmp_path: Path) -> Non
     store.close()
 
 
-def test_of_two_that_take_a_folder_at_once_one_wins(tmp_path: Path) -> None:
+def test_only_one_of_two_libraries_gets_a_folder(tmp_path: Path) -> None:
     write_id(tmp_path, "library_one")
     write_id(tmp_path, "library_two")
     assert read_id(tmp_path) == "library_one"
@@ -166,7 +168,7 @@ def test_of_two_that_take_a_folder_at_once_one_wins(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == [NAME]
 
 
-def test_an_operator_may_join_them(folder: Path) -> None:
+def test_an_operator_can_assign_a_folder_to_a_database(folder: Path) -> None:
     url, files = sqlite_url(folder / "other.sqlite3"), folder / "files"
     with pytest.raises(LibraryMismatch, match="no library"):
         identity.adopt(url, files)
@@ -200,7 +202,7 @@ def test_nothing_is_stored_in_a_folder_that_changed_while_it_was_open(folder: Pa
 
 @pytest.mark.parametrize("first", ["database", "files"])
 def test_restoring_in_any_order_loses_nothing(folder: Path, first: str) -> None:
-    """An older database is restored and used before the newer one; or the files come later."""
+    """An older database is restored and used before the newer one, or the files come later."""
     older, newer = folder.parent / "older.sqlite3", folder.parent / "newer.sqlite3"
     shutil.copy(folder / "kinedex.sqlite3", older)
     store = open_library(folder)

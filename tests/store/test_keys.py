@@ -1,4 +1,4 @@
-"""API keys: shown once, checked by hash, revocable."""
+"""API keys are shown once, checked by their hash, and can be revoked."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from app.store.key_role import KeyRole
 from app.store.store import Store
 
 
-def test_a_key_opens_until_it_is_revoked(store: Store) -> None:
+def test_a_key_is_valid_until_it_is_revoked(store: Store) -> None:
     with store.write() as tx:
         assert not keys.is_any_valid(tx)
         created = keys.create(tx, KeyRole.WRITE, "laptop")
@@ -25,7 +25,7 @@ def test_a_key_opens_until_it_is_revoked(store: Store) -> None:
         assert keys.list_keys(tx) == (revoked,)
 
 
-def test_wrong_secrets_open_nothing(store: Store) -> None:
+def test_wrong_secrets_are_not_accepted(store: Store) -> None:
     with store.write() as tx:
         secret = keys.create(tx, KeyRole.READ, "a").secret
         other = keys.create(tx, KeyRole.ADMIN, "b").secret
@@ -48,6 +48,6 @@ def test_an_unknown_key_cannot_be_revoked(store: Store) -> None:
         keys.revoke(tx, "nothing")
 
 
-def test_each_role_allows_what_the_lower_ones_do() -> None:
+def test_each_role_includes_the_rights_of_lower_roles() -> None:
     allowed = [[role.allows(needed) for needed in KeyRole] for role in KeyRole]
     assert allowed == [[True, False, False], [True, True, False], [True, True, True]]

@@ -1,4 +1,4 @@
-"""Fitted models: the newest of a kind is in force, old ones go."""
+"""Fitted models: the newest of a kind is the current one, old ones are removed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_nothing_is_fitted_at_first(store: Store) -> None:
             models.current(tx, "words")
 
 
-def test_the_newest_is_in_force(store: Store) -> None:
+def test_the_newest_model_is_the_current_one(store: Store) -> None:
     with store.write() as tx:
         save(tx, "words", 1.0)
         other = save(tx, "multilinear", 9.0)
@@ -43,7 +43,7 @@ def test_the_newest_is_in_force(store: Store) -> None:
     assert newest.meta["figures"] == {"map": 0.5}
 
 
-def test_old_ones_go_with_their_arrays(store: Store) -> None:
+def test_old_models_are_removed_with_their_arrays(store: Store) -> None:
     with store.write() as tx:
         for value in range(5):
             save(tx, "words", value)
@@ -51,8 +51,12 @@ def test_old_ones_go_with_their_arrays(store: Store) -> None:
     assert count == models.KEPT_VERSIONS
 
 
-def test_what_was_made_of_clips_is_only_read_when_it_is_asked_for(store: Store) -> None:
-    arrays = {"weights": np.ones(2), f"{models.OF_CLIPS}ids": np.ones(9), "clips": np.ones(3)}
+def test_arrays_with_rows_of_clips_are_loaded_only_by_name(store: Store) -> None:
+    arrays = {
+        "weights": np.ones(2),
+        f"{models.CLIP_ARRAY_PREFIX}ids": np.ones(9),
+        "clips": np.ones(3),
+    }
     with store.write() as tx:
         saved = models.save(tx, "words", meta={}, arrays=arrays, library_version=1, library_size=1)
     with store.read() as tx:
@@ -61,7 +65,7 @@ def test_what_was_made_of_clips_is_only_read_when_it_is_asked_for(store: Store) 
     assert asked.keys() == {"clips.ids"}
 
 
-def test_settings_are_told_with_the_model_in_force(store: Store) -> None:
+def test_settings_come_with_the_current_model(store: Store) -> None:
     with store.write() as tx:
         saved = save(tx, "words", 1.0)
         changed = models.set_settings(tx, saved.id, {"rate": 0.1})

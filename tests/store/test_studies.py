@@ -1,4 +1,4 @@
-"""Pairs and votes in the database: each voter once a sequence, counts by side and choice."""
+"""Pairs and votes: a voter votes once on a sequence, and votes are counted by side and choice."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_votes_are_counted_by_side_and_choice(store: Store, pair: PairRecord) ->
     ]  # fmt: skip
 
 
-def test_a_voter_votes_once_on_a_sequence_in_whatever_pair(store: Store, pair: PairRecord) -> None:
+def test_a_voter_votes_once_on_all_pairs_of_a_sequence(store: Store, pair: PairRecord) -> None:
     _vote(store, pair, Choice.LEFT, "v1")
     for again in (pair, _another(store, pair)):
         with pytest.raises(AlreadyVoted):
@@ -77,7 +77,7 @@ def test_a_voter_votes_once_on_a_sequence_in_whatever_pair(store: Store, pair: P
         assert sum(count.votes for count in studies.count_votes(tx)) == 3
 
 
-def test_votes_go_with_their_pair_and_pairs_with_their_clip(store: Store, pair: PairRecord) -> None:
+def test_deleting_a_clip_deletes_its_pairs_and_their_votes(store: Store, pair: PairRecord) -> None:
     other = _another(store, pair)
     for one in (pair, other):
         _vote(store, one, Choice.LEFT)
@@ -92,7 +92,7 @@ def test_votes_go_with_their_pair_and_pairs_with_their_clip(store: Store, pair: 
         assert studies.list_pairs(tx).items == ()
 
 
-def test_what_is_not_there_is_not_found(store: Store) -> None:
+def test_an_unknown_pair_is_not_found(store: Store) -> None:
     with store.write() as tx:
         with pytest.raises(NotFound, match="pair_none"):
             studies.get_pair(tx, "pair_none")

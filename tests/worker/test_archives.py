@@ -1,9 +1,8 @@
-"""The archive of an import goes when the import needs it no more, whichever process ends it."""
+"""The archive of an import is removed when no import needs it, by any process."""
 
 from __future__ import annotations
 
 import io
-import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -20,6 +19,7 @@ from app.store.jobs.record import JobState
 from app.worker.sweeps import Sweeps
 from tests.libraries import settings_for, upload, work
 from tests.live import wait_until
+from tests.zip_archives import zip_archive
 
 
 @pytest.fixture
@@ -34,25 +34,20 @@ def some_demo_clips() -> list[DemoClip]:
     return list(demo_clips(("ada",), ("walk", "wave"), takes=1))
 
 
-def archive_of(*demo: DemoClip) -> io.BytesIO:
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w") as archive:
-        for clip in demo:
-            archive.writestr(clip.path, clip.content)
-        archive.writestr("manifest.csv", f"path,person\n{demo[0].path},Zebulon Quatermain\n")
-    made.seek(0)
-    return made
+def _archive(*demo: DemoClip) -> io.BytesIO:
+    manifest = f"path,person\n{demo[0].path},Zebulon Quatermain\n".encode()
+    return zip_archive({clip.path: clip.content for clip in demo} | {"manifest.csv": manifest})
 
 
 def stored(lib: Library) -> set[str]:
     return set(lib.store.files)
 
 
-def test_an_archive_goes_while_the_worker_runs(
+def test_an_archive_is_removed_while_the_worker_runs(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     demo = some_demo_clips[:2]
-    job = imports.start_import(lib, archive_of(*demo), "demo.zip")
+    job = imports.start_import(lib, _archive(*demo), "demo.zip")
     (archive,) = stored(lib)
     work(lib.settings)
     assert jobs.get_job(lib, job.id).state is JobState.SUCCEEDED
@@ -65,17 +60,17 @@ def test_an_archive_goes_while_the_worker_runs(
     assert list(lib.store.files.quarantine) == []
 
 
-def test_an_archive_goes_when_the_api_cancels_its_import(
+def test_an_archive_is_removed_when_the_api_cancels_its_import(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
-    job = imports.start_import(lib, archive_of(some_demo_clips[0]), "demo.zip")
+    job = imports.start_import(lib, _archive(some_demo_clips[0]), "demo.zip")
     assert len(stored(lib)) == 1
     jobs.cancel_or_remove(lib, job.id)
     assert stored(lib) == set()
 
 
 def test_a_damaged_file_is_not_analyzed(lib: Library, some_demo_clips: list[DemoClip]) -> None:
-    """A number that changed would make another motion, and nobody would know."""
+    """With one changed digit the file is another motion, and no reader can see that."""
     clip = upload(lib, some_demo_clips[0]).clip
     path = lib.store.files.path(clip.sha256)
     content = bytearray(path.read_bytes())
@@ -89,7 +84,7 @@ def test_a_damaged_file_is_not_analyzed(lib: Library, some_demo_clips: list[Demo
 
 
 def test_the_worker_sweeps_again_and_again(lib: Library, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.worker.sweeps.EVERY_S", 0.05)
+    monkeypatch.setattr("app.worker.sweeps.SWEEP_INTERVAL_S", 0.05)
     sweeps = Sweeps(lib.store, 30.0)
     sweeps.begin()
     try:

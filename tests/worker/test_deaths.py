@@ -1,11 +1,8 @@
-"""Deaths that are not the clip's own, and clocks that jump, fail no clip."""
+"""No clip fails because a process is killed from outside, or because a clock jumps."""
 
 from __future__ import annotations
 
-import os
 import signal
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -18,7 +15,7 @@ import psutil
 import pytest
 
 from app.config import Settings
-from app.demo import DemoClip, demo_clips
+from app.demo import DemoClip
 from app.services.clips import catalogue as clips
 from app.services.clips import jobs
 from app.services.library import analysis_pool
@@ -39,6 +36,7 @@ from tests.busy_processes import (
 )
 from tests.libraries import settings_for, upload
 from tests.live import wait_until
+from tests.worker.worker_process import worker_process
 
 NET_S = 120.0
 
@@ -51,39 +49,23 @@ def lib(tmp_path: Path) -> Iterator[Library]:
 
 
 @pytest.fixture(scope="session")
-def kicks() -> list[DemoClip]:
-    return list(demo_clips(tasks=("kick",), takes=2))
-
-
-@pytest.fixture(scope="session")
 def long_clip(kicks: list[DemoClip]) -> DemoClip:
-    """A clip whose analysis takes seconds, for tests that see its end."""
+    """A clip whose analysis takes seconds, for tests that wait for its end."""
     return replace(kicks[0], path="long.bvh", content=repeated(kicks[0], LONG))
 
 
 @pytest.fixture(scope="session")
 def endless_clip(kicks: list[DemoClip]) -> DemoClip:
-    """A clip whose analysis no test waits for: it is killed before it ends, on any machine."""
+    """A clip whose analysis is always killed before its end, even on a fast machine."""
     return replace(kicks[0], path="endless.bvh", content=repeated(kicks[0], ENDLESS))
 
 
 @contextmanager
 def _worker(settings: Settings) -> Iterator[psutil.Process]:
-    """A worker process; it must live to the end."""
-    environ = os.environ | {
-        "KINEDEX_DATA_DIR": str(settings.data_dir),
-        "KINEDEX_JOB_LEASE_S": str(settings.job_lease_s),
-        "KINEDEX_JOB_HEARTBEAT_S": str(settings.job_heartbeat_s),
-        "KINEDEX_ANALYSIS_PROCESSES": str(settings.analysis_processes),
-        "KINEDEX_LOG_LEVEL": "error",
-    }
-    process = subprocess.Popen([sys.executable, "-m", "app.worker"], env=environ)
-    try:
+    """A worker process, which must live to the end of the block."""
+    with worker_process(settings) as process:
         yield psutil.Process(process.pid)
         assert process.poll() is None
-    finally:
-        process.kill()
-        process.wait()
 
 
 @contextmanager
@@ -130,10 +112,10 @@ def test_more_kills_of_its_child_than_attempts_fail_no_clip(
     assert jobs.get_job(lib, created.job.id).state is JobState.SUCCEEDED
 
 
-def test_after_many_kills_a_clip_is_tried_alone_and_then_given_up(
+def test_after_many_kills_a_clip_is_tried_alone_and_then_fails(
     lib: Library, endless_clip: DemoClip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(outcomes, "MOST_KILLS", 1)
+    monkeypatch.setattr(outcomes, "MAX_KILLS", 1)
     alone: list[bool] = []
     submit = analysis_pool.AnalysisPool.submit
 
@@ -173,14 +155,14 @@ def test_a_child_that_dies_by_its_own_work_counts(
     )
 
 
-def test_killing_the_server_of_a_workers_children_ends_nothing(
+def test_killing_the_fork_server_of_a_worker_fails_no_clip(
     lib: Library, kicks: list[DemoClip]
 ) -> None:
     for clip in kicks:
         upload(lib, clip)
     with _worker(lib.settings) as worker:
         for _ in range(2):
-            # As soon as there is one: within the first seconds of the worker.
+            # The server starts within the first seconds of the worker.
             server = wait_until(lambda: server_of(worker), NET_S)
             children = children_of(worker)
             for process in (server, *children):
@@ -221,7 +203,7 @@ def test_a_clock_that_jumps_while_clips_are_analyzed_fails_none(
 
 
 def _move_clock(monkeypatch: pytest.MonkeyPatch, jump: timedelta) -> None:
-    """In this process, wherever durations were once measured by it."""
+    """Moves the system time in this process, in all modules that ever measured durations by it."""
     real, now = time.time, ids.utc_now
     monkeypatch.setattr(time, "time", lambda: real() + jump.total_seconds())
     for module in (leases, outcomes):
@@ -229,7 +211,7 @@ def _move_clock(monkeypatch: pytest.MonkeyPatch, jump: timedelta) -> None:
 
 
 @pytest.mark.parametrize("is_canceled", [False, True])
-def test_what_a_worker_held_whose_clock_was_ahead_is_free_within_a_lease(
+def test_the_job_of_a_dead_worker_with_a_fast_clock_is_free_within_a_lease(
     lib: Library, kicks: list[DemoClip], monkeypatch: pytest.MonkeyPatch, is_canceled: bool
 ) -> None:
     created = upload(lib, kicks[0])
@@ -237,14 +219,14 @@ def test_what_a_worker_held_whose_clock_was_ahead_is_free_within_a_lease(
     job_id = created.job.id
     with monkeypatch.context() as ahead:
         _move_clock(ahead, timedelta(hours=1))
-        # Its name tells nothing, as that of a worker on another machine.
+        # With such a name nobody can see that its process is dead, as on another machine.
         ahead.setattr("app.store.jobs.owners.new_owner", lambda prefix: f"{prefix}@elsewhere")
-        held = Worker(lib)
-        held.turn()
-        held.executors.close()  # dead, as far as the store knows
+        dead = Worker(lib)
+        dead.turn()
+        dead.executors.close()  # for the store this worker is dead
     if is_canceled:
         jobs.cancel_or_remove(lib, job_id)
     with _worker(lib.settings):
         wait_until(lambda: not jobs.get_job(lib, job_id).is_open, NET_S)
-    wanted = JobState.CANCELED if is_canceled else JobState.SUCCEEDED
-    assert jobs.get_job(lib, job_id).state is wanted
+    expected = JobState.CANCELED if is_canceled else JobState.SUCCEEDED
+    assert jobs.get_job(lib, job_id).state is expected

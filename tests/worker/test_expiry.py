@@ -1,4 +1,4 @@
-"""A worker removes jobs that ended long ago, and logs it; the settings say how long ago."""
+"""A worker removes jobs that ended longer ago than the settings say, and logs their number."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from app.store.database.ids import utc_now
 from app.store.database.tables import jobs as table
 from app.worker.expiry import Expiry
 from tests.libraries import settings_for
-from tests.services.imports.test_large_imports import archive_of
+from tests.zip_archives import zip_archive
 
 
 def _library(folder: Path, **settings: Any) -> tuple[Library, str]:
-    """With a job that ended long ago, as far as the clock knows."""
+    """A library and the id of a job whose stored end is long ago."""
     lib = Library.open(settings_for(folder, **settings))
-    job = imports.start_import(lib, archive_of([("a.bvh", b"")]), "a.zip")
+    job = imports.start_import(lib, zip_archive([("a.bvh", b"")]), "a.zip")
     jobs.cancel_or_remove(lib, job.id)
     long_ago = utc_now().replace(year=2020)
     with lib.store.write() as tx:
@@ -42,11 +42,11 @@ def test_old_jobs_are_removed_and_that_is_logged(
     lib.close()
 
 
-def test_a_round_is_not_done_again_at_once(tmp_path: Path) -> None:
+def test_a_second_round_waits_for_its_time(tmp_path: Path) -> None:
     lib, _ = _library(tmp_path / "a")
     expiry = Expiry(lib)
     expiry.remove_if_due()
-    job = imports.start_import(lib, archive_of([("b.bvh", b"")]), "b.zip")
+    job = imports.start_import(lib, zip_archive([("b.bvh", b"")]), "b.zip")
     jobs.cancel_or_remove(lib, job.id)
     with lib.store.write() as tx:
         tx.execute(update(table).values(finished_at=utc_now().replace(year=2020)))
@@ -55,14 +55,14 @@ def test_a_round_is_not_done_again_at_once(tmp_path: Path) -> None:
     lib.close()
 
 
-def test_no_job_is_removed_where_the_settings_keep_them(tmp_path: Path) -> None:
+def test_no_job_is_removed_if_the_settings_keep_all(tmp_path: Path) -> None:
     lib, job_id = _library(tmp_path, job_retention_days=0)
     Expiry(lib).remove_if_due()
     assert [one.id for one in jobs.list_jobs(lib).items] == [job_id]
     lib.close()
 
 
-def test_what_was_deleted_leaves_the_log_even_if_somebody_read_meanwhile(tmp_path: Path) -> None:
+def test_deleted_data_leave_the_log_after_the_reader_has_ended(tmp_path: Path) -> None:
     lib, job_id = _library(tmp_path)
     log = lib.settings.data_dir / "kinedex.sqlite3-wal"
     with lib.store.read() as tx:

@@ -1,25 +1,18 @@
-"""Workers that are killed, stopped, raced and cancelled: every clip still ends once."""
+"""Every clip ends exactly once, even if workers are killed, stopped, too slow or canceled."""
 
 from __future__ import annotations
 
 import io
-import os
 import signal
-import subprocess
-import sys
 import threading
-import time
-import zipfile
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import wait
-from contextlib import contextmanager
 from pathlib import Path
 
 import psutil
 import pytest
 
-from app.config import Settings
 from app.demo import DemoClip, demo_clips
 from app.errors import LeaseLost
 from app.services.clips import catalogue as clips
@@ -31,7 +24,11 @@ from app.store.clips.record import ClipRecord, ClipState
 from app.store.jobs.record import JobKind, JobRecord, JobState
 from app.worker.loop import Worker, run_worker
 from tests.libraries import settings_for, upload, work
+from tests.live import wait_until
+from tests.worker.worker_process import worker_process
+from tests.zip_archives import zip_archive
 
+TIMEOUT_S = 60.0
 SHORT_LEASES = {"job_lease_s": 1.0, "job_heartbeat_s": 0.2}
 
 
@@ -42,37 +39,10 @@ def lib(tmp_path: Path) -> Iterator[Library]:
     opened.close()
 
 
-@pytest.fixture(scope="session")
-def kicks() -> list[DemoClip]:
-    return list(demo_clips(tasks=("kick",), takes=2))
-
-
 def _archive(demo: list[DemoClip]) -> io.BytesIO:
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w") as archive:
-        for clip in demo:
-            archive.writestr(clip.path, clip.content)
-        archive.writestr("bad.bvh", b"HIERARCHY\nROOT\n")
-        archive.writestr("notes.txt", b"not a motion")
-    made.seek(0)
-    return made
-
-
-@contextmanager
-def _worker_process(settings: Settings) -> Iterator[subprocess.Popen[bytes]]:
-    environ = os.environ | {
-        "KINEDEX_DATA_DIR": str(settings.data_dir),
-        "KINEDEX_JOB_LEASE_S": str(settings.job_lease_s),
-        "KINEDEX_JOB_HEARTBEAT_S": str(settings.job_heartbeat_s),
-        "KINEDEX_ANALYSIS_PROCESSES": str(settings.analysis_processes),
-        "KINEDEX_LOG_LEVEL": "error",
-    }
-    process = subprocess.Popen([sys.executable, "-m", "app.worker"], env=environ)
-    try:
-        yield process
-    finally:
-        process.kill()
-        process.wait()
+    """The clips, a file that cannot be read, and a file that is no motion."""
+    clip_files = {clip.path: clip.content for clip in demo}
+    return zip_archive(clip_files | {"bad.bvh": b"HIERARCHY\nROOT\n", "notes.txt": b"not a motion"})
 
 
 def _all_clips(lib: Library) -> list[ClipRecord]:
@@ -83,19 +53,11 @@ def _ended(lib: Library) -> int:
     return sum(c.state in (ClipState.READY, ClipState.FAILED) for c in _all_clips(lib))
 
 
-def _wait_until(condition: object, seconds: float = 60.0) -> None:
-    deadline = time.monotonic() + seconds
-    while not condition():  # type: ignore[operator]
-        if time.monotonic() > deadline:
-            raise TimeoutError
-        time.sleep(0.02)
-
-
 def _kill_in_the_middle(lib: Library) -> None:
-    """Start a worker, let it end another clip or two, then kill it without warning."""
+    """Start a worker, wait until it has ended at least one more clip, and kill it by SIGKILL."""
     before = _ended(lib)
-    with _worker_process(lib.settings) as process:
-        _wait_until(lambda: _ended(lib) > before or not _is_open(lib))
+    with worker_process(lib.settings) as process:
+        wait_until(lambda: _ended(lib) > before or not _is_open(lib), TIMEOUT_S)
         children = psutil.Process(process.pid).children(recursive=True)
         process.send_signal(signal.SIGKILL)
         process.wait()
@@ -130,7 +92,7 @@ def _work_to_the_end(lib: Library) -> None:
     run_worker(lib.settings, threading.Event(), until=lambda _: not _is_open(lib))
 
 
-def test_every_clip_of_an_import_ends_once_though_its_worker_is_killed(
+def test_every_clip_of_an_import_ends_once_if_its_worker_is_killed(
     lib: Library, kicks: list[DemoClip]
 ) -> None:
     job = imports.start_import(lib, _archive(kicks), "kicks.zip")
@@ -141,7 +103,7 @@ def test_every_clip_of_an_import_ends_once_though_its_worker_is_killed(
 
 
 @pytest.mark.slow
-def test_every_clip_ends_once_though_its_worker_is_killed_ten_times(lib: Library) -> None:
+def test_every_clip_ends_once_if_its_worker_is_killed_ten_times(lib: Library) -> None:
     demo = list(demo_clips(tasks=("kick", "bow", "punch"), takes=3))
     job = imports.start_import(lib, _archive(demo), "many.zip")
     for _ in range(10):
@@ -150,12 +112,12 @@ def test_every_clip_ends_once_though_its_worker_is_killed_ten_times(lib: Library
     _check_that_all_ended_once(lib, demo, job)
 
 
-def test_a_stopped_worker_gives_back_what_it_had(lib: Library, kicks: list[DemoClip]) -> None:
+def test_a_stopped_worker_puts_its_jobs_back(lib: Library, kicks: list[DemoClip]) -> None:
     for clip in kicks[:4]:
         upload(lib, clip)
     worker = Worker(lib)
     assert worker.turn()
-    held = [running.claimed for running in worker.held]
+    held = [running.claimed for running in worker.running]
     worker.close()
     assert held
     states = {jobs.get_job(lib, claimed.job.id).state for claimed in held}
@@ -168,8 +130,8 @@ def test_a_stopped_worker_gives_back_what_it_had(lib: Library, kicks: list[DemoC
 def test_sigterm_ends_a_worker_process_cleanly(lib: Library, kicks: list[DemoClip]) -> None:
     for clip in kicks:
         upload(lib, clip)
-    with _worker_process(lib.settings) as process:
-        _wait_until(lambda: _ended(lib) > 0)
+    with worker_process(lib.settings) as process:
+        wait_until(lambda: _ended(lib) > 0, TIMEOUT_S)
         process.terminate()
         assert process.wait(20) == 0
     open_states = {j.state for j in jobs.list_jobs(lib, limit=100).items if j.is_open}
@@ -200,7 +162,7 @@ def test_a_frame_rate_changed_during_the_analysis_wins(lib: Library, kicks: list
     assert clips.get_clip(lib, clip.id).frame_rate == 21.0
 
 
-def test_a_cancelled_analysis_fails_its_clip_and_says_so(
+def test_a_canceled_analysis_fails_its_clip_with_the_reason(
     lib: Library, kicks: list[DemoClip]
 ) -> None:
     created = upload(lib, kicks[0])
@@ -218,18 +180,18 @@ def test_a_worker_that_lost_its_lease_changes_nothing(lib: Library, kicks: list[
     upload(lib, kicks[0])
     slow = Worker(lib)
     slow.turn()
-    (running,) = slow.held
+    (running,) = slow.running
     running.future.result()
-    _work_to_the_end(lib)  # another worker, to which this one seems dead
+    _work_to_the_end(lib)  # another worker, for which this one seems dead
     with pytest.raises(LeaseLost), lib.store.write() as tx:
         running.settle(tx)
     slow.turn()
-    assert slow.held == ()
+    assert slow.running == ()
     slow.close()
     assert [clip.state for clip in _all_clips(lib)] == [ClipState.READY]
 
 
-def test_a_library_that_has_grown_is_fitted_unasked_and_only_then(
+def test_a_fit_is_due_only_after_the_library_has_changed_enough(
     lib: Library, kicks: list[DemoClip]
 ) -> None:
     for clip in kicks[:10]:
@@ -250,9 +212,9 @@ def test_a_library_that_has_grown_is_fitted_unasked_and_only_then(
         assert not refit.is_fit_due(tx, 0.2)
     clips.delete_clip(lib, some[1].id)
     with lib.store.read() as tx:
-        assert refit.is_fit_due(tx, 0.2)  # a clip that is gone counts too
+        assert refit.is_fit_due(tx, 0.2)  # a deleted clip counts as a change too
 
 
 def _until_settled(worker: Worker) -> None:
-    wait([running.future for running in worker.held])
+    wait([running.future for running in worker.running])
     assert worker.turn()

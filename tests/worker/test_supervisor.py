@@ -1,4 +1,4 @@
-"""The supervisor keeps processes running, gives up on hopeless ones, and takes all down."""
+"""The supervisor keeps processes running, and ends all if one of them cannot start."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ import sqlite3
 import subprocess
 import sys
 import threading
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import psutil
@@ -19,24 +17,19 @@ import pytest
 from app.config import Settings
 from app.services.exposure import CANNOT_START
 from app.worker import supervisor
-from app.worker.supervisor import Kept, environment, keep_running
+from app.worker.supervisor import SupervisedProcess, environment, keep_running
+from tests.live import wait_until
 
+TIMEOUT_S = 20.0
 SLEEPER = "import os, sys, time; open(sys.argv[1], 'a').write(f'{os.getpid()}\\n'); time.sleep(60)"
 
 
-def _kept(log: Path) -> Kept:
-    return Kept("sleeper", ("-c", SLEEPER, str(log)))
+def _kept(log: Path) -> SupervisedProcess:
+    return SupervisedProcess("sleeper", ("-c", SLEEPER, str(log)))
 
 
 def _pids(log: Path) -> list[int]:
     return [int(line) for line in log.read_text().splitlines()] if log.exists() else []
-
-
-def _wait_until(condition: Callable[[], bool], seconds: float = 20.0) -> None:
-    deadline = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < deadline, "waited in vain"
-        time.sleep(0.02)
 
 
 def test_a_process_that_is_killed_is_started_again_and_ended_with_the_rest(
@@ -49,26 +42,26 @@ def test_a_process_that_is_killed_is_started_again_and_ended_with_the_rest(
         target=lambda: codes.append(keep_running(kept, dict(os.environ), stop))
     )
     thread.start()
-    _wait_until(lambda: len(_pids(log)) == 1)
+    wait_until(lambda: len(_pids(log)) == 1, TIMEOUT_S)
     os.kill(_pids(log)[0], signal.SIGKILL)
-    _wait_until(lambda: len(_pids(log)) == 2)
+    wait_until(lambda: len(_pids(log)) == 2, TIMEOUT_S)
     stop.set()
     thread.join(20)
     assert codes == [0]
     assert not any(psutil.pid_exists(pid) for pid in _pids(log))
 
 
-def test_a_process_that_cannot_start_ends_the_whole(tmp_path: Path) -> None:
+def test_a_process_that_cannot_start_ends_all_processes(tmp_path: Path) -> None:
     ending = f"import sys, time; time.sleep(1); sys.exit({CANNOT_START})"
-    hopeless = Kept("hopeless", ("-c", ending))
+    hopeless = SupervisedProcess("hopeless", ("-c", ending))
     log = tmp_path / "pids"
     assert keep_running([_kept(log), hopeless], dict(os.environ), threading.Event()) == CANNOT_START
     assert not any(psutil.pid_exists(pid) for pid in _pids(log))
 
 
 @pytest.mark.parametrize("code", [1, 2, 3, 255])
-def test_one_that_crashes_young_is_started_again(code: int) -> None:
-    one = Kept("crasher", ("-c", f"import sys; sys.exit({code})"))
+def test_a_process_that_crashes_early_is_started_again(code: int) -> None:
+    one = SupervisedProcess("crasher", ("-c", f"import sys; sys.exit({code})"))
     for _ in range(2):
         one.next_start = 0.0
         assert supervisor._look_after(one, dict(os.environ)) is None
@@ -78,8 +71,8 @@ def test_one_that_crashes_young_is_started_again(code: int) -> None:
     assert one.process is None
 
 
-def test_one_that_dies_young_waits_longer_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    one = Kept("dier", ("-c", "import os; os.kill(os.getpid(), 9)"))
+def test_each_early_death_doubles_the_delay(monkeypatch: pytest.MonkeyPatch) -> None:
+    one = SupervisedProcess("dier", ("-c", "import os; os.kill(os.getpid(), 9)"))
     delays = []
     for _ in range(3):
         one.next_start = 0.0
@@ -100,7 +93,7 @@ def _database_of_another_version(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("arguments", [supervisor.API, supervisor.WORKER], ids=["api", "worker"])
-def test_a_database_of_another_version_cannot_be_started_on(
+def test_no_process_starts_on_a_database_of_another_version(
     arguments: tuple[str, ...], tmp_path: Path
 ) -> None:
     _database_of_another_version(tmp_path / "data")
@@ -111,7 +104,7 @@ def test_a_database_of_another_version_cannot_be_started_on(
     assert (ended.returncode, "newer Kinedex" in ended.stderr) == (CANNOT_START, True)
 
 
-def test_a_taken_port_cannot_be_listened_on(tmp_path: Path) -> None:
+def test_a_port_in_use_ends_the_api(tmp_path: Path) -> None:
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
@@ -127,8 +120,8 @@ def test_a_taken_port_cannot_be_listened_on(tmp_path: Path) -> None:
 SUPERVISOR = """
 import os, sys, threading
 from pathlib import Path
-from app.worker.supervisor import Kept, keep_running
-sleeper = Kept("sleeper", ("-c", sys.argv[2], sys.argv[1]))
+from app.worker.supervisor import SupervisedProcess, keep_running
+sleeper = SupervisedProcess("sleeper", ("-c", sys.argv[2], sys.argv[1]))
 keep_running([sleeper], dict(os.environ), threading.Event())
 """
 
@@ -137,9 +130,9 @@ def test_a_killed_supervisor_leaves_nothing_behind(tmp_path: Path) -> None:
     log = tmp_path / "pids"
     command = [sys.executable, "-c", SUPERVISOR, str(log), SLEEPER]
     with subprocess.Popen(command) as process:
-        _wait_until(lambda: len(_pids(log)) == 1)
+        wait_until(lambda: len(_pids(log)) == 1, TIMEOUT_S)
         process.kill()
-    _wait_until(lambda: not _is_running(_pids(log)[0]))
+    wait_until(lambda: not _is_running(_pids(log)[0]), TIMEOUT_S)
 
 
 def _is_running(pid: int) -> bool:
@@ -149,19 +142,19 @@ def _is_running(pid: int) -> bool:
         return False
 
 
-def test_the_settings_in_force_reach_the_processes(tmp_path: Path) -> None:
+def test_all_settings_reach_the_processes(tmp_path: Path) -> None:
     settings = Settings(
         data_dir=tmp_path, port=8123, require_keys=True, database_url="sqlite:///x.sqlite3"
     )
-    told = environment(settings)
-    assert told["KINEDEX_DATA_DIR"] == str(tmp_path)
-    assert told["KINEDEX_PORT"] == "8123"
-    assert told["KINEDEX_REQUIRE_KEYS"] == "true"
-    assert told["KINEDEX_DATABASE_URL"] == "sqlite:///x.sqlite3"
+    variables = environment(settings)
+    assert variables["KINEDEX_DATA_DIR"] == str(tmp_path)
+    assert variables["KINEDEX_PORT"] == "8123"
+    assert variables["KINEDEX_REQUIRE_KEYS"] == "true"
+    assert variables["KINEDEX_DATABASE_URL"] == "sqlite:///x.sqlite3"
 
 
 @pytest.mark.parametrize("arguments", [supervisor.API, supervisor.WORKER], ids=["api", "worker"])
-def test_a_folder_named_app_where_it_is_started_does_not_matter(
+def test_a_folder_named_app_in_the_working_directory_is_ignored(
     arguments: tuple[str, ...], tmp_path: Path
 ) -> None:
     (tmp_path / "app").mkdir()

@@ -10,7 +10,7 @@ from starlette.datastructures import Headers
 from starlette.types import Scope
 
 from app.api.guard.methods import METHODS
-from app.logs import without_keys
+from app.logs import mask_keys
 
 log = logging.getLogger("app.api.access")
 
@@ -47,4 +47,4 @@ def log_request(scope: Scope, status: int, seconds: float) -> None:
 
 def _shown(path: str) -> str:
     # The log outlives DELETE /v1/persons/{name}, so it must not hold the name.
-    return without_keys(_PERSON.sub(r"\1{name}", path))[:MAX_PATH_LENGTH]
+    return mask_keys(_PERSON.sub(r"\1{name}", path))[:MAX_PATH_LENGTH]

@@ -115,7 +115,7 @@ class VectorIndex:
         """Load what changed up to version `now`; searches see all changes together, at the end."""
         since = self.version
         if self._loaded:
-            self._forget(library.buried_since(tx, since))
+            self._forget(library.deleted_since(tx, since))
         else:
             self._rows = Rows(self._layout)  # a load that failed half-way may have left some
         for batch in self._changed(tx, since):

@@ -18,7 +18,7 @@ from app.services.library.library import Library
 from app.store.clips import listing as clip_listing
 from app.store.clips import repository as stored
 from app.store.clips.filter import ClipFilter
-from app.store.clips.record import Added, AttachedAudio, ClipChanges, ClipRecord, NewClip
+from app.store.clips.record import AddResult, AttachedAudio, ClipChanges, ClipRecord, NewClip
 from app.store.database.engine import Tx
 from app.store.database.paging import Page
 from app.store.files.files import Readable, StagedFile
@@ -117,7 +117,7 @@ def add(tx: Tx, new: NewClip, priority: int = UPLOAD_PRIORITY) -> Created:
 
     A recording that it replaces is removed once that is committed.
     """
-    added: Added = stored.add_or_get(tx, new)
+    added: AddResult = stored.add_or_get(tx, new)
     if not added.needs_analysis:
         return Created(added.clip, None, is_new=False)
     job = enqueue_ingest(tx, added.clip.id, priority)

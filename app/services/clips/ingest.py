@@ -99,7 +99,7 @@ def fail(
         outcomes.retry_after_kill(tx, claimed, _never_left_alone(problem).as_problem())
     elif isinstance(problem, ChildDied | StorageError):
         outcomes.retry_or_fail(
-            tx, claimed, problem.as_problem(), delay_s=RETRY_DELAY_S, most=max_failures
+            tx, claimed, problem.as_problem(), delay_s=RETRY_DELAY_S, max_failures=max_failures
         )
     else:
         outcomes.fail_job(tx, claimed, problem.as_problem(), is_verdict=_is_verdict(problem))
@@ -108,7 +108,7 @@ def fail(
 def _never_left_alone(problem: KinedexError) -> KinedexError:
     """What a clip ends with whose analysis was killed from outside every time."""
     return AnalysisCrashed(
-        f"{problem.detail} This happened {outcomes.MOST_KILLS + 1} times, the last time while no"
+        f"{problem.detail} This happened {outcomes.MAX_KILLS + 1} times, the last time while no"
         " other file was analyzed here. Find out what stops the process (often a limit on"
         " memory), then send the file again or run `kinedex reanalyze --failed`."
     )

@@ -11,8 +11,7 @@ from app.services.library.library import Library
 from app.store.database.engine import Tx
 from app.store.database.ids import utc_now
 from app.store.database.paging import Page
-from app.store.jobs import ended as ended_jobs
-from app.store.jobs import import_files, outcomes
+from app.store.jobs import ended_jobs, import_files, outcomes
 from app.store.jobs import repository as stored
 from app.store.jobs.import_files import FileOutcome, ImportedFile
 from app.store.jobs.record import JobKind, JobRecord, JobState

@@ -48,12 +48,12 @@ def page(lib: Library, kind: LabelKind, limit: int, cursor: str | None = None) -
 
 
 def _counted(
-    lib: Library, count: Callable[[Tx, str], tuple[stored.Count, ...]]
+    lib: Library, count: Callable[[Tx, str], tuple[stored.CountBySource, ...]]
 ) -> list[LabelCount]:
     with lib.store.read() as tx:
         found = count(tx, SYNTHESIZED)
     return list(map(_label_count, found))
 
 
-def _label_count(one: stored.Count) -> LabelCount:
+def _label_count(one: stored.CountBySource) -> LabelCount:
     return LabelCount(one.name, one.others, one.of_source)

@@ -128,7 +128,9 @@ class _Turn:
 def _give_turn(doing: Registering) -> None:
     detail = f"{doing.done} of {doing.total} files; others go first"
     with doing.lib.store.write() as tx:
-        stored.give_turn(tx, doing.lease, doing.done / doing.total, detail, LOWEST_PRIORITY)
+        stored.requeue_behind_others(
+            tx, doing.lease, doing.done / doing.total, detail, LOWEST_PRIORITY
+        )
 
 
 @contextmanager

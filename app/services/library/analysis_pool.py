@@ -31,7 +31,7 @@ from app.logs import level_of_process
 from app.services.children.child import ChildEnded
 from app.services.children.pool import ChildPool, TaskTimedOut
 from app.services.children.processes import limit_memory, log_like_parent, stderr_silenced
-from app.store.files.checked import read_whole
+from app.store.files.hash_check import read_whole
 
 if TYPE_CHECKING:
     from app.analysis.analyze import Analysis

@@ -16,9 +16,9 @@ from app.services.library.library import Library
 from app.store import models
 from app.store.clips import versions as library
 
-OUTPUTS = f"{models.OF_CLIPS}outputs"
-POINTS = f"{models.OF_CLIPS}points"
-_IDS = f"{models.OF_CLIPS}ids"
+OUTPUTS = f"{models.CLIP_ARRAY_PREFIX}outputs"
+POINTS = f"{models.CLIP_ARRAY_PREFIX}points"
+_IDS = f"{models.CLIP_ARRAY_PREFIX}ids"
 MOST_VALUES = 50_000_000
 """Outputs beyond so many (200 MB) are not stored: searches compute what they need."""
 

@@ -1,4 +1,4 @@
-"""Arrays of clips, by name; each with the version of the analysis that made it."""
+"""Arrays of clips by name, each with the version of the analysis that computed it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from app.store.database.tables import clip_arrays
 
 _CONTENT = (clip_arrays.c.dtype, clip_arrays.c.shape, clip_arrays.c.data)
 
-# Made once: making a statement costs more than running it, and every search asks these.
+# Built once: to build a statement takes longer than to execute it, and every search executes these.
 _NAMED = select(clip_arrays.c.name, *_CONTENT).where(
     clip_arrays.c.clip_id == bindparam("the_id"),
     clip_arrays.c.name.in_(bindparam("names", expanding=True)),
@@ -31,7 +31,7 @@ _DELETE_ALL = delete(clip_arrays).where(clip_arrays.c.clip_id == bindparam("the_
 
 
 def put_many(tx: Tx, clip_id: str, arrays: Mapping[str, NDArray[Any]], *, version: int) -> None:
-    """Stores a clip's arrays; they replace all arrays that it had."""
+    """Stores the arrays of a clip; they replace all its earlier arrays."""
     delete_all(tx, clip_id)
     rows = [
         {"clip_id": clip_id, "name": name, "version": version, **to_blob(array)}
@@ -42,7 +42,7 @@ def put_many(tx: Tx, clip_id: str, arrays: Mapping[str, NDArray[Any]], *, versio
 
 
 def put_some(tx: Tx, clip_id: str, arrays: Mapping[str, NDArray[Any]], *, version: int) -> None:
-    """Stores some arrays of a clip; they replace those with the same names."""
+    """Stores some arrays of a clip; they replace only arrays with the same names."""
     named = clip_arrays.c.name.in_(list(arrays))
     tx.execute(delete(clip_arrays).where(clip_arrays.c.clip_id == clip_id, named))
     tx.execute(
@@ -60,16 +60,16 @@ def get_one(tx: Tx, clip_id: str, name: str) -> NDArray[Any]:
 
 
 def get_named(tx: Tx, clip_id: str, names: Collection[str]) -> dict[str, NDArray[Any]]:
-    """Some arrays of a clip by name, read-only, in the order asked for; raises NotFound."""
-    found = get_some(tx, clip_id, names)
+    """Some arrays of a clip by name, read-only, in the order of `names`; raises NotFound."""
+    arrays = get_some(tx, clip_id, names)
     for name in names:
-        if name not in found:
+        if name not in arrays:
             raise NotFound(f"The clip {clip_id!r} has no array {name!r}")
-    return {name: found[name] for name in names}
+    return {name: arrays[name] for name in names}
 
 
 def get_some(tx: Tx, clip_id: str, names: Collection[str]) -> dict[str, NDArray[Any]]:
-    """As `get_named`, without those that the clip does not have."""
+    """As `get_named`, but arrays that the clip does not have are left out."""
     rows = tx.execute(_NAMED, {"the_id": clip_id, "names": list(names)})
     return {name: from_blob(dtype, shape, data) for name, dtype, shape, data in rows}
 
@@ -77,22 +77,23 @@ def get_some(tx: Tx, clip_id: str, names: Collection[str]) -> dict[str, NDArray[
 def get_many(
     tx: Tx, clip_ids: Collection[str], name: str, *, version: int | None = None
 ) -> dict[str, NDArray[Any]]:
-    """One array of many clips by clip id, read-only, in the order asked for.
+    """One array of many clips by clip id, read-only, in the order of `clip_ids`.
 
-    Clips without it are left out; with `version`, those of other versions too.
+    Clips without the array are left out. With `version`, clips whose array has another version
+    are left out too.
     """
-    found: dict[str, NDArray[Any]] = {}
+    array_of: dict[str, NDArray[Any]] = {}
     for batch in in_batches(clip_ids):
-        asked = {"ids": batch, "the_name": name}
+        parameters = {"ids": batch, "the_name": name}
         if version is None:
-            rows = tx.execute(_OF_MANY, asked)
+            rows = tx.execute(_OF_MANY, parameters)
         else:
-            rows = tx.execute(_OF_VERSION, asked | {"the_version": version})
+            rows = tx.execute(_OF_VERSION, parameters | {"the_version": version})
         for clip_id, dtype, shape, data in rows.all():
-            found[clip_id] = from_blob(dtype, shape, data)
-    return {clip_id: found[clip_id] for clip_id in clip_ids if clip_id in found}
+            array_of[clip_id] = from_blob(dtype, shape, data)
+    return {clip_id: array_of[clip_id] for clip_id in clip_ids if clip_id in array_of}
 
 
 def delete_all(tx: Tx, clip_id: str) -> None:
-    """Removes a clip's arrays."""
+    """Removes all arrays of a clip."""
     tx.execute(_DELETE_ALL, {"the_id": clip_id})

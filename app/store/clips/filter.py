@@ -1,4 +1,4 @@
-"""A filter of clips: one value for lists and for searches."""
+"""The filter of clips that lists and searches share."""
 
 from __future__ import annotations
 
@@ -11,16 +11,18 @@ from app.store.clips.record import ClipState
 from app.store.database.tables import clip_words, clips
 
 _LABELS = ("person", "task", "license", "source")
-"""Labels with a column of their own; for each, ClipFilter has two fields: NAME and not_NAME."""
+"""Labels that are columns of the table `clips`. ClipFilter has two fields for each: NAME and
+not_NAME."""
 
 
 @dataclass(frozen=True, slots=True)
 class ClipFilter:
-    """Conditions on clips. A clip passes if all of them hold.
+    """Conditions on clips. A clip passes the filter if all conditions are true.
 
-    A tuple holds if the clip has any of its values; with not_, if it has none of them (a clip
-    without the label passes). Empty or None is no condition. q: part of the name, any case;
-    durations in seconds, both ends included.
+    A tuple is true if the clip has any of its values. A tuple whose name begins with `not_` is
+    true if the clip has none of its values; a clip without the label passes. An empty tuple and
+    None are no condition. q: a part of the name, in upper or lower case; min_duration,
+    max_duration: seconds, both ends included.
     """
 
     person: tuple[str, ...] = ()
@@ -54,7 +56,7 @@ def condition(filter: ClipFilter) -> ColumnElement[bool]:
     if filter.not_word:
         terms.append(clips.c.id.not_in(_carriers(filter.not_word)))
     if filter.q:
-        # autoescape: % and _ stand for themselves.
+        # autoescape: % and _ in `q` are plain characters, not wildcards.
         terms.append(clips.c.name_folded.contains(filter.q.casefold(), autoescape=True))
     return and_(True, *terms)
 
@@ -65,7 +67,7 @@ def _label_terms(filter: ClipFilter) -> Iterator[ColumnElement[bool]]:
         if accepted := getattr(filter, name):
             yield column.in_(accepted)
         if refused := getattr(filter, f"not_{name}"):
-            # NOT IN alone would drop the clips that have no such label.
+            # NULL NOT IN (...) is NULL, so NOT IN alone would drop clips without the label.
             yield or_(column.is_(None), column.not_in(refused))
 
 

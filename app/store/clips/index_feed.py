@@ -1,9 +1,9 @@
-"""What an index reads from the library: labels and one array of each clip, in batches.
+"""Reads the data of a search index: the labels and one array of each clip, in batches.
 
-Rows are streamed and never become `ClipRecord`s, so that a million clips are loaded in
-seconds and are never held twice. A ready clip that waits for another analysis comes with the arrays
-that it has. An earlier version of the analysis may have made them: an index skips a clip whose
-array does not have the shape that it needs.
+Rows are streamed and never become `ClipRecord`s, so that a million clips are loaded in seconds
+and are never in memory twice. A ready clip that waits for another analysis comes with its current
+arrays. An earlier version of the analysis may have computed them: an index skips a clip whose
+array does not have the shape that the index needs.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from app.store.database.engine import Tx
 from app.store.database.tables import clip_arrays, clip_words, clips
 
 BATCH = 5000
-"""How many clips are in one batch."""
+"""Clips in one batch."""
 
 _WORDS = (
     select(func.aggregate_strings(clip_words.c.word, " "))
@@ -49,7 +49,7 @@ _CLIPS = (
         and_(clip_arrays.c.clip_id == clips.c.id, clip_arrays.c.name == bindparam("array")),
         isouter=True,
     )
-    # Nothing about the state: SQLite would go by its index, through all that are ready.
+    # No condition on the state: SQLite would use the index of the state and read all ready clips.
     .where(clips.c.changed_version > bindparam("since"))
     .order_by(clips.c.changed_version)
 )
@@ -57,10 +57,10 @@ _CLIPS = (
 
 @dataclass(frozen=True, slots=True)
 class IndexedClip:
-    """What a search needs to rank and filter a clip.
+    """The data of a clip that a search needs to rank and filter it.
 
-    duration: seconds; array: the one that was asked for, read-only, None where the clip has
-    none (an earlier version of the analysis, which made no such array).
+    duration: seconds; array: the requested array, read-only, None if the clip does not have it
+    (an earlier version of the analysis did not compute it).
     """
 
     id: str
@@ -75,9 +75,12 @@ class IndexedClip:
 
 
 def changed_since(tx: Tx, since: int, array: str) -> Iterator[list[IndexedClip]]:
-    """The clips that changed after library version `since`, oldest change first."""
-    asked = {"since": since, "array": array}
-    rows = tx.execute(_CLIPS, asked, execution_options={"yield_per": BATCH})
+    """Batches of the clips that changed after library version `since`, oldest change first.
+
+    array: name of the array to load with each clip.
+    """
+    parameters = {"since": since, "array": array}
+    rows = tx.execute(_CLIPS, parameters, execution_options={"yield_per": BATCH})
     for batch in rows.partitions(BATCH):
         yield [_indexed(row) for row in batch]
 
@@ -99,5 +102,5 @@ def _indexed(row: Sequence[Any]) -> IndexedClip:
 
 @lru_cache(maxsize=10_000)
 def _word_set(text: str) -> frozenset[str]:
-    """The words of a text, one object for equal texts: many clips carry the same."""
+    # Cached: many clips have the same words, and equal texts then share one object.
     return frozenset(text.split(" ")) if text else frozenset()

@@ -1,4 +1,4 @@
-"""Keyposes that people name: seconds from a clip's beginning, one list a clip."""
+"""Keyposes that people annotate: one list of times for each clip, in seconds from its beginning."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from app.store.database.ids import utc_now
 from app.store.database.tables import keypose_annotations
 
 Times = tuple[float, ...]
-"""Seconds, rising."""
+"""Seconds, in rising order."""
 
 
 def put(tx: Tx, clip_id: str, times: Sequence[float]) -> None:
-    """Store a clip's annotation, which replaces the one it had; without times, remove it.
+    """Store the annotation of a clip, which replaces the earlier one; without times, remove it.
 
     A ready clip counts as changed, so that models are fitted again. Raises ClipNotFound.
     """
-    clips.patch(tx, clip_id, {})
+    clips.patch(tx, clip_id, {})  # no new values, but it raises the library version
     tx.execute(delete(keypose_annotations).where(keypose_annotations.c.clip_id == clip_id))
     if times:
         row = {"clip_id": clip_id, "times": list(times), "annotated_at": utc_now()}
@@ -28,22 +28,22 @@ def put(tx: Tx, clip_id: str, times: Sequence[float]) -> None:
 
 
 def get(tx: Tx, clip_id: str) -> Times | None:
-    """A clip's annotation, None where there is none."""
+    """The annotation of a clip; None if there is none."""
     return get_many(tx, [clip_id]).get(clip_id)
 
 
 def get_many(tx: Tx, clip_ids: Collection[str]) -> dict[str, Times]:
     """The annotations by clip id, in the order of `clip_ids`; clips without one are left out."""
-    found: dict[str, Times] = {}
+    times_of: dict[str, Times] = {}
     for batch in clips.in_batches(clip_ids):
         query = select(keypose_annotations.c.clip_id, keypose_annotations.c.times).where(
             keypose_annotations.c.clip_id.in_(batch)
         )
-        found |= {clip_id: tuple(times) for clip_id, times in tx.execute(query)}
-    return {clip_id: found[clip_id] for clip_id in clip_ids if clip_id in found}
+        times_of |= {clip_id: tuple(times) for clip_id, times in tx.execute(query)}
+    return {clip_id: times_of[clip_id] for clip_id in clip_ids if clip_id in times_of}
 
 
 def annotated(tx: Tx) -> tuple[str, ...]:
-    """Ids of the clips that have an annotation, in order."""
+    """Ids of the clips that have an annotation, sorted."""
     query = select(keypose_annotations.c.clip_id).order_by(keypose_annotations.c.clip_id)
     return tuple(tx.execute(query).scalars())

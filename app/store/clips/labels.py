@@ -1,4 +1,4 @@
-"""The library's labels: persons, tasks and words, with how many clips carry each."""
+"""The labels of a library (persons, tasks and words) with the number of clips of each."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from app.store.database.tables import clip_words, clips
 
 
 @dataclass(frozen=True, slots=True)
-class Count:
-    """A label, and how many clips carry it, in any state.
+class CountBySource:
+    """A label and the number of clips that have it, in any state.
 
-    of_source: clips of the source that the caller names; others: all other clips.
+    of_source: clips from the source that the caller names; others: all other clips.
     """
 
     name: str
@@ -26,14 +26,14 @@ class Count:
 
 
 class LabelKind(StrEnum):
-    """What a label says."""
+    """The kinds of labels that are counted."""
 
     PERSON = "person"
-    """Who moves."""
+    """The person who moves."""
     TASK = "task"
-    """What is done."""
+    """The action in the clip."""
     WORD = "word"
-    """A word for it."""
+    """A word that describes the clip."""
 
 
 _KINDS: dict[LabelKind, tuple[ColumnElement[Any], FromClause]] = {
@@ -43,37 +43,37 @@ _KINDS: dict[LabelKind, tuple[ColumnElement[Any], FromClause]] = {
 }
 
 
-def persons(tx: Tx, source: str) -> tuple[Count, ...]:
-    """The persons, by name; the clips of `source` are counted separately."""
+def persons(tx: Tx, source: str) -> tuple[CountBySource, ...]:
+    """The persons, sorted by name; the clips of `source` are counted separately."""
     return _counts(tx, *_KINDS[LabelKind.PERSON], source)
 
 
-def tasks(tx: Tx, source: str) -> tuple[Count, ...]:
+def tasks(tx: Tx, source: str) -> tuple[CountBySource, ...]:
     """The tasks, as `persons`."""
     return _counts(tx, *_KINDS[LabelKind.TASK], source)
 
 
-def words(tx: Tx, source: str) -> tuple[Count, ...]:
+def words(tx: Tx, source: str) -> tuple[CountBySource, ...]:
     """The words, as `persons`."""
     return _counts(tx, *_KINDS[LabelKind.WORD], source)
 
 
 def person_names(tx: Tx) -> frozenset[str]:
-    """The persons that any clip is labeled with."""
-    found = select(clips.c.person).where(clips.c.person.is_not(None)).distinct()
-    return frozenset(tx.execute(found).scalars())
+    """The names of all persons in the labels of clips."""
+    query = select(clips.c.person).where(clips.c.person.is_not(None)).distinct()
+    return frozenset(tx.execute(query).scalars())
 
 
 def page(
     tx: Tx, kind: LabelKind, source: str, limit: int, cursor: str | None = None
-) -> Page[Count]:
-    """At most `limit` labels of a kind, by name; raises BadField at "cursor"."""
+) -> Page[CountBySource]:
+    """At most `limit` labels of a kind, sorted by name; raises BadField at "cursor"."""
     name, carriers = _KINDS[kind]
     after = None if cursor is None else read_cursor(cursor, kind.value, str).value
-    found = _counts(tx, name, carriers, source, after=after, limit=limit + 1)
-    if len(found) <= limit:
-        return Page(found, None)
-    shown = found[:limit]
+    counts = _counts(tx, name, carriers, source, after=after, limit=limit + 1)
+    if len(counts) <= limit:
+        return Page(counts, None)
+    shown = counts[:limit]
     return Page(shown, write_cursor(kind.value, Position(shown[-1].name, "")))
 
 
@@ -85,9 +85,11 @@ def _counts(
     *,
     after: Any = None,
     limit: int | None = None,
-) -> tuple[Count, ...]:
+) -> tuple[CountBySource, ...]:
     of_source = func.sum(case((clips.c.source == source, 1), else_=0))
     query = select(name, func.count(), of_source).select_from(carriers)
     query = query.where(name.is_not(None) if after is None else name > after)
     rows = tx.execute(query.group_by(name).order_by(name).limit(limit))
-    return tuple(Count(label, int(every) - int(some), int(some)) for label, every, some in rows)
+    return tuple(
+        CountBySource(label, int(every) - int(some), int(some)) for label, every, some in rows
+    )

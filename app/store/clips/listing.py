@@ -25,7 +25,7 @@ class _Sort:
     kind: type[Value]
 
 
-# coalesce: a clip without the value sorts before all others, on every database.
+# coalesce: databases sort NULL differently; so a clip without the value sorts before all others.
 _SORTS: dict[str, _Sort] = {
     "created_at": _Sort(clips.c.created_at, datetime),
     "name": _Sort(clips.c.name_folded, str),
@@ -34,7 +34,7 @@ _SORTS: dict[str, _Sort] = {
     "task": _Sort(func.coalesce(clips.c.task, ""), str),
 }
 SORT_NAMES: tuple[str, ...] = tuple(_SORTS)
-"""What a list can be sorted by; a leading "-" turns the order round."""
+"""The names by which a list can be sorted; a leading "-" reverses the order."""
 
 
 def list_clips(
@@ -55,9 +55,9 @@ def list_clips(
 
 
 def count_clips(tx: Tx, filter: ClipFilter) -> int:
-    """How many clips pass the filter."""
-    found = tx.execute(select(func.count()).select_from(clips).where(condition(filter)))
-    return int(found.scalar_one())
+    """The number of clips that pass the filter."""
+    count = tx.execute(select(func.count()).select_from(clips).where(condition(filter)))
+    return int(count.scalar_one())
 
 
 def list_ids(tx: Tx, filter: ClipFilter) -> tuple[str, ...]:
@@ -68,7 +68,8 @@ def list_ids(tx: Tx, filter: ClipFilter) -> tuple[str, ...]:
 def list_outdated_ids(tx: Tx, version: int) -> tuple[str, ...]:
     """The ids of ready clips that need another analysis and do not wait for one yet.
 
-    Their arrays are not those of analysis `version`, or a client changed what it depends on.
+    Their arrays are from another version of the analysis than `version`, or a client changed the
+    input of the analysis.
     """
     is_other = func.coalesce(clips.c.analysis_version, -1) != version
     query = select(clips.c.id).where(
@@ -80,7 +81,7 @@ def list_outdated_ids(tx: Tx, version: int) -> tuple[str, ...]:
 
 
 def list_unfit_ids(tx: Tx) -> tuple[str, ...]:
-    """The ids of the clips whose last analysis failed, also of those that were ready before."""
+    """The ids of the clips whose last analysis failed, including clips that are still ready."""
     is_unfit = or_(
         clips.c.state == ClipState.FAILED.value, clips.c.reanalysis == Reanalysis.FAILED.value
     )
@@ -88,12 +89,12 @@ def list_unfit_ids(tx: Tx) -> tuple[str, ...]:
 
 
 def count_waiting(tx: Tx) -> int:
-    """How many clips wait for an analysis or are in one."""
+    """The number of clips whose analysis is waiting or running."""
     return int(tx.execute(select(func.count()).select_from(clips).where(_WAITS)).scalar_one())
 
 
 def is_being_analyzed_anew(tx: Tx, version: int) -> bool:
-    """Whether a clip that another analysis than `version` described waits for it, or is at it."""
+    """Whether any clip with arrays of another version than `version` is in an analysis or waits."""
     query = select(clips.c.id).where(_WAITS, clips.c.analysis_version != version)
     return tx.execute(query.limit(1)).first() is not None
 
@@ -107,8 +108,8 @@ _WAITS = or_(
 def _sort_of(sort: str) -> tuple[_Sort, bool]:
     name = sort.removeprefix("-")
     if name not in _SORTS:
-        known = ", ".join(SORT_NAMES)
-        raise BadField(places=[Place("sort", f"expected one of {known}, or one with a leading -")])
+        names = ", ".join(SORT_NAMES)
+        raise BadField(places=[Place("sort", f"expected one of {names}, or one with a leading -")])
     return _SORTS[name], sort != name
 
 

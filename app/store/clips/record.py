@@ -1,4 +1,4 @@
-"""The values that make up a clip in the store: labels, hints, recording, and the whole record."""
+"""The data of a clip in the store: labels, hints, recording, and the whole record."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ class ClipState(StrEnum):
     """The state of a clip."""
 
     QUEUED = "queued"
-    """Stored durably; waits for a worker."""
+    """The clip is stored durably and waits for a worker."""
     PROCESSING = "processing"
-    """A worker analyzes it."""
+    """A worker analyzes the clip."""
     READY = "ready"
-    """Analyzed: the next search finds it."""
+    """The clip is analyzed: the next search finds it."""
     FAILED = "failed"
-    """Cannot be analyzed; `error` says why. It is listed and never searched."""
+    """The clip cannot be analyzed; `error` says why. Lists show it, searches never find it."""
 
 
 class Reanalysis(StrEnum):
     """The state of another analysis of a ready clip."""
 
     QUEUED = "queued"
-    """It waits for a worker."""
+    """The analysis waits for a worker."""
     PROCESSING = "processing"
-    """A worker is at it."""
+    """A worker does the analysis."""
     FAILED = "failed"
-    """It failed: a warning says why."""
+    """The analysis failed: a warning says why."""
 
 
 REANALYSIS_OPEN = (Reanalysis.QUEUED, Reanalysis.PROCESSING)
@@ -39,7 +39,10 @@ REANALYSIS_OPEN = (Reanalysis.QUEUED, Reanalysis.PROCESSING)
 
 @dataclass(frozen=True, slots=True)
 class ClipWarning:
-    """A doubt about a clip: `code` for machines, `detail` for people, `likely`: a better value."""
+    """A doubt about a clip.
+
+    code: for programs; detail: for people; likely: a more probable value of the doubtful number.
+    """
 
     code: str
     detail: str
@@ -48,10 +51,10 @@ class ClipWarning:
 
 @dataclass(frozen=True, slots=True)
 class ClipLabels:
-    """What people call a clip and say about it; searches filter by these.
+    """The name of a clip and what people say about it; searches filter by these labels.
 
-    words: in lower case, each once; the store's callers tidy all of them. A label that is added
-    here needs a column of the same name in the table `clips` (words have a table of their own).
+    words: in lower case, without repetition. The callers of the store normalize all labels. A new
+    field here needs a column of the same name in the table `clips` (words have their own table).
     """
 
     name: str
@@ -64,12 +67,12 @@ class ClipLabels:
 
 @dataclass(frozen=True, slots=True)
 class AnalysisHints:
-    """What a client says about a motion file: it goes before what the file says.
+    """Facts about a motion file that a client states; they override those in the file.
 
-    frame_rate: Hz; metres_per_unit: of the file's coordinates; roles: joint name by role; stack:
-    name of an FBX file's animation stack; audio_offset: seconds of the motion at which the
-    recording begins; tempo: beats a minute; beats: seconds. The column of a hint in the table
-    `clips` has its name and `_override`.
+    frame_rate: Hz; metres_per_unit: of the coordinates in the file; roles: joint name by role;
+    stack: name of the animation stack in an FBX file; audio_offset: time of the motion at which
+    the recording begins, seconds; tempo: beats per minute; beats: seconds. The column of a hint in
+    the table `clips` is its name with `_override` added.
     """
 
     frame_rate: float | None = None
@@ -82,12 +85,12 @@ class AnalysisHints:
 
 
 AUDIO_HINTS = ("audio_offset", "tempo", "beats")
-"""The hints about a recording. They are replaced together with it."""
+"""The hints about a recording. A new recording replaces them too."""
 
 
 @dataclass(frozen=True, slots=True)
 class AttachedAudio:
-    """The recording that goes with a motion: SHA-256 of its bytes, file name, size in bytes.
+    """The audio recording of a motion: SHA-256 of its bytes, file name, size in bytes.
 
     The columns in the table `clips` begin with `audio_`.
     """
@@ -98,20 +101,22 @@ class AttachedAudio:
 
 
 AnalysisInput = tuple[AnalysisHints, str | None]
-"""What an analysis depends on besides the motion file: the hints, the recording's SHA-256."""
+"""The input of an analysis besides the motion file: the hints, and the recording's SHA-256."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClipRecord(ClipLabels):
-    """A clip's row with its labels. What the analysis finds is None (or empty) until it is ready.
+    """The row of a clip with its labels.
 
-    sha256: of the file's own bytes; content_key: makes the clip one of a kind (the same as
-    sha256, or with a skeleton companion a hash of both); roles: joint name by role; durations in
-    seconds, rates in Hz; error: an RFC 9457 problem; audio_offset: the time of the motion (s) at
-    which the analysis says that the recording begins, if known; reanalysis: where another
-    analysis of a ready clip stands, None where none is to come; is_changed: whether a client has
-    changed the hints or the recording since the analysis; changed_version: library version of
-    the last change that searches see, 0 while the clip was never searchable.
+    The results of the analysis are None (or empty) until the clip is ready.
+
+    sha256: of the bytes of the motion file; content_key: unique for each content (sha256, or with
+    a skeleton file a hash of both); roles: joint name by role; durations in seconds, rates in Hz;
+    error: an RFC 9457 problem; audio_offset: the time of the motion (s) at which the recording
+    begins, as the analysis estimates it; reanalysis: the state of another analysis of a ready
+    clip, None if there is none; is_changed: whether a client has changed the hints or the
+    recording since the analysis; changed_version: library version of the last change that
+    searches see, 0 if the clip was never ready.
     """
 
     id: str
@@ -148,21 +153,23 @@ class ClipRecord(ClipLabels):
 
     @property
     def has_audio(self) -> bool:
-        """Whether a recording goes with the motion."""
+        """Whether the motion has a recording."""
         return self.audio is not None
 
     @property
     def audio_begins_at(self) -> float | None:
-        """Seconds of the motion at which the recording begins: as the client says, otherwise as
-        the analysis estimates; None without a recording."""
+        """The time of the motion at which the recording begins, seconds.
+
+        It is the client's hint, otherwise the estimate of the analysis; None without a recording.
+        """
         if self.audio is None:
             return None
-        said = self.hints.audio_offset
-        return self.audio_offset if said is None else said
+        hint = self.hints.audio_offset
+        return self.audio_offset if hint is None else hint
 
     @property
     def analysis_input(self) -> AnalysisInput:
-        """The hints and the recording, on which the analysis depends."""
+        """The hints and the recording: the input of the analysis besides the motion file."""
         return self.hints, self.audio_sha256
 
     @property
@@ -174,7 +181,7 @@ class ClipRecord(ClipLabels):
 
 @dataclass(frozen=True, slots=True)
 class NewClip:
-    """What is known of a clip before its analysis; the caller has tidied the labels."""
+    """A clip before its analysis; the caller has normalized the labels."""
 
     sha256: str
     file_name: str
@@ -186,7 +193,7 @@ class NewClip:
 
     @property
     def content_key(self) -> str:
-        """Hex SHA-256 that two clips share only if file and skeleton companion are the same."""
+        """Hex SHA-256 that is equal for two clips only if both of their files are the same."""
         if self.skeleton_sha256 is None:
             return self.sha256
         return hashlib.sha256(f"{self.sha256}+{self.skeleton_sha256}".encode()).hexdigest()
@@ -194,7 +201,7 @@ class NewClip:
 
 @dataclass(frozen=True, slots=True)
 class ClipFacts:
-    """What the analysis found out about a clip; units as in ClipRecord."""
+    """The results of an analysis that are columns of the clip; units as in ClipRecord."""
 
     format: str
     frames: int
@@ -211,30 +218,30 @@ class ClipFacts:
 
 
 ClipChanges = Mapping[str, Any]
-"""New values of some fields of ClipLabels and AnalysisHints, and of `audio` (AttachedAudio or
-None), by their names; a field that is absent keeps its value."""
+"""New values by field name: fields of ClipLabels and AnalysisHints, and `audio` (AttachedAudio or
+None). A field that is absent keeps its value."""
 
 
 class AddOutcome(StrEnum):
     """What `add_or_get` did with new content."""
 
     ADDED = "added"
-    """A new clip: it needs an ingest job."""
+    """It added a clip, which needs an ingest job."""
     EXISTS = "exists"
-    """The same content is there already; nothing was changed."""
+    """The library has the same content already; nothing was changed."""
     REQUEUED = "requeued"
-    """The same content had failed, or comes with another recording; it is queued again and
-    needs an ingest job."""
+    """The same content had failed, or comes with another recording now: its clip is queued again
+    and needs an ingest job."""
 
 
 @dataclass(frozen=True, slots=True)
-class Added:
-    """The answer to `clips.add_or_get`."""
+class AddResult:
+    """The result of `add_or_get`."""
 
     clip: ClipRecord
     outcome: AddOutcome
     replaced_audio: str | None = None
-    """SHA-256 of a recording that the clip no longer refers to."""
+    """SHA-256 of the earlier recording, if another one has replaced it."""
 
     @property
     def needs_analysis(self) -> bool:

@@ -12,8 +12,8 @@ from app.errors import ClipNotFound, Place
 from app.store.clips import versions as library
 from app.store.clips.record import (
     AUDIO_HINTS,
-    Added,
     AddOutcome,
+    AddResult,
     AnalysisInput,
     ClipChanges,
     ClipFacts,
@@ -23,15 +23,15 @@ from app.store.clips.record import (
     NewClip,
     Reanalysis,
 )
-from app.store.clips.rows import changed_input, said_by_client, to_columns, to_record
+from app.store.clips.rows import changed_input, client_fields, to_columns, to_record
 from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
 from app.store.database.tables import clip_words, clips
 
 IDS_PER_QUERY = 500
-"""Databases limit the parameters of one statement."""
+"""A limit, because databases limit the number of parameters of one statement."""
 
-# Made once: making a statement costs more than running it.
+# Built once, because to build a statement takes longer than to execute it.
 _SOME = select(clips).where(clips.c.id.in_(bindparam("ids", expanding=True)))
 _STATE = select(clips.c.state).where(clips.c.id == bindparam("the_id"))
 _WITH_CONTENT = select(clips.c.id).where(clips.c.content_key == bindparam("content"))
@@ -44,37 +44,37 @@ _WORDS = (
 )
 
 
-def add_or_get(tx: Tx, new: NewClip) -> Added:
-    """Adds a clip in the state queued, or finds the clip with the same content.
+def add_or_get(tx: Tx, new: NewClip) -> AddResult:
+    """Adds a clip in the state queued, or returns the existing clip with the same content.
 
-    A failed one is queued again, with the labels and hints that are given now; any other is queued
-    again only if it comes with another recording, with that and the hints about it. Safe between
-    processes: writers take turns, so that no other can add the same content after the look-up.
+    A failed clip is queued again with the new labels and hints. Any other clip is queued again
+    only if `new` has another recording; then it gets the recording and the hints about it.
     """
+    # Writers in all processes wait here, so that no two add the same content after the look-up.
     library.lock(tx)
-    found = find_by_content(tx, new.content_key)
-    if found is None:
-        return Added(_insert(tx, new), AddOutcome.ADDED)
-    is_failed = found.state is ClipState.FAILED
-    if is_failed or (new.audio is not None and new.audio.sha256 != found.audio_sha256):
-        again = _requeue_with(tx, found, new, None if is_failed else ("audio", *AUDIO_HINTS))
-        replaced = found.audio_sha256 if again.audio_sha256 != found.audio_sha256 else None
-        return Added(again, AddOutcome.REQUEUED, replaced)
-    return Added(found, AddOutcome.EXISTS)
+    existing = find_by_content(tx, new.content_key)
+    if existing is None:
+        return AddResult(_insert(tx, new), AddOutcome.ADDED)
+    is_failed = existing.state is ClipState.FAILED
+    if is_failed or (new.audio is not None and new.audio.sha256 != existing.audio_sha256):
+        again = _requeue_with(tx, existing, new, None if is_failed else ("audio", *AUDIO_HINTS))
+        replaced = existing.audio_sha256 if again.audio_sha256 != existing.audio_sha256 else None
+        return AddResult(again, AddOutcome.REQUEUED, replaced)
+    return AddResult(existing, AddOutcome.EXISTS)
 
 
 def get(tx: Tx, clip_id: str) -> ClipRecord:
     """The clip; raises ClipNotFound."""
-    found = _load(tx, [clip_id])
-    if not found:
+    loaded = _load(tx, [clip_id])
+    if not loaded:
         raise _not_found(clip_id)
-    return found[0]
+    return loaded[0]
 
 
 def get_many(tx: Tx, clip_ids: Collection[str]) -> dict[str, ClipRecord]:
-    """The clips that exist among `clip_ids`, by id, in the order asked for."""
-    found = {clip.id: clip for batch in in_batches(clip_ids) for clip in _load(tx, batch)}
-    return {clip_id: found[clip_id] for clip_id in clip_ids if clip_id in found}
+    """The existing clips among `clip_ids`, by id, in the order of `clip_ids`."""
+    clip_of = {clip.id: clip for batch in in_batches(clip_ids) for clip in _load(tx, batch)}
+    return {clip_id: clip_of[clip_id] for clip_id in clip_ids if clip_id in clip_of}
 
 
 def find_by_content(tx: Tx, content_key: str) -> ClipRecord | None:
@@ -84,9 +84,10 @@ def find_by_content(tx: Tx, content_key: str) -> ClipRecord | None:
 
 
 def patch(tx: Tx, clip_id: str, changes: ClipChanges) -> ClipRecord:
-    """Changes labels, hints and the recording; the next search sees a ready clip's change.
+    """Changes labels, hints and the recording. Raises ClipNotFound.
 
-    A changed hint or recording takes effect with the next analysis: see `requeue`.
+    The next search sees the new labels of a ready clip. A new hint or recording has an effect
+    only after another analysis: see `requeue`.
     """
     before = get(tx, clip_id)
     values = to_columns(changes)
@@ -102,21 +103,23 @@ def patch(tx: Tx, clip_id: str, changes: ClipChanges) -> ClipRecord:
 
 
 def forget_person(tx: Tx, person: str) -> tuple[str, ...]:
-    """Removes a person's label from all their clips; returns the ids of these."""
-    theirs = clips.c.person == person
-    ids = tuple(tx.execute(select(clips.c.id).where(theirs).order_by(clips.c.id)).scalars())
+    """Removes the label of a person from all clips; returns the ids of these clips."""
+    has_label = clips.c.person == person
+    ids = tuple(tx.execute(select(clips.c.id).where(has_label).order_by(clips.c.id)).scalars())
     tx.execute(
         update(clips)
-        .where(theirs, clips.c.state == ClipState.READY.value)
+        .where(has_label, clips.c.state == ClipState.READY.value)
         .values(changed_version=library.bump(tx))
     )
-    tx.execute(update(clips).where(theirs).values(person=None))
+    tx.execute(update(clips).where(has_label).values(person=None))
     return ids
 
 
 def requeue(tx: Tx, clip_id: str) -> ClipRecord:
-    """Let the clip wait for an analysis. A ready clip stays ready with the analysis that it has,
-    until the new one replaces it."""
+    """Queue the clip for an analysis.
+
+    A ready clip stays ready with its current analysis until the new one replaces it.
+    """
     if _state_of(tx, clip_id) is ClipState.READY:
         _set(tx, clip_id, reanalysis=Reanalysis.QUEUED.value)
     else:
@@ -125,7 +128,7 @@ def requeue(tx: Tx, clip_id: str) -> ClipRecord:
 
 
 def wait_again(tx: Tx, clip_id: str) -> None:
-    """The clip's worker is gone and its job waits again. A clip that was deleted needs nothing."""
+    """Queue the clip again after its worker died or stopped. A deleted clip is skipped."""
     clip = get_many(tx, [clip_id]).get(clip_id)
     if clip is None:
         return
@@ -134,7 +137,8 @@ def wait_again(tx: Tx, clip_id: str) -> None:
 
 
 def set_processing(tx: Tx, clip_id: str) -> None:
-    """A worker has begun its analysis."""
+    """A worker has begun the analysis of the clip. Raises ClipNotFound."""
+    # Most clips are queued: then one statement is enough.
     begun = update(clips).where(clips.c.id == clip_id, clips.c.state == ClipState.QUEUED.value)
     if tx.execute(begun.values(state=ClipState.PROCESSING.value)).rowcount:
         return
@@ -145,25 +149,25 @@ def set_processing(tx: Tx, clip_id: str) -> None:
 
 
 def set_ready(tx: Tx, clip_id: str, facts: ClipFacts) -> None:
-    """The clip is analyzed: searches find it as soon as this transaction is committed."""
+    """The clip is analyzed; searches find it after the commit of this transaction."""
     done: dict[str, Any] = {"error": None, "reanalysis": None, "is_changed": False}
     _enter(tx, clip_id, ClipState.READY, **done, **asdict(facts))
 
 
 def set_failed(tx: Tx, clip_id: str, problem: dict[str, Any]) -> None:
-    """The clip cannot be analyzed; problem: why (RFC 9457)."""
+    """The clip cannot be analyzed; `problem` says why (RFC 9457)."""
     _enter(tx, clip_id, ClipState.FAILED, error=problem, reanalysis=None)
 
 
 def keep_analysis(tx: Tx, clip_id: str, why: ClipWarning) -> None:
-    """Another analysis of a ready clip failed: the clip keeps the one it has, and says why."""
+    """Another analysis of a ready clip failed: the clip keeps its analysis and gets a warning."""
     others = [warning for warning in get(tx, clip_id).warnings if warning.code != why.code]
     warnings = [asdict(warning) for warning in (*others, why)]
     _set(tx, clip_id, reanalysis=Reanalysis.FAILED.value, warnings=warnings)
 
 
 def fail_waiting(tx: Tx, clip_ids: Collection[str], problem: dict[str, Any]) -> None:
-    """As `set_failed`, of many clips; those that do not wait for an analysis stay as they are."""
+    """As `set_failed`, for many clips; clips that do not wait for an analysis do not change."""
     waiting = clips.c.state.in_([ClipState.QUEUED.value, ClipState.PROCESSING.value])
     for batch in in_batches(clip_ids):
         failed = update(clips).where(clips.c.id.in_(batch), waiting)
@@ -171,15 +175,15 @@ def fail_waiting(tx: Tx, clip_ids: Collection[str], problem: dict[str, Any]) -> 
 
 
 def delete_clip(tx: Tx, clip_id: str) -> ClipRecord:
-    """Removes the row with its words and arrays; returns what it was. Raises ClipNotFound.
+    """Removes a clip with its words and arrays; returns its last record. Raises ClipNotFound.
 
-    Jobs and imports that wait for it: use `outcomes.remove_clip`.
+    `outcomes.remove_clip` also settles the jobs and imports that wait for the clip.
     """
-    gone = get(tx, clip_id)
-    if gone.changed_version:
-        library.bury(tx, clip_id)
+    deleted = get(tx, clip_id)
+    if deleted.changed_version:  # otherwise no search has ever seen it
+        library.record_deletion(tx, clip_id)
     tx.execute(delete(clips).where(clips.c.id == clip_id))
-    return gone
+    return deleted
 
 
 def in_batches(ids: Iterable[str], size: int = IDS_PER_QUERY) -> Iterator[list[str]]:
@@ -191,7 +195,7 @@ def in_batches(ids: Iterable[str], size: int = IDS_PER_QUERY) -> Iterator[list[s
 
 def _insert(tx: Tx, new: NewClip) -> ClipRecord:
     clip_id = new_id("clip")
-    values = to_columns(said_by_client(new)) | {
+    values = to_columns(client_fields(new)) | {
         "id": clip_id,
         "sha256": new.sha256,
         "file_name": new.file_name,
@@ -208,16 +212,16 @@ def _insert(tx: Tx, new: NewClip) -> ClipRecord:
 
 
 def _requeue_with(
-    tx: Tx, found: ClipRecord, new: NewClip, only: Collection[str] | None
+    tx: Tx, existing: ClipRecord, new: NewClip, only: Collection[str] | None
 ) -> ClipRecord:
-    """Queue again with what is given now; `only`: names of the fields that may change."""
-    given = {
+    """Queue again with the values of `new`; only: names of fields that may change, None for all."""
+    changes = {
         name: value
-        for name, value in said_by_client(new).items()
+        for name, value in client_fields(new).items()
         if value not in (None, ()) and (only is None or name in only)
     }
-    patch(tx, found.id, given)
-    return requeue(tx, found.id)
+    patch(tx, existing.id, changes)
+    return requeue(tx, existing.id)
 
 
 def _set_words(tx: Tx, clip_id: str, words: Sequence[str]) -> None:
@@ -235,12 +239,13 @@ def _add_words(tx: Tx, clip_id: str, words: Sequence[str]) -> None:
 
 
 def analysis_input(tx: Tx, clip_id: str) -> AnalysisInput:
-    """As `ClipRecord.analysis_input`, of a clip as it is now. Raises ClipNotFound."""
+    """The current `ClipRecord.analysis_input` of a clip. Raises ClipNotFound."""
     return get(tx, clip_id).analysis_input
 
 
 def _enter(tx: Tx, clip_id: str, state: ClipState, **values: Any) -> None:
     before = _state_of(tx, clip_id)
+    # Searches see only ready clips, so other changes of the state do not raise the version.
     if ClipState.READY in (before, state):
         values["changed_version"] = library.bump(tx)
     tx.execute(_CHANGE, {"the_id": clip_id, "state": state.value, **values})
@@ -252,7 +257,7 @@ def _set(tx: Tx, clip_id: str, **values: Any) -> None:
 
 
 def _state_of(tx: Tx, clip_id: str) -> ClipState:
-    """The state alone, for every step of every ingest; raises ClipNotFound."""
+    """Reads the state only, because every step of an ingest calls it; raises ClipNotFound."""
     state = tx.execute(_STATE, {"the_id": clip_id}).scalar_one_or_none()
     if state is None:
         raise _not_found(clip_id)
@@ -271,9 +276,9 @@ def _load(tx: Tx, clip_ids: Collection[str]) -> list[ClipRecord]:
 
 
 def words_of(tx: Tx, clip_ids: Collection[str]) -> dict[str, tuple[str, ...]]:
-    """Words by clip id, in the order in which they were given."""
-    found: dict[str, list[str]] = {}
+    """Words by clip id, in the client's order."""
+    words_by_id: dict[str, list[str]] = {}
     for batch in in_batches(clip_ids):
         for clip_id, word in tx.execute(_WORDS, {"ids": batch}):
-            found.setdefault(clip_id, []).append(word)
-    return {clip_id: tuple(words) for clip_id, words in found.items()}
+            words_by_id.setdefault(clip_id, []).append(word)
+    return {clip_id: tuple(words) for clip_id, words in words_by_id.items()}

@@ -1,7 +1,7 @@
-"""A clip's values as columns of the table `clips`, and a row of it as a record.
+"""Converts a clip's values to columns of the table `clips`, and a row to a record.
 
-Both ways go by the fields of the dataclasses in `record`: a label or a hint that is added there is
-stored and read without a change here.
+Both directions use the fields of the dataclasses in `record`: a new label or hint there is stored
+and read without a change here.
 """
 
 from __future__ import annotations
@@ -32,15 +32,15 @@ _AUDIO_COLUMNS = {field.name: f"audio_{field.name}" for field in fields(Attached
 _RECORD_COLUMNS = tuple(field.name for field in fields(ClipRecord) if field.name in clips.c)
 
 
-def said_by_client(new: NewClip) -> dict[str, Any]:
-    """Labels, hints and recording of a new clip, by the names that `ClipChanges` has."""
+def client_fields(new: NewClip) -> dict[str, Any]:
+    """Labels, hints and recording of a new clip, by field name as in `ClipChanges`."""
     return {**_values(new.labels), **_values(new.hints), "audio": new.audio}
 
 
 def to_columns(changes: ClipChanges) -> dict[str, Any]:
-    """The columns that hold these values. Words have a table of their own: they are left out.
+    """Column values for these changes, without the words, which have their own table.
 
-    Raises KeyError for a name that is neither a label nor a hint nor `audio`.
+    Raises KeyError for a name that is not a label, a hint or `audio`.
     """
     columns: dict[str, Any] = {}
     for name, value in changes.items():
@@ -56,14 +56,14 @@ def to_columns(changes: ClipChanges) -> dict[str, Any]:
 
 
 def changed_input(before: ClipRecord, changes: ClipChanges) -> AnalysisInput:
-    """What an analysis of the clip depends on once the changes are made."""
+    """The input of an analysis of the clip after the changes."""
     hints = {name: value for name, value in changes.items() if name in _HINT_COLUMNS}
     audio: AttachedAudio | None = changes.get("audio", before.audio)
     return replace(before.hints, **hints), None if audio is None else audio.sha256
 
 
 def to_record(row: RowMapping, words: tuple[str, ...]) -> ClipRecord:
-    """A row of `clips` with the clip's words as a record."""
+    """A row of `clips` and the clip's words as a record."""
     values: dict[str, Any] = {name: row[name] for name in _RECORD_COLUMNS}
     values |= {
         "words": words,
@@ -90,7 +90,7 @@ def _audio(row: RowMapping) -> AttachedAudio | None:
 
 
 def _frozen(value: Any) -> Any:
-    """JSON has only lists; a frozen value holds tuples."""
+    # JSON has only lists, and a frozen dataclass holds tuples.
     return tuple(value) if isinstance(value, list) else value
 
 

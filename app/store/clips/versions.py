@@ -1,8 +1,8 @@
 """The library version: one number that grows with every change that a search can see.
 
-It is raised in the transaction of the change itself. The update locks its only row until the
-commit, so versions become visible in their order, on any database: whoever has caught up to
-version v has missed nothing up to v.
+The transaction of a change raises it. The update locks the only row of the table until the commit,
+so versions become visible in their order on any database: an index that has read all changes up to
+version v has missed none of them.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from app.store.database.tables import clips, library, tombstones
 
 ONLY_ROW = 1
 
-# Made once: every step of every ingest asks these.
+# Built once, because every step of an ingest executes them.
 _VERSION = select(library.c.version).where(library.c.id == ONLY_ROW)
 _LIBRARY_ID = select(library.c.library_id).where(library.c.id == ONLY_ROW)
 _VERSION_TO_CHANGE = _VERSION.with_for_update()
@@ -31,10 +31,10 @@ _RAISE = (
 
 @dataclass(frozen=True, slots=True)
 class LibraryChanges:
-    """What an index must change to be at `version`.
+    """The changes that bring an index to `version`.
 
-    changed: ids of clips that are ready, to be loaded again; removed: ids to forget (deleted, or
-    failed after a change).
+    changed: ids of ready clips, which the index loads again; removed: ids of clips that are
+    deleted or no longer ready, which the index removes.
     """
 
     version: int
@@ -53,7 +53,7 @@ def library_id(tx: Tx) -> str:
 
 
 def lock(tx: Tx) -> None:
-    """Lets no other transaction that locks or bumps go on until this one ends."""
+    """Makes other transactions that call `lock` or `bump` wait until this one ends."""
     tx.execute(_VERSION_TO_CHANGE)
 
 
@@ -62,33 +62,33 @@ def bump(tx: Tx) -> int:
     return int(tx.execute(_RAISE).scalar_one())
 
 
-def bury(tx: Tx, clip_id: str) -> None:
-    """Records that a clip that searches may know was deleted."""
+def record_deletion(tx: Tx, clip_id: str) -> None:
+    """Records the deletion of a clip, so that indexes remove it."""
     tx.execute(insert(tombstones).values(clip_id=clip_id, version=bump(tx)))
 
 
 def changed_since(tx: Tx, since: int) -> LibraryChanges:
-    """What changed after version `since`; 0 gives the whole library, oldest change first."""
+    """The changes after version `since`, oldest first; 0 gives the whole library."""
     now = version(tx)
     if now == since:
         return LibraryChanges(now, (), ())
-    touched = tx.execute(
+    rows = tx.execute(
         select(clips.c.id, clips.c.state)
         .where(clips.c.changed_version > since)
         .order_by(clips.c.changed_version, clips.c.id)
     ).all()
     return LibraryChanges(
         version=now,
-        changed=tuple(row.id for row in touched if row.state == ClipState.READY),
+        changed=tuple(row.id for row in rows if row.state == ClipState.READY),
         removed=(
-            *(row.id for row in touched if row.state != ClipState.READY),
-            *buried_since(tx, since),
+            *(row.id for row in rows if row.state != ClipState.READY),
+            *deleted_since(tx, since),
         ),
     )
 
 
-def buried_since(tx: Tx, since: int) -> tuple[str, ...]:
-    """Ids of the clips that searches may know from version `since` and that were deleted."""
+def deleted_since(tx: Tx, since: int) -> tuple[str, ...]:
+    """Ids of the clips that were deleted after version `since`."""
     return tuple(
         tx.execute(
             select(tombstones.c.clip_id)

@@ -1,4 +1,4 @@
-"""Arrays as bytes: little-endian, C order, with dtype and shape beside them."""
+"""Arrays as bytes: little-endian and C order, with dtype and shape in other columns."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 KINDS = "biuf"
-"""Booleans, integers and floats: nothing that would need pickle."""
+"""Kinds of dtype that are stored: booleans, integers and floats, which need no pickle."""
 
 
 class Blob(TypedDict):
-    """The columns that hold an array: dtype as numpy writes it (`<f4`), shape as `300x13x3`."""
+    """The columns that hold an array.
+
+    dtype: as numpy writes it, `<f4`; shape: as `300x13x3`, empty for a scalar.
+    """
 
     dtype: str
     shape: str
@@ -21,7 +24,7 @@ class Blob(TypedDict):
 
 
 def to_blob(array: NDArray[Any]) -> Blob:
-    """Any array of booleans, integers or floats; raises ValueError for others."""
+    """An array of booleans, integers or floats as columns; raises ValueError for other arrays."""
     if array.dtype.kind not in KINDS:
         raise ValueError(f"arrays of dtype {array.dtype} are not stored")
     little = array.astype(array.dtype.newbyteorder("<"), copy=False)
@@ -30,11 +33,14 @@ def to_blob(array: NDArray[Any]) -> Blob:
 
 
 def from_blob(dtype: str, shape: str, data: bytes) -> NDArray[Any]:
-    """The array, read-only, without a copy of its bytes."""
+    """The array, read-only, without a copy of its bytes.
+
+    Raises TypeError, ValueError if dtype, shape and number of bytes do not fit together.
+    """
     return np.frombuffer(data, dtype=np.dtype(dtype)).reshape(_lengths(shape))
 
 
 @lru_cache(maxsize=1024)
 def _lengths(shape: str) -> tuple[int, ...]:
-    # Cached: an index reads very many arrays of one shape.
+    # Cached, because an index reads many arrays of the same shape.
     return tuple(int(length) for length in shape.split("x") if length)

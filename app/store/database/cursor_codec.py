@@ -1,7 +1,7 @@
-"""How a position in a list becomes an opaque cursor, and comes back from whatever a client sends.
+"""Encodes the position in a list as an opaque cursor, and decodes cursors that clients send.
 
 A cursor is a JSON array of texts and numbers in URL-safe base64 without padding. `decode` and the
-readers of single values raise NotACursor, and nothing else, whatever they are given.
+`as_...` functions raise only NotACursor, for any input.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ MAX_CURSOR_LENGTH = 4096
 
 
 class NotACursor(ValueError):
-    """The text, or a value in it, is not what was written."""
+    """The text is no cursor, or a value in it has the wrong type."""
 
 
 def encode(values: Sequence[str | float | None]) -> str:
     """A cursor that holds `values`."""
-    # Not escaped: a long name of another script than Latin would outgrow MAX_CURSOR_LENGTH.
+    # Without escapes: a long name in a script other than Latin would exceed MAX_CURSOR_LENGTH.
     content = json.dumps(values, separators=(",", ":"), ensure_ascii=False)
     return base64.urlsafe_b64encode(content.encode()).decode().rstrip("=")
 
 
 def decode(cursor: str) -> list[object]:
-    """The values in a cursor, each of them any JSON. Raises NotACursor where it is no cursor."""
+    """The values in a cursor; each can be any JSON value. Raises NotACursor."""
     if len(cursor) > MAX_CURSOR_LENGTH:
         raise NotACursor("the cursor is too long")
     padded = cursor + "=" * (-len(cursor) % 4)
@@ -42,12 +42,12 @@ def decode(cursor: str) -> list[object]:
 
 
 def as_text(value: object) -> str:
-    """A text that a database takes. Raises NotACursor for any other value."""
+    """A text that a database can store. Raises NotACursor for any other value."""
     if not isinstance(value, str):
         raise NotACursor("not a text")
     try:
         value.encode()
-    except UnicodeEncodeError as problem:  # half of a surrogate pair, which JSON allows
+    except UnicodeEncodeError as problem:  # JSON allows half of a surrogate pair
         raise NotACursor("not a text that can be stored") from problem
     return value
 
@@ -65,8 +65,8 @@ def as_number(value: object) -> float:
     return number
 
 
-def as_count(value: object, most: int) -> int:
-    """A whole number from 0 to `most`. Raises NotACursor for any other value."""
-    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= most:
+def as_count(value: object, maximum: int) -> int:
+    """A whole number from 0 to `maximum`. Raises NotACursor for any other value."""
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= maximum:
         raise NotACursor("not a whole number in range")
     return value

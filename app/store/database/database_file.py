@@ -1,7 +1,8 @@
-"""The file of an SQLite database, watched while it is open.
+"""The file of an SQLite database, which is checked before every transaction.
 
-SQLite holds the file by its descriptor. When the file is deleted or another one takes its name,
-what is written afterwards goes where nobody finds it again; so each transaction looks first.
+SQLite keeps the file open. If the file is deleted, or another file gets its name, SQLite goes on
+writing to the old file, and a restart does not find these data. So each transaction first checks
+that the name still belongs to the open file.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from app.errors import DatabaseGone
 
 
 class DatabaseFile:
-    """The file that was opened first; any other under its name is refused."""
+    """The file that was opened first. Another file with the same name is refused."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -22,29 +23,29 @@ class DatabaseFile:
 
     @property
     def is_there(self) -> bool:
-        """Whether there is a file with anything in it."""
+        """Whether the file exists and is not empty."""
         return self.path.is_file() and self.path.stat().st_size > 0
 
     def open(self) -> None:
-        """Makes the file where there is none, for its owner only, and remembers which it is.
+        """Makes a missing file, private to its owner, and remembers its identity.
 
-        SQLite gives its log the mode of this file. Raises OSError; DatabaseGone when another
-        file was opened before.
+        SQLite gives its log the mode of this file. Raises OSError; DatabaseGone if another file
+        was opened before.
         """
         if self._opened is None:
-            # Only a file that is new may be opened here: closing one that SQLite has open in this
-            # process would release SQLite's locks on it.
+            # O_EXCL: only a new file may be opened here. If SQLite has the file open in this
+            # process, closing another descriptor of it would release the locks of SQLite.
             with suppress(FileExistsError):
                 os.close(os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600))
             self.watch()
         self.check()
 
     def watch(self) -> None:
-        """Remembers which file it is; from now on any other is refused. Raises OSError."""
+        """Remembers the identity of the file; from now on another is refused. Raises OSError."""
         self._opened = self.path.stat()
 
     def check(self) -> None:
-        """Raises DatabaseGone unless the file that was opened still has its name."""
+        """Raises DatabaseGone if the name does not belong to the opened file any more."""
         if self._opened is None:
             return
         try:

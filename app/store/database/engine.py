@@ -1,8 +1,8 @@
-"""Opening a database; the only module that knows which database it is.
+"""Opens a database. Only this module depends on the kind of database.
 
-SQLite: write-ahead log, every commit synced (`synchronous=FULL`: stored means that it
-survives kill -9 and a power cut), writers take their lock at once (`BEGIN IMMEDIATE`, so a
-transaction never fails half-way because another one wrote first), readers see one snapshot.
+SQLite uses a write-ahead log. Every commit is synced (`synchronous=FULL`), so that stored data
+survive kill -9 and a power cut. Writers take their lock at the beginning (`BEGIN IMMEDIATE`), so
+that no transaction fails in the middle because another one wrote first. Readers see one snapshot.
 """
 
 from __future__ import annotations
@@ -27,11 +27,14 @@ from app.store.folders import make_private
 
 BUSY_TIMEOUT_S = 30.0
 POOL_SIZE = 8
-POOL_OVERFLOW = 56  # above the 58 threads that the API runs, so that a reader never waits
+POOL_OVERFLOW = 56
+"""With POOL_SIZE, more connections than the 58 threads of the API, so that no reader waits."""
 ERASE_WAIT_S = 2.0
-"""A forgetting waits so long for readers; the worker tries again each minute."""
+"""How long `erase_traces` waits for readers; the worker tries again each minute."""
 WRITES_OPTION = "kinedex_writes"
-MIGRATION_LOCK = 0x6B696E65  # "kine": any number that no one else locks
+"""Execution option of a connection whose transaction writes."""
+MIGRATION_LOCK = 0x6B696E65
+"""Number of an advisory lock of PostgreSQL ("kine"); any number that nobody else uses."""
 
 _UNUSABLE = frozenset(
     {
@@ -41,62 +44,67 @@ _UNUSABLE = frozenset(
         sqlite3.SQLITE_PERM,
     }
 )
-"""SQLite's results that tell of the file or its disk rather than of what was asked."""
+"""Result codes of SQLite that mean a failure of the file or the disk, not of the statement."""
 
 Tx = Connection
-"""A running transaction, as `Database.read()` and `Database.write()` give it."""
+"""A running transaction, from `Database.read()` or `Database.write()`."""
 
 
 class Database:
-    """An engine and its two kinds of transaction; safe to share between threads."""
+    """An engine with its read and write transactions; safe to share between threads."""
 
     def __init__(self, url: str | URL, *, foreign_keys: bool = True) -> None:
-        """Connects lazily. `foreign_keys=False` is for migrations, which rebuild tables."""
+        """Opens no connection yet. `foreign_keys=False` is for migrations, which rebuild tables.
+
+        Raises ConfigurationError for a URL that cannot be used.
+        """
         parsed = _parsed(url)
         self.file = database_file(parsed)
-        """The file of an SQLite database; None where the database is a server's."""
+        """The file of an SQLite database; None for a database server."""
         self.damage: str | None = None
-        """What a transaction said of damage, until somebody who has looked clears it."""
+        """The message of the last transaction that met damage, until `clear_damage`."""
         self.engine = _open_engine(parsed, self.file, foreign_keys=foreign_keys)
         self._is_sqlite = self.engine.dialect.name == "sqlite"
         self._reader = self.engine if self._is_sqlite else _snapshot_reader(self.engine)
         self._writer = self.engine.execution_options(**{WRITES_OPTION: True})
-        # Threads of one process queue here rather than poll SQLite's lock; processes poll.
-        self._turn = threading.Lock()
+        # The threads of one process wait for each other here, which is faster than SQLite's
+        # waiting: that polls the lock. Processes still poll.
+        self._write_lock = threading.Lock()
 
     @classmethod
     def at(cls, path: Path) -> Self:
-        """The SQLite database in the file at `path`, whatever characters the path holds."""
+        """The SQLite database in the file at `path`, which may contain any characters."""
         return cls(URL.create("sqlite", database=str(path)))
 
     @contextmanager
     def read(self) -> Iterator[Tx]:
-        """A transaction that sees one snapshot; nothing written in it is kept.
+        """A transaction that reads one snapshot. It is rolled back at the end of the block.
 
-        Raises DatabaseGone, DatabaseDamaged, StorageError, as `write` does too.
+        Raises DatabaseGone, DatabaseDamaged, StorageError.
         """
         with self._storage_failures(), self._reader.connect() as connection:
             yield connection
 
     @contextmanager
     def write(self) -> Iterator[Tx]:
-        """A transaction that is committed, durably, when the block ends without an exception.
+        """A transaction that is committed durably when the block ends without an exception.
 
-        Do not nest. Raises DiskFull, or StorageError when the lock is not had in time.
+        Do not nest. Raises DiskFull; DatabaseGone; DatabaseDamaged; StorageError, also if another
+        writer holds the lock for BUSY_TIMEOUT_S.
         """
-        with self._my_turn(), self._storage_failures(), self._writer.begin() as connection:
+        with self._writer_lock(), self._storage_failures(), self._writer.begin() as connection:
             yield connection
 
     @contextmanager
     def migrate(self) -> Iterator[Tx]:
-        """A write transaction that keeps any other process from migrating meanwhile."""
+        """A write transaction during which no other process can migrate."""
         with self.write() as tx:
-            if not self._is_sqlite:  # whose writers take turns anyway
+            if not self._is_sqlite:  # SQLite has only one writer at a time
                 tx.execute(select(func.pg_advisory_xact_lock(MIGRATION_LOCK)))
             yield tx
 
     def watch_file(self) -> None:
-        """From now on, another file in the place of this one is refused. Raises DatabaseGone."""
+        """Refuses, from now on, another file with the name of this one. Raises DatabaseGone."""
         if self.file is not None:
             try:
                 self.file.watch()
@@ -104,11 +112,13 @@ class Database:
                 raise DatabaseGone() from error
 
     def erase_traces(self, wait_s: float = ERASE_WAIT_S) -> bool:
-        """Writes the log of changes into the database and empties it; whether nobody was in the
-        way. It waits so long for those who read or write.
+        """Moves the changes in SQLite's log into the database file and empties the log.
 
-        SQLite's; what is deleted is overwritten there (secure_delete). Elsewhere the
-        database's own vacuuming does it. It also gives back the disk space of that log.
+        Deleted rows are overwritten in the file (`secure_delete`), so after this no file holds
+        them. It also frees the disk space of the log. Other databases do this themselves.
+
+        wait_s: seconds to wait for readers and writers. Returns False if they were still active.
+        Raises StorageError.
         """
         if not self._is_sqlite:
             return True
@@ -117,33 +127,35 @@ class Database:
             try:
                 cursor = connection.cursor()
                 cursor.execute(f"PRAGMA busy_timeout = {round(1000 * wait_s)}")
+                # The first column of the result is 1 if the checkpoint was blocked.
                 return not cursor.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]
             finally:
+                # The connection goes back into the pool, so its usual timeout is restored.
                 connection.cursor().execute(f"PRAGMA busy_timeout = {round(1000 * BUSY_TIMEOUT_S)}")
                 connection.close()
 
-    def forget_damage(self) -> None:
-        """Says that the database, which was damaged, is whole again.
+    def clear_damage(self) -> None:
+        """Records that a damaged database is whole again.
 
-        Connections of the pool may have kept damaged pages in memory, so new ones are opened.
+        Pooled connections may still have damaged pages in memory, so all of them are replaced.
         """
         self.damage = None
         self.engine.dispose()
 
     def find_damage(self, *, quick: bool = False) -> tuple[str, ...]:
-        """What is wrong with an SQLite database (see `integrity`); () for any other.
+        """The findings of `integrity.find_damage` for an SQLite database; () for any other.
 
         Raises DatabaseGone, StorageError.
         """
         if self.file is None:
             return ()
         self.file.check()
-        # A connection of its own: those in use would show the pages that they remember.
+        # A new connection, because pooled ones read pages from their cache, not from the file.
         with closing(sqlite3.connect(self.file.path, timeout=BUSY_TIMEOUT_S)) as connection:
             return integrity.find_damage(connection, quick=quick)
 
     def check_copyable(self) -> None:
-        """Raises ConfigurationError unless the database is a file (SQLite's), for `copy_to`."""
+        """Raises ConfigurationError if `copy_to` cannot copy this database: only SQLite's files."""
         if not self._is_sqlite:
             raise ConfigurationError(
                 f"Kinedex copies SQLite databases only, and this one is {self.engine.dialect.name}:"
@@ -152,14 +164,14 @@ class Database:
             )
 
     def copy_to(self, path: Path) -> None:
-        """Writes a copy of the database as it is at one moment, while others read and write.
+        """Copies one snapshot of the database to `path`, while others read and write.
 
-        See `check_copyable`. Raises DiskFull, StorageError.
+        Call `check_copyable` before. Raises DiskFull, StorageError.
         """
         connection = self.engine.raw_connection()
         try:
             with closing(sqlite3.connect(path)) as copy:
-                # All pages in one step: they are those of one snapshot, and no writer waits.
+                # All pages in one step, so that they belong to one snapshot. No writer waits.
                 connection.driver_connection.backup(copy)  # type: ignore[union-attr]
         except sqlite3.Error as error:
             code = getattr(error, "sqlite_errorcode", None)
@@ -170,12 +182,12 @@ class Database:
             connection.close()
 
     def close(self) -> None:
-        """Gives back all connections."""
+        """Closes all connections."""
         self.engine.dispose()
 
     @contextmanager
     def _storage_failures(self) -> Iterator[None]:
-        """Failures of the database as ours; its file is looked at first."""
+        """Checks the file of the database, and converts exceptions of the driver to ours."""
         if self.file is not None:
             self.file.check()
         try:
@@ -186,20 +198,20 @@ class Database:
             if failure is None:
                 raise
             if isinstance(failure, DatabaseDamaged):
-                self.damage = failure.detail
+                self.damage = failure.detail  # `Health` then checks all pages
             raise failure from error
 
     @contextmanager
-    def _my_turn(self) -> Iterator[None]:
+    def _writer_lock(self) -> Iterator[None]:
         if not self._is_sqlite:
             yield
             return
-        if not self._turn.acquire(timeout=BUSY_TIMEOUT_S):
+        if not self._write_lock.acquire(timeout=BUSY_TIMEOUT_S):
             raise StorageError("The database stayed locked by another writer of this process")
         try:
             yield
         finally:
-            self._turn.release()
+            self._write_lock.release()
 
 
 def _snapshot_reader(engine: Engine) -> Engine:
@@ -207,7 +219,7 @@ def _snapshot_reader(engine: Engine) -> Engine:
 
 
 def database_file(url: URL | str) -> DatabaseFile | None:
-    """The file of an SQLite database that is there or is to be made; None for any other."""
+    """The file of an SQLite database, which may not exist yet; None for any other database."""
     parsed = _parsed(url)
     if parsed.get_backend_name() != "sqlite" or "uri" in parsed.query or not parsed.database:
         return None
@@ -222,7 +234,7 @@ def _parsed(url: URL | str) -> URL:
 
 
 def _open_engine(parsed: URL, file: DatabaseFile | None, *, foreign_keys: bool) -> Engine:
-    # allow_nan: JSON has no NaN; hide_parameters: no content of rows in logs and tracebacks.
+    # hide_parameters: logs and tracebacks must not hold the content of rows.
     common: dict[str, Any] = {
         "json_serializer": _to_json,
         "hide_parameters": True,
@@ -240,6 +252,7 @@ def _open_engine(parsed: URL, file: DatabaseFile | None, *, foreign_keys: bool) 
 
 
 def _to_json(value: object) -> str:
+    # JSON has no NaN: other programs could not read such a column.
     return json.dumps(value, allow_nan=False, ensure_ascii=False)
 
 
@@ -248,22 +261,23 @@ def _open_sqlite(
 ) -> Engine:
     if not url.database or url.database == ":memory:":
         raise ConfigurationError(
-            "SQLite in memory is not shared by processes: give KINEDEX_DATABASE_URL a file"
+            "Processes cannot share an SQLite database in memory: name a file in "
+            "KINEDEX_DATABASE_URL"
         )
     _make_folder(Path(url.database).parent)
     engine = create_engine(url, connect_args={"timeout": BUSY_TIMEOUT_S}, **common)
 
     @event.listens_for(engine, "do_connect")
-    def _look_first(*_: object) -> None:
-        # SQLite would make a new file where the opened one was moved away.
+    def _check_file(*_: object) -> None:
+        # Without this, SQLite would make a new file if the opened one was moved away.
         if file is not None:
             _open_file(file)
 
     @event.listens_for(engine, "connect")
     def _prepare(connection: sqlite3.Connection, _record: object) -> None:
-        connection.isolation_level = None  # we say BEGIN ourselves, below
+        connection.isolation_level = None  # the driver sends no BEGIN: `_begin` does, below
         connection.execute("PRAGMA synchronous = FULL")
-        connection.execute("PRAGMA secure_delete = ON")  # who is forgotten leaves no trace
+        connection.execute("PRAGMA secure_delete = ON")  # deleted personal data are overwritten
         connection.execute(f"PRAGMA foreign_keys = {'ON' if foreign_keys else 'OFF'}")
         _ensure_wal(connection)
 
@@ -294,8 +308,8 @@ def _open_file(file: DatabaseFile) -> None:
 
 
 def _ensure_wal(connection: sqlite3.Connection) -> None:
-    # The mode is kept in the file. Two processes that create it at once can meet a lock for
-    # which SQLite does not call its busy handler, hence the loop.
+    # The file stores the mode. If two processes create the file at the same time, one can meet a
+    # lock for which SQLite does not call its busy handler. Therefore the loop.
     deadline = time.monotonic() + BUSY_TIMEOUT_S
     while connection.execute("PRAGMA journal_mode").fetchone()[0] != "wal":
         try:
@@ -308,10 +322,12 @@ def _ensure_wal(connection: sqlite3.Connection) -> None:
 
 def _as_storage_error(error: BaseException | None) -> StorageError | None:
     code = getattr(error, "sqlite_errorcode", None)
+    # SHMSIZE: SQLite cannot make its shared-memory file, which needs space too.
     if code in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR_SHMSIZE):
         return DiskFull()
     if code is None:
         return None
+    # The low byte is the primary result code; the others refine it.
     if code & 0xFF in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB):
         return DatabaseDamaged(f"The database is damaged: {error}")
     if code & 0xFF in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):

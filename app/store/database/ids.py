@@ -9,10 +9,10 @@ ID_BYTES = 10
 
 
 def new_id(noun: str) -> str:
-    """A random id that tells what it names, such as `clip_5f0c...` (80 bits)."""
+    """A random id (80 bits) that begins with the noun, such as `clip_5f0c...`."""
     return f"{noun}_{secrets.token_hex(ID_BYTES)}"
 
 
 def utc_now() -> datetime:
-    """This moment, aware, in UTC."""
+    """The current time in UTC, with a time zone."""
     return datetime.now(UTC)

@@ -1,7 +1,7 @@
-"""Pages of a list: opaque cursors that say after which row the next page begins.
+"""Pages of a list, with opaque cursors. A cursor names the row after which the next page begins.
 
-A cursor holds the sort, and the last row's value in the sorted column and its id. So rows that come
-and go between two pages never make another row appear twice or not at all.
+A cursor holds the sort, and the id and sorted value of the last row. So if rows are added or
+removed between two pages, no other row appears twice or is missed.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Value = str | float | datetime
 
 @dataclass(frozen=True, slots=True)
 class Page(Generic[Item]):
-    """One page; next: the cursor of the page after it, None on the last."""
+    """One page. next: the cursor of the following page, None on the last page."""
 
     items: tuple[Item, ...]
     next: str | None
@@ -30,7 +30,7 @@ class Page(Generic[Item]):
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """Where a row stands in a list: its value in the sorted column, then its id."""
+    """The position of a row in a sorted list: its value in the sorted column, then its id."""
 
     value: Value
     id: str
@@ -44,15 +44,19 @@ def write_cursor(sort: str, position: Position) -> str:
 
 
 def read_cursor(cursor: str, sort: str, kind: type[Value]) -> Position:
-    """The position that a cursor of the same sort holds; raises BadField at "cursor"."""
+    """The position in a cursor.
+
+    kind: the type of the sorted column. Raises BadField at "cursor" if the text is no cursor, or
+    if it was written for another sort.
+    """
     try:
-        found, value, row_id = cursor_codec.decode(cursor)
-        if found == sort:
+        cursor_sort, value, row_id = cursor_codec.decode(cursor)
+        if cursor_sort == sort:
             return Position(_as_kind(value, kind), as_text(row_id))
-    except ValueError:
+    except ValueError:  # NotACursor, or another number of values
         pass
     raise BadField(
-        "The cursor is not one that this list gave",
+        "The cursor is not from this list",
         places=[Place("cursor", "expected the `next` of a page with the same sort and filter")],
     )
 
@@ -64,27 +68,27 @@ def after(
     *,
     descending: bool,
 ) -> ColumnElement[bool]:
-    """Rows that come after `position` when sorted by the column, ties by id."""
+    """The condition for rows after `position`, sorted by the column; the id breaks ties."""
     if descending:
-        further, tie_further = column < position.value, row_id < position.id
+        is_after, is_after_in_tie = column < position.value, row_id < position.id
     else:
-        further, tie_further = column > position.value, row_id > position.id
-    return or_(further, and_(column == position.value, tie_further))
+        is_after, is_after_in_tie = column > position.value, row_id > position.id
+    return or_(is_after, and_(column == position.value, is_after_in_tie))
 
 
 def _as_kind(value: object, kind: type[Value]) -> Value:
     if kind is str:
         return as_text(value)
     if kind is datetime:
-        return _as_moment(value)
+        return _as_time(value)
     return as_number(value)
 
 
-def _as_moment(value: object) -> datetime:
-    moment = datetime.fromisoformat(as_text(value))
-    if moment.tzinfo is None:
-        raise ValueError("a moment without a time zone")
+def _as_time(value: object) -> datetime:
+    time = datetime.fromisoformat(as_text(value))
+    if time.tzinfo is None:
+        raise ValueError("a time without a time zone")
     try:
-        return moment.astimezone(UTC)
-    except OverflowError as problem:
-        raise ValueError("a moment outside the calendar") from problem
+        return time.astimezone(UTC)
+    except OverflowError as problem:  # in the year 1 or 9999
+        raise ValueError("a time outside the calendar") from problem

@@ -1,7 +1,7 @@
-"""The schema's version: upgrading a database, and refusing one of another version.
+"""The version of the schema: upgrades a database, and refuses one with another version.
 
-Alembic upgrades. It takes a quarter of a second to import, so what every start asks (which
-revision the database has, and which one this code needs) is answered without it: migrations
+Alembic does the upgrade. To import it takes a quarter of a second. So the check at every start
+(the revision of the database, and the revision that this code needs) does not use it: migrations
 are files called NNNN_what.py, where NNNN is the revision.
 """
 
@@ -21,14 +21,18 @@ if TYPE_CHECKING:
     from alembic.config import Config
 
 REVISION_TABLE = "alembic_version"
-"""Where Alembic keeps a database's revision."""
+"""The table in which Alembic stores the revision."""
 IN_CHECKOUT = Path(__file__).resolve().parents[3] / "migrations"
 IN_INSTALLATION = Path(sysconfig.get_path("data")) / "share" / "kinedex" / "migrations"
 
 
 @dataclass(frozen=True, slots=True)
 class SchemaState:
-    """Revision of a database (None: it has none) beside the one that this code needs."""
+    """The revision of a database.
+
+    current: its revision, None if it has none; needed: the revision that this code needs;
+    is_empty: whether it has no tables.
+    """
 
     current: str | None
     needed: str
@@ -41,30 +45,35 @@ class SchemaState:
 
 
 def migrations_dir() -> Path:
-    """The migrations, in a checkout (or the image's copy of one) or as a wheel installs them."""
-    for place in (IN_CHECKOUT, IN_INSTALLATION):
-        if (place / "env.py").is_file():
-            return place
+    """The folder of migrations: in a checkout (or the image's copy of it), or from a wheel.
+
+    Raises StorageError if neither exists.
+    """
+    for folder in (IN_CHECKOUT, IN_INSTALLATION):
+        if (folder / "env.py").is_file():
+            return folder
     raise StorageError("The database migrations were not installed with Kinedex")
 
 
 def upgrade(database_url: str) -> SchemaState:
-    """Brings the database to this code's schema, in one transaction; an empty one is filled.
+    """Upgrades the database to the schema of this code, in one transaction.
 
-    Harmless when it is there already, and when two processes do it at once. Raises
-    DatabaseOutOfDate where the database is of a newer Kinedex, or of no Kinedex at all.
+    An empty database gets all tables. Nothing happens if the schema is current; two processes may
+    call it at the same time. Raises DatabaseOutOfDate if a newer Kinedex or another program made
+    the database.
     """
     from alembic import command
 
-    # Rebuilding a table under enforced foreign keys would delete what refers to it.
+    # A migration rebuilds a table by deleting it. With foreign keys that would also delete the
+    # rows of other tables that refer to it.
     database = Database(database_url, foreign_keys=False)
     try:
         with database.migrate() as tx:
-            found = _state(tx)
-            _refuse_newer(found)
-            if found.current is None and not found.is_empty:
+            status = _state(tx)
+            _refuse_newer(status)
+            if status.current is None and not status.is_empty:
                 raise DatabaseOutOfDate(
-                    "The database has tables but no schema version: it is none of Kinedex's, or "
+                    "The database has tables but no schema version: another program made it, or "
                     "it is damaged"
                 )
             command.upgrade(_config(tx), "head")
@@ -74,7 +83,7 @@ def upgrade(database_url: str) -> SchemaState:
 
 
 def state(database_url: str) -> SchemaState:
-    """How the database stands to this code."""
+    """The revision of the database and the revision that this code needs."""
     database = Database(database_url)
     try:
         with database.read() as tx:
@@ -84,27 +93,27 @@ def state(database_url: str) -> SchemaState:
 
 
 def check(database_url: str) -> None:
-    """Raises DatabaseOutOfDate, telling what to do, unless the schema is this code's."""
-    found = state(database_url)
-    if found.is_current:
+    """Raises DatabaseOutOfDate if the schema is not current; the message says what to do."""
+    status = state(database_url)
+    if status.is_current:
         return
-    _refuse_newer(found)
+    _refuse_newer(status)
     raise DatabaseOutOfDate(
-        f"The database has schema {found.current or 'none'}, this Kinedex needs {found.needed}: "
+        f"The database has schema {status.current or 'none'}, this Kinedex needs {status.needed}: "
         "stop all its processes, make a copy, and run `kinedex db upgrade`"
     )
 
 
-def _refuse_newer(found: SchemaState) -> None:
-    if found.current is not None and found.current not in _known_revisions():
+def _refuse_newer(status: SchemaState) -> None:
+    if status.current is not None and status.current not in _revisions():
         raise DatabaseOutOfDate(
-            f"The database is of a newer Kinedex (schema {found.current}, this one knows "
-            f"{found.needed}): install that version"
+            f"The database is from a newer Kinedex (its schema is {status.current}, this Kinedex "
+            f"needs {status.needed}): install the newer version"
         )
 
 
 def prepare(database_url: str) -> None:
-    """What a start does: fills an empty database, checks any other."""
+    """Makes the tables of an empty database, and checks any other."""
     if state(database_url).is_empty:
         upgrade(database_url)
     check(database_url)
@@ -119,7 +128,7 @@ def _config(tx: Tx) -> Config:
     return config
 
 
-def _known_revisions() -> frozenset[str]:
+def _revisions() -> frozenset[str]:
     files = (migrations_dir() / "versions").glob("[0-9]*_*.py")
     return frozenset(file.name.partition("_")[0] for file in files)
 
@@ -129,4 +138,4 @@ def _state(tx: Tx) -> SchemaState:
     current = None
     if REVISION_TABLE in tables:
         current = tx.execute(text(f"SELECT version_num FROM {REVISION_TABLE}")).scalar()  # noqa: S608
-    return SchemaState(current, max(_known_revisions()), is_empty=not tables)
+    return SchemaState(current, max(_revisions()), is_empty=not tables)

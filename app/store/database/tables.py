@@ -1,4 +1,4 @@
-"""The tables. Portable types only; constraints are named, so that migrations can find them."""
+"""The tables. All types are portable; constraints have names, so that migrations can find them."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ metadata = MetaData(
 
 
 class UtcDateTime(TypeDecorator[datetime]):
-    """A moment in UTC, aware in Python on every database (SQLite forgets the zone)."""
+    """A time in UTC. In Python it always has a time zone, which SQLite does not store."""
 
     impl = DateTime(timezone=True)
     cache_ok = True
@@ -47,7 +47,7 @@ class UtcDateTime(TypeDecorator[datetime]):
         value: datetime | None,
         dialect: Dialect,  # noqa: ARG002 - SQLAlchemy's signature
     ) -> datetime | None:
-        """Stored in UTC."""
+        """The value to store: in UTC."""
         return None if value is None else value.astimezone(UTC)
 
     def process_result_value(
@@ -55,7 +55,7 @@ class UtcDateTime(TypeDecorator[datetime]):
         value: datetime | None,
         dialect: Dialect,  # noqa: ARG002 - SQLAlchemy's signature
     ) -> datetime | None:
-        """Read as aware UTC."""
+        """The stored value with the time zone UTC."""
         if value is None:
             return None
         return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
@@ -74,11 +74,11 @@ library = Table(
     metadata,
     Column("id", Integer, primary_key=True, autoincrement=False),
     Column("version", BigInteger, nullable=False),
-    # The folder of files holds the same one: see `identity`.
+    # The folder of files holds the same id: see `identity`.
     Column("library_id", String, nullable=False),
 )
 
-# Files that a committed change made unneeded and that are still to be removed.
+# Files that no row needs since a committed change, and that must still be removed.
 file_removals = Table("file_removals", metadata, Column("sha256", String, primary_key=True))
 
 clips = Table(
@@ -168,7 +168,7 @@ jobs = Table(
     Column("state", String, nullable=False),
     Column("priority", Integer, nullable=False),
     Column("dedupe_key", String, unique=True),
-    # No foreign key: a job outlives its clip, as the record of what was done.
+    # No foreign key: the job remains as a record after its clip is deleted.
     Column("clip_id", String, index=True),
     Column("file_sha256", String, index=True),
     _json("payload", nullable=False),
@@ -179,9 +179,9 @@ jobs = Table(
     Column("attempts", Integer, nullable=False),
     Column("max_attempts", Integer, nullable=False),
     Column("owner", String),
-    # Heartbeats of the holder since its claim: others see that it lives by their growing.
+    # Heartbeats since the claim. While the number grows, other workers know that the owner lives.
     Column("beats", Integer, nullable=False, server_default="0"),
-    # What went wrong, by whose fault it was: see `job_record.NewJob`.
+    # Failed attempts by cause: see `jobs.record.ClaimedJob`.
     Column("failures", Integer, nullable=False, server_default="0"),
     Column("kills", Integer, nullable=False, server_default="0"),
     Column("worker_deaths", Integer, nullable=False, server_default="0"),
@@ -243,7 +243,7 @@ study_pairs = Table(
     Column("id", String, primary_key=True),
     _clip_key(nullable=False, index=True),
     Column("dimensions", Integer, nullable=False),
-    # Which frames of which clips make the models: what is voted on must not change.
+    # Stored with the pair, because a pair that has votes must not change.
     _json("keyposes", nullable=False),
     Column("sequence", String, nullable=False, index=True),
     Column("left_basis", String, nullable=False),

@@ -1,1 +1,1 @@
-"""Files by the hash of their content."""
+"""Stored files, named by the hash of their content."""

@@ -1,8 +1,8 @@
-"""The file store: original bytes, named by their SHA-256, whole or not there at all.
+"""The file store: the original bytes of files, each named by its SHA-256.
 
-Bytes go to a temporary name and are synced there; `keep` renames them to
-`<first two hex digits>/<next two>/<all 64>` and syncs the directories, so that a file with
-its final name is complete whatever happens.
+Bytes are first written to a temporary file and synced. `StagedFile.keep` renames the file to
+`<first two hex digits>/<next two>/<all 64>` and syncs the directories. So a file with its final
+name is always complete, even after a crash.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import BinaryIO, Protocol
 
 from app.errors import BadField, DiskFull, NotFound, Place, StorageError, TooLarge
-from app.store.files.checked import SHA256, Checked
+from app.store.files.hash_check import SHA256, HashChecker
 from app.store.files.id_file import read_id
 from app.store.files.locked_file import create_locked, remove_if_abandoned
 from app.store.files.quarantine import FOLDER, Quarantine
@@ -28,7 +28,7 @@ NO_SPACE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 
 
 class Readable(Protocol):
-    """Anything that gives bytes: a file, an upload, a member of an archive."""
+    """A source of bytes: a file, an upload, a member of an archive."""
 
     def read(self, size: int, /) -> bytes:
         """At most `size` bytes; none at the end."""
@@ -37,7 +37,7 @@ class Readable(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class StagedFile:
-    """Bytes that are synced under a temporary name, not yet part of the store."""
+    """A synced file with a temporary name, which is not part of the store yet."""
 
     sha256: str
     size: int
@@ -45,9 +45,10 @@ class StagedFile:
     final: Path
 
     def keep(self) -> None:
-        """Makes the file part of the store; harmless when the same bytes are there already.
+        """Makes the file part of the store. The store may already hold the same bytes.
 
-        Call it in the write transaction that adds the row which refers to it.
+        Call it in the write transaction that adds the row which refers to the file. Raises
+        DiskFull, StorageError.
         """
         with _disk_failures():
             make_private_synced(self.final.parent)
@@ -55,7 +56,7 @@ class StagedFile:
             sync_folder(self.final.parent)
 
     def open(self) -> BinaryIO:
-        """The staged bytes, to look at before they are kept."""
+        """The staged bytes, for reading before `keep`."""
         return self.temporary.open("rb")
 
 
@@ -63,33 +64,34 @@ class FileStore:
     """A directory of files by SHA-256; any number of processes may share it."""
 
     def __init__(self, root: Path, library_id: str | None = None) -> None:
-        """library_id: of the library whose files these are; None does not ask."""
+        """library_id: the library of these files; with None, `check_identity` checks nothing."""
         self.root = root
         self.library_id = library_id
         self.quarantine = Quarantine(root / FOLDER)
         self._temporaries = root / "tmp"
-        self._checked = Checked()
+        self._checked = HashChecker()
 
     def check_identity(self) -> None:
-        """Raises StorageError where the folder is not, or no more, that of the library.
+        """Raises StorageError if the folder does not belong to the library (any more).
 
-        A disk that is not mounted leaves an empty folder: nothing may be stored there.
+        If the disk is not mounted, the folder is empty, and nothing may be stored in it.
         """
         if self.library_id is None:
             return
         with _disk_failures():
-            found = read_id(self.root)
-        if found != self.library_id:
+            folder_id = read_id(self.root)
+        if folder_id != self.library_id:
             raise StorageError(
-                f"The folder {self.root} is not the one of this library: it holds "
-                f"{found or 'no id'}, and {self.library_id} is expected"
+                f"The folder {self.root} is not the one of this library: its id is "
+                f"{folder_id or 'no id'}, and {self.library_id} is expected"
             )
 
     @contextmanager
     def stage(self, content: Readable, *, max_bytes: int | None = None) -> Iterator[StagedFile]:
-        """Streams content to disk; what is not kept in the block is removed after it.
+        """Streams content to a temporary file, which is removed after the block unless `keep` ran.
 
-        Raises TooLarge beyond `max_bytes` and DiskFull; then nothing is left.
+        Raises TooLarge if the content has more than `max_bytes`; DiskFull; StorageError. Then
+        nothing is left on the disk.
         """
         self.check_identity()
         with _disk_failures():
@@ -98,60 +100,63 @@ class FileStore:
         try:
             with _disk_failures():
                 sha256, size = _write_synced(file, content, max_bytes)
-            # Open, and so locked, to the end: a sweep lets it be.
-            yield StagedFile(sha256, size, temporary, self._place(sha256))
+            # The file is open, and so locked, until the end: a sweep does not remove it.
+            yield StagedFile(sha256, size, temporary, self._path_of(sha256))
         finally:
-            with suppress(OSError):  # a full disk has been told already
+            with suppress(OSError):  # a full disk was reported already
                 file.close()
             temporary.unlink(missing_ok=True)
 
     def path(self, sha256: str) -> Path:
-        """Where the file is; raises NotFound when the store does not have it.
+        """The path of the file; raises NotFound if the store does not have it.
 
-        One that went to the quarantine by mistake is brought back.
+        A file in the quarantine is moved back, because somebody needs it.
         """
-        place = self._place(sha256)
-        if not place.is_file() and not self.bring_back(sha256):
+        path = self._path_of(sha256)
+        if not path.is_file() and not self.bring_back(sha256):
             raise NotFound(f"The file {sha256} is not in the store")
-        return place
+        return path
 
     def has(self, sha256: str) -> bool:
-        """Whether the store has the file, the quarantine included."""
-        return self._place(sha256).is_file() or (self.quarantine.folder / sha256).is_file()
+        """Whether the store or its quarantine has the file."""
+        return self._path_of(sha256).is_file() or (self.quarantine.folder / sha256).is_file()
 
     def open(self, sha256: str) -> BinaryIO:
         """The file, for reading; raises NotFound."""
         return self.path(sha256).open("rb")
 
     def checked_path(self, sha256: str) -> Path:
-        """As `path`, of a file whose bytes are those that were stored; raises FileDamaged too."""
+        """As `path`, but the file is checked for damage; raises FileDamaged too."""
         path = self.path(sha256)
         with _disk_failures():
             self._checked.check(path)
         return path
 
     def remove(self, sha256: str) -> None:
-        """Removes the file, if there, also from the quarantine; `removals` knows whether it may."""
+        """Removes the file from the store and the quarantine, if it is there.
+
+        `removals` decides whether a file may be removed.
+        """
         with _disk_failures():
-            self._place(sha256).unlink(missing_ok=True)
+            self._path_of(sha256).unlink(missing_ok=True)
             self.quarantine.remove(sha256)
 
     def set_aside(self, sha256: str) -> None:
-        """Moves the file, if there, to the quarantine."""
-        place = self._place(sha256)
-        if place.is_file():
+        """Moves the file to the quarantine, if the store has it."""
+        path = self._path_of(sha256)
+        if path.is_file():
             with _disk_failures():
-                self.quarantine.take(place)
+                self.quarantine.take(path)
 
     def bring_back(self, sha256: str) -> bool:
-        """Moves the file back from the quarantine; whether it was there and is missing no more."""
+        """Moves the file back from the quarantine; returns whether the store has it by that."""
         with _disk_failures():
-            return self.quarantine.give_back(self._place(sha256))
+            return self.quarantine.give_back(self._path_of(sha256))
 
     def remove_abandoned_temporaries(self) -> int:
-        """Removes what uploads left whose process died; returns how many."""
-        left = [*self._temporaries.glob("up_*"), *self.root.glob("id_*")]
-        return sum(remove_if_abandoned(path, Path.unlink) for path in left)
+        """Removes the temporary files of dead processes; returns their number."""
+        temporaries = [*self._temporaries.glob("up_*"), *self.root.glob("id_*")]
+        return sum(remove_if_abandoned(path, Path.unlink) for path in temporaries)
 
     def __iter__(self) -> Iterator[str]:
         """The SHA-256 of every file in the store."""
@@ -159,8 +164,8 @@ class FileStore:
             if SHA256.fullmatch(path.name):
                 yield path.name
 
-    def _place(self, sha256: str) -> Path:
-        # Guards paths against anything that is not a hash, such as "../..".
+    def _path_of(self, sha256: str) -> Path:
+        # A text that is no hash, such as "../..", could lead out of the folder.
         if not SHA256.fullmatch(sha256):
             raise BadField(places=[Place("sha256", "64 lower-case hex digits are expected")])
         return self.root / sha256[:2] / sha256[2:4] / sha256

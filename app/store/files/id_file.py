@@ -1,4 +1,4 @@
-"""The small file in the folder of files that says to which library it belongs."""
+"""The small file in the folder of files that holds the id of the library."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ NAME = "library-id"
 
 
 def read_id(folder: Path) -> str | None:
-    """The id of the library that the folder belongs to; None where it says nothing.
+    """The id of the library that the folder belongs to; None if it holds no id.
 
-    Raises OSError where that cannot be read.
+    Raises OSError if the file cannot be read.
     """
     try:
         return (folder / NAME).read_text(encoding="ascii", errors="replace").strip() or None
@@ -24,10 +24,10 @@ def read_id(folder: Path) -> str | None:
 
 
 def write_id(folder: Path, library_id: str, *, replaces: bool = False) -> None:
-    """Writes the id, whole and synced or not at all; makes the folder where there is none.
+    """Writes the id completely and synced, or not at all; makes a missing folder.
 
-    An id that is there stays, unless `replaces`: of two libraries that take the folder at once,
-    one wins, and the other one reads so. Raises OSError.
+    Without `replaces`, an existing id stays: if two libraries take the folder at the same time, the
+    first one wins, and the other one finds out when it reads the id. Raises OSError.
     """
     make_private(folder.parent)
     make_private_synced(folder)
@@ -37,19 +37,19 @@ def write_id(folder: Path, library_id: str, *, replaces: bool = False) -> None:
             file.write(f"{library_id}\n".encode("ascii"))
             file.flush()
             os.fsync(file.fileno())
-        _name(temporary, folder / NAME, replaces=replaces)
+        _rename(temporary, folder / NAME, replaces=replaces)
     finally:
         temporary.unlink(missing_ok=True)
     sync_folder(folder)
 
 
-def _name(temporary: Path, final: Path, *, replaces: bool) -> None:
+def _rename(temporary: Path, final: Path, *, replaces: bool) -> None:
     if replaces:
         temporary.replace(final)
         return
     with suppress(FileExistsError):
         try:
-            final.hardlink_to(temporary)
-        except (PermissionError, NotImplementedError):  # a disk without hard links
+            final.hardlink_to(temporary)  # it fails if the name exists; a rename does not
+        except (PermissionError, NotImplementedError):  # the file system has no hard links
             if not final.exists():
                 temporary.replace(final)

@@ -1,7 +1,7 @@
-"""Files and folders that are locked while their maker lives.
+"""Temporary files and folders that are locked while the process that made them lives.
 
-The kernel releases the lock when the process ends, however it ends. Whoever can lock a leftover
-therefore knows that its maker is dead; no clock is asked.
+The kernel releases the lock when the process ends, even after kill -9. So a process that can lock
+such a file knows that its maker is dead. No clock is needed for that.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from app.store.database.ids import new_id
 
 
 def create_locked(folder: Path, noun: str) -> tuple[Path, BinaryIO]:
-    """A new file with a random name, private, open for writing and locked until it is closed.
+    """A new private file with a random name, open for writing, and locked until it is closed.
 
     Raises OSError.
     """
@@ -25,9 +25,9 @@ def create_locked(folder: Path, noun: str) -> tuple[Path, BinaryIO]:
         path = folder / new_id(noun)
         descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
         _lock(descriptor)
-        if _is_still(path, descriptor):
+        if _is_same_file(path, descriptor):
             return path, os.fdopen(descriptor, "wb")
-        os.close(descriptor)  # it was taken for a leftover before it was locked
+        os.close(descriptor)  # a sweep removed it before it was locked
 
 
 @contextmanager
@@ -38,7 +38,7 @@ def locked_folder(make: Callable[[], Path]) -> Iterator[Path]:
         descriptor = os.open(folder, os.O_RDONLY)
         try:
             _lock(descriptor)
-            if _is_still(folder, descriptor):
+            if _is_same_file(folder, descriptor):
                 yield folder
                 return
         finally:
@@ -46,17 +46,20 @@ def locked_folder(make: Callable[[], Path]) -> Iterator[Path]:
 
 
 def remove_if_abandoned(path: Path, remove: Callable[[Path], object]) -> bool:
-    """Removes what no living process has locked; whether it did. Raises OSError of `remove`."""
+    """Removes a file or folder that no process has locked; returns whether it was removed.
+
+    Raises OSError of `remove`.
+    """
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW)
     except OSError:
-        return False  # it is gone, or not ours to open
+        return False  # it does not exist any more, or belongs to another user
     try:
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
-            return False  # its maker lives, or the disk knows no locks
-        # Removed while it is locked, so that a maker who comes to lock it sees that it is gone.
+            return False  # its maker lives, or the file system has no locks
+        # Removed while it is locked: a maker that has not locked it yet then sees that it is gone.
         remove(path)
         return True
     finally:
@@ -64,12 +67,12 @@ def remove_if_abandoned(path: Path, remove: Callable[[Path], object]) -> bool:
 
 
 def _lock(descriptor: int) -> None:
-    # A disk without locks: nobody can lock there, so nothing is taken for abandoned.
+    # On a file system without locks nobody can lock, so no file counts as abandoned.
     with suppress(OSError):
         fcntl.flock(descriptor, fcntl.LOCK_EX)
 
 
-def _is_still(path: Path, descriptor: int) -> bool:
+def _is_same_file(path: Path, descriptor: int) -> bool:
     try:
         return os.path.samestat(path.stat(), os.fstat(descriptor))
     except FileNotFoundError:

@@ -1,7 +1,7 @@
-"""The quarantine: stored files that the database does not name, kept for a while.
+"""The quarantine: a folder for stored files that the database does not name.
 
-Such files are what a crash left, or a sign that the database is not the newest one. So none is
-removed at once: it waits here, under its SHA-256, and goes back when the database names it again.
+A crash left such files, or the database is an old copy. So they are not removed at once. They stay
+here, named by their SHA-256, until the retention is over, and go back if the database names them.
 """
 
 from __future__ import annotations
@@ -17,16 +17,21 @@ from app.store.folders import make_private_synced
 
 FOLDER = "quarantine"
 NAME_LENGTH = 64
-"""Of a SHA-256 in hex."""
+"""Characters of a SHA-256 in hex."""
 DAY_S = 24 * 3600.0
-LONGEST_GAP_S = DAY_S
-"""Time between two purges counts up to this; so a clock that jumps ahead ends no retention."""
+MAX_PURGE_GAP_S = DAY_S
+"""The time between two purges counts only up to this limit. So if the clock jumps ahead, no file is
+removed too early."""
 _LAST_PURGE = "last-purge"
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
-    """What the quarantine holds. oldest: when its first file came, seconds since 1970."""
+class QuarantineContent:
+    """The files in the quarantine.
+
+    names: their SHA-256, sorted; bytes: their total size; oldest: when the first of them came,
+    seconds since 1970, None for an empty quarantine.
+    """
 
     names: tuple[str, ...]
     bytes: int
@@ -34,7 +39,7 @@ class Held:
 
 
 class Quarantine:
-    """A folder of files by SHA-256; a file's time of change is when it came here."""
+    """A folder of files by SHA-256. The modification time of a file is when it came here."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -47,29 +52,33 @@ class Quarantine:
     def take(self, path: Path) -> None:
         """Moves a stored file here. Raises OSError."""
         make_private_synced(self.folder)
-        # Before the move: with an older time it would be purged at once after a crash.
+        # Set before the move: after a crash between both, an older time would be purged at once.
         os.utime(path)
         path.replace(self.folder / path.name)
 
-    def give_back(self, place: Path) -> bool:
-        """Moves a file back to its place in the store; whether there was one. Raises OSError."""
-        held = self.folder / place.name
-        if place.is_file():
-            held.unlink(missing_ok=True)
+    def give_back(self, path: Path) -> bool:
+        """Moves a file back to `path` in the store; returns whether it did. Raises OSError."""
+        quarantined = self.folder / path.name
+        if path.is_file():
+            quarantined.unlink(missing_ok=True)
             return False
-        if not held.is_file():
+        if not quarantined.is_file():
             return False
-        make_private_synced(place.parent)
-        with suppress(FileNotFoundError):  # another process gave it back
-            held.replace(place)
-        return place.is_file()
+        make_private_synced(path.parent)
+        with suppress(FileNotFoundError):  # another process moved it back
+            quarantined.replace(path)
+        return path.is_file()
 
     def remove(self, sha256: str) -> None:
         """Removes a file, if it is here."""
         (self.folder / sha256).unlink(missing_ok=True)
 
     def purge(self, older_than_s: float) -> tuple[str, ...]:
-        """Removes what has been here longer; the names. Call it often: see LONGEST_GAP_S."""
+        """Removes files that have been here for more than `older_than_s` seconds.
+
+        Returns their names. Call it at least every MAX_PURGE_GAP_S, because more time does not
+        count. Raises OSError.
+        """
         if not self.folder.is_dir():
             return ()
         now = time.time()
@@ -79,17 +88,22 @@ class Quarantine:
             path.unlink(missing_ok=True)
         return tuple(path.name for path in old)
 
-    def held(self) -> Held:
-        """What is here."""
-        told = {path.name: path.stat() for path in self._files()}
-        oldest = min((each.st_mtime for each in told.values()), default=None)
-        return Held(tuple(sorted(told)), sum(each.st_size for each in told.values()), oldest)
+    def content(self) -> QuarantineContent:
+        """The names, the size and the age of all files here."""
+        stats = {path.name: path.stat() for path in self._files()}
+        oldest = min((each.st_mtime for each in stats.values()), default=None)
+        return QuarantineContent(
+            tuple(sorted(stats)), sum(each.st_size for each in stats.values()), oldest
+        )
 
     def _discount_jump(self, now: float) -> None:
-        """Moves all times along with a clock that was set, or while no purge was made."""
+        """Adds to the times of all files the part of the last gap that must not count.
+
+        That is the part beyond MAX_PURGE_GAP_S, or the negative gap of a clock that was set back.
+        """
         mark = self.folder / _LAST_PURGE
         last = mark.stat().st_mtime if mark.exists() else now
-        jump = (now - last) - min(max(now - last, 0.0), LONGEST_GAP_S)
+        jump = (now - last) - min(max(now - last, 0.0), MAX_PURGE_GAP_S)
         if jump:
             for path in self._files():
                 moved = path.stat().st_mtime + jump

@@ -1,7 +1,7 @@
-"""The files of an import: what became of each, counted, and page by page.
+"""The files of an import with their outcomes: their counts, and pages of them.
 
-What is told of a file is read when it is asked for, from the import's entries and their clips:
-a clip that was deleted later is told as deleted.
+The outcome of a file is computed at each call, from the entries of the import and the current
+clips. So a clip that was deleted later has the outcome `deleted`.
 """
 
 from __future__ import annotations
@@ -21,44 +21,44 @@ BY_PATH = "path"
 
 
 class ImportOutcome(StrEnum):
-    """What became of one file when the archive was unpacked."""
+    """The outcome of one file when the archive was unpacked; it does not change later."""
 
     QUEUED = "queued"
-    """Stored as a clip that waits for its analysis (or waited, or failed and waits again)."""
+    """The file was stored as a clip, which was queued for its analysis."""
     EXISTS = "exists"
-    """The same content was in the library."""
+    """The library already had the same content."""
     FAILED = "failed"
-    """Not stored; `problem` says why."""
+    """The file was not stored; `problem` says why."""
     ABSENT = "absent"
-    """Named by a manifest, and not there."""
+    """A manifest names the file, but the archive does not contain it."""
 
 
 class FileOutcome(StrEnum):
-    """What has become of one file by now."""
+    """The current outcome of one file."""
 
     QUEUED = "queued"
-    """A clip that waits for its analysis."""
+    """Its clip waits for an analysis."""
     PROCESSING = "processing"
-    """A clip that is being analysed."""
+    """Its clip is being analyzed."""
     READY = "ready"
-    """A clip that can be searched."""
+    """Its clip can be searched."""
     EXISTS = "exists"
-    """The library held the same content before."""
+    """The library had the same content before the import."""
     FAILED = "failed"
-    """No clip, or one that cannot be analysed."""
+    """It did not become a clip, or its clip cannot be analyzed."""
     DELETED = "deleted"
-    """A clip that was deleted since."""
+    """Its clip was deleted later."""
     ABSENT = "absent"
-    """Named by a manifest, and not there."""
+    """A manifest names the file, but the archive does not contain it."""
 
 
 PROBLEMS = (FileOutcome.FAILED, FileOutcome.ABSENT)
-"""What the owner of the files should look at."""
+"""Outcomes that the owner of the files should look at."""
 
 
 @dataclass(frozen=True, slots=True)
 class ImportedFile:
-    """One file of an import. clip_id: None without a clip; error: RFC 9457 problem."""
+    """One file of an import. clip_id: None without a clip; error: an RFC 9457 problem."""
 
     path: str
     outcome: FileOutcome
@@ -87,7 +87,7 @@ _FILES = (
 
 
 def count(tx: Tx, job_id: str) -> dict[FileOutcome, int]:
-    """How many files of an import came to what; outcomes of no file are left out."""
+    """The number of files of an import by outcome; outcomes without files are left out."""
     query = (
         select(_outcome, func.count())
         .select_from(import_entries)
@@ -106,35 +106,37 @@ def page(
     limit: int = 50,
     cursor: str | None = None,
 ) -> Page[ImportedFile]:
-    """One page of at most `limit` files of an import, by path; raises BadField at "cursor"."""
+    """At most `limit` files of an import, sorted by path; raises BadField at "cursor"."""
     query = _of(job_id)
     if outcome is not None:
         query = query.where(_outcome == outcome.value)
     if cursor is not None:
         position = read_cursor(cursor, BY_PATH, str)
         query = query.where(import_entries.c.path > position.value)
-    found = _read(tx, query.limit(limit + 1))
-    shown = found[:limit]
-    if len(found) <= limit or not shown:
+    files = _read(tx, query.limit(limit + 1))  # one more, to know whether there is another page
+    shown = files[:limit]
+    if len(files) <= limit or not shown:
         return Page(shown, None)
     return Page(shown, write_cursor(BY_PATH, Position(shown[-1].path, "")))
 
 
-def first(tx: Tx, job_id: str, most: int, *, has_problems: bool = True) -> tuple[ImportedFile, ...]:
-    """The first files of an import, by path; where there are more than `most`, those that
-    failed or are absent go before the others.
+def first(
+    tx: Tx, job_id: str, limit: int, *, has_problems: bool = True
+) -> tuple[ImportedFile, ...]:
+    """At most `limit` files of an import, sorted by path.
 
-    `has_problems=False` saves the search for them.
+    If there are more files, those with an outcome in PROBLEMS are chosen first. A caller that
+    knows that there are none passes `has_problems=False`, which saves a query.
     """
-    found = _read(tx, _of(job_id).limit(most + 1))
-    if len(found) <= most or not has_problems:
-        return found[:most]
+    files = _read(tx, _of(job_id).limit(limit + 1))
+    if len(files) <= limit or not has_problems:
+        return files[:limit]
     problems = _read(
-        tx, _of(job_id).where(_outcome.in_([each.value for each in PROBLEMS])).limit(most)
+        tx, _of(job_id).where(_outcome.in_([each.value for each in PROBLEMS])).limit(limit)
     )
-    named = {file.path for file in problems}
-    others = [file for file in found if file.path not in named]
-    chosen = [*problems, *others[: most - len(problems)]]
+    problem_paths = {file.path for file in problems}
+    others = [file for file in files if file.path not in problem_paths]
+    chosen = [*problems, *others[: limit - len(problems)]]
     return tuple(sorted(chosen, key=lambda file: file.path))
 
 
@@ -156,6 +158,6 @@ def _to_file(row: RowMapping) -> ImportedFile:
 
 
 def _clip_error(row: RowMapping) -> dict[str, Any] | None:
-    """Of a clip that failed; one that existed before is not the import's to explain."""
+    """The error of a clip that this import added; clips that existed before have none here."""
     error: dict[str, Any] | None = row["error"]
     return error if row["outcome"] == ClipState.FAILED.value else None

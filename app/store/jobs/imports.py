@@ -1,7 +1,7 @@
-"""Imports: recording what became of each file, and when the import as a whole is done.
+"""Imports: records the outcome of each file, and ends the import job.
 
-An import job unpacks; each clip that it adds has an ingest job of its own. The import is done
-when the last of its clips is. Its files are read in `import_files`.
+An import job unpacks an archive. Each clip that it adds has its own ingest job. The import ends
+when the last of its clips ends. `import_files` reads the recorded files.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ COUNTED = (
     FileOutcome.DELETED,
     FileOutcome.ABSENT,
 )
-"""The outcomes of an import that has ended, as its result counts them."""
+"""The outcomes that the result of an ended import counts."""
 _ABSENT_COUNT = "absent"
-"""Member of an import's payload: how many paths its manifests name in vain."""
+"""Member of the payload of an import: the number of absent files that its manifests name."""
 _FILES = "files"
-"""Member of the payload: how many files are recorded."""
+"""Member of the payload: the number of recorded files."""
 _UNFINISHED = (ClipState.QUEUED.value, ClipState.PROCESSING.value)
 _ADD_ENTRIES = insert(import_entries)
-# From the clips that wait, of which there are few towards the end, not from all files.
+# The query begins with the unfinished clips, which are few near the end, not with all files.
 _ANY_UNFINISHED = (
     select(clips.c.id)
     .where(
@@ -52,7 +52,7 @@ _ANY_UNFINISHED = (
 
 @dataclass(frozen=True, slots=True)
 class NewEntry:
-    """What became of a file: a clip, or a problem (as RFC 9457 has it)."""
+    """The outcome of a file: a clip, or an RFC 9457 problem."""
 
     path: str
     outcome: ImportOutcome
@@ -61,7 +61,10 @@ class NewEntry:
 
 
 def add_entries(tx: Tx, job_id: str, new: Sequence[NewEntry]) -> None:
-    """Records files, a clip's in the transaction that stores it; each path once."""
+    """Records the outcomes of files.
+
+    Call it in the transaction that stores their clips, and once for each path.
+    """
     if new:
         rows = [
             {
@@ -77,13 +80,13 @@ def add_entries(tx: Tx, job_id: str, new: Sequence[NewEntry]) -> None:
 
 
 def recorded_paths(tx: Tx, job_id: str) -> frozenset[str]:
-    """Files that are recorded already: an import that goes on passes them over."""
+    """Paths that are recorded already. An import that is taken up again skips them."""
     query = select(import_entries.c.path).where(import_entries.c.job_id == job_id)
     return frozenset(tx.execute(query).scalars())
 
 
 def waiting_clips(tx: Tx, job_id: str) -> tuple[str, ...]:
-    """The clips of an import that wait for their analysis, or are being analysed."""
+    """Ids of the clips of an import whose analysis is waiting or running."""
     query = (
         select(import_entries.c.clip_id)
         .join(clips, clips.c.id == import_entries.c.clip_id)
@@ -96,10 +99,13 @@ def waiting_clips(tx: Tx, job_id: str) -> tuple[str, ...]:
     return tuple(tx.execute(query).scalars())
 
 
-def give_turn(tx: Tx, lease: Lease, progress: float, detail: str, lowest: int) -> JobRecord:
-    """Back into the queue behind other imports, one step less urgent, but not below `lowest`.
+def requeue_behind_others(
+    tx: Tx, lease: Lease, progress: float, detail: str, lowest: int
+) -> JobRecord:
+    """Puts an import back into the queue, so that other imports get a turn.
 
-    No attempt is counted, and the progress stays. Raises LeaseLost.
+    Its priority number grows by one, but not beyond `lowest`, the least urgent one. The progress
+    stays, and this does not count as a failed attempt. Raises LeaseLost.
     """
     leases.give_back(tx, lease)
     priority = job_repository.get_row(tx, lease.job_id)["priority"]
@@ -115,9 +121,10 @@ def give_turn(tx: Tx, lease: Lease, progress: float, detail: str, lowest: int) -
 def wait_for_clips(
     tx: Tx, lease: Lease, detail: str | None = None, *, absent: int = 0
 ) -> JobRecord:
-    """The archive is unpacked: the job needs no worker from here on, and ends with its clips.
+    """The archive is unpacked: the job needs no worker any more, and ends with its last clip.
 
-    absent: how many paths the manifests name in vain, recorded or not. Raises LeaseLost.
+    absent: the number of absent files that the manifests name, including those that are not
+    recorded. Raises LeaseLost.
     """
     parked = leases.park(tx, lease, detail)
     payload = job_repository.get_row(tx, parked.id)["payload"]
@@ -132,7 +139,7 @@ def wait_for_clips(
 
 
 def waiting_on(tx: Tx, clip_ids: Collection[str]) -> dict[str, int]:
-    """The open import jobs that have some of these clips among theirs, with how many."""
+    """The open import jobs that wait for any of these clips, each with the number of them."""
     if not clip_ids:
         return {}
     query = (
@@ -148,17 +155,18 @@ def waiting_on(tx: Tx, clip_ids: Collection[str]) -> dict[str, int]:
 
 
 def settle_if_done(tx: Tx, job_id: str, ended: int) -> JobRecord:
-    """Ends an unpacked import whose clips are all done; else brings its progress up to date.
+    """Ends an unpacked import if all its clips have ended; otherwise updates its progress.
 
-    ended: how many of its clips have come to their end since the last call.
+    ended: the number of its clips that have ended since the last call. Raises JobNotFound.
     """
-    # Where writers overlap, the last two clips must not each see the other as unfinished.
+    # If the last two clips end in transactions at the same time, each would see the other clip as
+    # unfinished, and nobody would end the import.
     library.lock(tx)
     row = job_repository.get_row(tx, job_id)
     if row["state"] != JobState.PROCESSING.value or row["owner"] is not None:
         return job_repository.to_record(row)
     if tx.execute(_ANY_UNFINISHED, {"the_id": job_id}).first() is not None:
-        # Not counted anew: of a hundred thousand files that takes longer than an analysis.
+        # Not a new count: for a hundred thousand files it takes longer than an analysis.
         total = row["payload"].get(_FILES) or _counts(tx, job_id)[0]
         return _update(tx, job_id, progress=min(row["progress"] + ended / total, 1.0))
     return _update(
@@ -173,15 +181,15 @@ def settle_if_done(tx: Tx, job_id: str, ended: int) -> JobRecord:
 
 
 def _result(tx: Tx, job_id: str, absent: int | None) -> dict[str, Any]:
-    """Counts only: an import may hold a hundred thousand files."""
-    found = import_files.count(tx, job_id)
-    counts = {outcome.value: found.get(outcome, 0) for outcome in COUNTED}
+    # Only counts, without the files: an import may hold a hundred thousand of them.
+    number_of = import_files.count(tx, job_id)
+    counts = {outcome.value: number_of.get(outcome, 0) for outcome in COUNTED}
     counts[FileOutcome.ABSENT.value] = absent or counts[FileOutcome.ABSENT.value]
     return {"total": sum(counts.values()), **counts}
 
 
 def _counts(tx: Tx, job_id: str) -> tuple[int, int]:
-    """How many files, and how many of them have a clip that is still to end."""
+    """The number of files, and the number of those whose clip has not ended yet."""
     unfinished = func.count().filter(
         or_(clips.c.state.in_(_UNFINISHED), clips.c.reanalysis.in_(REANALYSIS_OPEN))
     )

@@ -1,9 +1,9 @@
-"""Leases: one worker at a time has a job, for as long as its heart beats.
+"""Leases: only one worker at a time has a job, as long as it sends heartbeats.
 
-A claim counts an attempt and gives a lease. Whatever a worker does with a job is guarded by its
-lease (owner and attempt), so that a worker that was thought dead and comes back changes nothing.
-No lease has an end on the clock: `abandoned` finds those whose holder is dead. Nothing here
-touches clips: `queue` and `outcomes` join the two.
+A claim counts an attempt and returns a lease. Every change of a job has its lease (owner and
+attempt number) as a condition. So a worker that seemed dead and comes back cannot change a job
+that another worker has now. A lease has no end time: `abandoned_jobs` finds jobs of dead workers.
+This module does not change clips: `queue` and `outcomes` change jobs and clips together.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ from app.store.database.tables import jobs
 from app.store.jobs import repository as job_repository
 from app.store.jobs.record import ClaimedJob, JobKind, JobRecord, JobState, Lease
 
-LONGEST_DELAY_S = 60.0
-"""No job waits longer for its next try. One that is to wait longer by the clock on the wall is
-due at once: then the clock was set back."""
+MAX_DELAY_S = 60.0
+"""Longest time before the next attempt. If a job would wait longer by the system time, the clock
+was set back, and the job is due now."""
 
 _ORDER = (jobs.c.priority, jobs.c.created_at, jobs.c.id)
 _FREE: dict[str, Any] = {"owner": None}
@@ -45,9 +45,9 @@ _FAR = bindparam("far", type_=jobs.c.not_before.type)
 def claim(
     tx: Tx, kinds: Collection[JobKind], owner: str, *, now: datetime | None = None
 ) -> ClaimedJob | None:
-    """Takes the most urgent job that is queued; None when there is none."""
+    """Claims the most urgent queued job of these kinds; None if there is none."""
     now = now or utc_now()
-    row = tx.execute(_FIRST_QUEUED, _asked(kinds, now)).mappings().one_or_none()
+    row = tx.execute(_FIRST_QUEUED, _due_parameters(kinds, now)).mappings().one_or_none()
     if row is None:
         return None
     values = {
@@ -58,14 +58,14 @@ def claim(
         "attempts": row["attempts"] + 1,
         "started_at": row["started_at"] or now,
         "not_before": None,
-        "dedupe_key": None,  # from now on another of its kind may be queued
+        "dedupe_key": None,  # from now on another job with this key may be queued
     }
     return as_claimed(tx.execute(_TAKE, values).mappings().one())
 
 
 def is_any_claimable(tx: Tx, kinds: Collection[JobKind], *, now: datetime | None = None) -> bool:
-    """Whether `claim` would find something: cheap, so that an idle worker need not write."""
-    return tx.execute(_FIRST_DUE, _asked(kinds, now or utc_now())).first() is not None
+    """Whether `claim` would find a job. It only reads, for idle workers."""
+    return tx.execute(_FIRST_DUE, _due_parameters(kinds, now or utc_now())).first() is not None
 
 
 def heartbeat(
@@ -76,10 +76,10 @@ def heartbeat(
     detail: str | None = None,
     has_progressed: bool = False,
 ) -> bool:
-    """Shows that the holder lives and how far the work is; True when the job is to be canceled.
+    """Records a heartbeat and the progress; returns whether the job should be canceled.
 
-    has_progressed: some of the work is done and need not be done again, so that what went wrong
-    before does not count any more.
+    progress: completed share, 0..1; has_progressed: a part of the work is done for good, so the
+    counters of failures, kills and deaths start again. Raises LeaseLost.
     """
     values: dict[str, Any] = dict(_PROGRESS) if has_progressed else {}
     if progress is not None:
@@ -90,43 +90,46 @@ def heartbeat(
 
 
 def succeed(tx: Tx, lease: Lease, result: dict[str, Any] | None = None) -> JobRecord:
-    """The job is done. Raises LeaseLost, as all below, when the job is no longer the caller's."""
+    """The job succeeded. Raises LeaseLost if the caller does not have the job any more."""
     return _end(tx, lease, JobState.SUCCEEDED, progress=1.0, result=result)
 
 
 def fail(tx: Tx, lease: Lease, problem: dict[str, Any]) -> JobRecord:
-    """The job is given up, for the reason given as an RFC 9457 problem."""
+    """The job failed for good; problem: the reason (RFC 9457). Raises LeaseLost."""
     return _end(tx, lease, JobState.FAILED, error=problem)
 
 
 def end_canceled(tx: Tx, lease: Lease) -> JobRecord:
-    """The worker has stopped because it was asked to."""
+    """The job was canceled on request, and its worker has stopped. Raises LeaseLost."""
     return _end(tx, lease, JobState.CANCELED)
 
 
 def give_back(tx: Tx, lease: Lease) -> JobRecord:
-    """Back into the queue: the worker shuts down, or did half and leaves the rest for later."""
+    """Puts the job back into the queue, for example when the worker stops. Raises LeaseLost."""
     values = {"state": JobState.QUEUED.value, "progress": 0.0}
     return job_repository.to_record(_change(tx, lease, values | _FREE))
 
 
 def retry_later(tx: Tx, lease: Lease, delay_s: float, **counters: int) -> JobRecord:
-    """Back into the queue for a while, at most LONGEST_DELAY_S.
+    """Puts the job back into the queue; it is due after `delay_s` seconds, at most MAX_DELAY_S.
 
-    counters: new values of `failures` or `kills`.
+    counters: new values of `failures` or `kills`. Raises LeaseLost.
     """
-    later = utc_now() + timedelta(seconds=min(delay_s, LONGEST_DELAY_S))
+    later = utc_now() + timedelta(seconds=min(delay_s, MAX_DELAY_S))
     values = {"state": JobState.QUEUED.value, "not_before": later, "progress": 0.0}
     return job_repository.to_record(_change(tx, lease, values | _FREE | counters))
 
 
 def park(tx: Tx, lease: Lease, detail: str | None = None) -> JobRecord:
-    """The worker is done, the job waits for others: processing, but nobody's, never abandoned."""
+    """The worker has done its part, and the job waits for other jobs. Raises LeaseLost.
+
+    Its state stays processing, but it has no owner, so it never counts as abandoned.
+    """
     return job_repository.to_record(_change(tx, lease, {"detail": detail} | _FREE))
 
 
 def as_claimed(row: RowMapping) -> ClaimedJob:
-    """A row of `jobs` that its owner has, as what a worker gets."""
+    """A row of `jobs` with an owner, as the claimed job that its worker gets."""
     return ClaimedJob(
         job=job_repository.to_record(row),
         lease=Lease(row["id"], row["owner"], row["attempts"]),
@@ -141,8 +144,8 @@ def as_claimed(row: RowMapping) -> ClaimedJob:
     )
 
 
-def _asked(kinds: Collection[JobKind], now: datetime) -> dict[str, Any]:
-    far = now + timedelta(seconds=LONGEST_DELAY_S)
+def _due_parameters(kinds: Collection[JobKind], now: datetime) -> dict[str, Any]:
+    far = now + timedelta(seconds=MAX_DELAY_S)
     return {"kinds": [kind.value for kind in kinds], "now": now, "far": far}
 
 
@@ -156,26 +159,26 @@ def _change(tx: Tx, lease: Lease, values: dict[str, Any]) -> RowMapping:
 
 
 def _changed(tx: Tx, change: Update, lease: Lease, values: dict[str, Any]) -> RowMapping:
-    held = {"the_id": lease.job_id, "holder": lease.owner, "attempt": lease.attempt}
-    row = tx.execute(change, held | values).mappings().one_or_none()
+    condition = {"the_id": lease.job_id, "holder": lease.owner, "attempt": lease.attempt}
+    row = tx.execute(change, condition | values).mappings().one_or_none()
     if row is None:
         raise LeaseLost(f"The job {lease.job_id} is over, or was given to another worker")
     return row
 
 
 def _first(term: ColumnElement[bool]) -> Select[Any]:
-    """The most urgent job of the kinds asked for, of which `term` holds."""
+    """Selects the most urgent job of some kinds for which `term` is true."""
     of_kinds = jobs.c.kind.in_(bindparam("kinds", expanding=True))
     return select(jobs).where(of_kinds, term).order_by(*_ORDER).limit(1)
 
 
-# The statements of every claim and every step, made once: making them costs more than running.
+# Built once, because to build a statement takes longer than to execute it.
 _DUE = and_(
     jobs.c.state == JobState.QUEUED.value,
     or_(jobs.c.not_before.is_(None), jobs.c.not_before <= _NOW, jobs.c.not_before > _FAR),
 )
 _FIRST_DUE = _first(_DUE)
-# skip_locked: on PostgreSQL workers pass each other; SQLite's writers take turns anyway.
+# skip_locked: PostgreSQL skips a job that another worker is claiming. SQLite has one writer only.
 _FIRST_QUEUED = _FIRST_DUE.with_for_update(skip_locked=True)
 _TAKE = update(jobs).where(jobs.c.id == bindparam("the_id")).returning(jobs)
 _CHANGE = (

@@ -1,11 +1,11 @@
-"""How work ends: job, clip and import change together, in one transaction.
+"""The outcomes of jobs: job, clip and import change together, in one transaction.
 
-Every acknowledged clip ends once, as ready or as failed with its reason, whatever happens to
-its job: success, bad content, cancellation, or a worker that dies each time it tries.
+Every clip that was accepted ends exactly once, as ready or as failed with a reason. That is true
+for each end of its job: success, bad content, cancellation, or a worker that dies at each attempt.
 
-A clip that was ready stays ready, with its earlier analysis and a warning, where another
-analysis of it fails. Only the content's own verdict, after a client changed what the analysis
-depends on, makes it failed.
+If another analysis of a ready clip fails, the clip stays ready with its earlier analysis and a
+warning. It becomes failed only if a client has changed the input of the analysis, and the content
+is the cause of the failure.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from app.store.jobs import imports, leases, owners, removals
 from app.store.jobs import repository as jobs
 from app.store.jobs.record import ClaimedJob, JobKind, JobRecord, JobState, Lease
 
-MOST_KILLS = 8
-"""A job whose child process is killed from outside so often is tried once more, alone."""
+MAX_KILLS = 8
+"""After this number of kills of its child process from outside, a job is tried once more, alone."""
 KILL_DELAY_S = 0.5
-"""Before the first new try; doubled each time."""
+"""Time before the first attempt after a kill; it doubles with each kill."""
 NOT_REANALYZED = "reanalysis_failed"
-"""Code of the warning of a clip that keeps an earlier analysis."""
+"""Code of the warning on a clip that keeps its earlier analysis."""
 
 
 def finish_ingest(
@@ -40,24 +40,24 @@ def finish_ingest(
     lease: Lease,
     clip_id: str,
     facts: ClipFacts,
-    found: Mapping[str, NDArray[Any]],
+    arrays: Mapping[str, NDArray[Any]],
     *,
     settles_imports: bool = True,
 ) -> None:
-    """The clip is ready, with what was found; its arrays replace those of an earlier analysis.
+    """Makes the clip ready and stores its facts and arrays, which replace the earlier ones.
 
-    Raises LeaseLost, before anything is changed, when the job is no longer the caller's.
-    `settles_imports=False` leaves `settle_imports` to the caller, once for many clips.
+    With `settles_imports=False` the caller calls `settle_imports` itself, once for many clips.
+    Raises LeaseLost, before any change, if the caller does not have the job any more.
     """
     leases.succeed(tx, lease, {"clip_id": clip_id})
-    array_repository.put_many(tx, clip_id, found, version=facts.analysis_version)
+    array_repository.put_many(tx, clip_id, arrays, version=facts.analysis_version)
     clips.set_ready(tx, clip_id, facts)
     if settles_imports:
         settle_imports(tx, [clip_id])
 
 
 def settle_imports(tx: Tx, clip_ids: Collection[str]) -> None:
-    """Ends the imports that waited for these clips only; tells the others' progress."""
+    """Ends the imports whose last clips have ended; updates the progress of the others."""
     for job_id, ended in imports.waiting_on(tx, clip_ids).items():
         imports.settle_if_done(tx, job_id, ended)
 
@@ -65,9 +65,9 @@ def settle_imports(tx: Tx, clip_ids: Collection[str]) -> None:
 def fail_job(
     tx: Tx, claimed: ClaimedJob, problem: dict[str, Any], *, is_verdict: bool = False
 ) -> JobRecord:
-    """The job is given up, its clip with it. Raises LeaseLost.
+    """The job and its clip fail for good. Raises LeaseLost.
 
-    is_verdict: the content itself is bad, and no failure of the machine.
+    is_verdict: the cause is the content of the clip, not the machine.
     """
     failed = leases.fail(tx, claimed.lease, problem)
     _fail_clip(tx, claimed.clip_id, problem, is_verdict=is_verdict)
@@ -80,14 +80,15 @@ def retry_or_fail(
     problem: dict[str, Any],
     *,
     delay_s: float,
-    most: int | None = None,
+    max_failures: int | None = None,
 ) -> JobRecord:
-    """For failures that may pass (a full disk): later again, until there were too many.
+    """Queues the job again after a failure that may be temporary, such as a full disk.
 
-    most: how many failures end the job, by default its `max_attempts`. Raises LeaseLost.
+    max_failures: the number of failures after which the job fails for good, by default its
+    `max_attempts`. Raises LeaseLost.
     """
     failures = jobs.get_row(tx, claimed.job.id)["failures"] + 1
-    if failures >= (most or claimed.max_attempts):
+    if failures >= (max_failures or claimed.max_attempts):
         return fail_job(tx, claimed, problem)
     waiting = leases.retry_later(tx, claimed.lease, delay_s, failures=failures)
     _wait_again(tx, claimed.clip_id)
@@ -95,13 +96,13 @@ def retry_or_fail(
 
 
 def retry_after_kill(tx: Tx, claimed: ClaimedJob, problem: dict[str, Any]) -> JobRecord:
-    """Its child process was killed from outside: try again, without counting it as a failure.
+    """Queues the job again after its child process was killed from outside.
 
-    After MOST_KILLS in a row it is tried alone; `problem` is the reason if that fails too.
-    Raises LeaseLost.
+    A kill is not counted as a failure. After MAX_KILLS kills without progress the job is tried
+    alone, and if its child is killed then too, it fails with `problem`. Raises LeaseLost.
     """
     kills = jobs.get_row(tx, claimed.job.id)["kills"] + 1
-    if kills > MOST_KILLS:
+    if kills > MAX_KILLS:
         return fail_job(tx, claimed, problem)
     delay_s = KILL_DELAY_S * 2 ** (kills - 1)
     waiting = leases.retry_later(tx, claimed.lease, delay_s, kills=kills)
@@ -110,23 +111,23 @@ def retry_after_kill(tx: Tx, claimed: ClaimedJob, problem: dict[str, Any]) -> Jo
 
 
 def give_back(tx: Tx, claimed: ClaimedJob) -> JobRecord:
-    """A worker that is told to stop hands its job to the next one. Raises LeaseLost."""
+    """Puts the job of a worker that stops back into the queue. Raises LeaseLost."""
     queued = leases.give_back(tx, claimed.lease)
     _wait_again(tx, claimed.clip_id)
     return queued
 
 
 def finish_canceled(tx: Tx, claimed: ClaimedJob) -> JobRecord:
-    """The worker has seen the request to cancel and stopped. Raises LeaseLost."""
+    """Ends a job whose worker stopped because of a request to cancel. Raises LeaseLost."""
     canceled = leases.end_canceled(tx, claimed.lease)
-    _cancel_what_hangs_on(tx, claimed.job, claimed.clip_id)
+    _cancel_dependents(tx, claimed.job, claimed.clip_id)
     return canceled
 
 
 def request_cancel(tx: Tx, job_id: str) -> JobRecord:
-    """Cancels a job that nobody works on; asks the worker of one that is worked on.
+    """Cancels a job that no living worker has; otherwise asks its worker to cancel it.
 
-    A job that is over stays as it is. Raises JobNotFound.
+    A job that has ended does not change. Raises JobNotFound.
     """
     row = jobs.get_row(tx, job_id)
     job = jobs.to_record(row)
@@ -135,15 +136,15 @@ def request_cancel(tx: Tx, job_id: str) -> JobRecord:
     if row["owner"] is not None and not owners.is_gone(row["owner"]):
         return _update_job(tx, job_id, cancel_requested=True)
     canceled = _cancel_now(tx, job_id)
-    _cancel_what_hangs_on(tx, job, row["clip_id"])
+    _cancel_dependents(tx, job, row["clip_id"])
     return canceled
 
 
 def recover(tx: Tx, abandoned: ClaimedJob) -> JobRecord:
     """Puts a job of a dead worker back into the queue, or ends it.
 
-    It ends where that was asked for, and after `max_attempts` deaths without progress. The
-    caller holds it, from `Watch.take`.
+    It ends if a client asked to cancel it, and after `max_attempts` deaths without progress. The
+    caller must have taken the job by `Watch.take`.
     """
     if abandoned.cancel_requested:
         return finish_canceled(tx, abandoned)
@@ -156,21 +157,23 @@ def recover(tx: Tx, abandoned: ClaimedJob) -> JobRecord:
 
 
 def remove_clip(tx: Tx, clip_id: str) -> ClipRecord:
-    """Deletes a clip; its jobs are canceled, imports do not wait for it any more.
+    """Deletes a clip and cancels its jobs; imports do not wait for it any more.
 
-    Its files are removed once the transaction is committed. Returns what it was.
+    Its files are removed after the commit. Returns its last record. Raises ClipNotFound.
     """
-    imports_of_it = imports.waiting_on(tx, [clip_id])
-    gone = clips.delete_clip(tx, clip_id)
+    # Before the deletion, which removes the clip's id from the entries of the imports.
+    waiting_imports = imports.waiting_on(tx, [clip_id])
+    deleted = clips.delete_clip(tx, clip_id)
     for job_id in _open_jobs_of(tx, clip_id):
-        _cancel_now(tx, job_id)  # a worker that has it will find its lease lost
-    for job_id, ended in imports_of_it.items():
+        _cancel_now(tx, job_id)  # a worker that has the job will get LeaseLost
+    for job_id, ended in waiting_imports.items():
         imports.settle_if_done(tx, job_id, ended)
-    removals.record(tx, (gone.sha256, gone.skeleton_sha256, gone.audio_sha256))
-    return gone
+    removals.record(tx, (deleted.sha256, deleted.skeleton_sha256, deleted.audio_sha256))
+    return deleted
 
 
-def _cancel_what_hangs_on(tx: Tx, job: JobRecord, clip_id: str | None) -> None:
+def _cancel_dependents(tx: Tx, job: JobRecord, clip_id: str | None) -> None:
+    """Fails the clip of a canceled job; cancels the analyses of a canceled import."""
     _fail_clip(tx, clip_id, Canceled("The analysis was canceled").as_problem())
     if job.kind is JobKind.IMPORT:
         for batch in clips.in_batches(imports.waiting_clips(tx, job.id)):
@@ -178,13 +181,16 @@ def _cancel_what_hangs_on(tx: Tx, job: JobRecord, clip_id: str | None) -> None:
 
 
 def _cancel_analyses(tx: Tx, clip_ids: list[str]) -> None:
-    """As request_cancel does for each analysis of these clips, which wait for one: but together,
-    because an import may have a hundred thousand."""
-    theirs = update(t.jobs).where(
+    """Does what `request_cancel` does, for the analyses of many clips in a few statements.
+
+    An import may have a hundred thousand clips.
+    """
+    open_jobs = update(t.jobs).where(
         t.jobs.c.clip_id.in_(clip_ids), t.jobs.c.state.in_(jobs.open_states())
     )
-    tx.execute(theirs.where(t.jobs.c.owner.is_not(None)).values(cancel_requested=True))
-    ended = theirs.where(t.jobs.c.owner.is_(None)).values(_canceled()).returning(t.jobs.c.clip_id)
+    tx.execute(open_jobs.where(t.jobs.c.owner.is_not(None)).values(cancel_requested=True))
+    without_owner = open_jobs.where(t.jobs.c.owner.is_(None))
+    ended = without_owner.values(_canceled()).returning(t.jobs.c.clip_id)
     failed = list(tx.execute(ended).scalars())
     clips.fail_waiting(tx, failed, Canceled("The analysis was canceled").as_problem())
     settle_imports(tx, failed)
@@ -199,16 +205,16 @@ def _fail_clip(
     if clip.state is not ClipState.READY or (is_verdict and clip.is_changed):
         clips.set_failed(tx, clip.id, problem)
     else:
-        clips.keep_analysis(tx, clip.id, _why_not_anew(problem))
+        clips.keep_analysis(tx, clip.id, _reanalysis_warning(problem))
     settle_imports(tx, [clip.id])
 
 
-def _why_not_anew(problem: dict[str, Any]) -> ClipWarning:
-    """What a clip says that keeps its earlier analysis."""
+def _reanalysis_warning(problem: dict[str, Any]) -> ClipWarning:
+    """The warning on a clip that keeps its earlier analysis."""
     reason = str(problem.get("detail", "")).rstrip(".")
     if problem.get("code") != StoredFileMissing.code:
-        told = f"The clip was not analyzed again: {reason}. It keeps its earlier analysis."
-        return ClipWarning(NOT_REANALYZED, told)
+        detail = f"The clip was not analyzed again: {reason}. It keeps its earlier analysis."
+        return ClipWarning(NOT_REANALYZED, detail)
     return ClipWarning(
         StoredFileMissing.code,
         f"{reason}. The clip cannot be analyzed again and keeps its earlier analysis. Put the"

@@ -1,8 +1,8 @@
-"""Names of the processes that hold leases; they tell whether the holder is dead.
+"""Names of the processes that have leases. A name shows whether its process is dead.
 
-A name holds the machine, the run of its kernel and the process. Another process of the same
-machine can tell from it at once that the holder is gone. It can tell nothing about holders on
-other machines: `abandoned` watches their heartbeats.
+A name contains the machine, the boot id of its kernel, and the process. With these, another
+process on the same machine sees immediately that the owner is dead. It cannot see that for owners
+on other machines: `abandoned_jobs` watches their heartbeats.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from app.store.database.ids import new_id
 
 _PROC = Path("/proc")
 _START_TIME = 19
-"""Place of a process's start time behind its name in /proc/PID/stat (proc(5), field 22)."""
+"""Index of the start time among the fields after the name in /proc/PID/stat (proc(5), field 22)."""
 
 _ENDED = ("Z", "X")
-"""States of processes that have ended and that their parent has not asked about."""
+"""States of processes that have ended, while their parent has not waited for them yet."""
 
 
 def new_owner(prefix: str) -> str:
@@ -30,11 +30,12 @@ def new_owner(prefix: str) -> str:
 
 
 def is_gone(owner: str) -> bool:
-    """Whether the process of this name is certainly dead; False where nobody can tell."""
-    told = _Name.of(owner)
-    if told is None or told.process_table != _process_table() or not _can_look():
+    """Whether the process with this name is certainly dead; False if that cannot be known."""
+    name = _Name.parse(owner)
+    if name is None or name.process_table != _process_table() or not _can_read_processes():
         return False
-    return _started(told.pid) != told.started
+    # Another process may have the same number now, but not the same start time.
+    return _started(name.pid) != name.started
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +45,8 @@ class _Name:
     started: str
 
     @classmethod
-    def of(cls, owner: str) -> _Name | None:
-        """What a name holds; None for a name of another form."""
+    def parse(cls, owner: str) -> _Name | None:
+        """The parts of a name; None for a name of another form."""
         parts = owner.partition("@")[2].rsplit(":", 2)
         if len(parts) != 3 or not parts[1].isdigit() or not parts[2]:
             return None
@@ -54,7 +55,7 @@ class _Name:
 
 @cache
 def _process_table() -> str:
-    """Host, run of the kernel, and the namespace of process numbers: containers have their own."""
+    """Host, boot id of the kernel, and the namespace of process numbers, one for each container."""
     try:
         kernel = (_PROC / "sys/kernel/random/boot_id").read_text().strip()
         namespace = (_PROC / "self/ns/pid").readlink().name
@@ -63,13 +64,13 @@ def _process_table() -> str:
     return f"{socket.gethostname()}/{kernel}/{namespace}"
 
 
-def _can_look() -> bool:
-    """Whether this process sees others' entries in /proc (it may be told not to)."""
+def _can_read_processes() -> bool:
+    """Whether this process can read other processes in /proc (mount option hidepid forbids it)."""
     return bool(_started(1) and _started(os.getpid()))
 
 
 def _started(pid: int) -> str:
-    """When a process began, in clock ticks since the kernel did; empty where it is gone."""
+    """The start time of a process in clock ticks since boot; empty if it has ended."""
     try:
         line = (_PROC / str(pid) / "stat").read_text()
     except OSError:

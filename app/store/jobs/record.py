@@ -1,4 +1,4 @@
-"""The job as the store tells it: exactly the fields of DESIGN 8's Job."""
+"""The data of a job in the store."""
 
 from __future__ import annotations
 
@@ -9,29 +9,29 @@ from typing import Any
 
 
 class JobKind(StrEnum):
-    """What a job does."""
+    """The kinds of jobs."""
 
     INGEST = "ingest"
-    """Analyse one clip."""
+    """Analyze one clip."""
     IMPORT = "import"
-    """Unpack an archive into clips, each with an ingest job of its own."""
+    """Unpack an archive into clips, each with its own ingest job."""
     FIT = "fit"
     """Fit the library's models."""
 
 
 class JobState(StrEnum):
-    """Where a job stands."""
+    """The state of a job."""
 
     QUEUED = "queued"
-    """Waits for a worker."""
+    """The job waits for a worker."""
     PROCESSING = "processing"
-    """A worker has it; or an import waits for its clips."""
+    """A worker has the job; or it is an import that waits for its clips."""
     SUCCEEDED = "succeeded"
-    """Done; `result` tells."""
+    """The job is done; `result` holds its result."""
     FAILED = "failed"
-    """Given up; `error` says why."""
+    """The job failed for good; `error` says why."""
     CANCELED = "canceled"
-    """Stopped on request."""
+    """The job was stopped on request."""
 
 
 OPEN_STATES = (JobState.QUEUED, JobState.PROCESSING)
@@ -39,7 +39,11 @@ OPEN_STATES = (JobState.QUEUED, JobState.PROCESSING)
 
 @dataclass(frozen=True, slots=True)
 class JobRecord:
-    """A job's row. progress: 0..1; result: of the kind's own shape; error: RFC 9457 problem."""
+    """The row of a job without its arguments: the fields that clients see.
+
+    progress: completed share, 0..1; detail: the progress as a text; result: JSON whose members
+    depend on the kind; error: an RFC 9457 problem.
+    """
 
     id: str
     kind: JobKind
@@ -54,7 +58,7 @@ class JobRecord:
 
     @property
     def is_open(self) -> bool:
-        """Whether it has yet to end."""
+        """Whether the job has not ended yet."""
         return self.state in OPEN_STATES
 
 
@@ -62,10 +66,11 @@ class JobRecord:
 class NewJob:
     """A job to be queued.
 
-    priority: lower is taken first; clip_id: the clip it is about; file_sha256: a stored file
-    that must be kept while it is open; payload: its arguments, JSON; max_attempts: how often its
-    worker may die, or the store may fail, without progress in between; dedupe_key: while a job
-    with this key is queued, no second one is.
+    priority: a lower number is claimed first; clip_id: the clip that an ingest job analyzes;
+    file_sha256: a stored file that is not removed while the job is open; payload: its arguments,
+    JSON; max_attempts: the number of deaths of its worker, or of failures of the store, without
+    progress between them, after which the job fails; dedupe_key: only one job with this key is
+    queued at a time.
     """
 
     kind: JobKind
@@ -79,7 +84,7 @@ class NewJob:
 
 @dataclass(frozen=True, slots=True)
 class Lease:
-    """A worker's right to a job: void once the job has been given to another, or again."""
+    """The right of a worker to change a job; it ends with the next claim of the job."""
 
     job_id: str
     owner: str
@@ -88,11 +93,11 @@ class Lease:
 
 @dataclass(frozen=True, slots=True)
 class ClaimedJob:
-    """What a worker gets: the job, the right to it, and its arguments.
+    """A job that a worker has claimed, with its lease and its arguments.
 
-    What went wrong with it so far, each counted for itself: failures, which are its own (its
-    child process died by its own work) or the store's; kills of its child process from outside;
-    worker_deaths, without progress in between.
+    Three counters since the last progress of the job: failures: failures of the store, and deaths
+    of the child process that its own work caused; kills: kills of the child process from outside;
+    worker_deaths: deaths of its worker.
     """
 
     job: JobRecord

@@ -1,4 +1,4 @@
-"""Which stored files are still needed."""
+"""Finds the stored files that a clip or an open job still refers to."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _REFERENCES: tuple[tuple[ColumnElement[Any], tuple[ColumnElement[bool], ...]], .
     (clips.c.audio_sha256, ()),
     (jobs.c.file_sha256, (_OF_OPEN_JOBS,)),
 )
-"""Columns that name files, and of which rows they count."""
+"""Columns that name files, each with the condition on its rows."""
 
 
 def unreferenced(tx: Tx, sha256s: Collection[str]) -> tuple[str, ...]:
-    """Those of the files that no clip and no open job refers to, in the order given."""
-    library.lock(tx)
+    """The files among `sha256s` that no clip and no open job refers to, in the same order."""
+    library.lock(tx)  # until the commit, so that no writer adds a reference after this query
     needed: set[str] = set()
     for batch in in_batches(sha256s):
         needed.update(_needed(tx, batch))
@@ -33,7 +33,7 @@ def unreferenced(tx: Tx, sha256s: Collection[str]) -> tuple[str, ...]:
 
 
 def referenced(tx: Tx) -> frozenset[str]:
-    """Every file that a clip or an open job refers to."""
+    """All files that a clip or an open job refers to."""
     every = union(*(select(c).where(c.is_not(None), *when) for c, when in _REFERENCES))
     return frozenset(tx.execute(every).scalars())
 

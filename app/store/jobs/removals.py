@@ -1,8 +1,8 @@
-"""Files that are to be removed, recorded by the transaction that made them unneeded.
+"""Removals of files, which the transaction that deletes the last reference to a file records.
 
-A file is removed after that transaction is committed; were it removed before, an undone
-transaction would have lost it. The record is what makes the removal certain: after a crash, a
-sweep finishes it. A file without such a record is never removed, but set aside (`quarantine`).
+The file itself is removed after the commit. If it were removed before, a rollback could not bring
+it back. Because of the record a removal is never forgotten: after a crash, a sweep finishes it. A
+file without a record is never removed, but moved to the quarantine.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from app.store.jobs.record import JobState
 
 _log = logging.getLogger(__name__)
 
-# An import that is unpacked waits for its clips, without an owner, and needs its archive no more.
+# An unpacked import waits for its clips without an owner, and does not need its archive any more.
 _NEEDS_ITS_FILE = or_(
     jobs.c.state == JobState.QUEUED.value,
     and_(jobs.c.state == JobState.PROCESSING.value, jobs.c.owner.is_not(None)),
 )
-# `> ""` rather than "is not null": that SQLite finds by the index.
+# `> ""` instead of "is not null", because SQLite uses the index for it.
 _IS_DONE_WITH_ITS_FILE = and_(jobs.c.file_sha256 > "", ~_NEEDS_ITS_FILE)
 
-# Made once: every write transaction ends with the first.
+# Built once, because every write transaction executes the first of them.
 _IS_ANY = select(
     exists().where(file_removals.c.sha256 > ""), exists().where(_IS_DONE_WITH_ITS_FILE)
 )
@@ -38,19 +38,20 @@ _LET_GO = update(jobs).where(_IS_DONE_WITH_ITS_FILE).values(file_sha256=None)
 
 
 def record(tx: Tx, sha256s: Collection[str | None]) -> None:
-    """Records those of the files that nothing refers to any more; None is passed over."""
-    named = [sha256 for sha256 in sha256s if sha256 is not None]
-    unneeded = references.unreferenced(tx, named)
-    known = set(tx.execute(select(file_removals.c.sha256)).scalars())
-    rows = [{"sha256": sha256} for sha256 in unneeded if sha256 not in known]
+    """Records the removal of the files that nothing refers to any more; None is skipped."""
+    candidates = [sha256 for sha256 in sha256s if sha256 is not None]
+    unneeded = references.unreferenced(tx, candidates)
+    recorded = set(tx.execute(select(file_removals.c.sha256)).scalars())
+    rows = [{"sha256": sha256} for sha256 in unneeded if sha256 not in recorded]
     if rows:
         tx.execute(insert(file_removals), rows)
 
 
 def settle(tx: Tx) -> bool:
-    """Records the archives of imports that need them no more; whether anything is to be removed.
+    """Records the archives that no import needs any more; returns whether any file is recorded.
 
-    Each write transaction ends with it, so that no way to end an import can forget its archive.
+    Every write transaction ends with this call, so that each way to end an import removes its
+    archive.
     """
     is_recorded, is_ended = tx.execute(_IS_ANY).one()
     if is_ended:
@@ -61,15 +62,15 @@ def settle(tx: Tx) -> bool:
 
 
 def forget_all(tx: Tx) -> None:
-    """Takes back all records, where the files are not: in a copy of the database."""
+    """Deletes all records, in a copy of the database: their files are not in the copy."""
     tx.execute(delete(file_removals))
 
 
 def finish(tx: Tx, files: FileStore) -> int:
-    """Removes the recorded files, and their records; how many files.
+    """Removes the recorded files and their records; returns the number of removed files.
 
-    Within a write transaction, so that no one stores the same bytes meanwhile. What has come to
-    be needed again stays.
+    It needs a write transaction, so that nobody stores the same bytes meanwhile. A file that a
+    clip refers to again is not removed.
     """
     recorded = list(tx.execute(select(file_removals.c.sha256)).scalars())
     unneeded = set(references.unreferenced(tx, recorded))

@@ -1,4 +1,4 @@
-"""Jobs: queueing, reading, listing. Who works on them is in `leases` and `queue`."""
+"""Jobs: adds, reads and lists them. `leases` and `queue` give them to workers."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from app.store.jobs.record import OPEN_STATES, JobKind, JobRecord, JobState, New
 
 NEWEST_FIRST = "-created_at"
 
-# Made once: making a statement costs more than running it.
+# Built once, because to build a statement takes longer than to execute it.
 _ONE = select(jobs).where(jobs.c.id == bindparam("the_id"))
-_TWIN = select(jobs).where(jobs.c.dedupe_key == bindparam("the_key"))
+_WITH_KEY = select(jobs).where(jobs.c.dedupe_key == bindparam("the_key"))
 _ADD = insert(jobs).returning(jobs)
 
 
 def enqueue(tx: Tx, new: NewJob) -> JobRecord:
     """Queues a job, or returns the queued one with the same dedupe_key."""
     if new.dedupe_key is not None:
-        library.lock(tx)
-        twin = tx.execute(_TWIN, {"the_key": new.dedupe_key}).mappings().one_or_none()
-        if twin is not None:
-            return to_record(twin)
+        library.lock(tx)  # so that no other process queues the same key after this query
+        queued = tx.execute(_WITH_KEY, {"the_key": new.dedupe_key}).mappings().one_or_none()
+        if queued is not None:
+            return to_record(queued)
     values = asdict(new) | {
         "kind": new.kind.value,
         "id": new_id("job"),
@@ -52,7 +52,7 @@ def get(tx: Tx, job_id: str) -> JobRecord:
 
 
 def get_row(tx: Tx, job_id: str) -> RowMapping:
-    """The job's whole row, for this layer; raises JobNotFound."""
+    """The whole row of a job, for other modules of the store; raises JobNotFound."""
     row = tx.execute(_ONE, {"the_id": job_id}).mappings().one_or_none()
     if row is None:
         raise JobNotFound(f"There is no job with the id {job_id!r}")
@@ -76,6 +76,7 @@ def list_jobs(
     if cursor is not None:
         position = read_cursor(cursor, NEWEST_FIRST, datetime)
         query = query.where(after(jobs.c.created_at, jobs.c.id, position, descending=True))
+    # One row more than the page shows whether there is another page.
     query = query.order_by(jobs.c.created_at.desc(), jobs.c.id.desc()).limit(limit + 1)
     items = [to_record(row) for row in tx.execute(query).mappings()]
     shown = tuple(items[:limit])
@@ -86,12 +87,12 @@ def list_jobs(
 
 
 def open_states() -> list[str]:
-    """The states of jobs that are still to end, as stored."""
+    """The stored values of the states of jobs that have not ended."""
     return [state.value for state in OPEN_STATES]
 
 
 def to_record(row: RowMapping) -> JobRecord:
-    """A row of `jobs` as a record, field by field."""
+    """A row of `jobs` as a record."""
     return JobRecord(
         id=row["id"],
         kind=JobKind(row["kind"]),

@@ -1,1 +1,1 @@
-"""Looking after a library: backup, verification, health and sweeping."""
+"""Maintenance of a library: backup, verification, health and sweeps."""

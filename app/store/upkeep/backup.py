@@ -1,12 +1,12 @@
-"""A copy of a whole library, made while it is in use: its database and its files.
+"""Copies a whole library, its database and its files, while it is in use.
 
-A copy is a data directory like any other: it is restored by running on it. The database is
-copied at one moment; the files are named by their content and never change, so that they can
-be copied before and after that moment. What is deleted meanwhile might be missing: then the
-database is copied again, which takes no longer than that, until nothing is.
+A copy is a normal data directory: Kinedex can run on it. The database is copied as one snapshot.
+Files never change, because their names are the hashes of their content, so they are copied before
+and after the snapshot. A file that was deleted meanwhile is missing in the copy. Then the database
+is copied again, until no file is missing.
 
-A copy that cannot be relied on is worse than none: the copied database is checked page by page,
-and each file against its name.
+A damaged copy is worse than none. So all pages of the copied database are checked, and the bytes
+of each file are compared with its name.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ from app.errors import (
 )
 from app.store.clips import versions as library
 from app.store.database.engine import Database
-from app.store.files.checked import refuse_damage
 from app.store.files.files import NO_SPACE, FileStore
+from app.store.files.hash_check import refuse_damage
 from app.store.files.id_file import write_id
 from app.store.files.locked_file import locked_folder, remove_if_abandoned
 from app.store.folders import sync_folder
@@ -43,18 +43,19 @@ DATABASE, FILES = "kinedex.sqlite3", "files"
 """Names in a data directory."""
 
 PART = ".part"
-"""Ending of a copy that is being made."""
+"""Suffix of the folder of an unfinished copy."""
 
-MOST_TRIES = 10
-"""Each time a file was both added and deleted while its turn had not come."""
+MAX_TRIES = 10
+"""Copies of the database. One more is needed each time that a file in the last one was deleted
+before it was copied."""
 
 Progress = Callable[[int, int], None]
-"""Is told how many files are there, of how many."""
+"""Called with the number of copied files and the number of all files."""
 
 
 @dataclass(frozen=True, slots=True)
 class Backup:
-    """What was copied; bytes: of the database and the files."""
+    """A finished copy. files: their number; bytes: total size of the database and the files."""
 
     path: Path
     files: int
@@ -63,7 +64,7 @@ class Backup:
 
 @dataclass(slots=True)
 class _Files:
-    """The files of a library and of its copy; and which of them could not be copied."""
+    """The files of a library and of its copy, and the names of those that cannot be copied."""
 
     source: FileStore
     target: FileStore
@@ -72,16 +73,16 @@ class _Files:
 
 
 def back_up(store: Store, path: Path, progress: Progress | None = None) -> Backup:
-    """Copies the library to `path`, which has that name only when it is whole and on disk.
+    """Copies the library to `path`, which appears only when the copy is complete and on disk.
 
-    Raises BadField where there is something already or nothing can be written,
-    ConfigurationError for a database that is not SQLite, DiskFull, DatabaseDamaged, and
-    StorageError that names each file of the library that is gone or damaged; then nothing is
-    left. What a copy left that was killed is removed by the next one beside it.
+    Raises BadField if `path` exists or nothing can be written there; ConfigurationError for a
+    database that is not SQLite; DiskFull; DatabaseDamaged; StorageError, which names each missing
+    or damaged file of the library. Then no part of the copy is left. If the process is killed, the
+    next copy in the same folder removes the unfinished one.
     """
     store.database.check_copyable()
     if os.path.lexists(path):
-        message = f"{path} is there already: a copy never takes the place of anything"
+        message = f"{path} is there already: a copy never replaces anything"
         raise BadField(f"path: {message}", places=[Place("path", message)])
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -98,13 +99,13 @@ def _make_part(path: Path) -> Path:
 
 
 def _remove_abandoned(folder: Path) -> None:
-    """Removes copies whose maker died: hidden folders that hold nothing but what a copy does."""
+    """Removes unfinished copies of dead processes: hidden folders with the content of a copy."""
     for part in folder.glob(f".*{PART}"):
-        if _is_a_copy(part):
+        if _is_unfinished_copy(part):
             remove_if_abandoned(part, partial(shutil.rmtree, ignore_errors=True))
 
 
-def _is_a_copy(part: Path) -> bool:
+def _is_unfinished_copy(part: Path) -> bool:
     try:
         names = {each.name.partition("-")[0] for each in part.iterdir()}  # without "-wal"
     except OSError:
@@ -129,40 +130,40 @@ def _copy_and_rename(store: Store, part: Path, path: Path, progress: Progress | 
 
 
 def _copy(store: Store, part: Path, progress: Progress | None) -> frozenset[str]:
-    """The names of the files that were copied with the database."""
+    """Copies files and database into the folder `part`; returns the names of the files."""
     with store.read() as tx:
         needed, library_id = references.referenced(tx), library.library_id(tx)
     write_id(part / FILES, library_id)
     files = _Files(store.files, FileStore(part / FILES))
     _add(files, needed, progress)
     lost: set[str] = set()
-    for _ in range(MOST_TRIES):
-        needed, before = _copy_database(store.database, part / DATABASE), lost
+    for _ in range(MAX_TRIES):
+        needed, lost_before = _copy_database(store.database, part / DATABASE), lost
         _add(files, needed, progress)
         lost = files.missing | files.damaged
         if not lost:
             for sha256 in frozenset(files.target) - needed:
                 files.target.remove(sha256)
             return needed
-        if lost == before:  # not deleted just now
+        if lost == lost_before:  # the library itself lacks them: another copy would not help
             break
-    raise _not_whole(files)
+    raise _incomplete(files)
 
 
-def _not_whole(files: _Files) -> StorageError:
-    places = [Place(name, "is not there") for name in sorted(files.missing)]
+def _incomplete(files: _Files) -> StorageError:
+    places = [Place(name, "is missing") for name in sorted(files.missing)]
     places += [Place(name, "is damaged") for name in sorted(files.damaged)]
     return StorageError(
-        f"Of the files that the library refers to, {len(files.missing)} are not there and "
+        f"Of the files that the library refers to, {len(files.missing)} are missing and "
         f"{len(files.damaged)} are damaged; nothing was copied.",
         places=places,
     )
 
 
 def _copy_database(database: Database, path: Path) -> frozenset[str]:
-    """Copies the database over what is there; the names of the files that it needs.
+    """Copies the database and replaces an earlier copy; returns the names of the files it needs.
 
-    Raises DatabaseDamaged: a copy has the pages of the original, and so its damage.
+    Raises DatabaseDamaged, because the copy has the same pages as the original, and its damage.
     """
     path.unlink(missing_ok=True)
     database.copy_to(path)
@@ -175,7 +176,7 @@ def _copy_database(database: Database, path: Path) -> frozenset[str]:
                 places=[Place("database", finding) for finding in damage],
             )
         with copy.write() as tx:
-            # Their files are not in the copy; a later file of the same name must stay.
+            # The copy has no files to remove, and a file that is stored there later must stay.
             removals.forget_all(tx)
             return references.referenced(tx)
     finally:
@@ -183,7 +184,7 @@ def _copy_database(database: Database, path: Path) -> frozenset[str]:
 
 
 def _add(files: _Files, names: frozenset[str], progress: Progress | None) -> None:
-    """Copies those of the files that are not there yet; notes those that cannot be copied."""
+    """Copies the files that the copy does not have yet; records those that cannot be copied."""
     files.missing, files.damaged = set(), set()
     waiting = names - frozenset(files.target)
     for done, sha256 in enumerate(sorted(waiting), len(names) - len(waiting) + 1):
@@ -204,13 +205,16 @@ def _copy_file(files: _Files, sha256: str) -> None:
 
 
 class _Source:
-    """A file of the library; that it cannot be read is damage too, and not the copy's failure."""
+    """A file of the library. A failure to read it counts as damage of this file.
+
+    Otherwise it would look like a failure to write the copy.
+    """
 
     def __init__(self, file: BinaryIO) -> None:
         self._file = file
 
     def read(self, size: int, /) -> bytes:
-        """As a file does. Raises FileDamaged."""
+        """At most `size` bytes; none at the end. Raises FileDamaged."""
         try:
             return self._file.read(size)
         except OSError as problem:

@@ -1,4 +1,4 @@
-"""Whether a library is whole: its database, every file that it names, every array in it."""
+"""Verifies a library: its database, all files that it names, and all arrays in it."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from sqlalchemy import select
 from app.errors import DatabaseDamaged, FileDamaged, NotFound
 from app.store.database.blobs import from_blob
 from app.store.database.tables import clip_arrays, model_arrays
-from app.store.files.checked import Checked
-from app.store.files.quarantine import Held
+from app.store.files.hash_check import HashChecker
+from app.store.files.quarantine import QuarantineContent
 from app.store.jobs import references
 from app.store.store import Store
 
 ROWS_AT_ONCE = 50
-"""Arrays in memory."""
+"""Arrays that are in memory at the same time."""
 
 Progress = Callable[[int, int], None]
-"""Is told how many files were hashed, of how many."""
+"""Called with the number of hashed files and the number of all files."""
 
 
 @dataclass(frozen=True, slots=True)
-class Verified:
-    """What was looked at and what is wrong.
+class VerificationReport:
+    """The result of a verification.
 
-    damage: of the database, a sentence each; unreadable: arrays, as `<id of clip or model>/<name>`;
-    missing, damaged: names of files; unknown: files that the database does not name, and which
-    the next sweep moves to the quarantine; quarantine: what is there already. Neither of these
-    two is wrong in itself.
+    files, arrays: the number of those that were read; damage: of the database, one sentence for
+    each finding; unreadable: arrays, as `<id of clip or model>/<name>`; missing, damaged: names of
+    files; unknown: files that the database does not name, and which the next sweep moves to the
+    quarantine; quarantine: the files that are there already. The last two are no damage.
     """
 
     files: int
@@ -39,27 +39,30 @@ class Verified:
     missing: tuple[str, ...]
     damaged: tuple[str, ...]
     unknown: tuple[str, ...]
-    quarantine: Held
+    quarantine: QuarantineContent
 
     @property
     def is_whole(self) -> bool:
-        """Whether nothing is wrong."""
+        """Whether the library has no damage."""
         return not (self.damage or self.unreadable or self.missing or self.damaged)
 
 
-def verify(store: Store, progress: Progress | None = None) -> Verified:
-    """Reads everything, while others use the library. Raises StorageError."""
+def verify(store: Store, progress: Progress | None = None) -> VerificationReport:
+    """Reads the whole library, while others use it. Raises StorageError."""
     damage = list(store.database.find_damage())
     try:
         with store.read() as tx:
             needed = references.referenced(tx)
     except DatabaseDamaged as problem:
-        damage.append(f"no file was looked at, since their names cannot be read: {problem.detail}")
+        damage.append(
+            f"the files were not checked, because their names cannot be read: {problem.detail}"
+        )
         needed = frozenset()
+    # A damaged database may have lost the names of files.
     unknown = () if damage else tuple(sorted(set(store.files) - needed))
     arrays, unreadable = _read_arrays(store)
     missing, damaged = _hash_all(store, needed, progress)
-    return Verified(
+    return VerificationReport(
         files=len(needed),
         arrays=arrays,
         damage=tuple(damage),
@@ -67,15 +70,15 @@ def verify(store: Store, progress: Progress | None = None) -> Verified:
         missing=missing,
         damaged=damaged,
         unknown=unknown,
-        quarantine=store.files.quarantine.held(),
+        quarantine=store.files.quarantine.content(),
     )
 
 
 def _hash_all(
     store: Store, names: frozenset[str], progress: Progress | None
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """The files that are missing, and those that are damaged or cannot be read."""
-    checked = Checked()
+    """The names of missing files, and of files that are damaged or cannot be read."""
+    checked = HashChecker()
     missing, damaged = [], []
     for done, sha256 in enumerate(sorted(names), 1):
         try:
@@ -90,7 +93,7 @@ def _hash_all(
 
 
 def _still_needed(store: Store, missing: list[str]) -> tuple[str, ...]:
-    """Without those whose clips were deleted meanwhile."""
+    """The missing files without those whose clips were deleted meanwhile."""
     if not missing:
         return ()
     with store.read() as tx:
@@ -99,7 +102,7 @@ def _still_needed(store: Store, missing: list[str]) -> tuple[str, ...]:
 
 
 def _read_arrays(store: Store) -> tuple[int, tuple[str, ...]]:
-    """How many arrays there are, and which of them cannot be read."""
+    """The number of all arrays, and the names of those that cannot be read."""
     count, unreadable = 0, []
     for table, key in (
         (clip_arrays, clip_arrays.c.clip_id),

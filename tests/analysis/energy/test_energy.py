@@ -10,7 +10,7 @@ from app.analysis.energy.energy import EnergyMethod, Weights, energies
 from app.motion.canonical.center_of_mass import ROLE_MASSES, center_of_mass
 from app.motion.frame.body_frame import body_track
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
-from tests.bodies import motion_of, place, standing, turned_about_y, walking, waving
+from tests.bodies import motion_of, move_joint, standing, turned_about_y, walking, waving
 from tests.dances import dance
 
 
@@ -26,8 +26,8 @@ def test_a_body_that_slides_has_global_energy_only() -> None:
 def test_opposite_limb_movements_cancel_in_the_printed_energy_but_not_in_rms() -> None:
     body = standing(60)
     swing = 0.3 * np.sin(np.arange(60) / 5)[:, None] * np.array([0.0, 0.0, 1.0])
-    place(body, JointRole.LEFT_HAND, swing)
-    place(body, JointRole.RIGHT_HAND, -swing)
+    move_joint(body, JointRole.LEFT_HAND, swing)
+    move_joint(body, JointRole.RIGHT_HAND, -swing)
     track = body_track(motion_of(body))
     assert energies(track, EnergyMethod.PRINTED).local_energy.max() < 1e-3
     assert energies(track, EnergyMethod.RMS).local_energy.max() > 0.1
@@ -35,7 +35,7 @@ def test_opposite_limb_movements_cancel_in_the_printed_energy_but_not_in_rms() -
 
 def test_rms_of_one_moving_joint_is_its_speed_over_root_13() -> None:
     body = standing(60)
-    place(body, JointRole.HEAD, np.arange(60)[:, None] / 30 * np.array([0.0, 0.1, 0.0]))
+    move_joint(body, JointRole.HEAD, np.arange(60)[:, None] / 30 * np.array([0.0, 0.1, 0.0]))
     track = body_track(motion_of(body))
     expected = 0.1 / track.body_length / np.sqrt(len(SUN_ROLES))
     np.testing.assert_allclose(energies(track).global_energy, expected, rtol=1e-3)

@@ -10,7 +10,7 @@ from app.analysis.rhythm.beats import given_beats
 from app.motion.frame.body_frame import body_track
 from app.motion.roles.joint_roles import JointRole
 from app.numerics.arrays import FloatArray
-from tests.bodies import motion_of, place, standing, waving
+from tests.bodies import motion_of, move_joint, standing, waving
 from tests.dances import dance, precision_and_recall
 
 
@@ -39,16 +39,16 @@ def test_resting_hands_with_walking_feet_make_no_keypose() -> None:
     stops = np.clip(np.sin(np.pi * t) * 1.3, -1, 1)[:, None] * [0.0, 0.3, 0.0]
     steps = np.sin(2 * np.pi * 0.5 * t + 1.2)[:, None] * [0.0, 0.0, 0.4]
     for hand in (JointRole.LEFT_HAND, JointRole.RIGHT_HAND):
-        place(body, hand, stops)
+        move_joint(body, hand, stops)
     assert len(stops_of(body)) == 8
-    place(body, JointRole.LEFT_FOOT, steps)
-    place(body, JointRole.RIGHT_FOOT, np.roll(steps, 15, axis=0))
+    move_joint(body, JointRole.LEFT_FOOT, steps)
+    move_joint(body, JointRole.RIGHT_FOOT, np.roll(steps, 15, axis=0))
     assert len(stops_of(body)) == 0
 
 
 def test_the_trunk_does_not_count() -> None:
     body = standing(120)
-    place(body, JointRole.HEAD, np.sin(np.arange(120) / 8)[:, None] * [0.1, 0.0, 0.0])
+    move_joint(body, JointRole.HEAD, np.sin(np.arange(120) / 8)[:, None] * [0.1, 0.0, 0.0])
     hands, feet = end_effector_speeds(body_track(motion_of(body)))
     assert hands.values.max() < 1e-5
     assert feet.values.max() < 1e-5

@@ -7,7 +7,7 @@ from app.analysis.symbols.channels import CHANNELS, symbol_features, symbol_stat
 from app.motion.frame.body_frame import body_track
 from app.motion.motion import Motion
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
-from tests.bodies import motion_of, place, standing, turned_about_y, walking, waving
+from tests.bodies import motion_of, move_joint, standing, turned_about_y, walking, waving
 
 
 def features_of(positions: np.ndarray, frame_rate: float = 30.0) -> np.ndarray:
@@ -65,8 +65,8 @@ def test_channels_of_a_circling_arm_do_not_jump() -> None:
     body = standing(90)
     angle = np.linspace(0, 4 * np.pi, 90)
     circle = np.stack([0 * angle, 0.28 - 0.28 * np.cos(angle), 0.28 * np.sin(angle)], axis=1)
-    place(body, JointRole.LEFT_ELBOW, circle)
-    place(body, JointRole.LEFT_HAND, 2 * circle)
+    move_joint(body, JointRole.LEFT_ELBOW, circle)
+    move_joint(body, JointRole.LEFT_HAND, 2 * circle)
     steps = np.abs(np.diff(features_of(body), axis=0))
     assert steps.max() < 0.6
 

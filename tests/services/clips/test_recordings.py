@@ -23,7 +23,7 @@ from app.services.library.library import Library, ingest_limits
 from app.services.views import keyposes
 from app.store.clips.record import ClipRecord, ClipState, Reanalysis
 from app.store.jobs import import_files
-from app.store.upkeep.sweep import Swept, sweep
+from app.store.upkeep.sweep import SweepReport, sweep
 from tests.libraries import work
 
 
@@ -147,7 +147,7 @@ def test_a_recording_goes_with_the_last_clip_that_has_it(lib: Library, danced: D
     path = clips.open_recording(lib, one.clip.id).path
     clips.delete_clip(lib, one.clip.id)
     assert path.exists()
-    assert sweep(lib.store, 30) == Swept()
+    assert sweep(lib.store, 30) == SweepReport()
     clips.delete_clip(lib, two.clip.id)
     assert not path.exists()
 

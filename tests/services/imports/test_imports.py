@@ -16,9 +16,10 @@ from app.services.clips import jobs
 from app.services.imports import imports
 from app.services.library.library import Library
 from app.store.jobs import queue
-from app.store.jobs.abandoned import Watch
+from app.store.jobs.abandoned_jobs import Watch
 from app.store.jobs.record import ClaimedJob, JobKind, JobState
 from tests.libraries import settings_for, work
+from tests.zip_archives import zip_archive
 
 
 def _said(clip: DemoClip) -> str:
@@ -40,15 +41,6 @@ def entries(some_demo_clips: list[DemoClip]) -> dict[str, bytes]:
     }
 
 
-def _zip(entries: dict[str, bytes], compression: int = zipfile.ZIP_DEFLATED) -> io.BytesIO:
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w", compression) as archive:
-        for name, content in entries.items():
-            archive.writestr(name, content)
-    made.seek(0)
-    return made
-
-
 def _write(folder: Path, entries: dict[str, bytes]) -> Path:
     for name, content in entries.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -60,7 +52,7 @@ def _write(folder: Path, entries: dict[str, bytes]) -> Path:
 def test_any_zip_may_be_imported_whatever_its_first_file(lib: Library, first: str) -> None:
     with pytest.raises(UnknownFormat):
         imports.start_import(lib, io.BytesIO(b"\x93NUMPY" + bytes(99)), "set.zip")
-    job = imports.start_import(lib, _zip({first: b"x", "b.bvh": b"y"}), "set.zip")
+    job = imports.start_import(lib, zip_archive({first: b"x", "b.bvh": b"y"}), "set.zip")
     work(lib.settings)
     assert set(_outcomes(jobs.get_job(lib, job.id).result)) == {first, "b.bvh"}
 
@@ -80,7 +72,7 @@ def _claim(lib: Library) -> ClaimedJob:
 def test_an_archive_becomes_clips_and_every_file_is_accounted_for(
     lib: Library, entries: dict[str, bytes], some_demo_clips: list[DemoClip]
 ) -> None:
-    job = imports.start_import(lib, _zip(entries), "set.zip")
+    job = imports.start_import(lib, zip_archive(entries), "set.zip")
     work(lib.settings)
     done = jobs.get_job(lib, job.id)
     assert done.state is JobState.SUCCEEDED
@@ -133,7 +125,7 @@ def test_the_same_folder_twice_gives_the_same_clips(
 def test_an_import_that_was_cut_off_goes_on_where_it_stopped(
     lib: Library, entries: dict[str, bytes]
 ) -> None:
-    job = imports.start_import(lib, _zip(entries), "set.zip")
+    job = imports.start_import(lib, zip_archive(entries), "set.zip")
     claimed = _claim(lib)
     files = iter([False, False, False, True])
     with pytest.raises(Canceled):
@@ -149,7 +141,7 @@ def test_an_import_that_was_cut_off_goes_on_where_it_stopped(
 def test_an_import_given_to_another_worker_stores_nothing_more(
     lib: Library, entries: dict[str, bytes]
 ) -> None:
-    imports.start_import(lib, _zip(entries), "set.zip")
+    imports.start_import(lib, zip_archive(entries), "set.zip")
     with lib.store.write() as tx:
         old = queue.take(tx, [JobKind.IMPORT], "old")
         watch = Watch("watcher", 0.0)  # by it the worker "old" is dead
@@ -177,7 +169,9 @@ def test_a_repeated_name_in_an_archive_is_imported_beside_the_first(
 
 def test_an_archive_that_cannot_be_used_fails_with_its_reason(lib: Library) -> None:
     bad = imports.start_import(lib, io.BytesIO(b"PK\x03\x04 but no more"), "bad.zip")
-    odd = imports.start_import(lib, _zip({"manifest.csv": b"name\nx\n", "a.bvh": b"H"}), "odd.zip")
+    odd = imports.start_import(
+        lib, zip_archive({"manifest.csv": b"name\nx\n", "a.bvh": b"H"}), "odd.zip"
+    )
     work(lib.settings)
     errors = [jobs.get_job(lib, job.id).error for job in (bad, odd)]
     assert [error and error["code"] for error in errors] == ["unreadable", "unreadable"]
@@ -195,7 +189,7 @@ def test_what_is_no_archive_is_refused_at_once(lib: Library, tmp_path: Path) -> 
 def test_an_archive_over_the_limit_is_refused_at_once(tmp_path: Path) -> None:
     lib = Library.open(settings_for(tmp_path, max_archive_bytes=100))
     with pytest.raises(TooLarge):
-        imports.start_import(lib, _zip({"a.bvh": bytes(range(256))}), "a.zip")
+        imports.start_import(lib, zip_archive({"a.bvh": bytes(range(256))}), "a.zip")
     lib.close()
 
 
@@ -203,7 +197,10 @@ def test_a_file_or_an_archive_can_be_imported_from_disk(
     lib: Library, some_demo_clips: list[DemoClip], tmp_path: Path
 ) -> None:
     one, other = some_demo_clips[:2]
-    _write(tmp_path, {"one.bvh": one.content, "other.zip": _zip({"b.bvh": other.content}).read()})
+    _write(
+        tmp_path,
+        {"one.bvh": one.content, "other.zip": zip_archive({"b.bvh": other.content}).read()},
+    )
     imports.import_path(lib, tmp_path / "one.bvh")
     imports.import_path(lib, tmp_path / "other.zip")
     assert {clip.name for clip in clips.list_clips(lib).items} == {"one", "b"}
@@ -214,7 +211,7 @@ def test_a_damaged_file_in_an_archive_does_not_hold_up_the_others(
     lib: Library, some_demo_clips: list[DemoClip], compression: int
 ) -> None:
     one, other = (clip.content for clip in some_demo_clips[:2])
-    content = bytearray(_zip({"bad.bvh": one, "good.bvh": other}, compression).getvalue())
+    content = bytearray(zip_archive({"bad.bvh": one, "good.bvh": other}, compression).getvalue())
     for place in range(300, 2000):
         content[place] ^= 0x5A
     job = imports.start_import(lib, io.BytesIO(bytes(content)), "a.zip")
@@ -226,7 +223,9 @@ def test_a_damaged_file_in_an_archive_does_not_hold_up_the_others(
 
 
 def test_a_damaged_manifest_fails_the_import_rather_than_lose_its_labels(lib: Library) -> None:
-    content = bytearray(_zip({"manifest.csv": b"path,person\n" + b"a.bvh,ada\n" * 99}).getvalue())
+    content = bytearray(
+        zip_archive({"manifest.csv": b"path,person\n" + b"a.bvh,ada\n" * 99}).getvalue()
+    )
     for place in range(45, 60):
         content[place] ^= 0x5A
     imports.start_import(lib, io.BytesIO(bytes(content)), "a.zip")

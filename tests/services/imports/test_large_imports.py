@@ -7,7 +7,6 @@ import itertools
 import json
 import zipfile
 from collections import Counter
-from collections.abc import Iterable
 from types import SimpleNamespace
 from typing import Any
 
@@ -26,15 +25,7 @@ from app.store.jobs import queue
 from app.store.jobs.import_files import FileOutcome
 from app.store.jobs.record import ClaimedJob, JobKind, JobRecord, JobState
 from tests.libraries import settings_for, work
-
-
-def archive_of(entries: Iterable[tuple[str, bytes]]) -> io.BytesIO:
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in entries:
-            archive.writestr(name, content)
-    made.seek(0)
-    return made
+from tests.zip_archives import zip_archive
 
 
 def _claim(lib: Library) -> ClaimedJob:
@@ -62,7 +53,7 @@ def test_paths_that_a_manifest_names_in_vain_are_counted_and_the_first_are_liste
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     good = ("here.bvh", some_demo_clips[0].content)
-    imports.start_import(lib, archive_of([good, _manifest(5000)]), "a.zip")
+    imports.start_import(lib, zip_archive([good, _manifest(5000)]), "a.zip")
     job = _unpack(lib, _claim(lib))
     assert job.state is JobState.PROCESSING
     work(lib.settings)
@@ -78,7 +69,7 @@ def test_paths_that_a_manifest_names_in_vain_are_counted_and_the_first_are_liste
 def test_rows_of_absent_paths_count_against_the_limit_of_entries(tmp_path: Any) -> None:
     lib = Library.open(settings_for(tmp_path, max_archive_entries=50))
     clip = _bad(1)[0]
-    imports.start_import(lib, archive_of([clip, _manifest(51)]), "a.zip")
+    imports.start_import(lib, zip_archive([clip, _manifest(51)]), "a.zip")
     with pytest.raises(TooLarge, match="line 52: more than 50 rows") as refused:
         _unpack(lib, _claim(lib))
     assert refused.value.places[0].location == "manifest.csv line 52"
@@ -88,7 +79,7 @@ def test_rows_of_absent_paths_count_against_the_limit_of_entries(tmp_path: Any) 
 
 def test_the_result_of_a_large_import_is_small_and_its_files_are_paged(lib: Library) -> None:
     names = [f"{i:04d}.bvh" for i in range(1200)]
-    imports.start_import(lib, archive_of((name, b"") for name in names), "a.zip")
+    imports.start_import(lib, zip_archive((name, b"") for name in names), "a.zip")
     job = _unpack(lib, _claim(lib))
     assert job.result is not None
     assert (job.result["total"], job.result["failed"]) == (1200, 1200)
@@ -112,7 +103,7 @@ def test_of_many_files_those_that_failed_are_told_first(
 ) -> None:
     monkeypatch.setattr(jobs, "FIRST_FILES", 3)
     files = [*_bad(4), ("z_empty.bvh", b""), ("y_notes.txt", b"notes")]
-    imports.start_import(lib, archive_of(files), "a.zip")
+    imports.start_import(lib, zip_archive(files), "a.zip")
     _unpack(lib, claimed := _claim(lib))
     for clip in clips.list_clips(lib).items:
         clips.delete_clip(lib, clip.id)
@@ -137,7 +128,7 @@ def test_files_without_a_clip_are_recorded_together(
         writes["write"] += 1
         return write()
 
-    imports.start_import(lib, archive_of((f"{i:04d}.bvh", b"") for i in range(1200)), "a.zip")
+    imports.start_import(lib, zip_archive((f"{i:04d}.bvh", b"") for i in range(1200)), "a.zip")
     claimed = _claim(lib)
     monkeypatch.setattr(lib.store.database, "write", counted)
     _unpack(lib, claimed)
@@ -149,7 +140,7 @@ def test_small_files_that_are_no_motion_never_reach_the_disk(
     lib: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     files = [("empty.bvh", b""), ("notes.txt", b"notes\n" * 10_000), ("good.bvh", _bad(1)[0][1])]
-    imports.start_import(lib, archive_of(files), "a.zip")
+    imports.start_import(lib, zip_archive(files), "a.zip")
     claimed, staged = _claim(lib), list[int]()
     stage = type(lib.store.files).stage
 
@@ -174,10 +165,10 @@ def test_an_import_lets_another_go_first_and_goes_on_afterwards(
     lib: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     _end_turns_with_each_file(monkeypatch)
-    large = imports.start_import(lib, archive_of(_bad(3)), "large.zip")
+    large = imports.start_import(lib, zip_archive(_bad(3)), "large.zip")
     claimed = _claim(lib)
     small = imports.start_import(
-        lib, archive_of([("small.bvh", b"HIERARCHY\nROOT s\n")]), "small.zip"
+        lib, zip_archive([("small.bvh", b"HIERARCHY\nROOT s\n")]), "small.zip"
     )
     waiting = _unpack(lib, claimed)
     assert (waiting.state, waiting.progress) == (JobState.QUEUED, pytest.approx(1 / 3))
@@ -198,7 +189,7 @@ def test_an_import_alone_goes_on_without_a_break(
     lib: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     _end_turns_with_each_file(monkeypatch)
-    imports.start_import(lib, archive_of(_bad(3)), "a.zip")
+    imports.start_import(lib, zip_archive(_bad(3)), "a.zip")
     assert _unpack(lib, _claim(lib)).state is JobState.PROCESSING
 
 
@@ -206,9 +197,9 @@ def test_an_import_can_be_canceled_between_its_turns(
     lib: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     _end_turns_with_each_file(monkeypatch)
-    large = imports.start_import(lib, archive_of(_bad(3)), "large.zip")
+    large = imports.start_import(lib, zip_archive(_bad(3)), "large.zip")
     claimed = _claim(lib)
-    imports.start_import(lib, archive_of(_bad(4)[3:]), "small.zip")
+    imports.start_import(lib, zip_archive(_bad(4)[3:]), "small.zip")
     assert _unpack(lib, claimed).state is JobState.QUEUED
     canceled = jobs.cancel_or_remove(lib, large.id)
     assert canceled is not None
@@ -222,9 +213,9 @@ def test_the_clips_of_a_large_import_stand_back_behind_those_of_a_small_one(
     lib: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(import_register, "FIRST_CLIPS", 2)
-    imports.start_import(lib, archive_of(_bad(9)), "large.zip")
+    imports.start_import(lib, zip_archive(_bad(9)), "large.zip")
     _unpack(lib, _claim(lib))
-    imports.start_import(lib, archive_of([("small.bvh", b"HIERARCHY\nROOT s\n")]), "small.zip")
+    imports.start_import(lib, zip_archive([("small.bvh", b"HIERARCHY\nROOT s\n")]), "small.zip")
     _unpack(lib, _claim(lib))
     order = []
     with lib.store.write() as tx:
@@ -257,7 +248,7 @@ def test_a_path_that_is_too_long_is_told_and_repeated_names_never_collide(
 @pytest.mark.parametrize("letter", ["é", "\N{GRINNING FACE}", "\x01", '"'])
 def test_the_cursor_after_a_long_path_is_taken(lib: Library, letter: str) -> None:
     names = [letter * 490 + f"{i}.bvh" for i in range(3)]
-    imports.start_import(lib, archive_of((name, b"") for name in names), "a.zip")
+    imports.start_import(lib, zip_archive((name, b"") for name in names), "a.zip")
     job = _unpack(lib, _claim(lib))
     page = jobs.list_files(lib, job.id, limit=2)
     rest = jobs.list_files(lib, job.id, limit=2, cursor=page.next)
@@ -267,7 +258,7 @@ def test_the_cursor_after_a_long_path_is_taken(lib: Library, letter: str) -> Non
 def test_a_job_that_has_ended_can_be_removed_with_its_files_but_not_its_clips(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
-    job = imports.start_import(lib, archive_of([("a.bvh", some_demo_clips[0].content)]), "a.zip")
+    job = imports.start_import(lib, zip_archive([("a.bvh", some_demo_clips[0].content)]), "a.zip")
     work(lib.settings)
     assert jobs.cancel_or_remove(lib, job.id) is None
     assert job.id not in {one.id for one in jobs.list_jobs(lib).items}

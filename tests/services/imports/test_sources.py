@@ -20,17 +20,9 @@ from app.services.imports.sources import (
     is_archive,
     single_file,
 )
+from tests.zip_archives import zip_archive
 
 LIMITS = ArchiveLimits(entries=5, ratio=50.0, file_bytes=20 * 2**20)
-
-
-def _zip(entries: dict[str, bytes], compression: int = zipfile.ZIP_DEFLATED) -> io.BytesIO:
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w", compression) as archive:
-        for name, content in entries.items():
-            archive.writestr(name, content)
-    made.seek(0)
-    return made
 
 
 def _files(archive: io.BytesIO, limits: ArchiveLimits = LIMITS) -> list[SourceFile]:
@@ -39,7 +31,7 @@ def _files(archive: io.BytesIO, limits: ArchiveLimits = LIMITS) -> list[SourceFi
 
 
 def test_files_are_read_in_the_archives_order() -> None:
-    with archive_files(_zip({"b/x.bvh": b"1", "a.bvh": b"22"}), LIMITS) as files:
+    with archive_files(zip_archive({"b/x.bvh": b"1", "a.bvh": b"22"}), LIMITS) as files:
         assert [(f.path, f.open().read(), f.problem) for f in files] == [
             ("b/x.bvh", b"1", None),
             ("a.bvh", b"22", None),
@@ -48,14 +40,14 @@ def test_files_are_read_in_the_archives_order() -> None:
 
 def test_folders_and_what_systems_leave_behind_are_left_out() -> None:
     names = ["d/", "__MACOSX/a.bvh", ".DS_Store", ".git/config", "d/a.bvh"]
-    assert [f.path for f in _files(_zip(dict.fromkeys(names, b"")))] == ["d/a.bvh"]
+    assert [f.path for f in _files(zip_archive(dict.fromkeys(names, b"")))] == ["d/a.bvh"]
 
 
 @pytest.mark.parametrize(
     "name", ["/etc/a.bvh", "../a.bvh", "d/../../a.bvh", "C:/a.bvh", "..\\a.bvh"]
 )
 def test_a_path_that_leads_out_is_refused(name: str) -> None:
-    (file,) = _files(_zip({name: b"x"}))
+    (file,) = _files(zip_archive({name: b"x"}))
     assert file.problem is not None
     assert "out of the archive" in file.problem.detail
 
@@ -72,7 +64,7 @@ def test_a_link_is_refused() -> None:
 
 
 def test_an_encrypted_entry_is_refused() -> None:
-    content = bytearray(_zip({"a.bvh": b"x"}).getvalue())
+    content = bytearray(zip_archive({"a.bvh": b"x"}).getvalue())
     for signature, offset in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
         content[content.index(signature) + offset] |= 1
     (file,) = _files(io.BytesIO(bytes(content)))
@@ -82,25 +74,25 @@ def test_an_encrypted_entry_is_refused() -> None:
 
 def test_a_file_over_the_limit_is_refused_by_itself() -> None:
     limits = ArchiveLimits(5, 50.0, file_bytes=3)
-    small, large = _files(_zip({"a": b"123", "b": b"1234"}), limits)
+    small, large = _files(zip_archive({"a": b"123", "b": b"1234"}), limits)
     assert small.problem is None
     assert isinstance(large.problem, TooLarge)
 
 
 def test_a_bomb_is_refused_whole() -> None:
     with pytest.raises(TooLarge, match="unpacks to too much"):
-        _files(_zip({"a": bytes(15 * 2**20)}))
+        _files(zip_archive({"a": bytes(15 * 2**20)}))
 
 
 def test_too_many_entries_are_refused_whole() -> None:
     with pytest.raises(TooLarge, match="too many files"):
-        _files(_zip({str(i): b"" for i in range(6)}))
+        _files(zip_archive({str(i): b"" for i in range(6)}))
 
 
 def test_a_directory_of_too_many_entries_is_refused_before_it_is_read_whole() -> None:
-    few = _zip(dict.fromkeys([f".hidden/{i}" for i in range(15)], b""))
+    few = zip_archive(dict.fromkeys([f".hidden/{i}" for i in range(15)], b""))
     assert _files(few) == []
-    many = _zip(dict.fromkeys([f".hidden/{i}" for i in range(16)], b""))
+    many = zip_archive(dict.fromkeys([f".hidden/{i}" for i in range(16)], b""))
     read: list[int] = []
 
     class Watched(io.BytesIO):
@@ -117,10 +109,10 @@ def test_a_directory_of_too_many_entries_is_refused_before_it_is_read_whole() ->
 
 def test_a_directory_of_too_long_names_is_refused() -> None:
     names = [f"{i}/".ljust(60_000, "x") for i in range(4)]
-    assert len(_files(_zip(dict.fromkeys(names, b"")))) == 4
+    assert len(_files(zip_archive(dict.fromkeys(names, b"")))) == 4
     names = [f"{i}/".ljust(65_000, "x") for i in range(12)]
     with pytest.raises(TooLarge) as refused:
-        _files(_zip(dict.fromkeys(names, b"")), ArchiveLimits(20, 50.0, 100))
+        _files(zip_archive(dict.fromkeys(names, b"")), ArchiveLimits(20, 50.0, 100))
     assert "bytes of names" in refused.value.places[0].message
 
 
@@ -131,7 +123,7 @@ def test_what_is_no_archive_is_unreadable(content: bytes) -> None:
 
 
 def test_a_truncated_archive_is_unreadable() -> None:
-    whole = _zip({"a.bvh": b"x" * 1000}, zipfile.ZIP_STORED).getvalue()
+    whole = zip_archive({"a.bvh": b"x" * 1000}, zipfile.ZIP_STORED).getvalue()
     with pytest.raises(Unreadable):
         _files(io.BytesIO(whole[: len(whole) // 2]))
 
@@ -146,7 +138,7 @@ def test_folders_are_walked_and_single_files_taken(tmp_path: Path) -> None:
         assert file.read() == b"b/y.bvh"
     assert [f.path for f in single_file(tmp_path / "a.bvh")] == ["a.bvh"]
     assert not is_archive(tmp_path / "a.bvh")
-    (tmp_path / "z.zip").write_bytes(_zip({"a": b""}).getvalue())
+    (tmp_path / "z.zip").write_bytes(zip_archive({"a": b""}).getvalue())
     assert is_archive(tmp_path / "z.zip")
 
 
@@ -159,7 +151,9 @@ def test_a_damaged_entry_is_unreadable_by_itself(name: str) -> None:
         "stored": zipfile.ZIP_STORED,
     }
     noise = bytes(range(256)) * 20
-    content = bytearray(_zip({"bad.bvh": noise, "good.bvh": b"1"}, compressions[name]).getvalue())
+    content = bytearray(
+        zip_archive({"bad.bvh": noise, "good.bvh": b"1"}, compressions[name]).getvalue()
+    )
     for place in range(60, 100):
         content[place] ^= 0x5A
     with archive_files(io.BytesIO(bytes(content)), LIMITS) as (bad, good):

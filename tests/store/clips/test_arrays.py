@@ -1,4 +1,4 @@
-"""Arrays come back as they were: dtype, shape, values; read-only."""
+"""Arrays are read with the dtype, shape and values that were stored, and read-only."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ DTYPES = st.sampled_from(["<f4", "<f8", ">f4", ">i8", "u1", "?", "<i4"])
         DTYPES.map(np.dtype), hnp.array_shapes(min_dims=0, max_dims=3, min_side=0, max_side=4)
     )
 )
-def test_blobs_keep_everything(array: NDArray[Any]) -> None:
+def test_a_blob_keeps_dtype_shape_and_values(array: NDArray[Any]) -> None:
     for layout in (array, np.asfortranarray(array)):
         blob = to_blob(layout)
         back = from_blob(**blob)
@@ -38,7 +38,7 @@ def test_blobs_keep_everything(array: NDArray[Any]) -> None:
 
 
 @pytest.mark.parametrize("array", [np.array([None]), np.array(["x"]), np.array([1j])])
-def test_what_is_no_number_is_refused(array: NDArray[Any]) -> None:
+def test_arrays_that_are_not_numbers_are_refused(array: NDArray[Any]) -> None:
     with pytest.raises(ValueError, match="not stored"):
         to_blob(array)
 
@@ -57,7 +57,7 @@ def test_arrays_of_a_clip_replace_the_earlier_ones(store: Store, add_clip: AddCl
             arrays.get_one(tx, clip.id, "b")
 
 
-def test_some_arrays_of_a_clip_come_in_the_order_asked_for(store: Store, add_clip: AddClip) -> None:
+def test_some_arrays_of_a_clip_come_in_the_requested_order(store: Store, add_clip: AddClip) -> None:
     clip = add_clip("walk")
     with store.write() as tx:
         arrays.put_many(tx, clip.id, {n: np.full(2, n, "f4") for n in "123"}, version=1)

@@ -1,4 +1,4 @@
-"""What an index is fed with: labels and an array of each clip that changed, in batches."""
+"""The data for an index: labels and one array of each changed clip, in batches."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from app.store.store import Store
 from tests.store.conftest import AddClip
 
 
-def _told(store: Store, since: int, array: str = "vector") -> list[IndexedClip]:
+def _changes(store: Store, since: int, array: str = "vector") -> list[IndexedClip]:
     with store.read() as tx:
         return [clip for batch in changed_since(tx, since, array) for clip in batch]
 
@@ -24,21 +24,21 @@ def test_a_clip_comes_with_its_labels_and_its_array(store: Store, add_clip: AddC
     clip = add_clip("walk", ready=True, words=("slow", "left_leg"), **labels)
     with store.write() as tx:
         arrays.put_many(tx, clip.id, {"vector": np.arange(3.0), "other": np.zeros(9)}, version=1)
-    (told,) = _told(store, 0)
-    assert told.array is not None
-    assert told.array.tolist() == [0.0, 1.0, 2.0]
-    assert {name: getattr(told, name) for name in labels} == labels
-    assert (told.id, told.is_ready, told.duration) == (clip.id, True, clip.duration)
-    assert told.words == {"slow", "left_leg"}
+    (indexed,) = _changes(store, 0)
+    assert indexed.array is not None
+    assert indexed.array.tolist() == [0.0, 1.0, 2.0]
+    assert {name: getattr(indexed, name) for name in labels} == labels
+    assert (indexed.id, indexed.is_ready, indexed.duration) == (clip.id, True, clip.duration)
+    assert indexed.words == {"slow", "left_leg"}
 
 
-def test_what_a_clip_lacks(store: Store, add_clip: AddClip) -> None:
+def test_a_clip_without_labels_and_array(store: Store, add_clip: AddClip) -> None:
     add_clip("bare", ready=True)
-    (told,) = _told(store, 0)
-    assert (told.person, told.words, told.array) == (None, frozenset(), None)
+    (indexed,) = _changes(store, 0)
+    assert (indexed.person, indexed.words, indexed.array) == (None, frozenset(), None)
 
 
-def test_only_what_changed_since_and_in_the_order_of_the_changes(
+def test_only_clips_changed_since_a_version_in_the_order_of_their_changes(
     store: Store, add_clip: AddClip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(index_feed, "BATCH", 2)
@@ -48,23 +48,23 @@ def test_only_what_changed_since_and_in_the_order_of_the_changes(
         before = library.version(tx)
         sizes = [len(batch) for batch in changed_since(tx, 0, "vector")]
     assert sizes == [2, 2, 1]
-    assert [clip.id for clip in _told(store, 0)] == [clip.id for clip in made]
+    assert [clip.id for clip in _changes(store, 0)] == [clip.id for clip in made]
     with store.write() as tx:
         clips.patch(tx, made[3].id, {"task": "run"})
         clips.set_failed(tx, made[1].id, {"code": "unreadable"})
-        clips.requeue(tx, made[2].id)  # it stays as it is until it is analysed
+        clips.requeue(tx, made[2].id)  # it keeps its arrays until it is analyzed again
         clips.delete_clip(tx, made[0].id)
-    assert [(c.id, c.is_ready) for c in _told(store, before)] == [
+    assert [(c.id, c.is_ready) for c in _changes(store, before)] == [
         (made[3].id, True),
         (made[1].id, False),
     ]
     with store.read() as tx:
-        assert library.buried_since(tx, before) == (made[0].id,)
-        assert library.buried_since(tx, library.version(tx)) == ()
+        assert library.deleted_since(tx, before) == (made[0].id,)
+        assert library.deleted_since(tx, library.version(tx)) == ()
 
 
-def test_a_change_is_looked_up_without_reading_all_clips(store: Store) -> None:
-    """SQLite's plan: by the version's index first; by the state's it would go through all."""
+def test_changed_clips_are_found_without_reading_all_clips(store: Store) -> None:
+    """SQLite must use the index of the version; with that of the state it would read all clips."""
     with store.read() as tx:
         said = index_feed._CLIPS.params(since=1, array="vector")
         literal = said.compile(tx.engine, compile_kwargs={"literal_binds": True})

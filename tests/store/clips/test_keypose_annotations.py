@@ -1,4 +1,4 @@
-"""Annotations: one list a clip, gone with it, and a change that models hear of."""
+"""Annotations: one list for each clip; a new one counts as a change of the library."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from app.store.store import Store
 from tests.store.conftest import AddClip
 
 
-def test_an_annotation_replaces_the_one_before_and_an_empty_one_takes_it_away(
+def test_an_annotation_replaces_the_earlier_one_and_an_empty_one_removes_it(
     store: Store, add_clip: AddClip
 ) -> None:
     clip, other = add_clip("a", ready=True), add_clip("b")
@@ -34,7 +34,7 @@ def test_an_annotation_replaces_the_one_before_and_an_empty_one_takes_it_away(
         assert keypose_annotations.annotated(tx) == (other.id,)
 
 
-def test_it_goes_with_its_clip(store: Store, add_clip: AddClip) -> None:
+def test_deleting_a_clip_deletes_its_annotation(store: Store, add_clip: AddClip) -> None:
     clip = add_clip("a", ready=True)
     with store.write() as tx:
         keypose_annotations.put(tx, clip.id, [1.0])
@@ -42,7 +42,9 @@ def test_it_goes_with_its_clip(store: Store, add_clip: AddClip) -> None:
         assert keypose_annotations.annotated(tx) == ()
 
 
-def test_models_hear_of_an_annotated_ready_clip(store: Store, add_clip: AddClip) -> None:
+def test_an_annotation_of_a_ready_clip_raises_the_library_version(
+    store: Store, add_clip: AddClip
+) -> None:
     ready, queued = add_clip("a", ready=True), add_clip("b")
     with store.read() as tx:
         before = library.version(tx)
@@ -53,6 +55,6 @@ def test_models_hear_of_an_annotated_ready_clip(store: Store, add_clip: AddClip)
         assert library.changed_since(tx, before).changed == (ready.id,)
 
 
-def test_a_clip_that_is_not_there_cannot_be_annotated(store: Store) -> None:
+def test_an_unknown_clip_cannot_be_annotated(store: Store) -> None:
     with store.write() as tx, pytest.raises(ClipNotFound):
         keypose_annotations.put(tx, "clip_none", [1.0])

@@ -1,4 +1,4 @@
-"""Lists of clips: filters against a plain loop, order and pages against `sorted`."""
+"""Lists of clips: filters are compared with a plain loop, order and pages with `sorted`."""
 
 from __future__ import annotations
 
@@ -43,16 +43,16 @@ def library_of_six(add_clip: AddClip) -> list[ClipRecord]:
     ]
 
 
-def names(store: Store, wanted: ClipFilter) -> list[str]:
+def names(store: Store, filter: ClipFilter) -> list[str]:
     with store.read() as tx:
-        page = clip_listing.list_clips(tx, wanted, sort="created_at")
-        assert clip_listing.count_clips(tx, wanted) == len(page.items)
-        assert set(clip_listing.list_ids(tx, wanted)) == {clip.id for clip in page.items}
+        page = clip_listing.list_clips(tx, filter, sort="created_at")
+        assert clip_listing.count_clips(tx, filter) == len(page.items)
+        assert set(clip_listing.list_ids(tx, filter)) == {clip.id for clip in page.items}
     return [clip.name for clip in page.items]
 
 
 @pytest.mark.parametrize(
-    ("wanted", "passes"),
+    ("filter", "passes"),
     [
         (ClipFilter(), lambda c: True),
         (ClipFilter(person=("anna",)), lambda c: c.person == "anna"),
@@ -79,10 +79,10 @@ def names(store: Store, wanted: ClipFilter) -> list[str]:
 def test_filters(
     store: Store,
     library_of_six: list[ClipRecord],
-    wanted: ClipFilter,
+    filter: ClipFilter,
     passes: Callable[[ClipRecord], object],
 ) -> None:
-    assert names(store, wanted) == [clip.name for clip in library_of_six if passes(clip)]
+    assert names(store, filter) == [clip.name for clip in library_of_six if passes(clip)]
 
 
 KEYS: dict[str, Callable[[ClipRecord], object]] = {
@@ -172,7 +172,7 @@ def test_any_cursor_is_read_or_refused(store: Store, cursor: str, sort: str) -> 
         ("name", '"\\ud800"'),
     ],
 )
-def test_values_that_no_row_has_are_no_cursor(store: Store, sort: str, value: str) -> None:
+def test_values_that_no_row_can_have_are_refused(store: Store, sort: str, value: str) -> None:
     cursor = base64.urlsafe_b64encode(f'["{sort}",{value},"clip"]'.encode()).decode()
     with pytest.raises(BadField), store.read() as tx:
         clip_listing.list_clips(tx, ClipFilter(), sort=sort, cursor=cursor)

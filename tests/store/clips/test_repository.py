@@ -1,4 +1,4 @@
-"""Clips: one row for one content, states, labels, removal."""
+"""Clips: one row for each content; states, labels and deletion."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from app.errors import ClipNotFound
 from app.store.clips import arrays, labels
 from app.store.clips import repository as clips
 from app.store.clips import versions as library
-from app.store.clips.labels import Count
+from app.store.clips.labels import CountBySource
 from app.store.clips.record import AddOutcome, AnalysisHints, AttachedAudio, ClipState
 from app.store.store import Store
 from tests.store.conftest import AddClip, facts, new_clip
@@ -31,7 +31,7 @@ HINTS = AnalysisHints(
 )
 
 
-def test_a_new_clip_comes_back_as_it_was_given(store: Store) -> None:
+def test_a_new_clip_is_read_as_it_was_added(store: Store) -> None:
     new = new_clip(
         "Größe",
         person="anna",
@@ -79,9 +79,7 @@ def test_the_same_file_with_another_skeleton_is_another_clip(store: Store) -> No
     assert len({clip.sha256 for clip in added}) == 1
 
 
-def test_a_failed_clip_is_queued_again_with_what_is_given_now(
-    store: Store, add_clip: AddClip
-) -> None:
+def test_a_failed_clip_is_queued_again_with_the_new_labels(store: Store, add_clip: AddClip) -> None:
     clip = add_clip("walk", person="anna", words=("walk",))
     with store.write() as tx:
         clips.set_failed(tx, clip.id, {"code": "unreadable"})
@@ -96,7 +94,7 @@ def test_a_failed_clip_is_queued_again_with_what_is_given_now(
     assert again.clip.hints.metres_per_unit == 0.01
 
 
-def test_ready_tells_what_the_analysis_found(add_clip: AddClip) -> None:
+def test_a_ready_clip_has_the_facts_of_its_analysis(add_clip: AddClip) -> None:
     clip = add_clip("walk", ready=True)
     found = facts()
     assert clip.state is ClipState.READY
@@ -105,14 +103,14 @@ def test_ready_tells_what_the_analysis_found(add_clip: AddClip) -> None:
     assert (clip.frames, clip.duration, clip.joints, clip.format) == (90, 3.0, 22, "bvh")
 
 
-def test_patch_changes_only_what_is_given(store: Store, add_clip: AddClip) -> None:
+def test_patch_changes_only_the_given_fields(store: Store, add_clip: AddClip) -> None:
     clip = add_clip("walk", person="anna", task="walk", words=("walk", "slow"))
     with store.write() as tx:
         changed = clips.patch(tx, clip.id, {"name": "New", "task": None, "words": ["run"]})
     assert (changed.name, changed.person, changed.task) == ("New", "anna", None)
     assert changed.words == ("run",)
     with store.read() as tx:
-        assert labels.words(tx, "us") == (Count("run", 1, 0),)
+        assert labels.words(tx, "us") == (CountBySource("run", 1, 0),)
 
 
 @pytest.mark.parametrize("act", ["get", "patch", "requeue", "delete_clip"])
@@ -122,18 +120,18 @@ def test_unknown_ids(store: Store, act: str) -> None:
         getattr(clips, act)(tx, "nobody", *arguments)
 
 
-def test_deletion_takes_words_and_arrays_along(store: Store, add_clip: AddClip) -> None:
+def test_deleting_a_clip_deletes_its_words_and_arrays(store: Store, add_clip: AddClip) -> None:
     clip, other = add_clip("walk", words=("walk",)), add_clip("run", words=("run",))
     with store.write() as tx:
         for each in (clip, other):
             arrays.put_many(tx, each.id, {"v": np.zeros(3)}, version=1)
         assert clips.delete_clip(tx, clip.id) == clip
-        assert labels.words(tx, "us") == (Count("run", 1, 0),)
+        assert labels.words(tx, "us") == (CountBySource("run", 1, 0),)
         assert array_versions(tx, clip.id) == {}
         assert set(arrays.get_many(tx, [clip.id, other.id], "v")) == {other.id}
 
 
-def test_get_many_keeps_the_order_and_leaves_out_what_is_not_there(
+def test_get_many_keeps_the_order_and_leaves_out_unknown_clips(
     store: Store, add_clip: AddClip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(clips, "IDS_PER_QUERY", 2)
@@ -151,9 +149,9 @@ def test_labels_are_counted(store: Store, add_clip: AddClip) -> None:
     add_clip("3", person="ben", source="them")
     add_clip("4")
     with store.read() as tx:
-        assert labels.persons(tx, "us") == (Count("anna", 1, 1), Count("ben", 1, 0))
-        assert labels.tasks(tx, "us") == (Count("walk", 1, 0),)
-        assert labels.words(tx, "us") == (Count("slow", 1, 0), Count("walk", 1, 1))
+        assert labels.persons(tx, "us") == (CountBySource("anna", 1, 1), CountBySource("ben", 1, 0))
+        assert labels.tasks(tx, "us") == (CountBySource("walk", 1, 0),)
+        assert labels.words(tx, "us") == (CountBySource("slow", 1, 0), CountBySource("walk", 1, 1))
         assert labels.person_names(tx) == {"anna", "ben"}
 
 

@@ -1,4 +1,4 @@
-"""The library version: raised by what searches can see, and by nothing else."""
+"""The library version: only changes that searches can see raise it."""
 
 from __future__ import annotations
 
@@ -31,16 +31,18 @@ Change = Callable[[Tx, str], object]
         (lambda tx, clip_id: clips.delete_clip(tx, clip_id), False),
     ],
 )
-def test_a_change_of_a_ready_clip_is_told(
+def test_a_change_of_a_ready_clip_raises_the_version(
     store: Store, add_clip: AddClip, change: Change, is_there: bool
 ) -> None:
     clip = add_clip("walk", ready=True)
     with store.write() as tx:
         before = library.version(tx)
         change(tx, clip.id)
-        told = library.changed_since(tx, before)
-    assert told.version == before + 1
-    assert (told.changed, told.removed) == (((clip.id,), ()) if is_there else ((), (clip.id,)))
+        changes = library.changed_since(tx, before)
+    assert changes.version == before + 1
+    assert (changes.changed, changes.removed) == (
+        ((clip.id,), ()) if is_there else ((), (clip.id,))
+    )
 
 
 def test_waiting_for_another_analysis_changes_nothing_that_a_search_sees(
@@ -56,7 +58,9 @@ def test_waiting_for_another_analysis_changes_nothing_that_a_search_sees(
         assert clips.get(tx, clip.id).state is ClipState.READY
 
 
-def test_what_was_never_searchable_is_not_told(store: Store, add_clip: AddClip) -> None:
+def test_clips_that_were_never_ready_are_not_among_the_changes(
+    store: Store, add_clip: AddClip
+) -> None:
     clip = add_clip("walk")
     with store.write() as tx:
         clips.patch(tx, clip.id, {"person": "ben"})
@@ -78,25 +82,25 @@ ACTIONS: dict[str, Callable[[Tx, str], object]] = {
 
 @ON_ONE_STORE
 @given(steps=st.lists(st.tuples(st.sampled_from("abc"), st.sampled_from(["sync", *ACTIONS]))))
-def test_an_index_that_catches_up_now_and_then_knows_the_ready_clips(
+def test_an_index_that_reads_changes_at_times_has_the_ready_clips(
     store: Store, steps: list[tuple[str, str]]
 ) -> None:
-    """The index keeps ids; the truth is asked from the table at the end."""
+    """The index collects ids of changes; at the end they are compared with the table."""
     ids: dict[str, str] = {}
     with store.write() as tx:
         at = library.version(tx)
-        known = set(library.changed_since(tx, 0).changed)
+        indexed = set(library.changed_since(tx, 0).changed)
         for name, action in [*steps, ("a", "sync")]:
             if action == "sync":
-                told = library.changed_since(tx, at)
-                known = (known | set(told.changed)) - set(told.removed)
-                at = told.version
+                changes = library.changed_since(tx, at)
+                indexed = (indexed | set(changes.changed)) - set(changes.removed)
+                at = changes.version
                 continue
             ids[name] = clips.add_or_get(tx, new_clip(name)).clip.id
             ACTIONS[action](tx, ids[name])
-        assert known == set(library.changed_since(tx, 0).changed)
+        assert indexed == set(library.changed_since(tx, 0).changed)
         for clip_id in ids.values():
-            assert (clip_id in known) == _is_ready(tx, clip_id)
+            assert (clip_id in indexed) == _is_ready(tx, clip_id)
 
 
 def _is_ready(tx: Tx, clip_id: str) -> bool:

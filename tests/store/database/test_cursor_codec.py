@@ -1,4 +1,4 @@
-"""Cursors hold what was written, and whatever else a client sends is refused."""
+"""A cursor holds the values that were written; any other text is refused."""
 
 from __future__ import annotations
 
@@ -82,6 +82,6 @@ def test_any_content_is_a_position_of_a_list_or_refused(content: bytes, kind: ty
         base64.urlsafe_b64encode(b"[" + b"9" * 3000 + b"]").decode()[:-8],
     ],
 )
-def test_what_is_no_cursor_is_refused(text: str) -> None:
+def test_texts_that_are_no_cursor_are_refused(text: str) -> None:
     with pytest.raises(NotACursor):
         decode(text)

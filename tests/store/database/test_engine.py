@@ -1,4 +1,4 @@
-"""Transactions: durable, serialised, whole."""
+"""Transactions are durable, serialized and atomic."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_a_failed_write_leaves_nothing(store: Store) -> None:
         assert library.version(tx) == 0
 
 
-def test_what_is_written_while_reading_is_not_kept(store: Store) -> None:
+def test_a_write_in_a_read_transaction_is_rolled_back(store: Store) -> None:
     with store.read() as tx:
         library.bump(tx)
     with store.read() as tx:
@@ -90,7 +90,7 @@ def test_many_threads_can_read_at_once(store: Store) -> None:
     assert seen == [0] * 40
 
 
-def test_a_lock_that_is_not_had_in_time_is_a_storage_error(
+def test_a_lock_that_is_not_released_in_time_is_a_storage_error(
     store: Store, database_url: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(engine, "BUSY_TIMEOUT_S", 0.05)
@@ -104,8 +104,8 @@ def test_a_lock_that_is_not_had_in_time_is_a_storage_error(
     other.close()
 
 
-def test_a_full_disk_is_told_and_nothing_is_kept(store: Store) -> None:
-    with store.write() as tx:  # the limit belongs to the connection, which the pool gives again
+def test_a_full_disk_is_reported_and_nothing_is_stored(store: Store) -> None:
+    with store.write() as tx:  # the limit belongs to the connection, which the pool reuses
         tx.exec_driver_sql("PRAGMA max_page_count = 1")
     with pytest.raises(DiskFull), store.write() as tx:
         add_or_get(tx, new_clip("a long name " + "x" * 100_000))
@@ -123,7 +123,7 @@ def test_a_database_that_cannot_be_shared_is_refused(url: str) -> None:
     "name", ["a?b", "a%20b", "%", "%3F", "a#b@c:d", "k?mode=ro", "é", "d\udcff"]
 )
 @pytest.mark.parametrize("opened", [Database.at, lambda path: Database(sqlite_url(path))])
-def test_a_path_may_hold_anything(
+def test_a_path_may_contain_any_characters(
     tmp_path: Path, name: str, opened: Callable[[Path], Database]
 ) -> None:
     path = tmp_path / name / name

@@ -1,4 +1,4 @@
-"""The schema: migrations and tables agree, and a database of another version is refused."""
+"""Migrations and tables agree, and a database with another schema version is refused."""
 
 from __future__ import annotations
 
@@ -63,13 +63,13 @@ def test_an_empty_database_is_prepared_and_prepared_again(tmp_path: Path) -> Non
     assert schema.upgrade(url).is_current
 
 
-def test_an_older_database_is_not_upgraded_unasked(database_url: str) -> None:
+def test_a_start_does_not_upgrade_an_older_database(database_url: str) -> None:
     _set_revision(database_url, None)
     with pytest.raises(DatabaseOutOfDate, match="kinedex db upgrade"):
         schema.prepare(database_url)
 
 
-def test_an_upgrade_keeps_what_is_there(store: Store, add_clip: AddClip, database_url: str) -> None:
+def test_an_upgrade_keeps_the_data(store: Store, add_clip: AddClip, database_url: str) -> None:
     clip = add_clip("walk", ready=True, words=("walk", "slow"))
     database = Database(database_url, foreign_keys=False)
     with database.migrate() as tx:

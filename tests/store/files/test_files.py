@@ -1,4 +1,4 @@
-"""The file store: whole or not at all."""
+"""The file store: a file is stored completely or not at all."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ import pytest
 
 from app.errors import BadField, DiskFull, FileDamaged, NotFound, StorageError, TooLarge
 from app.store.files import locked_file
-from app.store.files.checked import read_whole
 from app.store.files.files import FileStore
+from app.store.files.hash_check import read_whole
 
 
 @pytest.fixture
@@ -52,7 +52,7 @@ def test_the_same_bytes_are_kept_once(files: FileStore) -> None:
     assert len(everything_in(files)) == len(list(files)) == 1
 
 
-def test_what_is_not_kept_leaves_nothing(files: FileStore) -> None:
+def test_content_that_is_not_kept_is_removed(files: FileStore) -> None:
     with files.stage(io.BytesIO(b"walk")):
         pass
     with pytest.raises(RuntimeError), files.stage(io.BytesIO(b"run")):
@@ -62,7 +62,7 @@ def test_what_is_not_kept_leaves_nothing(files: FileStore) -> None:
     assert everything_in(files) == []
 
 
-def test_content_of_exactly_the_limit_is_taken(files: FileStore) -> None:
+def test_content_of_exactly_the_limit_is_accepted(files: FileStore) -> None:
     with files.stage(io.BytesIO(b"jump"), max_bytes=4) as staged:
         assert staged.size == 4
 
@@ -148,12 +148,12 @@ def held_by_another_process(files: FileStore) -> subprocess.Popen[str]:
     )
 
 
-def test_temporaries_of_dead_uploads_go_whatever_the_clock_says(files: FileStore) -> None:
+def test_temporaries_of_dead_uploads_are_removed_at_any_age(files: FileStore) -> None:
     process = held_by_another_process(files)
     try:
         assert process.stdout is not None
         temporary = Path(process.stdout.readline().strip())
-        os.utime(temporary, (0, 0))  # old by the clock, but its process lives
+        os.utime(temporary, (0, 0))  # old, but its process lives
         with files.stage(io.BytesIO(b"walk")) as own:
             assert files.remove_abandoned_temporaries() == 0
             assert own.temporary.exists()
@@ -161,12 +161,12 @@ def test_temporaries_of_dead_uploads_go_whatever_the_clock_says(files: FileStore
     finally:
         process.kill()
         process.communicate()
-    os.utime(temporary, (2**33, 2**33))  # of the future, and dead
+    os.utime(temporary, (2**33, 2**33))  # its time is in the future, but its process is dead
     assert files.remove_abandoned_temporaries() == 1
     assert everything_in(files) == []
 
 
-def test_a_temporary_that_is_swept_before_it_is_locked_is_made_again(
+def test_a_temporary_that_a_sweep_removes_before_its_lock_is_made_again(
     files: FileStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     real, swept = locked_file._lock, []
@@ -182,7 +182,7 @@ def test_a_temporary_that_is_swept_before_it_is_locked_is_made_again(
     assert files.path(sha256).read_bytes() == b"walk"
 
 
-def test_what_is_made_is_its_makers_own(files: FileStore) -> None:
+def test_files_and_folders_are_private(files: FileStore) -> None:
     before = os.umask(0)
     try:
         put(files, b"walk")
@@ -194,7 +194,7 @@ def test_what_is_made_is_its_makers_own(files: FileStore) -> None:
     assert {mode for path, mode in modes.items() if path.is_file()} == {0o600}
 
 
-def test_a_damaged_file_is_not_given_out(files: FileStore) -> None:
+def test_a_damaged_file_is_not_read(files: FileStore) -> None:
     sha256 = put(files, b"walk, walk, walk")
     assert files.checked_path(sha256) == files.path(sha256)
     path = files.path(sha256)
@@ -204,16 +204,16 @@ def test_a_damaged_file_is_not_given_out(files: FileStore) -> None:
         files.checked_path(sha256)
     with pytest.raises(FileDamaged):
         read_whole(path)
-    put(files, b"walk, walk, walk")  # the same bytes again mend it
+    put(files, b"walk, walk, walk")  # the same bytes repair it
     assert read_whole(files.checked_path(sha256)) == b"walk, walk, walk"
 
 
-def test_a_file_that_was_whole_is_not_hashed_for_every_part_of_it(
+def test_a_checked_file_is_not_hashed_again_for_each_part(
     files: FileStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     sha256, hashed = put(files, b"song"), []
     monkeypatch.setattr(
-        "app.store.files.checked.refuse_damage", lambda *names: hashed.append(names)
+        "app.store.files.hash_check.refuse_damage", lambda *names: hashed.append(names)
     )
     for _ in range(5):
         files.checked_path(sha256)

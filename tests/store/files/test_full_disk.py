@@ -1,4 +1,4 @@
-"""On a full disk nothing half is stored, and what is there can be deleted."""
+"""On a full disk nothing is stored in part, and clips can still be deleted."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from app.store import identity
 from app.store.clips import arrays
 from app.store.clips import repository as clips
 from app.store.clips.record import ClipLabels, ClipRecord, NewClip
-from app.store.files.reserve import LEAST
+from app.store.files.reserve import MIN_BYTES
 from app.store.jobs import outcomes
 from app.store.store import Store
 from tests.full_disk import fill, small_disk
 
 ARRAY_BYTES = 3 * 2**20
-"""Of one clip: more than the database's log has room for by chance."""
+"""Size of the array of one clip: more than the free space that the log may have by chance."""
 
 
 @pytest.fixture
@@ -93,11 +93,11 @@ def test_a_deletion_is_tried_again_with_the_reserve(tmp_path: Path) -> None:
     store = open_store(tmp_path)
     store.make_reserve()
     reserve = tmp_path / "kinedex.sqlite3.reserve"
-    assert reserve.stat().st_size == LEAST
+    assert reserve.stat().st_size == MIN_BYTES
     work = Full(store, reserve)
     assert store.write_even_when_full(work) == "deleted"
     assert work.calls == 2
-    assert reserve.exists()  # there is room again
+    assert reserve.exists()  # there is free space again
 
     def always_full(tx: Any) -> None:
         raise DiskFull
@@ -111,7 +111,7 @@ def test_the_reserve_does_not_take_the_last_space(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     store = open_store(tmp_path)
-    usage = type("Usage", (), {"free": 3 * LEAST})
+    usage = type("Usage", (), {"free": 3 * MIN_BYTES})
     monkeypatch.setattr("app.store.files.reserve.shutil.disk_usage", lambda _: usage)
     store.make_reserve()
     assert not (tmp_path / "kinedex.sqlite3.reserve").exists()

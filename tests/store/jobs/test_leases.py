@@ -1,4 +1,4 @@
-"""Leases: each job to one worker at a time, and to the next one when that one dies."""
+"""Leases: only one worker at a time has a job; if it dies, another worker gets the job."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from app.errors import LeaseLost
 from app.store.database.ids import utc_now
 from app.store.jobs import leases, owners
 from app.store.jobs import repository as jobs
-from app.store.jobs.abandoned import Watch
+from app.store.jobs.abandoned_jobs import Watch
 from app.store.jobs.record import ClaimedJob, JobKind, JobState, NewJob
 from app.store.store import Store
 from tests.store.conftest import AddJob
@@ -37,7 +37,7 @@ def claim_or_none(
 
 
 def take_over(store: Store) -> None:
-    """Another worker takes what is held from its holder, as from a dead one, and gives it back."""
+    """Another worker takes the jobs of their workers, as if these were dead, and puts them back."""
     watch = Watch("watcher", 0.0)
     with store.write() as tx:
         for held in watch.look(tx):
@@ -56,7 +56,7 @@ def test_the_most_urgent_comes_first_then_the_oldest(store: Store, add_job: AddJ
     assert claim_or_none(store) is None
 
 
-def test_only_the_kinds_that_are_asked_for(store: Store, add_job: AddJob) -> None:
+def test_only_jobs_of_the_requested_kinds_are_claimed(store: Store, add_job: AddJob) -> None:
     add_job(JobKind.FIT)
     with store.write() as tx:
         assert not leases.is_any_claimable(tx, [JobKind.INGEST])
@@ -72,7 +72,7 @@ def test_a_claimed_job_is_processing(store: Store, add_job: AddJob) -> None:
     assert job.started_at >= job.created_at
 
 
-def test_a_heartbeat_tells_progress(store: Store, add_job: AddJob) -> None:
+def test_a_heartbeat_records_progress(store: Store, add_job: AddJob) -> None:
     add_job()
     lease = claim(store).lease
     with store.write() as tx:
@@ -84,7 +84,7 @@ def test_a_heartbeat_tells_progress(store: Store, add_job: AddJob) -> None:
     assert (job.progress, job.detail, beats) == (1.0, "half", 2)
 
 
-def test_who_lost_the_lease_can_settle_nothing(store: Store, add_job: AddJob) -> None:
+def test_a_worker_without_its_lease_can_settle_nothing(store: Store, add_job: AddJob) -> None:
     add_job()
     slow = claim(store, "slow").lease
     take_over(store)
@@ -195,7 +195,7 @@ def test_processes_claim_each_job_once(store: Store, database_url: str, tmp_path
         process.start()
     for process in processes:
         process.join(60)
-    # A job that two had claimed would have raised LeaseLost in one of them.
+    # If two workers had claimed the same job, one of them would have raised LeaseLost.
     assert [process.exitcode for process in processes] == [0, 0]
     with store.read() as tx:
         assert {jobs.get(tx, job_id).state for job_id in ids} == {JobState.SUCCEEDED}
@@ -210,7 +210,7 @@ def _claim_and_die(url: str, directory: Path) -> None:
         signal.raise_signal(signal.SIGKILL)
 
 
-def test_a_worker_killed_on_this_machine_is_known_to_be_dead_at_once(
+def test_a_worker_killed_on_this_machine_is_seen_as_dead_at_once(
     store: Store, database_url: str, tmp_path: Path, add_job: AddJob
 ) -> None:
     job = add_job()

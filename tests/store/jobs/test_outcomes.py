@@ -1,4 +1,4 @@
-"""How work ends: job, clip and import together, and each clip once."""
+"""The outcomes of jobs: job, clip and import end together, and each clip ends once."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_a_clip_that_kills_its_workers_is_given_up(store: Store) -> None:
     assert "died 3 times" in error["detail"]
 
 
-def test_what_may_pass_is_tried_again_and_then_given_up(store: Store) -> None:
+def test_temporary_failures_are_tried_again_and_then_end_the_job(store: Store) -> None:
     with store.write() as tx:
         clip = add(tx, "walk", max_attempts=2)
         claimed = take(tx)
@@ -90,7 +90,7 @@ def test_what_may_pass_is_tried_again_and_then_given_up(store: Store) -> None:
         assert states(tx, clip, claimed) == (ClipState.FAILED, JobState.FAILED)
 
 
-def test_a_worker_told_to_stop_gives_its_clip_back(store: Store) -> None:
+def test_a_worker_that_stops_puts_its_clip_back(store: Store) -> None:
     with store.write() as tx:
         clip = add(tx, "walk", max_attempts=1)
         for _ in range(3):
@@ -193,7 +193,7 @@ def test_an_import_with_nothing_to_wait_for_ends_at_once(store: Store) -> None:
     assert job.state is JobState.SUCCEEDED
 
 
-def test_an_import_that_waits_is_nobodys_and_never_expires(store: Store) -> None:
+def test_an_import_that_waits_has_no_owner_and_is_never_abandoned(store: Store) -> None:
     with store.write() as tx:
         job, _ = start_import(tx, "a")
         take(tx)
@@ -203,14 +203,14 @@ def test_an_import_that_waits_is_nobodys_and_never_expires(store: Store) -> None
         assert jobs.get(tx, job.id).state is JobState.PROCESSING
 
 
-def test_an_import_that_is_tried_again_knows_what_it_has_done(store: Store) -> None:
+def test_an_import_that_is_tried_again_skips_recorded_files(store: Store) -> None:
     with store.write() as tx:
         job = jobs.enqueue(tx, NewJob(JobKind.IMPORT))
         imports.add_entries(tx, job.id, [NewEntry("a.bvh", ImportOutcome.FAILED, problem=PROBLEM)])
         assert imports.recorded_paths(tx, job.id) == {"a.bvh"}
 
 
-def test_cancelling_an_import_cancels_what_waits(store: Store) -> None:
+def test_canceling_an_import_cancels_its_waiting_clips(store: Store) -> None:
     with store.write() as tx:
         job, (running, waiting) = start_import(tx, "a", "b")
         claimed = take(tx)
@@ -223,12 +223,12 @@ def test_cancelling_an_import_cancels_what_waits(store: Store) -> None:
         assert jobs.get(tx, job.id).state is JobState.CANCELED
 
 
-def test_a_child_killed_from_outside_does_not_count_and_is_given_up_in_the_end(
+def test_kills_from_outside_are_no_failures_but_end_the_job_at_last(
     store: Store,
 ) -> None:
     with store.write() as tx:
         clip = add(tx, "walk", max_attempts=1)
-        for number in range(1, outcomes.MOST_KILLS + 1):
+        for number in range(1, outcomes.MAX_KILLS + 1):
             claimed = take_whenever(tx)
             outcomes.retry_after_kill(tx, claimed, PROBLEM)
             assert states(tx, clip, claimed) == (ClipState.QUEUED, JobState.QUEUED)
@@ -238,13 +238,15 @@ def test_a_child_killed_from_outside_does_not_count_and_is_given_up_in_the_end(
 
 
 def take_whenever(tx: Tx) -> ClaimedJob:
-    """As `take`, though a retry is to wait."""
+    """As `take`, but also for a job whose next attempt is not due yet."""
     tx.exec_driver_sql("UPDATE jobs SET not_before = NULL")
     return take(tx)
 
 
-def test_the_job_of_a_process_that_is_gone_is_canceled_at_once(store: Store) -> None:
-    dead = f"{owners.new_owner('worker')}1"  # another process has its number now
+def test_the_job_of_a_dead_process_is_canceled_at_once(store: Store) -> None:
+    dead = (
+        f"{owners.new_owner('worker')}1"  # another start time: another process has the number now
+    )
     with store.write() as tx:
         clip = add(tx, "walk")
         claimed = queue.take(tx, ALL, dead)

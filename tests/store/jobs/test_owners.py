@@ -1,4 +1,4 @@
-"""The name of a holder tells the processes of its machine whether it is dead."""
+"""Other processes of the same machine see from the name of an owner whether it is dead."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from app.store.jobs import owners
 NAME = "from app.store.jobs.owners import new_owner; print(new_owner('worker'), flush=True);"
 
 
-def test_a_process_that_lives_is_not_gone_and_one_that_ended_is() -> None:
+def test_only_an_ended_process_is_gone() -> None:
     assert not owners.is_gone(owners.new_owner("worker"))
     command = [sys.executable, "-c", NAME + "input()"]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
@@ -20,19 +20,19 @@ def test_a_process_that_lives_is_not_gone_and_one_that_ended_is() -> None:
         name = process.stdout.readline().decode().strip()
         assert not owners.is_gone(name)
         process.kill()
-        # It is a zombie until its parent asks: it is dead all the same.
+        # It is a zombie until its parent waits for it, but it is dead.
         assert process.stdout.read() == b""
         process.wait()
         assert owners.is_gone(name)
 
 
-def test_another_process_under_the_same_number_is_another_one() -> None:
+def test_another_process_with_the_same_number_is_another_owner() -> None:
     name = owners.new_owner("worker")
     assert owners.is_gone(f"{name}1")
 
 
 @pytest.mark.parametrize("part", ["@", "/", "pid:"])
-def test_nothing_is_known_of_other_machines_and_of_other_names(part: str) -> None:
+def test_owners_on_other_machines_never_count_as_dead(part: str) -> None:
     name = owners.new_owner("worker")
     elsewhere = name.replace(part, f"{part}other") + "1"
     assert not owners.is_gone(elsewhere)

@@ -1,4 +1,4 @@
-"""Jobs: queueing, twins, listing."""
+"""Jobs: adding, keys against duplicates, lists."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from app.store.store import Store
 from tests.store.conftest import AddJob
 
 
-def test_a_queued_job_comes_back_as_it_was_given(store: Store, add_job: AddJob) -> None:
+def test_a_queued_job_is_read_as_it_was_added(store: Store, add_job: AddJob) -> None:
     job = add_job(JobKind.IMPORT, payload={"a": [1]})
     with store.read() as tx:
         assert jobs.get(tx, job.id) == job

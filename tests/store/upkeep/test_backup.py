@@ -1,4 +1,4 @@
-"""A library is copied whole while it is in use, or not at all."""
+"""A library is copied completely while it is in use, or not at all."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def restored(made: Backup) -> Store:
 
 
 def check_whole(made: Backup) -> set[str]:
-    """That each file is there with its bytes, and no other; the names of the clips."""
+    """Checks that the copy has exactly the files of its clips; returns the names of the clips."""
     copy = restored(made)
     try:
         with copy.read() as tx:
@@ -78,14 +78,16 @@ def check_whole(made: Backup) -> set[str]:
         copy.close()
 
 
-def test_everything_is_copied_and_can_be_worked_on(store: Store, add: Add, tmp_path: Path) -> None:
+def test_everything_is_copied_and_kinedex_can_use_the_copy(
+    store: Store, add: Add, tmp_path: Path
+) -> None:
     add("walk"), add("run")
     with store.files.stage(io.BytesIO(b"an archive")) as staged, store.write() as tx:
         staged.keep()
         jobs.enqueue(tx, NewJob(JobKind.IMPORT, file_sha256=staged.sha256))
-    told: list[tuple[int, int]] = []
-    made = back_up(store, tmp_path / "new" / "copy", lambda *steps: told.append(steps))
-    assert told == [(1, 3), (2, 3), (3, 3)]
+    steps_seen: list[tuple[int, int]] = []
+    made = back_up(store, tmp_path / "new" / "copy", lambda *steps: steps_seen.append(steps))
+    assert steps_seen == [(1, 3), (2, 3), (3, 3)]
     assert check_whole(made) == {"walk", "run"}
     assert (made.files, made.bytes > 4096) == (3, True)
     assert {path.name for path in made.path.iterdir()} == {backup.DATABASE, backup.FILES}
@@ -98,7 +100,7 @@ def test_everything_is_copied_and_can_be_worked_on(store: Store, add: Add, tmp_p
     assert add("walk").name == "walk"
 
 
-def test_what_is_there_is_never_replaced(store: Store, add: Add, tmp_path: Path) -> None:
+def test_an_existing_path_is_never_replaced(store: Store, add: Add, tmp_path: Path) -> None:
     add("walk")
     (tmp_path / "folder").mkdir()
     (tmp_path / "file").write_text("mine")
@@ -111,14 +113,14 @@ def test_what_is_there_is_never_replaced(store: Store, add: Add, tmp_path: Path)
     assert (tmp_path / "file").read_text() == "mine"
 
 
-def test_what_is_deleted_before_its_turn_is_left_out(
+def test_a_clip_deleted_before_it_is_copied_is_left_out(
     store: Store, add: Add, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     kept, doomed = add("kept"), add("doomed")
     copy_to, moments = Database.copy_to, []
 
     def copy_then_delete(database: Database, path: Path) -> None:
-        """A clip comes before the copy of the database, and is deleted right after it."""
+        """Adds a clip before the copy of the database, and deletes one right after it."""
         late = add(f"late {len(moments)}")
         if not moments:
             delete(store, doomed)  # whose file was copied already
@@ -133,7 +135,7 @@ def test_what_is_deleted_before_its_turn_is_left_out(
     assert check_whole(made) == {kept.name, "late 2"}
 
 
-def test_every_file_that_is_lost_or_damaged_is_named_and_nothing_is_copied(
+def test_every_missing_or_damaged_file_is_named_and_nothing_is_copied(
     store: Store, add: Add, tmp_path: Path
 ) -> None:
     add("walk")
@@ -143,10 +145,10 @@ def test_every_file_that_is_lost_or_damaged_is_named_and_nothing_is_copied(
         store.files.path(sha256).unlink()
     for sha256 in damaged:
         store.files.path(sha256).write_bytes(b"ruined")
-    with pytest.raises(StorageError, match="3 are not there and 2 are damaged") as refused:
+    with pytest.raises(StorageError, match="3 are missing and 2 are damaged") as refused:
         back_up(store, tmp_path / "copy")
-    told = {place.location: place.message for place in refused.value.places}
-    assert told == dict.fromkeys(lost, "is not there") | dict.fromkeys(damaged, "is damaged")
+    reported = {place.location: place.message for place in refused.value.places}
+    assert reported == dict.fromkeys(lost, "is missing") | dict.fromkeys(damaged, "is damaged")
     assert not [name for name in tmp_path.iterdir() if "copy" in name.name]
 
 
@@ -185,12 +187,12 @@ def test_rows_that_refer_to_nothing_are_damage(store: Store, add: Add, tmp_path:
     with pytest.raises(DatabaseDamaged) as refused:
         back_up(store, tmp_path / "copy")
     (place,) = refused.value.places
-    assert "clip_words refers to a row of clips that is not there" in place.message
+    assert "clip_words refers to a row of clips that does not exist" in place.message
 
 
 def overwrite_pages(store: Store) -> None:
-    """Overwrites pages of the database with noise, as a bad disk does; the first one stays."""
-    store.erase_traces()  # into the file, away from its log
+    """Overwrites all pages of the database but the first with noise, as a bad disk may do."""
+    store.erase_traces()  # moves the changes from the log into the file
     path = store.database.file.path  # type: ignore[union-attr]
     store.close()
     pages = path.stat().st_size // 4096
@@ -203,7 +205,7 @@ def overwrite_pages(store: Store) -> None:
 
 @contextmanager
 def killed_backup(folder: Path, name: str) -> Iterator[Path]:
-    """What a process left that was killed while it copied to `folder / name`."""
+    """The unfinished copy of a process that was killed while it copied to `folder / name`."""
     code = (
         "import os, sys, pathlib, functools\n"
         "from app.store.files import locked_file\n"
@@ -229,7 +231,7 @@ def killed_backup(folder: Path, name: str) -> Iterator[Path]:
         process.communicate()
 
 
-def test_what_a_killed_backup_left_is_removed_by_the_next_one(
+def test_the_next_backup_removes_the_rest_of_a_killed_one(
     store: Store, add: Add, tmp_path: Path
 ) -> None:
     add("walk")
@@ -245,7 +247,9 @@ def test_what_a_killed_backup_left_is_removed_by_the_next_one(
     assert (others / "notes.txt").exists()
 
 
-def test_a_copy_is_private_and_says_whose_it_is(store: Store, add: Add, tmp_path: Path) -> None:
+def test_a_copy_is_private_and_has_the_id_of_its_library(
+    store: Store, add: Add, tmp_path: Path
+) -> None:
     add("walk")
     made = back_up(store, tmp_path / "copy")
     assert made.path.stat().st_mode & 0o777 == 0o700
@@ -255,7 +259,7 @@ def test_a_copy_is_private_and_says_whose_it_is(store: Store, add: Add, tmp_path
 
 
 def test_a_copy_removes_nothing_when_it_is_used(store: Store, add: Add, tmp_path: Path) -> None:
-    """A removal that was due at the moment of the copy is not due any more where it is restored."""
+    """A removal that was recorded at the time of the copy is not done in the restored library."""
     add("walk")
     with store.database.write() as tx:  # which does not finish it
         tx.execute(insert(file_removals), {"sha256": "0" * 64})
@@ -274,7 +278,7 @@ def test_a_library_in_use_is_copied_as_it_was_at_one_moment(
     stop = threading.Event()
 
     def use() -> None:
-        """Clips come, and go in the order in which they came."""
+        """Adds clips, and deletes them in the order in which it added them."""
         here: list[ClipRecord] = []
         for number in itertools.count():
             here.append(add(f"new {number:05}"))

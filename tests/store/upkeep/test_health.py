@@ -1,4 +1,4 @@
-"""What keeps the store from its work is seen, and seen to be over."""
+"""Troubles of the store are reported, and their end too."""
 
 from __future__ import annotations
 
@@ -85,15 +85,15 @@ def test_a_disk_that_takes_nothing_is_seen(
         (place,) = watched.troubles()
         assert (place.location, os.strerror(code) in place.message) == ("disk", True)
     assert watched.troubles() == (place,)  # not tried at every look
-    watched._room_until = 0.0
+    watched._next_write = 0.0
     assert watched.troubles() == ()
 
 
 def test_damage_is_found_in_the_background_and_its_end_too(
     opened: Store, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(health, "CHECK_AGAIN_S", 0.1)
-    monkeypatch.setattr(health, "LOOK_S", 0.05)
+    monkeypatch.setattr(health, "MIN_PAGE_CHECK_INTERVAL_S", 0.1)
+    monkeypatch.setattr(health, "POLL_S", 0.05)
     path = tmp_path / "kinedex.sqlite3"
     opened.erase_traces()
     opened.database.engine.dispose()

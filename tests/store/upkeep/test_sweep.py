@@ -1,4 +1,4 @@
-"""What is deleted is what was recorded; everything else that nobody names is set aside."""
+"""A sweep deletes only recorded files; other files that nobody names go to the quarantine."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from app.store.jobs import repository as jobs
 from app.store.jobs.imports import ImportOutcome, NewEntry
 from app.store.jobs.record import JobKind, JobRecord, NewJob
 from app.store.store import Store
-from app.store.upkeep.sweep import Swept, sweep
+from app.store.upkeep.sweep import SweepReport, sweep
 from tests.store.conftest import facts
 
 RETENTION_DAYS = 30.0
@@ -37,7 +37,7 @@ def put(files: FileStore, content: bytes) -> str:
 
 
 def add(store: Store, name: str, **fields: Any) -> ClipRecord:
-    """A clip with its file, as an upload makes it."""
+    """Adds a clip with its file, as an upload does."""
     with store.files.stage(io.BytesIO(name.encode())) as staged, store.write() as tx:
         staged.keep()
         new = NewClip(staged.sha256, f"{name}.bvh", staged.size, ClipLabels(name), **fields)
@@ -190,9 +190,9 @@ def test_files_that_nobody_names_are_set_aside_and_come_back(
     with caplog.at_level(logging.WARNING):
         assert sweep(store, RETENTION_DAYS).set_aside == 250
     (line,) = [record for record in caplog.records if "moved to" in record.message]
-    told = line.fields  # type: ignore[attr-defined]
-    assert (told["count"], len(told["files"])) == (250, 10)
-    assert {name[:12] for name in orphans} >= set(told["files"])
+    fields = line.fields  # type: ignore[attr-defined]
+    assert (fields["count"], len(fields["files"])) == (250, 10)
+    assert {name[:12] for name in orphans} >= set(fields["files"])
     assert set(store.files) == {clip.sha256}
     assert set(store.files.quarantine) == orphans
     named = add(store, "orphan 7")
@@ -201,7 +201,7 @@ def test_files_that_nobody_names_are_set_aside_and_come_back(
     assert sweep(store, RETENTION_DAYS).brought_back == 1
     assert store.files.path(named.sha256).read_bytes() == b"orphan 7"
     assert set(store.files.quarantine) == orphans - {named.sha256}
-    assert sweep(store, RETENTION_DAYS) == Swept()
+    assert sweep(store, RETENTION_DAYS) == SweepReport()
 
 
 def test_what_is_forgotten_does_not_stay_in_the_quarantine(store: Store) -> None:
@@ -214,7 +214,7 @@ def test_what_is_forgotten_does_not_stay_in_the_quarantine(store: Store) -> None
 def test_a_file_that_is_being_stored_is_not_set_aside(
     store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Kept before the sweep asks the database, committed before it would move the file."""
+    """It is kept before the sweep reads the database, committed before the sweep moves files."""
     late = put(store.files, b"late")
     real = references.referenced
 
@@ -230,7 +230,7 @@ def test_a_file_that_is_being_stored_is_not_set_aside(
 
 @pytest.fixture
 def quarantine(tmp_path: Path) -> Quarantine:
-    """With one file that came just now, and was stored years ago."""
+    """A quarantine with one file, which came now but was stored years ago."""
     made = Quarantine(tmp_path / "quarantine")
     path = tmp_path / ("a" * 64)
     path.write_bytes(b"walk")

@@ -1,4 +1,4 @@
-"""A library is whole, or every damage of it is named."""
+"""The verification of a library names all damage."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tests.store.upkeep.test_backup import overwrite_pages
 
 @pytest.fixture
 def names(store: Store) -> list[str]:
-    """The files of three clips, each with an array."""
+    """The names of the files of three clips, each with one array."""
     made = []
     for name in ("walk", "run", "jump"):
         with store.files.stage(io.BytesIO(name.encode())) as staged, store.write() as tx:
@@ -35,10 +35,10 @@ def names(store: Store) -> list[str]:
 
 
 def test_a_whole_library(store: Store, names: list[str]) -> None:
-    told: list[tuple[int, int]] = []
-    found = verify(store, lambda *steps: told.append(steps))
+    steps_seen: list[tuple[int, int]] = []
+    found = verify(store, lambda *steps: steps_seen.append(steps))
     assert found.is_whole
-    assert (found.files, found.arrays, told[-1]) == (3, 3, (3, 3))
+    assert (found.files, found.arrays, steps_seen[-1]) == (3, 3, (3, 3))
 
 
 def test_every_damage_is_named(store: Store, names: list[str], tmp_path: Path) -> None:

@@ -61,7 +61,7 @@ MISSING = {"code": "file_missing", "detail": "The stored motion file is missing"
         (MISSING, False, True, ClipState.READY, "file_missing"),
     ],
 )
-def test_only_a_verdict_after_a_change_takes_a_ready_clip_away(
+def test_only_bad_content_after_a_change_makes_a_ready_clip_failed(
     store: Store,
     problem: dict[str, str],
     is_verdict: bool,
@@ -77,13 +77,13 @@ def test_only_a_verdict_after_a_change_takes_a_ready_clip_away(
         outcomes.fail_job(tx, claimed, problem, is_verdict=is_verdict)
         found = clips.get(tx, clip.id)
         assert (found.state, jobs.get(tx, claimed.job.id).state) == (state, JobState.FAILED)
-        told = {warning.code: warning.detail for warning in found.warnings}
+        details = {warning.code: warning.detail for warning in found.warnings}
         assert (code is None) == (found.reanalysis is None)
         if code is not None:
             assert found.reanalysis is Reanalysis.FAILED
-            assert problem["detail"] in told[code]
+            assert problem["detail"] in details[code]
             assert arrays.get_one(tx, clip.id, "motion_vector").all()
-        # One that works takes the warning away.
+        # A successful analysis removes the warning.
         outcomes.finish_ingest(tx, analyze_again_whatever(tx, clip).lease, clip.id, facts(), FOUND)
         healed = clips.get(tx, clip.id)
         assert (healed.state, healed.reanalysis) == (ClipState.READY, None)

@@ -1,7 +1,7 @@
-"""Styles of music that chose nothing: written once the beat tracker's weights were settled.
+"""Held-out styles of music, written after the weights of the beat tracker were final.
 
-Other feels than the demo's: triplets, off-beats, syncopes, sixteenths, bars of five, and tones
-that swell instead of being struck.
+Their rhythms differ from those of the demo: triplets, off-beats, syncopation, sixteenths, bars of
+five, and tones that begin slowly.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from app.demo.dances.music import Style, every
 _BACKBEAT = ((1, 1.0), (3, 1.0))
 _TRIPLETS = tuple((third / 3, 0.9 if third % 3 == 0 else 0.5) for third in range(6))
 
-UNHEARD: dict[str, Style] = {
+HELD_OUT_STYLES: dict[str, Style] = {
     "shuffle": Style(
         4, ((0, 1.0), (2, 0.9), (3.5, 0.6)), _BACKBEAT, every(0.5), every(0.5, gain=0.8),
         ((0, 1.0), (2.5, 0.6)), swing=1 / 6,

@@ -1,4 +1,4 @@
-"""Who has died is found by watching: beats that stop, whatever the clocks on the wall say."""
+"""Dead workers are found by their missing heartbeats, for any system time."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import pytest
 
 from app.store.jobs import leases, outcomes, queue
 from app.store.jobs import repository as jobs
-from app.store.jobs.abandoned import Held, Watch
+from app.store.jobs.abandoned_jobs import HeldJob, Watch
 from app.store.jobs.record import ClaimedJob, JobKind, JobState
 from app.store.store import Store
 from tests.store.conftest import AddJob
@@ -41,7 +41,7 @@ def claim(store: Store, owner: str = "holder") -> ClaimedJob:
     return claimed
 
 
-def look(store: Store, watch: Watch) -> tuple[Held, ...]:
+def look(store: Store, watch: Watch) -> tuple[HeldJob, ...]:
     with store.read() as tx:
         return watch.look(tx)
 
@@ -66,7 +66,7 @@ def test_a_job_whose_beats_stop_for_a_lease_goes_back_into_the_queue(
     assert (again.job.id, again.worker_deaths) == (claimed.job.id, 1)
 
 
-def test_a_heart_that_beats_keeps_its_job(
+def test_a_worker_with_heartbeats_keeps_its_job(
     store: Store, add_job: AddJob, clock: Clock, watch: Watch
 ) -> None:
     add_job()
@@ -79,7 +79,7 @@ def test_a_heart_that_beats_keeps_its_job(
     assert recover(store, watch) == []
 
 
-def test_a_holder_that_comes_back_in_the_last_moment_keeps_its_job(
+def test_a_worker_that_sends_a_last_heartbeat_keeps_its_job(
     store: Store, add_job: AddJob, clock: Clock, watch: Watch
 ) -> None:
     add_job()
@@ -95,7 +95,7 @@ def test_a_holder_that_comes_back_in_the_last_moment_keeps_its_job(
         assert leases.heartbeat(tx, claimed.lease) is False
 
 
-def test_of_two_watchers_one_gets_the_job(store: Store, add_job: AddJob, clock: Clock) -> None:
+def test_only_one_of_two_watchers_gets_the_job(store: Store, add_job: AddJob, clock: Clock) -> None:
     add_job()
     claim(store)
     watches = [Watch(f"watcher {number}", LEASE_S, clock=clock) for number in range(2)]
@@ -108,7 +108,7 @@ def test_of_two_watchers_one_gets_the_job(store: Store, add_job: AddJob, clock: 
     assert [len(each) for each in recovered] == [1, 0]
 
 
-def test_a_watcher_does_not_watch_itself_nor_jobs_that_are_parked(
+def test_a_watcher_ignores_its_own_jobs_and_parked_jobs(
     store: Store, add_job: AddJob, clock: Clock, watch: Watch
 ) -> None:
     add_job()

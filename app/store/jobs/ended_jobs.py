@@ -1,6 +1,7 @@
-"""Jobs that have ended: removing one, and those that are old.
+"""Removes jobs that have ended: a single one, or all old ones.
 
-The newest fit that succeeded stays: it says what the models know, and when to fit again.
+The newest fit that succeeded is never removed: it says on which clips the models were fitted, and
+the decision to fit again depends on it.
 """
 
 from __future__ import annotations
@@ -19,32 +20,32 @@ _OPEN = [state.value for state in OPEN_STATES]
 
 
 def remove(tx: Tx, job_id: str) -> None:
-    """Delete a job that has ended, with what an import recorded of its files; clips stay.
+    """Delete a job that has ended. The file entries of an import go too; its clips stay.
 
-    Raises JobNotFound, and Conflict for a job that is open and for the newest fit.
+    Raises JobNotFound; Conflict for an open job and for the newest fit.
     """
     job = job_repository.get(tx, job_id)
     if job.is_open:
         raise Conflict("The job has not ended yet.")
     if job_id == tx.execute(select(_newest_fit())).scalar():
-        raise Conflict("The newest fit is kept: it says what the models know.")
+        raise Conflict("The newest fit cannot be removed: it describes the current models.")
     tx.execute(delete(jobs).where(jobs.c.id == job_id))
 
 
-def remove_older(tx: Tx, before: datetime, most_jobs: int, most_files: int) -> int:
-    """Delete jobs that ended before a moment, the oldest first; returns how many.
+def remove_older(tx: Tx, before: datetime, max_jobs: int, max_files: int) -> int:
+    """Delete jobs that ended before a time, the oldest first; returns their number.
 
-    At most `most_jobs` jobs and `most_files` entries of imports: what is left of an import that
-    has more goes with the next calls, and then its job.
+    max_jobs: jobs in one call; max_files: file entries of imports in one call. If an import has
+    more entries, the next calls delete the rest, and the job at the end.
     """
     query = (
         select(jobs.c.id)
         .where(jobs.c.state.not_in(_OPEN), jobs.c.finished_at < before)
         .where(jobs.c.id != func.coalesce(_newest_fit(), ""))
         .order_by(jobs.c.finished_at)
-        .limit(most_jobs)
+        .limit(max_jobs)
     )
-    removed, files_left = 0, most_files
+    removed, files_left = 0, max_files
     for job_id in tx.execute(query).scalars().all():
         files_left -= _remove_files(tx, job_id, files_left)
         if files_left <= 0:
@@ -63,10 +64,11 @@ def _newest_fit() -> ScalarSelect[str]:
     )
 
 
-def _remove_files(tx: Tx, job_id: str, most: int) -> int:
-    """Delete entries of an import, at most so many; returns how many."""
+def _remove_files(tx: Tx, job_id: str, max_files: int) -> int:
+    """Delete the first `max_files` entries of an import, by path; returns their number."""
     of_job = import_entries.c.job_id == job_id
     paths = select(import_entries.c.path).where(of_job).order_by(import_entries.c.path)
-    last = tx.execute(paths.offset(most - 1).limit(1)).scalar()
+    # DELETE has no LIMIT on every database, so the last path to delete is read first.
+    last = tx.execute(paths.offset(max_files - 1).limit(1)).scalar()
     some = of_job if last is None else and_(of_job, import_entries.c.path <= last)
     return tx.execute(delete(import_entries).where(some)).rowcount

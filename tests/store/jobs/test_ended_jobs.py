@@ -1,4 +1,4 @@
-"""Jobs that ended long ago go a few at a time; nothing that is read later goes with them."""
+"""Jobs that ended long ago are removed a few at a time, without data that is needed later."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ from datetime import UTC, datetime, timedelta
 
 from app.store.database.engine import Tx
 from app.store.database.ids import utc_now
-from app.store.jobs import ended as ended_jobs
-from app.store.jobs import imports, leases, outcomes
+from app.store.jobs import ended_jobs, imports, leases, outcomes
 from app.store.jobs import repository as jobs
 from app.store.jobs.import_files import ImportOutcome
 from app.store.jobs.imports import NewEntry
@@ -33,7 +32,7 @@ def _left(tx: Tx) -> set[str]:
     return {job.id for job in jobs.list_jobs(tx, limit=MANY).items}
 
 
-def test_old_jobs_go_and_open_ones_and_young_ones_stay(store: Store) -> None:
+def test_old_jobs_are_removed_and_open_and_recent_ones_stay(store: Store) -> None:
     with store.write() as tx:
         old = _ended(tx, JobKind.INGEST)
         open_job = jobs.enqueue(tx, NewJob(JobKind.IMPORT)).id
@@ -52,7 +51,7 @@ def test_the_newest_fit_that_succeeded_stays(store: Store) -> None:
         assert _left(tx) == {newest}
 
 
-def test_a_clock_that_jumps_ahead_takes_a_few_jobs_only(store: Store) -> None:
+def test_a_clock_that_jumps_ahead_removes_only_a_few_jobs(store: Store) -> None:
     in_a_year = datetime.now(UTC) + timedelta(days=365)
     with store.write() as tx:
         ids = [_ended(tx, JobKind.INGEST) for _ in range(5)]
@@ -60,7 +59,7 @@ def test_a_clock_that_jumps_ahead_takes_a_few_jobs_only(store: Store) -> None:
         assert _left(tx) == set(ids[2:])
 
 
-def test_a_large_import_goes_in_parts_and_its_job_last(store: Store) -> None:
+def test_a_large_import_is_removed_in_parts_and_its_job_last(store: Store) -> None:
     with store.write() as tx:
         job = _ended(tx, JobKind.IMPORT, files=25)
         for left in (15, 5):

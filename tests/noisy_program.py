@@ -1,4 +1,4 @@
-"""A program that writes to standard error in every way there is; for `test_logs`."""
+"""A program that writes to standard error in all possible ways, for `test_logs`."""
 
 from __future__ import annotations
 
