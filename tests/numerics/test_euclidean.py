@@ -27,7 +27,7 @@ def test_close_rows_keep_their_digits_and_equal_ones_are_not_apart(
     monkeypatch: pytest.MonkeyPatch, pairs_at_once: int
 ) -> None:
     rng = np.random.default_rng(2)
-    monkeypatch.setattr(euclidean, "RETAKEN_AT_ONCE", pairs_at_once)
+    monkeypatch.setattr(euclidean, "MAX_RECOMPUTED_PAIRS", pairs_at_once)
     rows = (100 + rng.normal(size=(4, 20))).astype(np.float32)
     near = rows + rng.normal(scale=1e-3, size=rows.shape).astype(np.float32)
     others = np.concatenate([rows, near])

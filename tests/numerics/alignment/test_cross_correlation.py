@@ -82,7 +82,7 @@ def test_many_batches_give_what_one_gives(monkeypatch: pytest.MonkeyPatch) -> No
     as_usual = max_cross_correlations(query, candidates)
     monkeypatch.setattr(cross_correlation, "MAX_WASTE", 100.0)
     np.testing.assert_allclose(max_cross_correlations(query, candidates), as_usual)
-    monkeypatch.setattr(cross_correlation, "CELLS_AT_ONCE", 1)
+    monkeypatch.setattr(cross_correlation, "MAX_CELLS_AT_ONCE", 1)
     np.testing.assert_allclose(max_cross_correlations(query, candidates), as_usual)
 
 

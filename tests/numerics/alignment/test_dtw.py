@@ -50,7 +50,7 @@ def test_many_batches_give_what_one_gives(monkeypatch: pytest.MonkeyPatch) -> No
     query = rng.normal(size=(9, 3))
     candidates = [rng.normal(size=(m, 3)) for m in rng.integers(1, 30, size=40)]
     at_once = dtw_distances(query, candidates)
-    monkeypatch.setattr(dtw, "CELLS_AT_ONCE", 500)
+    monkeypatch.setattr(dtw, "MAX_CELLS_AT_ONCE", 500)
     np.testing.assert_allclose(dtw_distances(query, candidates), at_once, rtol=1e-5)
 
 
@@ -68,7 +68,7 @@ def test_a_long_pair_in_strips_equals_the_naive_twin(
     rng = np.random.default_rng(seed)
     a, b = rng.normal(size=(n, dimensions)), rng.normal(size=(m, dimensions))
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(dtw, "CELLS_AT_ONCE", 1)
+        patched.setattr(dtw, "MAX_CELLS_AT_ONCE", 1)
         patched.setattr(dtw, "MIN_ROWS", rows)
         patched.setattr(dtw, "MAX_ROWS", rows)
         found = dtw_distances(a, [b], per_step=False)[0]
@@ -79,7 +79,7 @@ def test_strips_of_one_dimension_change_no_bit() -> None:
     rng = np.random.default_rng(5)
     a, b = rng.normal(size=2600), rng.normal(size=700)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(dtw, "CELLS_AT_ONCE", 10**9)
+        patched.setattr(dtw, "MAX_CELLS_AT_ONCE", 10**9)
         whole = dtw_distances(a, [b])[0]
     assert dtw_distances(a, [b])[0] == whole
 

@@ -26,7 +26,7 @@ def wandering(count: int, size: int = 32, seed: int = 0) -> FloatArray:
 def test_a_large_number_is_warped_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     one, other = wandering(7, seed=1), wandering(7, seed=2)
     times, motions = warping_times(one, other), warped(one, other)
-    monkeypatch.setattr(group_warping, "AT_ONCE", 3)
+    monkeypatch.setattr(group_warping, "MAX_TAKES_AT_ONCE", 3)
     np.testing.assert_array_equal(warping_times(one, other), times)
     np.testing.assert_array_equal(warped(one, other), motions)
 

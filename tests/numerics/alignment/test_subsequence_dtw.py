@@ -85,7 +85,7 @@ def test_it_finds_what_the_naive_twin_finds_in_pieces_and_batches_of_any_size(
     query = rng.normal(size=(n, dimensions))
     streams = [rng.normal(size=(m, dimensions)) for m in lengths]
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(module, "CELLS_AT_ONCE", cells)
+        patched.setattr(module, "MAX_CELLS_AT_ONCE", cells)
         found = subsequence_dtw(query, streams)
     # a query frame nearest to the point half-way between two frames is as near to either: of
     # matches that differ by that alone rounding decides

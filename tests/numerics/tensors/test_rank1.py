@@ -103,10 +103,10 @@ def test_errors_fall_and_convergence_is_told() -> None:
 
 
 def test_it_stops_when_lambda_has_come_to_rest() -> None:
-    found = symmetric_rank1(a_volume(3), smallest_change=1e-6)
+    found = symmetric_rank1(a_volume(3), min_change=1e-6)
     assert found.changes[-1] <= 1e-6
     assert found.iterations < symmetric_rank1(a_volume(3)).iterations
-    longer = symmetric_rank1(a_volume(3), smallest_change=0.0, max_iterations=100)
+    longer = symmetric_rank1(a_volume(3), min_change=0.0, max_iterations=100)
     np.testing.assert_allclose(symmetric_rank1(a_volume(3)).primary, longer.primary, atol=1e-6)
 
 
