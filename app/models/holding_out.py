@@ -20,7 +20,7 @@ MAX_PROBES = 400
 """Largest number of clips probed in one round; more cost time and hardly change the figures."""
 
 
-class Held(StrEnum):
+class HeldOut(StrEnum):
     """The kind of thing that a round holds out."""
 
     CLIPS = "clips"
@@ -28,7 +28,7 @@ class Held(StrEnum):
     PERSONS = "persons"
 
 
-Round = tuple[Held, IntArray, IntArray]
+Round = tuple[HeldOut, IntArray, IntArray]
 """What is held out; indices of the training clips; indices of the clips to probe."""
 
 
@@ -36,8 +36,8 @@ def rounds(
     persons: Sequence[str | None], tasks: Sequence[str | None], groups: Sequence[str]
 ) -> Iterator[Round]:
     """The rounds: first those that hold out clips, then tasks, then persons."""
-    yield from _splits(Held.CLIPS, grouped_folds(groups, FOLDS))
-    for held, labels in ((Held.TASKS, tasks), (Held.PERSONS, persons)):
+    yield from _splits(HeldOut.CLIPS, grouped_folds(groups, FOLDS))
+    for held, labels in ((HeldOut.TASKS, tasks), (HeldOut.PERSONS, persons)):
         names = sorted({label for label in labels if label})
         if len(names) < MIN_LABELS:
             continue
@@ -45,7 +45,7 @@ def rounds(
         yield from _splits(held, np.array([deal[label] if label else -1 for label in labels]))
 
 
-def _splits(held: Held, fold: IntArray) -> Iterator[Round]:
+def _splits(held: HeldOut, fold: IntArray) -> Iterator[Round]:
     for each in range(int(fold.max(initial=-1)) + 1):
         train, probe = np.flatnonzero(fold != each), np.flatnonzero(fold == each)
         if len(train) >= 2 and len(probe):

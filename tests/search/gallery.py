@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.analyze import describe_for_search
-from app.models.metric.learned_metric import INPUTS, Described, Factor, MetricAxes, fit_axes
+from app.models.metric.learned_metric import INPUTS, ClipDescriptors, Factor, MetricAxes, fit_axes
 from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
 from app.search.example.distances import distances_to
@@ -57,5 +57,5 @@ def gallery(motions: Sequence[Motion], persons: Sequence[str], tasks: Sequence[s
     return Gallery(arrays, metrics)
 
 
-def described(arrays: Sequence[Arrays]) -> Described:
-    return Described(*(np.stack([some[name] for some in arrays]) for name in INPUTS))
+def described(arrays: Sequence[Arrays]) -> ClipDescriptors:
+    return ClipDescriptors(*(np.stack([some[name] for some in arrays]) for name in INPUTS))

@@ -18,8 +18,8 @@ import numpy as np
 
 from app.errors import NotEnoughLabels
 from app.models.held_out.ranking import average_precision
-from app.models.holding_out import Held, rounds
-from app.models.metric.learned_metric import Described, Factor, check_labels, fit_axes
+from app.models.holding_out import HeldOut, rounds
+from app.models.metric.learned_metric import ClipDescriptors, Factor, check_labels, fit_axes
 from app.models.metric.pair_calibration import PairCalibration, calibrate_pairs
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
@@ -32,7 +32,7 @@ NEAREST = 20
 MAX_PAIRS = 200_000
 """Largest number of pairs of clips for the calibration."""
 
-TOLD_LABELS = 200
+MAX_LISTED_LABELS = 200
 """Largest number of labels whose clip counts are listed; those with the fewest clips first."""
 
 BINS = 10
@@ -60,7 +60,11 @@ class _Judged:
 
 
 def held_out_metric(
-    described: Described, persons: Labels, tasks: Labels, groups: Sequence[str], factor: Factor
+    described: ClipDescriptors,
+    persons: Labels,
+    tasks: Labels,
+    groups: Sequence[str],
+    factor: Factor,
 ) -> MetricEvaluation:
     """Judge a metric of `factor` on n clips; groups: (n,) equal for files of one recording.
 
@@ -74,10 +78,10 @@ def held_out_metric(
         described.part(index),
         *([names[i] for i in index] for names in (persons, tasks, groups, labels)),
     )
-    found = {held: _Judged() for held in Held}
+    found = {held: _Judged() for held in HeldOut}
     for held, training, probes in rounds(part.persons, part.tasks, part.groups):
         _judge_round(part, factor, training, probes, found[held])
-    clips = found[Held.CLIPS]
+    clips = found[HeldOut.CLIPS]
     distances, same = _pairs(clips)
     calibration = calibrate_pairs(distances, same)
     figures = {f"{held}_held_out": _figures(judged) for held, judged in found.items()}
@@ -107,7 +111,7 @@ def calibration_error(
 class _Part:
     """The labeled clips that are judged."""
 
-    described: Described
+    described: ClipDescriptors
     persons: list[str | None]
     tasks: list[str | None]
     groups: list[str]
@@ -189,4 +193,4 @@ def _label_counts(counts: Counter[str], *, by_name: bool) -> dict[str, Any]:
         "fewest_clips": fewest[0][1],
         "most_clips": fewest[-1][1],
     }
-    return document | ({"clips_of": dict(fewest[:TOLD_LABELS])} if by_name else {})
+    return document | ({"clips_of": dict(fewest[:MAX_LISTED_LABELS])} if by_name else {})

@@ -66,20 +66,20 @@ def precision_at_recalls(
     return np.asarray(found / places[found - 1])
 
 
-def calibration_error(probabilities: FloatArray, is_so: BoolArray, bins: int = 10) -> float:
+def calibration_error(probabilities: FloatArray, is_true: BoolArray, bins: int = 10) -> float:
     """Expected calibration error: mean difference of probability and true share in equal bins.
 
-    probabilities, is_so: any equal shapes; each bin has the weight of its members.
+    probabilities, is_true: any equal shapes; each bin has the weight of its members.
     """
-    chances, truth = probabilities.ravel(), is_so.ravel().astype(np.float64)
+    chances, truth = probabilities.ravel(), is_true.ravel().astype(np.float64)
     place = np.clip((chances * bins).astype(np.int64), 0, bins - 1)
     off = np.bincount(place, chances - truth, minlength=bins)
     return float(np.abs(off).sum() / max(len(chances), 1))
 
 
-def brier_score(probabilities: FloatArray, is_so: BoolArray) -> float:
-    """Mean squared difference of `probabilities` and the truth `is_so`; any equal shapes."""
-    return float(np.square(probabilities - is_so).mean()) if probabilities.size else 0.0
+def brier_score(probabilities: FloatArray, is_true: BoolArray) -> float:
+    """Mean squared difference of `probabilities` and the truth `is_true`; any equal shapes."""
+    return float(np.square(probabilities - is_true).mean()) if probabilities.size else 0.0
 
 
 def _best_first(scores: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.intp]]:

@@ -17,7 +17,7 @@ from app.models.synthesis.prediction import Predicted, predict
 from app.models.synthesis.solving import effects_only
 from app.numerics.arrays import FloatArray
 
-GIVEN = (1, 2, 3, 5, 8)
+GIVEN_COUNTS = (1, 2, 3, 5, 8)
 """Numbers of other persons (or tasks) of which takes are given."""
 
 TRIALS = 32
@@ -36,7 +36,7 @@ class Trial:
 
 
 def held_out_synthesis(record: Synthesis, trials: int = TRIALS) -> dict[str, list[dict[str, Any]]]:
-    """Rows for "new_task" and "new_person", one for each number of GIVEN.
+    """Rows for "new_task" and "new_person", one for each number of GIVEN_COUNTS.
 
     "new_task": a task of a known person, from takes by `given` other persons. "new_person": a
     task of a new person, from takes of `given` of their tasks; all other persons are known.
@@ -49,7 +49,7 @@ def held_out_synthesis(record: Synthesis, trials: int = TRIALS) -> dict[str, lis
     "real" is an upper limit of what synthesis can reach.
     """
     return {
-        kind: [row for given in GIVEN if (row := _row(record, kind, given, trials))]
+        kind: [row for given in GIVEN_COUNTS if (row := _row(record, kind, given, trials))]
         for kind in (NEW_TASK, NEW_PERSON)
     }
 
@@ -64,9 +64,9 @@ def made(record: Synthesis, kind: str, trial: Trial) -> Predicted:
     own = record.tasks_of(trial.person)
     if kind == NEW_PERSON:
         own = {task: own[task] for task in trial.given}
-        return predict(record, own, trial.task, but=(trial.person,))
+        return predict(record, own, trial.task, exclude=(trial.person,))
     strangers = set(record.persons) - set(trial.given)
-    return predict(record, own, trial.task, but=tuple(strangers))
+    return predict(record, own, trial.task, exclude=tuple(strangers))
 
 
 def draw_trials(record: Synthesis, kind: str, given: int, trials: int) -> list[Trial]:

@@ -26,7 +26,7 @@ from app.numerics.principal_axes import principal_axes
 METRIC_VERSION = 1
 
 INPUTS = ("motion_vector", "motion_sample", "symbol_statistics")
-"""Names of the descriptors, in the order in which `Described` has them."""
+"""Names of the descriptors, in the order in which `ClipDescriptors` has them."""
 
 DIMENSIONS = 160
 """Number of principal axes of the descriptors, before the discriminant; 100 to 250 are as good."""
@@ -34,7 +34,7 @@ DIMENSIONS = 160
 COORDINATES = 64
 """Number of coordinates of a clip."""
 
-UNPARTED = 0.05
+UNSEPARATED_WEIGHT = 0.05
 """Weight of a direction that separates no labels: a variance relative to that within a label."""
 
 MIN_LABELS = 2
@@ -65,7 +65,7 @@ on the other three takes.
 
 
 @dataclass(frozen=True, slots=True)
-class Described:
+class ClipDescriptors:
     """The descriptors of n clips that metrics look at.
 
     vectors: (n, 128) motion vectors; samples: (n, 1250) motion samples; statistics: (n, 131)
@@ -79,9 +79,9 @@ class Described:
     def __len__(self) -> int:
         return len(self.vectors)
 
-    def part(self, index: IntArray) -> Described:
+    def part(self, index: IntArray) -> ClipDescriptors:
         """The descriptors of the clips at these indices."""
-        return Described(self.vectors[index], self.samples[index], self.statistics[index])
+        return ClipDescriptors(self.vectors[index], self.samples[index], self.statistics[index])
 
     def widths(self) -> tuple[int, ...]:
         """The width of each descriptor."""
@@ -100,13 +100,13 @@ class Described:
 class MetricAxes:
     """The map from descriptors to coordinates.
 
-    center: (d,) mean of `Described.concatenated`; axes: (d, k).
+    center: (d,) mean of `ClipDescriptors.concatenated`; axes: (d, k).
     """
 
     center: FloatArray
     axes: FloatArray
 
-    def project(self, described: Described) -> FloatArray:
+    def project(self, described: ClipDescriptors) -> FloatArray:
         """(n, k) coordinates of unit length (0 for a clip at the center)."""
         points = (described.concatenated() - self.center) @ self.axes
         lengths = np.linalg.norm(points, axis=1, keepdims=True)
@@ -135,7 +135,9 @@ class LearnedMetric:
         return cls(MetricAxes(arrays["centre"], arrays["axes"]), calibration)
 
 
-def fit_axes(described: Described, labels: Sequence[str | None], factor: Factor) -> MetricAxes:
+def fit_axes(
+    described: ClipDescriptors, labels: Sequence[str | None], factor: Factor
+) -> MetricAxes:
     """Learn from n clips with their labels (n,), None for no label.
 
     Raises NotEnoughLabels if `check_labels` does.
@@ -150,7 +152,7 @@ def fit_axes(described: Described, labels: Sequence[str | None], factor: Factor)
     found = principal_axes(rows * scales, DIMENSIONS, centered=False)
     _, classes = np.unique([str(labels[i]) for i in known], return_inverse=True)
     parted = discriminants(found.project(rows * scales), classes, COORDINATES)
-    strength = parted.between + UNPARTED
+    strength = parted.between + UNSEPARATED_WEIGHT
     weights = np.sqrt(strength / (1.0 + strength))
     return MetricAxes(center, scales[:, None] * (found.axes @ (parted.axes * weights)))
 

@@ -49,7 +49,7 @@ class Calibration:
 
     temperature: divides the log evidence. threshold: a clip with a larger novelty is unknown.
     scale: the novelty over which the belief in being known falls. known_novelty, new_novelty:
-    sorted novelties of held-out clips (or of imagined ones, see fit_calibration), from which the
+    sorted novelties of held-out clips (or of simulated ones, see fit_calibration), from which the
     error rates at any threshold are computed.
     """
 
@@ -117,24 +117,24 @@ def fit_calibration(
     novelty: FloatArray,
     truth: IntArray,
     seen: BoolArray | None = None,
-    imagined: FloatArray | None = None,
+    simulated: FloatArray | None = None,
 ) -> Calibration:
     """Calibrate on held-out clips; without any, the calibration has fixed values.
 
     seen: (n,) whether the same person at the same task was among the training clips; if not
     given, none was. A known clip that was not seen looks newer than the clips that will be asked
     about. So the threshold and the error rates come from the clips that were seen, where there
-    are MIN_USUAL of them; else from `imagined`: (m,) novelties that further takes of the
+    are MIN_USUAL of them; else from `simulated`: (m,) novelties that further takes of the
     recorded cells would have.
     """
     known = truth != NEW
     new, around = novelty[~known], novelty[known]
     judged = novelty[known & seen] if seen is not None else novelty[:0]
-    if len(judged) < MIN_USUAL and imagined is not None:
-        judged = around = imagined
+    if len(judged) < MIN_USUAL and simulated is not None:
+        judged = around = simulated
     if min(len(judged), len(new)) >= MIN_USUAL:
         threshold = _alike(judged, new)
-        if judged is not imagined:
+        if judged is not simulated:
             threshold = _in_the_gap(threshold, judged, new)
     else:
         judged = around = novelty[known]

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from app.models.holding_out import Held, rounds
+from app.models.holding_out import HeldOut, rounds
 from app.models.recognition.answers import Answer, Recognition, answer, given
 from app.models.recognition.calibration import NEW, Calibration, fit_calibration
 from app.models.recognition.task_model import JOINTS, Reading, TaskModel, fit_task_model, objective
@@ -90,7 +90,9 @@ def fit_tensor_recognizer(
         _Round.of(poses, who, what, kind, train, probe, model)
         for kind, train, probe in rounds(who, what, together)
     ]
-    people = [(one.of_persons, one.person, one.seen) for one in held if one.kind is not Held.TASKS]
+    people = [
+        (one.of_persons, one.person, one.seen) for one in held if one.kind is not HeldOut.TASKS
+    ]
     doings = [(one.of_tasks, one.task, one.seen) for one in held]
     reaches = _reach(people, len(model.persons)), _reach(doings, len(model.tasks))
     calibrations = [
@@ -150,7 +152,7 @@ class _Round:
     training clips have both labels together.
     """
 
-    kind: Held
+    kind: HeldOut
     of_persons: FloatArray
     of_tasks: FloatArray
     person: IntArray
@@ -163,7 +165,7 @@ class _Round:
         poses: FloatArray,
         persons: Labels,
         tasks: Labels,
-        kind: Held,
+        kind: HeldOut,
         train: IntArray,
         probe: IntArray,
         whole: TaskModel,
@@ -208,17 +210,17 @@ def _index(labels: Labels, seen: tuple[str, ...], whole: tuple[str, ...]) -> Int
     return np.array(places, dtype=np.int64)
 
 
-_HeldOut = tuple[FloatArray, IntArray, BoolArray]
+_HeldOutResults = tuple[FloatArray, IntArray, BoolArray]
 """objectives (n, labels), truth (n,) and seen (n,), as `_Round` has them."""
 
 
-def _together(held: list[_HeldOut], labels: int) -> _HeldOut:
+def _together(held: list[_HeldOutResults], labels: int) -> _HeldOutResults:
     empty = (np.zeros((0, labels)), np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool))
     objectives, truth, seen = (np.concatenate(part) for part in zip(empty, *held, strict=True))
     return objectives, truth, seen
 
 
-def _reach(held: list[_HeldOut], labels: int) -> FloatArray:
+def _reach(held: list[_HeldOutResults], labels: int) -> FloatArray:
     """(labels,) F*_k: the mean objective of the held-out clips of each label.
 
     Clips whose cell was in the training are used if a label has any, else all its held-out
@@ -235,7 +237,7 @@ def _reach(held: list[_HeldOut], labels: int) -> FloatArray:
     return np.asarray(np.maximum(means, _SMALLEST))
 
 
-def _calibrated(held: list[_HeldOut], reach: FloatArray) -> Calibration:
+def _calibrated(held: list[_HeldOutResults], reach: FloatArray) -> Calibration:
     objectives, truth, seen = _together(held, len(reach))
     return fit_calibration(_evidence(objectives), _novelty(objectives, reach), truth, seen)
 

@@ -19,14 +19,14 @@ import numpy as np
 from app.analysis.descriptors.motion_sample import SAMPLE_LENGTH
 from app.errors import NotEnoughLabels
 from app.models.cells import find_cells
-from app.models.holding_out import MAX_PROBES, Held, rounds
+from app.models.holding_out import MAX_PROBES, HeldOut, rounds
 from app.models.recognition.answers import Answer, Recognition, answer, given
 from app.models.recognition.calibration import NEW, Calibration, fit_calibration
 from app.models.recognition.hypotheses import fit_hypotheses
 from app.models.recognition.views import (
     SAMPLE_DIMENSIONS,
-    Logs,
-    Seen,
+    BothViews,
+    LogDensities,
     View,
     both_views,
     evidence,
@@ -42,7 +42,7 @@ MOSTLY_REPEATED = 0.5
 """The takes of a library count as repeated if at least this share of its clips has another clip of
 the same person at the same task."""
 
-IMAGINED = 3
+SIMULATED_TAKES = 3
 """Simulated takes of each cell, by which novelty is calibrated if takes are not repeated."""
 
 _Arrays = dict[str, np.ndarray[Any, Any]]
@@ -54,7 +54,7 @@ class Recognizer:
 
     persons, tasks: sorted labels; label indices refer to them. sample, wide: the two views;
     their hypotheses have the same kinds and labels in the same order. persons_by_both: whether
-    both views decide that a person is new (see Logs).
+    both views decide that a person is new (see LogDensities).
     """
 
     persons: tuple[str, ...]
@@ -124,7 +124,7 @@ def fit_recognizer(
     cells = find_cells(persons, tasks)
     sample = principal_axes(rows.sample, SAMPLE_DIMENSIONS)
     wide = principal_axes(rows.wide, wide_dimensions(len(cells)))
-    points = Seen(sample.project(rows.sample), wide.project(rows.wide))
+    points = BothViews(sample.project(rows.sample), wide.project(rows.wide))
     views = (
         View(sample, fit_hypotheses(points.sample, cells)),
         View(wide, fit_hypotheses(points.wide, cells)),
@@ -158,9 +158,9 @@ def recognize_many(
     """`recognize` for each of `samples` (n, 1762)."""
     rows = both_views(samples, len(record.sample.axes.center))
     sample, wide = record.sample, record.wide
-    points = Seen(sample.axes.project(rows.sample), wide.axes.project(rows.wide))
+    points = BothViews(sample.axes.project(rows.sample), wide.axes.project(rows.wide))
     h = wide.hypotheses
-    logs = Logs.under(sample.hypotheses, h, points, persons_by_both=record.persons_by_both)
+    logs = LogDensities.under(sample.hypotheses, h, points, persons_by_both=record.persons_by_both)
     logs = logs.without_others(h.person, record.persons, known_person)
     logs = logs.without_others(h.task, record.tasks, known_task)
     of_factor = record.persons, record.person_calibration, known_person
@@ -189,12 +189,12 @@ def _answers(
     ]
 
 
-_HeldOut = tuple[FloatArray, FloatArray, IntArray, BoolArray]
+_HeldOutResults = tuple[FloatArray, FloatArray, IntArray, BoolArray]
 """evidence (n, labels), novelty (n,), truth (n,), seen (n,), as `calibration` has them."""
 
 
 def _calibrations(
-    points: Seen,
+    points: BothViews,
     persons: Sequence[str | None],
     tasks: Sequence[str | None],
     groups: Sequence[str],
@@ -211,11 +211,11 @@ def _calibrations(
     for held, train, probe in rounds(persons, tasks, groups):
         seen = find_cells([persons[i] for i in train], [tasks[i] for i in train])
         sample, h = (fit_hypotheses(part, seen) for part in points.of(train))
-        logs = Logs.under(sample, h, points.of(probe), persons_by_both=persons_by_both)
+        logs = LogDensities.under(sample, h, points.of(probe), persons_by_both=persons_by_both)
         who, what = [persons[i] for i in probe], [tasks[i] for i in probe]
         pairs = {(persons[i], tasks[i]) for i in train}
         again = np.array([pair in pairs for pair in zip(who, what, strict=True)], dtype=bool)
-        if held is not Held.TASKS:
+        if held is not HeldOut.TASKS:
             new = newness(logs.new_person, h.person)
             ranked = logs.ranking, h.person, seen.persons
             of_persons.append(_held_out(*ranked, new, who, names[0], again))
@@ -226,11 +226,11 @@ def _calibrations(
     # new person may then be called unknown (with the right best candidate), unless there is a gap
     # between new and known tasks.
     sample, h = (view.hypotheses for view in views)
-    further = Seen(*(each.further_takes(IMAGINED, MAX_PROBES) for each in (sample, h)))
-    imagined = Logs.under(sample, h, further, persons_by_both=persons_by_both)
+    further = BothViews(*(each.further_takes(SIMULATED_TAKES, MAX_PROBES) for each in (sample, h)))
+    simulated = LogDensities.under(sample, h, further, persons_by_both=persons_by_both)
     return (
-        _calibrated(of_persons, len(names[0]), newness(imagined.new_person, h.person)),
-        _calibrated(of_tasks, len(names[1]), newness(imagined.new_task, h.task)),
+        _calibrated(of_persons, len(names[0]), newness(simulated.new_person, h.person)),
+        _calibrated(of_tasks, len(names[1]), newness(simulated.new_task, h.task)),
     )
 
 
@@ -242,7 +242,7 @@ def _held_out(
     truth: Sequence[str | None],
     names: tuple[str, ...],
     again: BoolArray,
-) -> _HeldOut:
+) -> _HeldOutResults:
     """The results of a round for its labeled probes; labels that are not `seen` get no evidence."""
     has = np.array([bool(name) for name in truth], dtype=bool)
     if not seen or not has.any():
@@ -253,13 +253,13 @@ def _held_out(
     return found, new[has], np.array(index, dtype=np.int64), again[has]
 
 
-def _calibrated(held: list[_HeldOut], labels: int, imagined: FloatArray) -> Calibration:
+def _calibrated(held: list[_HeldOutResults], labels: int, simulated: FloatArray) -> Calibration:
     parts = zip(_nothing(labels), *held, strict=True)
     found, new, truth, again = (np.concatenate(part) for part in parts)
-    return fit_calibration(found, new, truth, again, imagined)
+    return fit_calibration(found, new, truth, again, simulated)
 
 
-def _nothing(labels: int) -> _HeldOut:
+def _nothing(labels: int) -> _HeldOutResults:
     return (
         np.zeros((0, labels)),
         np.zeros(0),

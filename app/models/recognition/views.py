@@ -68,18 +68,18 @@ class View:
         return cls(axes, Hypotheses(**parts))
 
 
-class Seen(NamedTuple):
+class BothViews(NamedTuple):
     """The same n clips in both views: (n, numbers or coordinates) each."""
 
     sample: FloatArray
     wide: FloatArray
 
-    def of(self, index: IntArray) -> Seen:
+    def of(self, index: IntArray) -> BothViews:
         """The rows of the clips at these indices."""
-        return Seen(self.sample[index], self.wide[index])
+        return BothViews(self.sample[index], self.wide[index])
 
 
-def both_views(samples: FloatArray, sample_length: int = SAMPLE_LENGTH) -> Seen:
+def both_views(samples: FloatArray, sample_length: int = SAMPLE_LENGTH) -> BothViews:
     """Split full samples (n, 1762) into motion samples of `sample_length` and wide vectors.
 
     If no wide vectors follow the motion samples, both views are the motion samples.
@@ -87,11 +87,11 @@ def both_views(samples: FloatArray, sample_length: int = SAMPLE_LENGTH) -> Seen:
     rows = np.asarray(samples)
     sample = rows[:, :sample_length]
     if rows.shape[1] <= sample_length:
-        return Seen(sample, sample)
-    return Seen(sample, rows[:, sample_length - TURN_AND_SPEED :])
+        return BothViews(sample, sample)
+    return BothViews(sample, rows[:, sample_length - TURN_AND_SPEED :])
 
 
-class Logs(NamedTuple):
+class LogDensities(NamedTuple):
     """Log densities (n, h) of n clips under h hypotheses.
 
     `ranking` ranks labels; the other two decide whether the person and the task are new.
@@ -103,8 +103,8 @@ class Logs(NamedTuple):
 
     @classmethod
     def under(
-        cls, sample: Hypotheses, wide: Hypotheses, points: Seen, *, persons_by_both: bool
-    ) -> Logs:
+        cls, sample: Hypotheses, wide: Hypotheses, points: BothViews, *, persons_by_both: bool
+    ) -> LogDensities:
         """The log densities of both views.
 
         The mean of both (Student's t) ranks labels; the wide view (Gaussian) decides what is
@@ -120,11 +120,13 @@ class Logs(NamedTuple):
             person = (sample.log_densities(of_sample) + task) / 2
         return cls((by_sample + by_wide) / 2, person, task)
 
-    def of(self, index: BoolArray) -> Logs:
+    def of(self, index: BoolArray) -> LogDensities:
         """The rows of some clips."""
-        return Logs(*(logs[index] for logs in self))
+        return LogDensities(*(logs[index] for logs in self))
 
-    def without_others(self, label: IntArray, names: tuple[str, ...], known: str | None) -> Logs:
+    def without_others(
+        self, label: IntArray, names: tuple[str, ...], known: str | None
+    ) -> LogDensities:
         """Exclude the hypotheses with another label than `known`.
 
         label: (h,) index in `names`, -1 for new.
@@ -133,7 +135,7 @@ class Logs(NamedTuple):
             return self
         index = names.index(known) if known in names else NEW
         left = (label == index) | (label == NEW)
-        return Logs(*(np.where(left, logs, -np.inf) for logs in self))
+        return LogDensities(*(np.where(left, logs, -np.inf) for logs in self))
 
 
 def evidence(ranking: FloatArray, label: IntArray, labels: int) -> FloatArray:

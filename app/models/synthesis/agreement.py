@@ -13,7 +13,7 @@ from app.analysis.descriptors.motion_shape import CHANNELS
 from app.models.synthesis.basis import weights
 from app.numerics.arrays import FloatArray
 
-AGREED = 0.5
+MIN_AGREEMENT = 0.5
 """Share of their movement that takes must have in common. Measured after alignment: takes of a
 gesture by one person .8 to 1.0, by different persons .6 to .95; different dances .0 to .3; gestures
 that each person does in another way (the *bye* of eight moods) .1. With limits from .35 to .5, the
@@ -23,7 +23,7 @@ hits on new tasks differ by at most .03."""
 def agree(agreement: float | None) -> bool:
     """Whether takes with this agreement are the same motion. None (a single take) counts as
     agreement."""
-    return agreement is None or agreement >= AGREED
+    return agreement is None or agreement >= MIN_AGREEMENT
 
 
 def agreement(shapes: FloatArray) -> float:

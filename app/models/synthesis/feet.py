@@ -22,7 +22,7 @@ from app.motion.skeleton.rotations import conjugate, identity_quaternions, multi
 from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
-GIVING = 0.03
+TIP_TOLERANCE = 0.03
 """Meters. The tip leaves the floor if the distance of ankle and tip differs by more than this from
 the length of the foot."""
 
@@ -116,7 +116,7 @@ def _standing_tips(
         base = np.median(ankle[inside], axis=0)
         flat = np.sqrt(max(length**2 - base[1] ** 2, 0.0))
         tip = base * [1.0, 0.0, 1.0] + ahead / max(np.linalg.norm(ahead), 1e-9) * flat
-        near = np.exp(-(((np.linalg.norm(tip - ankle, axis=-1) - length) / GIVING) ** 2))
+        near = np.exp(-(((np.linalg.norm(tip - ankle, axis=-1) - length) / TIP_TOLERANCE) ** 2))
         near[inside] = 1.0
         # once the tip has left the floor, it stays free
         near[stance.stop :] = np.minimum.accumulate(near[stance.stop :])

@@ -24,7 +24,7 @@ from app.models.cells import Cells, find_cells
 from app.models.synthesis.agreement import agree, agreement
 from app.models.synthesis.basis import weights
 from app.models.synthesis.sides import sides, to_side
-from app.models.synthesis.timing import medoid, together
+from app.models.synthesis.timing import medoid, warp_to_groups
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
 
@@ -43,7 +43,7 @@ class Synthesis:
 
     persons, tasks: sorted labels; means: (cells, 1378) mean motion shapes; person, task:
     (cells,) label indices; takes: (cells,) number of clips; agreement: (cells,) agreement of the
-    takes; below AGREED the "mean" is one of the takes.
+    takes; below MIN_AGREEMENT the "mean" is one of the takes.
 
     side: (cells,) side of each task, +1 or -1, 0 for a task without sides; aligned: (cells,
     1378) the means mirrored to the side +1 and in the time of the task; timing: (cells, 32), see
@@ -190,7 +190,7 @@ def fit_synthesis(
     _check(cells)
     means, agreed = _cell_means(rows, cells)
     side = _sides(means, cells)
-    timed = together(to_side(means, side, 1), cells.task)
+    timed = warp_to_groups(to_side(means, side, 1), cells.task)
     counted = rows * weights()
     axes = principal_axes(counted, DIMENSIONS)
     return Synthesis(
@@ -221,7 +221,7 @@ def _cell_means(rows: FloatArray, cells: Cells) -> tuple[FloatArray, FloatArray]
     turned = np.array(rows)
     for of_cell in takes:
         turned[of_cell] = to_side(rows[of_cell], sides(rows[of_cell]), 1)
-    timed = together(turned, member).shapes
+    timed = warp_to_groups(turned, member).shapes
     means, agreed = np.empty((len(cells), SHAPE_LENGTH)), np.empty(len(cells))
     for cell, of_cell in enumerate(takes):
         agreed[cell] = agreement(timed[of_cell])

@@ -15,7 +15,7 @@ import scipy
 
 from app.analysis.descriptors.motion_sample import SAMPLES
 from app.analysis.descriptors.motion_shape import CHANNELS, Shape, clearance, parts_of
-from app.models.synthesis.timing import onto
+from app.models.synthesis.timing import warp_to_references
 from app.motion.frame.body_frame import ANALYSIS_RATE, turned
 from app.motion.frame.foot_contact import FEET, carried_by_feet
 from app.motion.roles.joint_roles import SUN_ROLES
@@ -25,7 +25,7 @@ from app.numerics.arrays import FloatArray
 USUAL_SECONDS = 4.0
 """Default duration: a cycle is repeated to about this length."""
 
-SLOWLY = 1.0
+CORRECTION_SMOOTHING = 1.0
 """Standard deviation, in moments (of 32), of the smoothing of the correction of a take. Without it,
 the motions of the bench have more than twice the jerk; at 2.5 they lose half their hits."""
 
@@ -90,14 +90,16 @@ def _stretched(
     if take is None or take_shape is None:
         return resample_to(wanted, frames)
     own = np.asarray(take_shape, dtype=np.float64)
-    timed = onto(own[None], np.asarray(shape)[None], TIME_SMOOTHING)
+    timed = warp_to_references(own[None], np.asarray(shape)[None], TIME_SMOOTHING)
     there = _moments(timed.shapes[0])
-    slow = scipy.ndimage.gaussian_filter1d(wanted - there, SLOWLY, axis=0, mode="nearest")
+    slow = scipy.ndimage.gaussian_filter1d(
+        wanted - there, CORRECTION_SMOOTHING, axis=0, mode="nearest"
+    )
     detailed = _in_time(take, timed.timing[0], frames)
     made = detailed + resample_to(slow, frames)
     # The height is that of the take plus the change of the shape: a sum of poses has another.
     higher = clearance(wanted) - clearance(there)
-    higher = scipy.ndimage.gaussian_filter1d(higher, SLOWLY, mode="nearest")[:, None]
+    higher = scipy.ndimage.gaussian_filter1d(higher, CORRECTION_SMOOTHING, mode="nearest")[:, None]
     made[:, 39] += clearance(detailed) + resample_to(higher, frames)[:, 0] - clearance(made)
     return np.asarray(made)
 

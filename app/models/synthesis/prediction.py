@@ -19,13 +19,13 @@ from app.models.synthesis.basis import weights
 from app.models.synthesis.model import Synthesis
 from app.models.synthesis.solving import follow, solve
 from app.models.synthesis.tensor import (
-    KnownTensor,
-    WantedMotions,
-    known_tensor,
+    BasisTensor,
+    TargetMotions,
+    basis_tensor,
     own_motions,
-    wanted_motions,
+    target_motions,
 )
-from app.models.synthesis.timing import Timed, in_own_time
+from app.models.synthesis.timing import Timed, to_own_time
 from app.numerics.arrays import FloatArray
 
 MAX_TASKS = 24
@@ -54,15 +54,15 @@ class Predicted:
 
 
 def predict(
-    record: Synthesis, given: Mapping[str, FloatArray], task: str, but: Sequence[str] = ()
+    record: Synthesis, given: Mapping[str, FloatArray], task: str, exclude: Sequence[str] = ()
 ) -> Predicted:
     """Predict `task` for a person whose motion shapes (1378,) of other tasks are `given`.
 
-    but: persons to leave out, such as the person themselves. Raises NotEnoughLabels if nobody
+    exclude: persons to leave out, such as the person themselves. Raises NotEnoughLabels if nobody
     else did the task, or if nobody who did it did a task of the person.
     """
     usable = {name: shape for name, shape in given.items() if name in record.tasks and name != task}
-    others = [name for name in record.who_did(task) if name not in but]
+    others = [name for name in record.who_did(task) if name not in exclude]
     if not usable:
         raise NotEnoughLabels("The person must have a clip of another task of the library.")
     if not others:
@@ -70,8 +70,8 @@ def predict(
     chosen = _most_alike(record, usable, task)
     others = _who_shares_most(record, others, chosen)
     own = own_motions(record, {name: usable[name] for name in chosen})
-    aim = wanted_motions(record, task, others, own)
-    known = known_tensor(record, others, own, aim.timed)
+    aim = target_motions(record, task, others, own)
+    known = basis_tensor(record, others, own, aim.timed)
     follows = None
     if agree(aim.agreement):
         shape, timing = _made_of_all(known, aim.timed, own.timed)
@@ -79,11 +79,11 @@ def predict(
         shape, timing = _following(known, aim, own.timed)
         follows = others[aim.most_like_all]
     if shape[-1] < 0.5:
-        shape = in_own_time(shape, timing)
+        shape = to_own_time(shape, timing)
     return Predicted(shape, follows, aim.agreement)
 
 
-def _made_of_all(known: KnownTensor, wanted: Timed, own: Timed) -> tuple[FloatArray, FloatArray]:
+def _made_of_all(known: BasisTensor, wanted: Timed, own: Timed) -> tuple[FloatArray, FloatArray]:
     """A shape (1378,) and its timing (32,), both solved from the other tasks."""
     solution = solve(known.basis, wanted.shapes, own.shapes)
     difference = solution.weights @ (own.timing - known.timing.mean(axis=0))
@@ -92,7 +92,7 @@ def _made_of_all(known: KnownTensor, wanted: Timed, own: Timed) -> tuple[FloatAr
 
 
 def _following(
-    known: KnownTensor, wanted: WantedMotions, own: Timed
+    known: BasisTensor, wanted: TargetMotions, own: Timed
 ) -> tuple[FloatArray, FloatArray]:
     """A shape (1378,) and timing (32,) from the person who is most like all others."""
     one = wanted.most_like_all

@@ -16,7 +16,7 @@ from app.models.synthesis.basis import weights
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.signs import fix_signs
 
-LEFT_OF_SCATTER = 0.8
+MAX_SCATTER_LEFT = 0.8
 """A task has two sides if mirroring leaves at most this share of its takes' scatter. Measured:
 1.00 for all tasks of real clips except a dance; .45 for the demo's kicks, .23 for its waves."""
 
@@ -43,7 +43,7 @@ def sides(shapes: FloatArray) -> IntArray:
     centred = (rows - rows.mean(axis=0)) * weights()
     scatter = float((centred**2).sum())
     gained = float(side @ gram @ side - gram.sum()) / len(side)
-    if gained < (1 - LEFT_OF_SCATTER) * scatter:
+    if gained < (1 - MAX_SCATTER_LEFT) * scatter:
         return none
     return side * (1 if (side.sum() or side[0]) > 0 else -1)
 

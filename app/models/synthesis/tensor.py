@@ -18,7 +18,7 @@ from app.models.synthesis.agreement import agreement
 from app.models.synthesis.basis import weights
 from app.models.synthesis.model import Synthesis
 from app.models.synthesis.sides import likely_side, sides, to_side
-from app.models.synthesis.timing import Timed, medoid, onto, together
+from app.models.synthesis.timing import Timed, medoid, warp_to_groups, warp_to_references
 from app.numerics.arrays import FloatArray, IntArray
 
 
@@ -36,7 +36,7 @@ class OwnMotions:
 
 
 @dataclass(frozen=True, slots=True)
-class WantedMotions:
+class TargetMotions:
     """The wanted task by K other persons.
 
     timed: their shapes, mirrored to the likely side of the asked person; agreement: their
@@ -50,7 +50,7 @@ class WantedMotions:
 
 
 @dataclass(frozen=True, slots=True)
-class KnownTensor:
+class BasisTensor:
     """basis: (K, T, 1378) shapes of T tasks by K other persons; timing: (K, T, 32)."""
 
     basis: FloatArray
@@ -68,31 +68,31 @@ def own_motions(record: Synthesis, given: Mapping[str, FloatArray]) -> OwnMotion
             for name, shape, reference in zip(tasks, shapes, references, strict=True)
         ]
     )
-    timed = onto(to_side(shapes, side, 1), references)
+    timed = warp_to_references(to_side(shapes, side, 1), references)
     as_they_do = to_side(timed.shapes, np.ones_like(side), side)
     return OwnMotions(tasks, side, Timed(as_they_do, timed.timing))
 
 
-def wanted_motions(
+def target_motions(
     record: Synthesis, task: str, persons: list[str], own: OwnMotions
-) -> WantedMotions:
+) -> TargetMotions:
     """The wanted task by `persons`; sides and time are computed from these persons only."""
     cells = [record.cell(name, task) for name in persons]
     shapes = np.stack([cell for cell in cells if cell is not None])
     side = sides(shapes)
     asked = likely_side(own.side.tolist(), _sides_of(record, persons, own.tasks), side)
-    timed = together(to_side(shapes, side, asked), np.zeros(len(shapes), dtype=np.int64))
+    timed = warp_to_groups(to_side(shapes, side, asked), np.zeros(len(shapes), dtype=np.int64))
     usual = (shapes[:, -1] >= 0.5) == (np.mean(shapes[:, -1]) >= 0.5)
     of_kind = np.flatnonzero(usual)
     rows = timed.shapes[of_kind]
     alone = len(persons) == 1
     agreed = record.cell_agreement(persons[0], task) if alone else agreement(rows)
-    return WantedMotions(timed, agreed, int(of_kind[medoid(rows * weights())]))
+    return TargetMotions(timed, agreed, int(of_kind[medoid(rows * weights())]))
 
 
-def known_tensor(
+def basis_tensor(
     record: Synthesis, persons: list[str], own: OwnMotions, wanted: Timed
-) -> KnownTensor:
+) -> BasisTensor:
     """The asked person's tasks by `persons` (K).
 
     wanted: (K, ...) the wanted task by them; it helps to complete missing cells.
@@ -106,7 +106,7 @@ def known_tensor(
     missing = np.isnan(known[:, :, 0])
     if missing.any():
         known[missing] = _completed(known, own, wanted)
-    return KnownTensor(known[..., :SHAPE_LENGTH], known[..., SHAPE_LENGTH:])
+    return BasisTensor(known[..., :SHAPE_LENGTH], known[..., SHAPE_LENGTH:])
 
 
 def _completed(known: FloatArray, own: OwnMotions, wanted: Timed) -> FloatArray:

@@ -45,7 +45,7 @@ class Timed:
     timing: FloatArray
 
 
-def together(shapes: FloatArray, group: IntArray) -> Timed:
+def warp_to_groups(shapes: FloatArray, group: IntArray) -> Timed:
     """Warp motion shapes (n, 1378) to the mean time of their group; group: (n,) its number.
 
     Groups with a cycle among them stay as they are.
@@ -69,7 +69,7 @@ def together(shapes: FloatArray, group: IntArray) -> Timed:
     return Timed(shapes, timing)
 
 
-def onto(shapes: FloatArray, references: FloatArray, smoothing: float = 0.0) -> Timed:
+def warp_to_references(shapes: FloatArray, references: FloatArray, smoothing: float = 0.0) -> Timed:
     """Warp each of `shapes` (n, 1378) to the time of the same row of `references` (n, 1378).
 
     A cycle stays as it is, and so does a shape whose reference is a cycle. smoothing: standard
@@ -89,7 +89,7 @@ def onto(shapes: FloatArray, references: FloatArray, smoothing: float = 0.0) -> 
     return Timed(shapes, timing)
 
 
-def in_own_time(shape: FloatArray, timing: FloatArray) -> FloatArray:
+def to_own_time(shape: FloatArray, timing: FloatArray) -> FloatArray:
     """(1378,) a `shape` (1378,) in the time of its group, brought to its own `timing` (32,)."""
     times = inverse(rising(_STEADY + timing)[None])
     moments = read_at(moments_of_shapes(shape[None]), times)

@@ -72,7 +72,7 @@ class WordCalibration:
         return cls(arrays["outputs"], arrays["shares"], float(meta["dependence"]))
 
 
-AS_THEY_ARE = WordCalibration(np.array([0.0, 1.0]), np.array([0.0, 1.0]), 1.0)
+IDENTITY_CALIBRATION = WordCalibration(np.array([0.0, 1.0]), np.array([0.0, 1.0]), 1.0)
 """The identity, for libraries with too few clips to hold some out."""
 
 
@@ -95,7 +95,7 @@ def calibrate(
     own = [groups[row] for row in chosen]
     folds = min(FOLDS, len(set(own)))
     if folds < 2:
-        return AS_THEY_ARE
+        return IDENTITY_CALIBRATION
     fold = grouped_folds(own, folds, seed=seed)
     outputs = np.zeros(truth.shape)
     for one in range(folds):
@@ -116,9 +116,9 @@ def _dependence(probabilities: FloatArray, labels: FloatArray, seed: int) -> flo
     sets = sets[np.random.RandomState(seed).permutation(len(sets))[:MAX_SETS]]
     losses = np.zeros(len(_DEPENDENCES))
     for wanted in sets > 0.0:
-        is_so = labels[:, wanted].all(axis=1)
+        is_true = labels[:, wanted].all(axis=1)
         mean = -np.log(probabilities[:, wanted]).mean(axis=1)
         surprise = mean * float(wanted.sum()) ** _DEPENDENCES[:, None]
-        losses += surprise[:, is_so].sum(axis=1)
-        losses -= np.log1p(-np.exp(-surprise[:, ~is_so])).sum(axis=1)
+        losses += surprise[:, is_true].sum(axis=1)
+        losses -= np.log1p(-np.exp(-surprise[:, ~is_true])).sum(axis=1)
     return float(_DEPENDENCES[np.argmin(losses)])

@@ -116,12 +116,12 @@ def _likeliest(
     terms = np.stack(
         [np.ones(cosines.size), cosines.ravel(), np.tile(_log_odds(shares), len(cosines))], axis=1
     )
-    is_so = truth.ravel()
+    is_true = truth.ravel()
 
     def loss(curve: FloatArray) -> tuple[float, FloatArray]:
         odds = terms @ curve
-        missed = 1.0 / (1.0 + np.exp(-odds)) - is_so
-        return float(np.mean(np.logaddexp(0.0, odds) - is_so * odds)), missed @ terms / len(terms)
+        missed = 1.0 / (1.0 + np.exp(-odds)) - is_true
+        return float(np.mean(np.logaddexp(0.0, odds) - is_true * odds)), missed @ terms / len(terms)
 
     bounds = (LEVELS, SLOPES, WEIGHTS)
     level, slope, weight = scipy.optimize.minimize(

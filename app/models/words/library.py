@@ -18,7 +18,7 @@ from app.models.words.correlated_space import MIN_CLIPS, CorrelatedSpace, fit_co
 from app.models.words.cosine_calibration import CosineCalibration, calibrate_cosines
 from app.models.words.language.wordnet import Meanings
 from app.models.words.model import WordModel, fit_word_model
-from app.models.words.query import WordsAsked, understand
+from app.models.words.query import WordQuery, understand
 from app.models.words.symbol_space import SymbolSpace, fit_symbol_space
 from app.models.words.vocabulary import WordVocabulary
 from app.numerics.arrays import FloatArray
@@ -48,7 +48,7 @@ class LibraryWords:
     back_cosines: CosineCalibration | None
     meanings: Meanings = field(default_factory=Meanings)
 
-    def ask(self, texts: Iterable[str]) -> WordsAsked:
+    def ask(self, texts: Iterable[str]) -> WordQuery:
         """The meaning of a query of words, phrases or sentences in this library."""
         return understand(texts, self.vocabulary, self.meanings.related)
 
@@ -62,7 +62,7 @@ class LibraryWords:
         """(N,) -ln of the probability that clips carry everything that was asked for.
 
         scores: (N, c) word_scores of the words `columns`; meant: at least one item, see
-        WordsAsked. If several words can replace an item, the most likely one counts, times its
+        WordQuery. If several words can replace an item, the most likely one counts, times its
         weight.
         """
         place = {word: column for column, word in enumerate(columns)}
@@ -81,7 +81,7 @@ class LibraryWords:
         space, _, calibration = self._correlated()
         return calibration.of_words(space.word_cosines(points))
 
-    def clip_angles(self, points: FloatArray, asked: WordsAsked) -> FloatArray:
+    def clip_angles(self, points: FloatArray, asked: WordQuery) -> FloatArray:
         """(N,) 1 - cosine, 0..2, between clips at symbol coordinates (N, d) and a query.
 
         Raises NotEnoughLabels without a correlated space.
@@ -89,7 +89,7 @@ class LibraryWords:
         space, *_ = self._correlated()
         return 1.0 - space.clip_cosines(points, self.vocabulary.vector(asked.weights))
 
-    def angle_scores(self, angles: FloatArray, asked: WordsAsked) -> FloatArray:
+    def angle_scores(self, angles: FloatArray, asked: WordQuery) -> FloatArray:
         """(N,) probability that clips at `clip_angles` (N,) carry everything asked for.
 
         Raises NotEnoughLabels without a correlated space.

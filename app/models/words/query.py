@@ -15,7 +15,7 @@ from app.models.words.vocabulary import WordVocabulary
 
 
 @dataclass(frozen=True, slots=True)
-class WordsAsked:
+class WordQuery:
     """A query that a library understands.
 
     weights: 0..1 by word of the vocabulary, 1 for a word of the query itself; meant: for each
@@ -35,7 +35,7 @@ def understand(
     texts: Iterable[str],
     vocabulary: WordVocabulary,
     related: Mapping[str, Mapping[str, float]],
-) -> WordsAsked:
+) -> WordQuery:
     """The meaning of `texts` (words, phrases, sentences) for this vocabulary.
 
     related: related words from WordNet (app.models.words.language.wordnet); may be empty.
@@ -45,7 +45,7 @@ def understand(
     every: list[Mapping[str, float]] = []
     unknown: list[str] = []
     expanded: dict[str, tuple[str, ...]] = {}
-    for word in asked.wanted:
+    for word in asked.included:
         meant = _meant(word, vocabulary, related)
         if not meant:
             unknown.append(word)
@@ -59,7 +59,7 @@ def understand(
     unknown += [word for word, ours in excluded.items() if ours is None]
     known = tuple(dict.fromkeys(ours for ours in excluded.values() if ours is not None))
     unheard = tuple(dict.fromkeys(unknown))
-    return WordsAsked(weights, tuple(every), known, unheard, expanded)
+    return WordQuery(weights, tuple(every), known, unheard, expanded)
 
 
 def _meant(

@@ -26,7 +26,7 @@ SYMBOL_SPACE_VERSION = 1
 DIMENSIONS = 10
 """Dimensions of the space (Takano, fig. 3)."""
 
-WHOLE_LIBRARY = 200
+MAX_WHOLE_LIBRARY = 200
 """Up to this number of symbols, all are landmarks."""
 
 LANDMARKS = 100
@@ -74,7 +74,7 @@ def fit_symbol_space(symbols: Sequence[GaussianHMM], *, seed: int = 0) -> Symbol
 def landmark_rows(count: int, *, seed: int = 0) -> IntArray:
     """(L,) sorted indices of the landmarks among `count` symbols; all in a small library."""
     rows = np.arange(count)
-    if count > WHOLE_LIBRARY:
+    if count > MAX_WHOLE_LIBRARY:
         rows = np.sort(np.random.RandomState(seed).permutation(count)[:LANDMARKS])
     return rows
 

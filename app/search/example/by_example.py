@@ -10,7 +10,7 @@ from app.numerics.arrays import FloatArray, IntArray
 from app.search.example.distances import Descriptors, Loader, distances_to
 from app.search.example.fusion import SHORTLIST, FusedDistance
 from app.search.example.methods import Method
-from app.search.example.reranking import ReRanked
+from app.search.example.reranking import ShortlistRanking
 from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.vector_index import VECTOR, VectorIndex
 from app.search.ranking.cursor import Anchor
@@ -45,7 +45,7 @@ def rank_by_example(
         near = index.nearest(query[VECTOR], clip_filter, exclude)
         if method is Method.VECTOR:
             return near
-        return ReRanked(near, partial(_fused, query, near, load), SHORTLIST, anchor)
+        return ShortlistRanking(near, partial(_fused, query, near, load), SHORTLIST, anchor)
     ids = index.candidates(clip_filter, exclude).ids
     return _known(ids, distances_to(query, list(ids), method, load))
 

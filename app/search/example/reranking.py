@@ -25,7 +25,7 @@ Rerank = Callable[[Page], LowerBounds]
 """Gives the clips of a shortlist with the distances of the second stage."""
 
 
-class ReRanked:
+class ShortlistRanking:
     """A ranking (see `ranking.Ranked`): a shortlist in its final order, the rest behind it.
 
     The rest keeps the order and the spacing of the first stage, shifted to begin where the

@@ -27,7 +27,7 @@ class ArrayCache:
         self._lock = threading.Lock()
 
     @property
-    def bytes_kept(self) -> int:
+    def cached_bytes(self) -> int:
         """Bytes of the arrays in memory."""
         return self._bytes
 

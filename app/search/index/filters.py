@@ -18,7 +18,7 @@ from app.store.clips.filter import ClipFilter
 
 LABEL_KEYS = ("person", "task", "word", "license", "source")
 NOT = "not_"
-REFUSAL_KEYS = tuple(NOT + key for key in LABEL_KEYS)
+NOT_KEYS = tuple(NOT + key for key in LABEL_KEYS)
 MAX_LABELS = 100
 """Labels of one kind in a filter."""
 MAX_LABEL_LENGTH = 300
@@ -48,18 +48,18 @@ def as_filter(given: ClipFilter | Mapping[str, Any] | None) -> ClipFilter:
     return given if isinstance(given, ClipFilter) else parse_filter(given)
 
 
-def as_kept(key: str, value: str) -> str:
+def as_stored(key: str, value: str) -> str:
     """A label in the form in which clips keep it: NFC, without outer spaces; words normalized."""
     tidy = unicodedata.normalize("NFC", value).strip()
     return normalize_word(tidy) if key == "word" else tidy
 
 
 def _read(key: str, value: Any) -> tuple[str, ...] | float | None:
-    if key in LABEL_KEYS or key in REFUSAL_KEYS:
+    if key in LABEL_KEYS or key in NOT_KEYS:
         return _labels(key.removeprefix(NOT), value)
     if key in DURATION_KEYS:
         return _seconds(value)
-    known = ", ".join((*LABEL_KEYS, *REFUSAL_KEYS, *DURATION_KEYS))
+    known = ", ".join((*LABEL_KEYS, *NOT_KEYS, *DURATION_KEYS))
     raise ValueError(f"there is no such filter; known are {known}")
 
 
@@ -73,7 +73,7 @@ def _labels(key: str, value: Any) -> tuple[str, ...]:
         raise ValueError("an empty array has no meaning; leave the key out")
     if len(values) > MAX_LABELS or any(len(v) > MAX_LABEL_LENGTH for v in values):
         raise ValueError(f"must be at most {MAX_LABELS}, of at most {MAX_LABEL_LENGTH} characters")
-    return tuple(as_kept(key, v) for v in values)
+    return tuple(as_stored(key, v) for v in values)
 
 
 def _seconds(value: Any) -> float | None:

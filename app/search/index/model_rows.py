@@ -24,11 +24,11 @@ BATCH = 2000
 Compute = Callable[[Sequence[str]], Mapping[str, FloatArray]]
 """Rows (width,) by clip id; clips that are gone are left out."""
 
-Known = Callable[[], tuple[Sequence[str], FloatArray]]
+FittedRows = Callable[[], tuple[Sequence[str], FloatArray]]
 """Ids (n) and rows (n, width) that the fit of the model computed and that are still right."""
 
 
-def nothing_known() -> tuple[Sequence[str], FloatArray]:
+def no_fitted_rows() -> tuple[Sequence[str], FloatArray]:
     """The rows of a model that keeps none."""
     return (), np.zeros((0, 0))
 
@@ -65,13 +65,13 @@ class ModelRows:
         model: str,
         width: int,
         compute: Compute,
-        known: Known = nothing_known,
+        fitted: FittedRows = no_fitted_rows,
     ) -> ModelRowsView:
         """The rows of all clips of an index, always the same one.
 
-        model: id of the model that `compute` and `known` belong to.
+        model: id of the model that `compute` and `fitted` belong to.
         """
-        return self._finished(clips, model) or self._completed(clips, model, width, compute, known)
+        return self._finished(clips, model) or self._completed(clips, model, width, compute, fitted)
 
     def _finished(self, clips: LabelView, model: str) -> ModelRowsView | None:
         """The rows if all of them are there; read without a lock."""
@@ -81,14 +81,14 @@ class ModelRows:
         return ModelRowsView(done[2].values[:count], done[2].there[:count], done[2].series)
 
     def _completed(
-        self, clips: LabelView, model: str, width: int, compute: Compute, known: Known
+        self, clips: LabelView, model: str, width: int, compute: Compute, fitted: FittedRows
     ) -> ModelRowsView:
         """The rows, those that are missing computed."""
         ids, alive = clips.ids, clips.alive
         with self._lock:
             if (self._model, self._labels) != (model, clips.labels):
                 # Not later: these rows are right only until one of these clips changes.
-                self._kept = dict(zip(*known(), strict=True))
+                self._kept = dict(zip(*fitted(), strict=True))
                 self._kept_for = len(ids)
                 self._model, self._labels = model, clips.labels
                 self._values = Column(np.float32, (width,))

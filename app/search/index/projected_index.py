@@ -10,7 +10,13 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 from app.numerics.nearest import Block, squared_lengths
 from app.search.index.labels import Column
-from app.search.index.model_rows import Compute, Known, ModelRows, ModelRowsView, nothing_known
+from app.search.index.model_rows import (
+    Compute,
+    FittedRows,
+    ModelRows,
+    ModelRowsView,
+    no_fitted_rows,
+)
 from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.vector_index import VectorIndex
 from app.store.clips.filter import ClipFilter
@@ -33,15 +39,15 @@ class ProjectedIndex:
         query: FloatArray,
         clip_filter: ClipFilter,
         exclude: frozenset[str] = frozenset(),
-        known: Known = nothing_known,
+        fitted: FittedRows = no_fitted_rows,
     ) -> NearestRanking:
         """The clips that pass a filter, ranked by how far their coordinates are from `query` (k,).
 
-        model: id of the model that `project`, `query` and `known` belong to. The index must have
+        model: id of the model that `project`, `query` and `fitted` belong to. The index must have
         caught up.
         """
         version, rows = self._index.state
-        coordinates = self._coordinates.of(rows.labels, model, len(query), project, known)
+        coordinates = self._coordinates.of(rows.labels, model, len(query), project, fitted)
         rows = replace(rows, blocks=(self._block(coordinates),))
         return NearestRanking(version, rows, rows.labels.mask(clip_filter, exclude), query)
 

@@ -25,9 +25,9 @@ BLOCK = 32_768
 """Rows of one block."""
 MAX_FEW_DEAD = 4096
 """So many dead rows are kept however few are alive."""
-COPIED = 5000
+COPY_BATCH = 5000
 """Rows that are copied at a time when the dead rows are dropped."""
-GATHERED = 4
+GATHER_RATIO = 4
 """Where fewer than one row of a block in so many is asked for, these are copied and multiplied;
 else the whole block is."""
 
@@ -142,7 +142,7 @@ class Rows:
         """The same without dead rows."""
         found = Rows(self._layout)
         numbers = np.flatnonzero(self._labels.view().alive)
-        batches = np.cumsum(self._counts()[numbers]) // COPIED
+        batches = np.cumsum(self._counts()[numbers]) // COPY_BATCH
         for some in np.split(numbers, np.flatnonzero(np.diff(batches)) + 1):
             found.put([self._labels.clip_at(n, self._array_at(n)) for n in some.tolist()])
         return found
@@ -188,7 +188,7 @@ class Rows:
 
 def _squared_distances(queries: FloatArray, block: Block, rows: IntArray) -> FloatArray:
     """(q, k) squared distances of `queries` (q, width) to ascending `rows` (k,) of a block."""
-    if GATHERED * len(rows) < len(block):
+    if GATHER_RATIO * len(rows) < len(block):
         vectors, squares = block.vectors.take(rows, axis=0), block.squares.take(rows)
         return squared_distances(queries, vectors, squares)
     found = squared_distances(queries, block.vectors, block.squares)

@@ -30,7 +30,7 @@ VECTOR = "motion_vector"
 WIDTH = 128
 MOTION_VECTORS = Layout((VECTOR,), WIDTH)
 
-LOADED = 64
+JOIN_BATCH = 64
 """Clips whose arrays are held at a time while several are joined: an hour of motion has 3 MB of
 windows."""
 
@@ -135,8 +135,8 @@ class VectorIndex:
             yield from index_feed.changed_since(tx, since, names[0])
             return
         for batch in index_feed.changed_since(tx, since, array=""):
-            for first in range(0, len(batch), LOADED):
-                yield _joined(tx, batch[first : first + LOADED], names)
+            for first in range(0, len(batch), JOIN_BATCH):
+                yield _joined(tx, batch[first : first + JOIN_BATCH], names)
 
     def _forget(self, clip_ids: tuple[str, ...]) -> None:
         self._rows.remove(clip_ids)

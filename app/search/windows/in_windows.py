@@ -19,7 +19,7 @@ from app.search.windows.proposals import (
     ExcludedInterval,
     Proposals,
     QuerySegment,
-    View,
+    WindowsAtScale,
     propose,
     scale_for,
 )
@@ -46,7 +46,9 @@ WINDOW_SCORES = {Method.FUSED: 1.0, Method.VECTOR: 0.75, Method.DTW: 1.0}
 alike. A piece that was warped and hidden in a clip is found at .3 to .4."""
 
 
-def by_windows(view: View, segment: QuerySegment, excluded: ExcludedInterval | None) -> Candidates:
+def by_windows(
+    view: WindowsAtScale, segment: QuerySegment, excluded: ExcludedInterval | None
+) -> Candidates:
     """One candidate for each window of the clips that pass: where the query would be."""
     return propose(view, segment, excluded).candidates()
 
@@ -64,7 +66,7 @@ def by_warping(
 
 
 def by_both(
-    view: View,
+    view: WindowsAtScale,
     segment: QuerySegment,
     excluded: ExcludedInterval | None,
     load: Loader,

@@ -15,7 +15,7 @@ from app.search.windows.parts import Parts
 MAX_WINDOWS = 16
 """Windows of a long query; the longer it is, the larger are the steps between them."""
 
-View = Callable[[WindowScale], Parts]
+WindowsAtScale = Callable[[WindowScale], Parts]
 """The windows of one scale, of the clips that pass the filter."""
 
 
@@ -79,7 +79,9 @@ def scale_for(frames: int) -> WindowScale:
     return filled[-1] if filled else WINDOW_SCALES[0]
 
 
-def propose(view: View, segment: QuerySegment, excluded: ExcludedInterval | None) -> Proposals:
+def propose(
+    view: WindowsAtScale, segment: QuerySegment, excluded: ExcludedInterval | None
+) -> Proposals:
     """Compare a query with all windows of the scale that suits it.
 
     A query longer than a window is cut into windows too. Each is compared with the window of the

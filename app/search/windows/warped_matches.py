@@ -20,7 +20,7 @@ MAX_CLIPS_AT_ONCE = 256
 MAX_FRAMES_AT_ONCE = 200_000
 """Clips whose features are held at a time: 66 MB, or those of one clip that is longer."""
 
-EVERYTHING = 2**31 - 1
+MAX_FRAMES = 2**31 - 1
 """More frames than any clip has."""
 
 
@@ -30,7 +30,7 @@ class Region:
 
     clip: int
     first: int = 0
-    stop: int = EVERYTHING
+    stop: int = MAX_FRAMES
 
 
 def matches_in(

@@ -7,7 +7,7 @@ import pytest
 
 from app.errors import NotEnoughLabels
 from app.models.held_out.metric import MetricEvaluation, calibration_error, held_out_metric
-from app.models.metric.learned_metric import Described, Factor
+from app.models.metric.learned_metric import ClipDescriptors, Factor
 from app.models.metric.pair_calibration import PairCalibration
 from tests.models.factor_clips import FactorClips, factor_clips
 from tests.models.metric.test_learned_metric import described
@@ -102,6 +102,10 @@ def test_the_error_of_a_calibration_is_how_far_it_is_from_the_truth() -> None:
 def test_two_clips_a_label_are_enough() -> None:
     columns = np.random.default_rng(0).normal(size=(4, 3))
     found = held_out_metric(
-        Described(columns, columns, columns), [None] * 4, list("aabb"), list("wxyz"), Factor.TASK
+        ClipDescriptors(columns, columns, columns),
+        [None] * 4,
+        list("aabb"),
+        list("wxyz"),
+        Factor.TASK,
     )
     assert np.isfinite(found.calibration.probability(1.0))

@@ -59,7 +59,7 @@ def test_precision_at_a_recall_is_that_of_the_shortest_list_that_reaches_it() ->
 
 def test_scores_are_off_by_how_far_shares_lie_from_them() -> None:
     chances = np.repeat([0.15, 0.85], 20)
-    is_so = np.repeat([True, False, True, False], [3, 17, 17, 3])
-    assert calibration_error(chances, is_so) == pytest.approx(0.0, abs=1e-12)
-    assert calibration_error(1.0 - chances, is_so) == pytest.approx(0.7)
-    assert brier_score(chances, is_so) == pytest.approx(0.15 * 0.85)
+    is_true = np.repeat([True, False, True, False], [3, 17, 17, 3])
+    assert calibration_error(chances, is_true) == pytest.approx(0.0, abs=1e-12)
+    assert calibration_error(1.0 - chances, is_true) == pytest.approx(0.7)
+    assert brier_score(chances, is_true) == pytest.approx(0.15 * 0.85)

@@ -117,15 +117,15 @@ def test_where_no_take_was_repeated_imagined_ones_set_the_threshold() -> None:
     rng = np.random.default_rng(4)
     unusual, new = rng.normal(1, 1, 60), rng.normal(6, 2, 60)
     novelty, truth = np.concatenate([unusual, new]), np.repeat([0, NEW], 60)
-    seen, imagined = np.zeros(120, dtype=bool), rng.normal(-6, 1, 90)
+    seen, simulated = np.zeros(120, dtype=bool), rng.normal(-6, 1, 90)
     evidence = np.zeros((120, 1))
-    found = fit_calibration(evidence, novelty, truth, seen, imagined)
+    found = fit_calibration(evidence, novelty, truth, seen, simulated)
     assert found.threshold == pytest.approx(-2.0, abs=0.6)
-    np.testing.assert_array_equal(found.known_novelty, np.sort(imagined))
+    np.testing.assert_array_equal(found.known_novelty, np.sort(simulated))
     without = fit_calibration(evidence, novelty, truth, seen)
     assert without.threshold > 1.0
-    # nothing new was held out: nothing can be said by imagined takes either
-    none_new = fit_calibration(evidence[:60], unusual, truth[:60], seen[:60], imagined)
+    # nothing new was held out: nothing can be said by simulated takes either
+    none_new = fit_calibration(evidence[:60], unusual, truth[:60], seen[:60], simulated)
     assert none_new.threshold == fit_calibration(evidence[:60], unusual, truth[:60]).threshold
 
 

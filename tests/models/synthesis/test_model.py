@@ -82,7 +82,9 @@ def test_more_of_the_persons_takes_make_it_better(
     truth, own = all_cells.cell("p0", "t0"), lacking.tasks_of("p0")
     names = sorted(own)
     off = [
-        far(predict(lacking, {n: own[n] for n in names[:count]}, "t0", but=("p0",)).shape, truth)
+        far(
+            predict(lacking, {n: own[n] for n in names[:count]}, "t0", exclude=("p0",)).shape, truth
+        )
         for count in (1, 3, 5)
     ]
     assert off[0] > off[1] > off[2]
@@ -137,7 +139,7 @@ def test_nobody_is_higher_over_the_floor_than_all_who_do_the_task(
     others = np.array([lacking.tasks_of(name)["t0"] for name in lacking.who_did("t0")])
     there = clearance(moments(others))
     for given in (own, bent):
-        made = clearance(moments(predict(lacking, given, "t0", but=("p0",)).shape))
+        made = clearance(moments(predict(lacking, given, "t0", exclude=("p0",)).shape))
         assert (made >= there.min(axis=0) - 1e-9).all()
         assert (made <= there.max(axis=0) + 1e-9).all()
 
@@ -179,7 +181,7 @@ def test_too_few_labels_are_refused_with_what_is_needed(lacking: Synthesis) -> N
     with pytest.raises(NotEnoughLabels, match="another task"):
         predict(lacking, {"t0": shape[0]}, "t0")
     with pytest.raises(NotEnoughLabels, match="Another person must have a clip"):
-        predict(lacking, lacking.tasks_of("p0"), "t0", but=("p1", "p2", "p3"))
+        predict(lacking, lacking.tasks_of("p0"), "t0", exclude=("p1", "p2", "p3"))
 
 
 def test_of_a_large_library_the_most_alike_tasks_and_persons_are_taken(

@@ -7,7 +7,7 @@ import pytest
 
 from app.analysis.descriptors.motion_sample import SAMPLES
 from app.analysis.descriptors.motion_shape import CHANNELS, SHAPE_LENGTH, mirrored
-from app.models.synthesis.agreement import AGREED
+from app.models.synthesis.agreement import MIN_AGREEMENT
 from app.models.synthesis.model import Synthesis, fit_synthesis, mean_of_takes
 from app.models.synthesis.prediction import predict
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
@@ -143,7 +143,7 @@ def test_of_dances_one_is_followed_in_the_askeds_bearing() -> None:
     made = predict(record, record.tasks_of("x"), "dance")
     assert made.follows in {"a", "b", "c"}
     assert made.agreement is not None
-    assert made.agreement < AGREED
+    assert made.agreement < MIN_AGREEMENT
     moments = [
         s[:-2].reshape(SAMPLES, CHANNELS) for s in (made.shape, record.cell(made.follows, "dance"))
     ]
@@ -161,9 +161,9 @@ def test_the_cell_of_dances_is_one_of_them() -> None:
     assert any(np.array_equal(cell, take) for take in takes)
     agreement = record.cell_agreement("b", "dance")
     assert agreement is not None
-    assert agreement < AGREED
+    assert agreement < MIN_AGREEMENT
     assert record.cell_agreement("b", "nod") is None  # a single take
-    alone = predict(record, record.tasks_of("x"), "dance", but=("a", "c"))
+    alone = predict(record, record.tasks_of("x"), "dance", exclude=("a", "c"))
     assert (alone.follows, alone.agreement) == ("b", agreement)
 
 

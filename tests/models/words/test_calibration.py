@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.models.words.calibration import AS_THEY_ARE, WordCalibration, calibrate
+from app.models.words.calibration import IDENTITY_CALIBRATION, WordCalibration, calibrate
 from app.models.words.model import fit_word_model
 from app.numerics.arrays import FloatArray
 
@@ -77,11 +77,11 @@ def test_copies_of_a_recording_are_not_judged_by_one_another() -> None:
 def test_one_recording_leaves_outputs_as_they_are() -> None:
     statistics, labels = clips(6, 0)
     model = fit_word_model(statistics, labels)
-    assert calibrate(model, statistics, labels, ["one"] * 6) is AS_THEY_ARE
+    assert calibrate(model, statistics, labels, ["one"] * 6) is IDENTITY_CALIBRATION
 
 
 def test_a_query_of_one_word_has_that_words_probability() -> None:
     chances = np.array([[0.2], [0.7]])
-    np.testing.assert_allclose(np.exp(-AS_THEY_ARE.joint_surprise(chances)), chances[:, 0])
-    independent = AS_THEY_ARE.joint_surprise(np.array([[0.5, 0.4]]))
+    np.testing.assert_allclose(np.exp(-IDENTITY_CALIBRATION.joint_surprise(chances)), chances[:, 0])
+    independent = IDENTITY_CALIBRATION.joint_surprise(np.array([[0.5, 0.4]]))
     np.testing.assert_allclose(np.exp(-independent), 0.2)

@@ -18,7 +18,7 @@ def test_points_lie_as_far_apart_as_their_symbols() -> None:
 
 def test_landmarks_give_nearly_the_same_space(monkeypatch: pytest.MonkeyPatch) -> None:
     symbols = word_clips(10)[0]
-    monkeypatch.setattr(symbol_space, "WHOLE_LIBRARY", 20)
+    monkeypatch.setattr(symbol_space, "MAX_WHOLE_LIBRARY", 20)
     monkeypatch.setattr(symbol_space, "LANDMARKS", 25)
     space = fit_symbol_space(symbols)
     assert len(space.landmarks) == 25

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.search.example.reranking import ReRanked
+from app.search.example.reranking import ShortlistRanking
 from app.search.index import rows as rows_module
 from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.rows import Layout, Rows
@@ -96,13 +96,13 @@ def _backwards(shortlist: Page) -> LowerBounds:
 def test_a_shortlist_comes_first_and_the_rest_in_its_order(
     vectors: Vectors, size: int, shortlist: int
 ) -> None:
-    found = ReRanked(_near(vectors), _backwards, shortlist)
+    found = ShortlistRanking(_near(vectors), _backwards, shortlist)
     order = [clip_id for _, clip_id in _keys(vectors)]
     expected = sorted(order[:shortlist], reverse=True) + order[shortlist:]
     assert list(found.ids) == expected
     assert np.all(np.diff(found.distances) >= 0)
     pages = walk(
-        lambda after: ReRanked(
+        lambda after: ShortlistRanking(
             _near(vectors), _backwards, shortlist, after.anchor if after else None
         ),
         size,
@@ -144,7 +144,7 @@ def test_clips_that_come_and_go_between_pages_make_none_be_missed_or_listed_twic
         near = _near(now)
         if not rerank:
             return near
-        return ReRanked(near, _backwards, shortlist, after.anchor if after else None)
+        return ShortlistRanking(near, _backwards, shortlist, after.anchor if after else None)
 
     listed = [str(i) for page in walk(ranked, size) for i in page.ids]
     came_twice = {i for i in listed if listed.count(i) > 1}
@@ -159,14 +159,14 @@ def test_a_clip_that_is_gone_from_the_shortlist_is_left_out() -> None:
         away = np.where(shortlist.ids == "c00", np.inf, 0.0)
         return _bounds(shortlist.ids, shortlist.distances + away)
 
-    found = ReRanked(_near(vectors), gone, 3)
+    found = ShortlistRanking(_near(vectors), gone, 3)
     assert list(found.ids) == ["c01", "c02", "c03", "c04", "c05"]
-    everyone_gone = ReRanked(
+    everyone_gone = ShortlistRanking(
         _near(vectors), lambda s: _bounds(s.ids, np.full(len(s.ids), np.inf)), 3
     )
     assert list(everyone_gone.ids) == ["c03", "c04", "c05"]
 
 
 def test_nothing_to_rank() -> None:
-    page = ReRanked(_near({}), _backwards, 5).page(None, 10)
+    page = ShortlistRanking(_near({}), _backwards, 5).page(None, 10)
     assert (len(page.ids), page.more) == (0, False)

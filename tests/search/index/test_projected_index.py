@@ -157,11 +157,15 @@ def test_what_a_fit_computed_is_taken_over_but_of_clips_that_changed_later(
     first, second, third = add("first"), add("second"), add("third")
     index, model = VectorIndex(), Model(store)
     index.catch_up(store)
-    projected, known = ProjectedIndex(index), np.full((2, K), 9.0)
+    projected, fitted = ProjectedIndex(index), np.full((2, K), 9.0)
 
     def search() -> dict[str, float]:
         found = projected.nearest(
-            "model", model.project, np.ones(K), ClipFilter(), known=lambda: ([first, second], known)
+            "model",
+            model.project,
+            np.ones(K),
+            ClipFilter(),
+            fitted=lambda: ([first, second], fitted),
         )
         return dict(zip(found.ids, found.distances.tolist(), strict=True))
 

@@ -27,7 +27,7 @@ def _small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     """So that few clips fill blocks, and few dead ones are dropped."""
     monkeypatch.setattr(module, "BLOCK", 5)
     monkeypatch.setattr(module, "MAX_FEW_DEAD", 3)
-    monkeypatch.setattr(module, "COPIED", 2)
+    monkeypatch.setattr(module, "COPY_BATCH", 2)
 
 
 STEPS = st.lists(

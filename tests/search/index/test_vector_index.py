@@ -304,9 +304,9 @@ def test_the_cache_stays_within_its_bytes_and_forgets_on_request(store: Store, a
     cache = ArrayCache(max_bytes=4 * WIDTH * 4)
     ids = [clip.id for clip in made]
     assert set(cache.get_many(store, ids, VECTOR)) == set(ids)
-    assert cache.bytes_kept <= 4 * WIDTH * 4
+    assert cache.cached_bytes <= 4 * WIDTH * 4
     kept = cache.get_many(store, ids[-1:], VECTOR)[ids[-1]]
     assert cache.get_many(store, ids[-1:], VECTOR)[ids[-1]] is kept
     cache.forget(ids)
-    assert cache.bytes_kept == 0
+    assert cache.cached_bytes == 0
     assert cache.get_many(store, [*ids[-1:], "clip_gone"], VECTOR).keys() == {ids[-1]}

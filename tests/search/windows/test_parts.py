@@ -111,7 +111,7 @@ def test_only_the_clips_that_are_meant_pass(
     store: Store, add: Add, index: VectorIndex, monkeypatch: pytest.MonkeyPatch, gathered: int
 ) -> None:
     """Whether whole blocks are multiplied, or only the rows of clips that pass."""
-    monkeypatch.setattr(rows_module, "GATHERED", gathered)
+    monkeypatch.setattr(rows_module, "GATHER_RATIO", gathered)
     monkeypatch.setattr(rows_module, "BLOCK", 5)
     one, other, third = (add(name, parts) for name, parts in (("a", 4), ("b", 3), ("c", 5)))
     with store.write() as tx:

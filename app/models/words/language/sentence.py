@@ -43,24 +43,24 @@ NEGATIONS = frozenset({"no", "not", "never", "without"})
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
-    """Distinct normalized words to find (`wanted`) and to exclude, in their order."""
+class QueryWords:
+    """Distinct normalized words to find (`included`) and to exclude, in their order."""
 
-    wanted: tuple[str, ...]
+    included: tuple[str, ...]
     excluded: tuple[str, ...]
 
 
-def read_query(texts: Iterable[str], is_word: Callable[[str], bool]) -> Asked:
+def read_query(texts: Iterable[str], is_word: Callable[[str], bool]) -> QueryWords:
     """Read `texts`; each is a word, a phrase or a sentence.
 
     is_word: whether the library has a normalized word, inflected or not.
     """
-    wanted: list[str] = []
+    included: list[str] = []
     excluded: list[str] = []
     for text in texts:
         for word, is_excluded in _words_of(text.strip(), is_word):
-            (excluded if is_excluded else wanted).append(word)
-    return Asked(tuple(dict.fromkeys(wanted)), tuple(dict.fromkeys(excluded)))
+            (excluded if is_excluded else included).append(word)
+    return QueryWords(tuple(dict.fromkeys(included)), tuple(dict.fromkeys(excluded)))
 
 
 def _words_of(text: str, is_word: Callable[[str], bool]) -> Iterator[tuple[str, bool]]:

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.models.words.language.inflection import base_form
-from app.models.words.language.sentence import Asked, read_query
+from app.models.words.language.sentence import QueryWords, read_query
 
 _LABELS = "old wave left hand left_leg kick walk turn high_kick up"
 LABELS = frozenset(_LABELS.split())
@@ -39,12 +39,12 @@ def _is_word(word: str) -> bool:
 def test_what_is_asked(
     texts: list[str], wanted: tuple[str, ...], excluded: tuple[str, ...]
 ) -> None:
-    assert read_query(texts, _is_word) == Asked(wanted, excluded)
+    assert read_query(texts, _is_word) == QueryWords(wanted, excluded)
 
 
 @given(st.lists(st.text(max_size=40), max_size=4))
 def test_any_text_is_read(texts: list[str]) -> None:
     asked = read_query(texts, _is_word)
-    assert all(asked.wanted)
+    assert all(asked.included)
     assert all(asked.excluded)
-    assert len(set(asked.wanted)) == len(asked.wanted)
+    assert len(set(asked.included)) == len(asked.included)
