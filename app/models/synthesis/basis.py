@@ -33,7 +33,7 @@ def weights() -> FloatArray:
 
 
 def parts() -> list[IntArray]:
-    """Indices into a motion shape of its parts: two legs, trunk, two arms, and path with duration."""
+    """Indices into a motion shape by part: two legs, the trunk, two arms, path with duration."""
     index = np.arange(SAMPLES * CHANNELS).reshape(SAMPLES, CHANNELS)
     parts: list[IntArray] = []
     for roles in _PARTS:

@@ -9,8 +9,8 @@ from app.models.held_out.synthesis import (
     Trial,
     draw_trials,
     held_out_synthesis,
-    made,
     real_hit,
+    synthesized,
 )
 from app.models.synthesis.model import fit_synthesis
 from tests.models.invented_shapes import invented_shapes
@@ -38,7 +38,7 @@ def test_what_followed_one_take_and_what_did_not_are_counted_apart() -> None:
     record = fit_synthesis(shapes, clips.persons, clips.tasks)
     for row in held_out_synthesis(record, trials=100)[NEW_TASK]:
         drawn = draw_trials(record, NEW_TASK, row["given"], 100)
-        follows = [made(record, NEW_TASK, trial).follows is not None for trial in drawn]
+        follows = [synthesized(record, NEW_TASK, trial).follows is not None for trial in drawn]
         assert all(f for trial, f in zip(drawn, follows, strict=True) if trial.task == "t0")
         followed, averaged = row["followed"], row["averaged"]
         assert (followed["trials"], averaged["trials"]) == (sum(follows), len(drawn) - sum(follows))
@@ -74,7 +74,7 @@ def test_a_trial_does_not_see_its_own_cell(kind: str, lacking: list[tuple[str, s
         changed[mine] += 5.0
         other = fit_synthesis(changed, clips.persons, clips.tasks)
         np.testing.assert_array_equal(
-            made(record, kind, trial).shape, made(other, kind, trial).shape
+            synthesized(record, kind, trial).shape, synthesized(other, kind, trial).shape
         )
 
 
