@@ -1,8 +1,9 @@
 """The two views of a clip in the default recognizer, and their log densities.
 
 A full sample (1762,) is the motion sample (1250,) followed by the wide motion vector (512,). The
-motion sample has 32 poses at known phases; the wide motion vector ignores when in the clip a hand
-waves. The views overlap: the last two numbers of the sample, turn and speed, belong to both.
+motion sample has 32 poses at known phases. The wide motion vector does not depend on the time in
+the clip at which a hand waves. The views overlap: the last two numbers of the sample, turn and
+speed, belong to both.
 """
 
 from __future__ import annotations
@@ -36,8 +37,8 @@ def wide_dimensions(cells: int) -> int:
     """The number of PCA coordinates of wide motion vectors for `cells` cells: half as many.
 
     The differences between persons, or tasks, are learned from cells. With too many coordinates
-    for the cells, new clips looked known: of libraries of 35 cells drawn from dataset 2, .79 of
-    the new tasks were found in 60 coordinates, and .97 in 20.
+    for the cells, new clips are called known. In libraries of 35 cells drawn from dataset 2, .79
+    of the new tasks were recognized as new with 60 coordinates, and .97 with 20.
     """
     return min(max(cells // 2, MIN_WIDTH), MAX_WIDTH)
 
@@ -108,9 +109,9 @@ class LogDensities(NamedTuple):
         """The log densities of both views.
 
         The mean of both (Student's t) ranks labels; the wide view (Gaussian) decides what is
-        new. persons_by_both: both views decide whether a person is new, if takes are hardly
-        repeated. If they are repeated, the sample view only adds noise, since takes of one task
-        differ much in it.
+        new. persons_by_both: both views decide whether a person is new. This is better if few
+        takes are repeated. Else the sample view only adds noise, since takes of one task differ
+        much in it.
         """
         of_sample, of_wide = sample.squares(points.sample), wide.squares(points.wide)
         by_sample = sample.log_densities(of_sample, FREEDOM)
@@ -121,7 +122,7 @@ class LogDensities(NamedTuple):
         return cls((by_sample + by_wide) / 2, person, task)
 
     def of(self, index: BoolArray) -> LogDensities:
-        """The rows of some clips."""
+        """The rows of the clips where `index` (n,) is true."""
         return LogDensities(*(logs[index] for logs in self))
 
     def without_others(
@@ -134,12 +135,12 @@ class LogDensities(NamedTuple):
         if known is None:
             return self
         index = names.index(known) if known in names else NEW
-        left = (label == index) | (label == NEW)
-        return LogDensities(*(np.where(left, logs, -np.inf) for logs in self))
+        stays = (label == index) | (label == NEW)
+        return LogDensities(*(np.where(stays, logs, -np.inf) for logs in self))
 
 
 def evidence(ranking: FloatArray, label: IntArray, labels: int) -> FloatArray:
-    """(n, labels) log of the summed densities of each label's hypotheses.
+    """(n, labels) log of the sum of the densities of each label's hypotheses.
 
     ranking: (n, h) log densities; label: (h,), -1 for new. Each label occurs at least once.
     """
@@ -155,5 +156,5 @@ def newness(logs: FloatArray, label: IntArray) -> FloatArray:
     logs: (n, h); label: (h,), -1 for new.
     """
     new = label < 0
-    said_new = np.logaddexp.reduce(logs[:, new], axis=1)
-    return np.asarray(said_new - np.logaddexp.reduce(logs[:, ~new], axis=1))
+    log_new = np.logaddexp.reduce(logs[:, new], axis=1)
+    return np.asarray(log_new - np.logaddexp.reduce(logs[:, ~new], axis=1))
