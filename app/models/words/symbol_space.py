@@ -1,10 +1,11 @@
 """The motion symbol space: symbols as points with distances like their divergences
 (Takano, section 2.1, eqs 2-4).
 
-The distance of two symbols is log1p of their symmetric Kullback-Leibler divergence per
-frame. In a small library all symbols are scaled together. In a larger one random landmarks are
-scaled, and all others are placed by their distances to them, so that the cost grows with N and not
-with N squared. New symbols are placed likewise. Shapes: symbols N, landmarks L, dimensions d.
+The distance of two symbols is log1p of their symmetric Kullback-Leibler divergence per frame. In a
+small library, all symbols are scaled together. In a larger one, random landmarks are scaled. All
+other symbols are placed by their distances to the landmarks, so that the cost grows with N and not
+with N squared. New symbols are placed in the same way. Shapes: symbols N, landmarks L, dimensions
+d.
 """
 
 from __future__ import annotations
@@ -30,13 +31,16 @@ MAX_WHOLE_LIBRARY = 200
 """Up to this number of symbols, all are landmarks."""
 
 LANDMARKS = 100
-"""Number of landmarks of a larger library: at least 2.5 x dimensions. The figures of word
-recognition do not change."""
+"""Number of landmarks of a larger library, at least 2.5 x dimensions. The figures of word
+recognition are the same as with all symbols."""
 
 
 @dataclass(frozen=True, slots=True)
 class SymbolSpace:
-    """landmarks: L symbols; points: (L, d) their coordinates, log1p nats per frame."""
+    """A fitted symbol space.
+
+    landmarks: L symbols; points: (L, d) their coordinates, log1p nats per frame.
+    """
 
     landmarks: tuple[GaussianHMM, ...]
     points: FloatArray

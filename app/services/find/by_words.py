@@ -129,7 +129,7 @@ def _by_surprise(
     model_rows = _word_scores(lib, fitted, clips)
     rows = np.flatnonzero(mask & model_rows.there)
     scores = model_rows.values[rows[:, None], fitted.model.vocabulary.columns(words)]
-    return rows, fitted.model.clip_surprises(scores, words, asked.meant)
+    return rows, fitted.model.clip_surprises(scores, words, asked.items)
 
 
 def _by_absence(

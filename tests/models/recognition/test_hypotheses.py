@@ -100,7 +100,7 @@ def test_further_takes_are_as_their_cells_scatter() -> None:
     persons, tasks = [p for p in "abc" for _ in range(40)], ["x", "y"] * 60
     points = rng.normal(size=(120, 3)) * [0.1, 1.0, 0.5] + np.arange(120)[:, None] // 40
     record = fit_hypotheses(points, find_cells(persons, tasks))
-    takes = record.further_takes(3000, most_cells=100).reshape(6, 3000, 3)
+    takes = record.further_takes(3000, max_cells=100).reshape(6, 3000, 3)
     seen = np.flatnonzero(record.kind == Kind.SEEN)
     for h, drawn in zip(seen, takes, strict=True):
         back = np.linalg.inv(record.whiteners[record.form[h]])

@@ -24,7 +24,7 @@ def test_both_modes_find_clips_for_a_word_and_words_for_a_clip(clips) -> None:  
     asked = model.ask(["waving"])
     points = model.space.place(symbols)
     default, cca = model.word_scores(statistics), model.word_scores_cca(points)
-    surprises = model.clip_surprises(default, model.vocabulary.words, asked.meant)
+    surprises = model.clip_surprises(default, model.vocabulary.words, asked.items)
     angles = model.angle_scores(model.clip_angles(points, asked), asked)
     for scores in (np.exp(-surprises), angles):
         assert ((scores >= 0) & (scores <= 1)).all()
