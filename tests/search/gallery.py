@@ -29,19 +29,19 @@ class Gallery:
 
     def distances(self, query: Arrays) -> dict[Method, FloatArray]:
         """(n,) distances of all motions to a query, by method."""
-        names = [str(place) for place in range(len(self.arrays))]
+        names = [str(number) for number in range(len(self.arrays))]
 
         def load(clip_ids: Sequence[str], name: str) -> Arrays:
             return {i: self.arrays[int(i)][name] for i in clip_ids}
 
-        found = {method: distances_to(query, names, method, load) for method in RERANKED}
+        by_method = {method: distances_to(query, names, method, load) for method in RERANKED}
         vectors = np.stack([arrays[VECTOR] for arrays in self.arrays]).astype(float)
-        found[Method.VECTOR] = np.linalg.norm(vectors - query[VECTOR], axis=1)
-        found[Method.FUSED] = fused_distances(query[VECTOR], vectors, found[Method.DTW])
+        by_method[Method.VECTOR] = np.linalg.norm(vectors - query[VECTOR], axis=1)
+        by_method[Method.FUSED] = fused_distances(query[VECTOR], vectors, by_method[Method.DTW])
         for method, axes in self.metrics.items():
             points = axes.project(described(self.arrays))
-            found[method] = np.linalg.norm(points - axes.project(described([query])), axis=1)
-        return found
+            by_method[method] = np.linalg.norm(points - axes.project(described([query])), axis=1)
+        return by_method
 
 
 def gallery(motions: Sequence[Motion], persons: Sequence[str], tasks: Sequence[str]) -> Gallery:

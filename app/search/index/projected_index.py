@@ -1,4 +1,4 @@
-"""Exact search among the coordinates that a fitted model gives to the clips of an index."""
+"""Exact search among the coordinates that a fitted model computes for the clips of an index."""
 
 from __future__ import annotations
 
@@ -41,10 +41,10 @@ class ProjectedIndex:
         exclude: frozenset[str] = frozenset(),
         fitted: FittedRows = no_fitted_rows,
     ) -> NearestRanking:
-        """The clips that pass a filter, ranked by how far their coordinates are from `query` (k,).
+        """The clips that pass a filter, ranked by the distance of their coordinates to a query.
 
-        model: id of the model that `project`, `query` and `fitted` belong to. The index must have
-        caught up.
+        query: (k,) coordinates. model: the id of the model. project: computes coordinates by the
+        model. fitted: the coordinates that its fit computed. Call `catch_up` of the index before.
         """
         version, rows = self._index.state
         coordinates = self._coordinates.of(rows.labels, model, len(query), project, fitted)
@@ -52,7 +52,7 @@ class ProjectedIndex:
         return NearestRanking(version, rows, rows.labels.mask(clip_filter, exclude), query)
 
     def _block(self, coordinates: ModelRowsView) -> Block:
-        """Coordinates of all rows; 0 for those of clips that are gone."""
+        """The coordinates of all clips as a block; 0 for clips without coordinates."""
         count = len(coordinates.values)
         series, squares = self._squares
         if series is not coordinates.series or len(squares) < count:
@@ -60,7 +60,7 @@ class ProjectedIndex:
         return Block(coordinates.values, squares[:count])
 
     def _add_squares(self, coordinates: ModelRowsView) -> FloatArray:
-        """The squares of these coordinates and of all that were there before them."""
+        """The squared lengths of these coordinates; only those of new clips are computed."""
         with self._lock:
             if self._squares[0] is not coordinates.series:
                 self._column = Column(np.float32)

@@ -127,7 +127,7 @@ def _by_surprise(
     """Rows (k,) and distances (k,) of the clips that pass and that the model knows."""
     words = tuple(asked.weights)
     model_rows = _word_scores(lib, fitted, clips)
-    rows = np.flatnonzero(mask & model_rows.there)
+    rows = np.flatnonzero(mask & model_rows.has_row)
     scores = model_rows.values[rows[:, None], fitted.model.vocabulary.columns(words)]
     return rows, fitted.model.clip_surprises(scores, words, asked.items)
 
@@ -137,7 +137,7 @@ def _by_absence(
 ) -> tuple[IntArray, FloatArray]:
     """As _by_surprise, but of carrying none of the excluded words."""
     model_rows = _word_scores(lib, fitted, clips)
-    rows = np.flatnonzero(mask & model_rows.there)
+    rows = np.flatnonzero(mask & model_rows.has_row)
     scores = model_rows.values[rows[:, None], fitted.model.vocabulary.columns(asked.excluded)]
     return rows, -np.log1p(-scores.astype(np.float64)).sum(axis=1)
 
@@ -147,7 +147,7 @@ def _by_angle(
 ) -> tuple[IntArray, FloatArray]:
     """Rows (k,) and distances (k,) of the clips that pass and that the model knows."""
     model_rows = clip_points(lib, fitted, clips)
-    rows = np.flatnonzero(mask & model_rows.there)
+    rows = np.flatnonzero(mask & model_rows.has_row)
     return rows, fitted.model.clip_angles(model_rows.values[rows], asked)
 
 

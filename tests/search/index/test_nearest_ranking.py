@@ -57,7 +57,7 @@ def _keys(vectors: Vectors) -> list[tuple[float, str]]:
 
 @BRIEF
 @given(VECTORS, st.integers(1, 9))
-def test_pages_put_together_are_the_ranking(vectors: Vectors, size: int) -> None:
+def test_all_pages_together_are_the_ranking(vectors: Vectors, size: int) -> None:
     near = _near(vectors)
     keys = _keys(vectors)
     assert list(near.ids) == walked(near, size) == [clip_id for _, clip_id in keys]
@@ -67,14 +67,14 @@ def test_pages_put_together_are_the_ranking(vectors: Vectors, size: int) -> None
 
 @BRIEF
 @given(VECTORS, st.sampled_from([0.0, 1.0, 1.5]), st.integers(0, 99).map("c{:02d}".format))
-def test_all_up_to_a_clip(vectors: Vectors, distance: float, clip_id: str) -> None:
+def test_the_clips_up_to_a_clip_are_listed(vectors: Vectors, distance: float, clip_id: str) -> None:
     page = _near(vectors).until(distance, clip_id)
     expected = [i for d, i in _keys(vectors) if (d, i) <= (distance, clip_id)]
     assert list(page.ids) == expected
     assert page.more == (len(expected) < len(vectors))
 
 
-def test_what_is_excluded_is_neither_ranked_nor_counted() -> None:
+def test_excluded_clips_are_neither_ranked_nor_counted() -> None:
     near = _near({"a": (0, 0, 0), "b": (1, 0, 0)}, left_out="a")
     assert (list(near.ids), len(near)) == (["b"], 1)
 
@@ -93,7 +93,7 @@ def _backwards(shortlist: Page) -> LowerBounds:
 
 @BRIEF
 @given(VECTORS, st.integers(1, 9), st.integers(1, 12))
-def test_a_shortlist_comes_first_and_the_rest_in_its_order(
+def test_a_shortlist_comes_first_and_the_other_clips_keep_their_order(
     vectors: Vectors, size: int, shortlist: int
 ) -> None:
     found = ShortlistRanking(_near(vectors), _backwards, shortlist)
@@ -125,7 +125,7 @@ CHANGES = st.lists(
 
 @BRIEF
 @given(VECTORS, st.integers(1, 9), st.integers(1, 12), CHANGES, st.booleans())
-def test_clips_that_come_and_go_between_pages_make_none_be_missed_or_listed_twice(
+def test_no_clip_is_missed_or_listed_twice_if_clips_are_added_and_deleted_between_pages(
     vectors: Vectors, size: int, shortlist: int, changes: list[Any], rerank: bool
 ) -> None:
     """Clips that were there all the time are listed once; none is listed twice."""
@@ -152,7 +152,7 @@ def test_clips_that_come_and_go_between_pages_make_none_be_missed_or_listed_twic
     assert stayed <= set(listed)
 
 
-def test_a_clip_that_is_gone_from_the_shortlist_is_left_out() -> None:
+def test_a_deleted_clip_of_the_shortlist_is_left_out() -> None:
     vectors: Vectors = {f"c{n:02d}": (float(n), 0.0, 0.0) for n in range(6)}
 
     def gone(shortlist: Page) -> LowerBounds:
@@ -167,6 +167,6 @@ def test_a_clip_that_is_gone_from_the_shortlist_is_left_out() -> None:
     assert list(everyone_gone.ids) == ["c03", "c04", "c05"]
 
 
-def test_nothing_to_rank() -> None:
+def test_a_ranking_without_clips_is_empty() -> None:
     page = ShortlistRanking(_near({}), _backwards, 5).page(None, 10)
     assert (len(page.ids), page.more) == (0, False)
