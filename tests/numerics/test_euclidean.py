@@ -23,7 +23,7 @@ def test_distances_are_those_of_subtraction(scale: float) -> None:
 
 
 @pytest.mark.parametrize("pairs_at_once", [3, 10_000])
-def test_close_rows_keep_their_digits_and_equal_ones_are_not_apart(
+def test_close_rows_keep_their_digits_and_equal_rows_have_distance_zero(
     monkeypatch: pytest.MonkeyPatch, pairs_at_once: int
 ) -> None:
     rng = np.random.default_rng(2)
@@ -37,7 +37,7 @@ def test_close_rows_keep_their_digits_and_equal_ones_are_not_apart(
     np.testing.assert_allclose(np.diag(found[:, 4:]), expected, rtol=1e-4)
 
 
-def test_nothing_is_at_no_distance_from_nothing() -> None:
+def test_empty_tables_have_empty_distances() -> None:
     nothing = np.zeros((0, 3), dtype=np.float32)
     assert distances(np.ones((2, 3), np.float32), nothing, squared_lengths(nothing)).shape == (2, 0)
 

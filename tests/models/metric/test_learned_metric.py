@@ -51,7 +51,7 @@ def test_a_metric_brings_unseen_clips_of_one_label_together(factor: Factor) -> N
     assert learned > 0.85
 
 
-def test_more_labels_make_it_better_and_two_a_class_already_help() -> None:
+def test_more_labels_improve_a_metric_and_two_for_each_class_help() -> None:
     clips = factor_clips(persons=6, takes=5, noise=2.0)
     unseen = np.flatnonzero(clips.takes == 0)
     shares = []
@@ -67,7 +67,7 @@ def test_more_labels_make_it_better_and_two_a_class_already_help() -> None:
     assert shares[0] > share_found(nothing, clips, clips.tasks, unseen) + 0.1
 
 
-def test_a_task_that_nobody_labelled_is_still_told_from_others() -> None:
+def test_a_task_without_labels_is_separated_from_others() -> None:
     clips = factor_clips(tasks=8)
     new = np.array([task in ("t6", "t7") for task in clips.tasks])
     known = [None if is_new else task for is_new, task in zip(new, clips.tasks, strict=True)]
@@ -101,7 +101,7 @@ def test_too_few_labels_are_refused_with_their_number(labels: list[str | None]) 
 
 
 @pytest.mark.parametrize("spread", [0.0, 1.0])
-def test_the_smallest_and_stillest_libraries_give_finite_coordinates(spread: float) -> None:
+def test_small_libraries_and_motionless_clips_give_finite_coordinates(spread: float) -> None:
     columns = np.outer(spread * np.arange(4.0), np.ones(3)) + 1
     clips = ClipDescriptors(columns, columns, columns)
     axes = fit_axes(clips, ["a", "a", "b", "b"], Factor.PERSON)

@@ -34,7 +34,7 @@ def test_both_modes_find_clips_for_a_word_and_words_for_a_clip(clips) -> None:  
         assert {"walk", "stroll"} & {model.vocabulary.words[int(column)] for column in best}
 
 
-def test_survives_being_stored(clips) -> None:  # type: ignore[no-untyped-def]
+def test_a_record_is_stored_and_read_back(clips) -> None:  # type: ignore[no-untyped-def]
     symbols, statistics, words = clips
     model = fit_library_words(symbols, statistics, words).words
     arrays, meta = model.to_arrays()
