@@ -14,7 +14,7 @@ from app.cli.output import AsJson, print_json, print_table
 from app.cli.query_source import FrameRate, Skeleton, Stack, Unit, source_of
 from app.cli.settings import open_library
 from app.errors import BadField, Place
-from app.search.pose.pose_places import Places
+from app.search.pose.pose_matches import MatchesPerClip
 
 
 def search_pose(
@@ -32,8 +32,9 @@ def search_pose(
         ),
     ] = None,
     places: Annotated[
-        Places, typer.Option(help="best: one hit for each clip; all: each time of the pose.")
-    ] = Places.BEST,
+        MatchesPerClip,
+        typer.Option(help="best: one hit for each clip; all: each time of the pose."),
+    ] = MatchesPerClip.BEST,
     limit: Annotated[int, typer.Option(help="Largest number of hits, 1 to 1000.")] = 10,
     filter_json: FilterJson = None,
     skeleton: Skeleton = None,

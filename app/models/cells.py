@@ -1,8 +1,8 @@
 """Cells: the takes of one task by one person, and the prediction of missing cells.
 
-A library seldom has every person do every task. A missing cell is predicted by the sum of a
-person effect and a task effect, fitted by ridge regression. This is deterministic and stable
-even if few cells overlap. Iterating a low-rank N-mode model from there (EM) predicted held-out
+In most libraries, not every person does every task. A missing cell is predicted as the sum of a
+person effect and a task effect, which ridge regression fits. This is deterministic, and stable even
+if few cells overlap. A low-rank N-mode model that was iterated from there (EM) predicted held-out
 real cells less well.
 """
 
@@ -16,8 +16,8 @@ import numpy as np
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 EFFECT_RIDGE = 0.5
-"""Ridge penalty of an effect, in cells. It also decides between effects that the data cannot
-separate."""
+"""Ridge penalty of an effect, in cells. It also makes effects unique if the data cannot separate
+them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,8 +25,8 @@ class Cells:
     """The cell of each clip.
 
     persons, tasks: sorted labels; member: (clips,) cell of each clip, -1 without any label;
-    person, task: (cells,) index of the label, -1 where not labeled; takes: (cells,).
-    A clip that lacks one of the labels is a cell of its own.
+    person, task: (cells,) index of the label, -1 without the label; takes: (cells,) number of
+    clips. Each clip with only one of the labels has a cell of its own.
     """
 
     persons: tuple[str, ...]
@@ -50,6 +50,7 @@ def find_cells(persons: Sequence[str | None], tasks: Sequence[str | None]) -> Ce
     person_names, person = _indexed(persons)
     task_names, task = _indexed(tasks)
     partial = (person < 0) | (task < 0)
+    # a number for each partly labeled clip, so that no two of them share a cell
     own = np.where(partial, np.arange(1, len(person) + 1), 0)
     labeled = (person >= 0) | (task >= 0)
     keys = np.stack([person, task, own], axis=1)[labeled]
@@ -70,9 +71,10 @@ def cell_means(points: FloatArray, cells: Cells) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class Effects:
-    """A cell's prediction is mean (d,) + its row of persons (P, d) + its row of tasks (T, d).
+    """Person and task effects: a prediction is mean + row of `persons` + row of `tasks`.
 
-    errors: (full cells, d), each cell minus its prediction from all other cells.
+    mean: (d,); persons: (P, d); tasks: (T, d); errors: (full cells, d), each cell minus its
+    prediction from all other cells.
     """
 
     mean: FloatArray
@@ -86,7 +88,10 @@ class Effects:
 
 
 def fit_effects(means: FloatArray, cells: Cells, ridge: float = EFFECT_RIDGE) -> Effects:
-    """Person and task effects of the full cells among `means` (cells, d)."""
+    """Person and task effects, by ridge regression on the full cells.
+
+    means: (cells, d) of `cell_means`. ridge: the penalty, in cells; the mean has none.
+    """
     full = np.flatnonzero(cells.full)
     count, persons = len(full), len(cells.persons)
     design = np.zeros((count, 1 + persons + len(cells.tasks)))
@@ -94,15 +99,17 @@ def fit_effects(means: FloatArray, cells: Cells, ridge: float = EFFECT_RIDGE) ->
     design[np.arange(count), 1 + cells.person[full]] = 1
     design[np.arange(count), 1 + persons + cells.task[full]] = 1
     penalty = np.full(design.shape[1], ridge)
-    penalty[0] = 1e-9
+    penalty[0] = 1e-9  # the mean is not penalized, but the matrix must be invertible
     solver = np.linalg.solve(design.T @ design + np.diag(penalty), design.T)
     effects = solver @ means[full]
+    # A residual divided by 1 - leverage is the error of a fit without that cell.
     leverage = np.einsum("ij,ji->i", design, solver)
     errors = (means[full] - design @ effects) / np.maximum(1 - leverage, 1e-6)[:, None]
     return Effects(effects[0], effects[1 : 1 + persons], effects[1 + persons :], errors)
 
 
 def _indexed(labels: Sequence[str | None]) -> tuple[tuple[str, ...], IntArray]:
+    """The distinct labels, sorted, and (n,) the index of each label, -1 for None or ""."""
     names = tuple(sorted({label for label in labels if label}))
-    place = {name: index for index, name in enumerate(names)}
-    return names, np.array([place[label] if label else -1 for label in labels], dtype=np.int64)
+    index_of = {name: index for index, name in enumerate(names)}
+    return names, np.array([index_of[label] if label else -1 for label in labels], dtype=np.int64)

@@ -1,1 +1,1 @@
-"""Arrays in, arrays out; knows nothing of motion."""
+"""Numerical methods: functions from arrays to arrays, independent of motion."""

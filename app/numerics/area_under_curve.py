@@ -1,4 +1,4 @@
-"""The area under the ROC curve: how well a number separates two kinds.
+"""The area under the ROC curve: how well a number separates positives from negatives.
 
 It is the Mann-Whitney statistic as a share of all pairs (Hanley and McNeil 1982, "The meaning and
 use of the area under a receiver operating characteristic curve", Radiology 143).
@@ -15,7 +15,7 @@ def area_under_curve(positives: FloatArray, negatives: FloatArray) -> float:
     """The chance, 0..1, that a positive has a larger value than a negative.
 
     positives: (p,) and negatives: (n,) values of any unit, in any order. Equal values count
-    half. Without positives or without negatives the result is 0.5, which is what guessing gives.
+    half. Without positives or without negatives the result is 0.5, as for a guess.
     """
     # Imported here because it takes half a second, and few commands need an area.
     from scipy.stats import rankdata

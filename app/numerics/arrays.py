@@ -1,4 +1,4 @@
-"""Array types used throughout; shapes stand in each docstring."""
+"""The array types of all modules. The docstrings give the shapes."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Shares of votes: an interval around a share, and whether it differs from one half.
 
-scipy computes both. Here they are also defined without votes, which scipy refuses.
+scipy computes both, but refuses zero votes. Here the results are also defined for zero votes.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
     """
     from scipy.stats import binomtest  # slow to load
 
-    if _has_none(successes, trials):
+    if _has_no_trials(successes, trials):
         return 0.0, 1.0
-    found = binomtest(successes, trials).proportion_ci(CONFIDENCE, method="wilson")
-    return float(found.low), float(found.high)
+    interval = binomtest(successes, trials).proportion_ci(CONFIDENCE, method="wilson")
+    return float(interval.low), float(interval.high)
 
 
 def fair_coin_probability(successes: int, trials: int) -> float:
@@ -32,10 +32,10 @@ def fair_coin_probability(successes: int, trials: int) -> float:
     """
     from scipy.stats import binomtest  # slow to load
 
-    return 1.0 if _has_none(successes, trials) else float(binomtest(successes, trials).pvalue)
+    return 1.0 if _has_no_trials(successes, trials) else float(binomtest(successes, trials).pvalue)
 
 
-def _has_none(successes: int, trials: int) -> bool:
+def _has_no_trials(successes: int, trials: int) -> bool:
     """Whether there are no trials. Raises ValueError if the counts are impossible."""
     if not 0 <= successes <= trials:
         raise ValueError(f"expected 0 to {trials} successes, found {successes}")

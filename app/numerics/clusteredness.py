@@ -1,8 +1,8 @@
 """How well points fall into clusters: the silhouette (Rousseeuw 1987) of Ward's clusters.
 
-Any set of points has a best silhouette above 0, and a small set has a high one. So it is compared
-with that of points without clusters, which are drawn from a normal distribution of the same
-covariance (the idea of the gap statistic, Tibshirani and others 2001).
+The best silhouette of any set of points is above 0, and that of a small set is high. So it is
+compared with the best silhouette of points without clusters. They are drawn from a normal
+distribution of the same covariance (the idea of the gap statistic, Tibshirani and others 2001).
 
 scipy finds the clusters, scikit-learn their silhouettes.
 """
@@ -20,7 +20,7 @@ MAX_CLUSTERS = 12
 """The largest number of clusters that is tried."""
 
 DRAWS = 20
-"""How many sets of points without clusters are drawn."""
+"""The number of sets of points without clusters that are drawn."""
 
 SEED = 20090
 """Seed of these draws."""
@@ -44,7 +44,7 @@ class Clusters:
 
 @dataclass(frozen=True, slots=True)
 class Clusteredness:
-    """How well points fall into clusters, compared with points that have none.
+    """How well points fall into clusters, compared with points without clusters.
 
     clusters: the best clusters. unclustered: the mean, over DRAWS sets of as many points without
     clusters, of the best silhouette.
@@ -55,7 +55,7 @@ class Clusteredness:
 
     @property
     def gap(self) -> float:
-        """By how much the silhouette is above that of points without clusters."""
+        """The silhouette minus that of points without clusters."""
         return self.clusters.silhouette - self.unclustered
 
 
@@ -70,6 +70,7 @@ def clusteredness(points: FloatArray) -> Clusteredness | None:
         return None
     rows = np.asarray(points, dtype=np.float64)
     draw = np.random.RandomState(SEED)
+    # Normal numbers along the principal axes, scaled, have the covariance of the points.
     _, spreads, axes = np.linalg.svd(rows - rows.mean(axis=0), full_matrices=False)
     drawn = (draw.standard_normal((len(rows), len(axes))) * spreads @ axes for _ in range(DRAWS))
     chance = [one.silhouette for one in map(best_clusters, drawn) if one is not None]
@@ -91,10 +92,10 @@ def best_clusters(points: FloatArray) -> Clusters | None:
         scipy.cluster.hierarchy.linkage(rows, "ward"),
         scipy.spatial.distance.squareform(scipy.spatial.distance.pdist(rows)),
     )
-    found = []
+    cuts = []
     for count in range(2, min(MAX_CLUSTERS, len(rows) - 1) + 1):
         labels = scipy.cluster.hierarchy.fcluster(tree, count, "maxclust")
-        if len(np.unique(labels)) > 1:
+        if len(np.unique(labels)) > 1:  # equal points can prevent a cut into `count` clusters
             score = silhouette_score(distances, labels, metric="precomputed")
-            found.append(Clusters(float(score), labels))
-    return max(found, key=lambda one: (one.silhouette, -one.count), default=None)
+            cuts.append(Clusters(float(score), labels))
+    return max(cuts, key=lambda one: (one.silhouette, -one.count), default=None)

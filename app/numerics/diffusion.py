@@ -24,7 +24,8 @@ their radii."""
 DEGREE_OFFSET = 0.3
 """Added to the sum of a point's edge weights. It keeps a point with weak edges weakly connected."""
 
-_SMALLEST = 1e-12
+_MIN_SCALE = 1e-12
+"""Avoids a division by 0 if the radii of two points are 0."""
 
 
 def neighbor_radii(distances: FloatArray, neighbors: int) -> FloatArray:
@@ -40,9 +41,9 @@ def neighbor_radii(distances: FloatArray, neighbors: int) -> FloatArray:
 def diffused_closeness(
     distances: FloatArray, radii: FloatArray, damping: float = DAMPING
 ) -> FloatArray:
-    """(n,) how closely the first point is connected to each point, 0..1.
+    """(n,) the closeness of each point to the first point, 0..1.
 
-    The first point has closeness 1 to itself, and 0 to points that no path reaches.
+    The first point has closeness 1 to itself. Points that no path reaches have closeness 0.
     distances: (n, n) symmetric, zeros on the diagonal. radii: (n,) in the same unit, as from
     `neighbor_radii`. damping: 0 to less than 1, the share of a walk that goes on at each step.
 
@@ -63,7 +64,7 @@ def diffused_closeness(
 
 def _edges(distances: FloatArray, radii: FloatArray) -> FloatArray:
     """(n, n) Gaussian edge weights, lowered by a constant so that they reach 0 at REACH."""
-    scales = np.maximum(np.outer(radii, radii), _SMALLEST)
+    scales = np.maximum(np.outer(radii, radii), _MIN_SCALE)
     weights = np.maximum(np.exp(-np.square(distances) / scales) - np.exp(-REACH), 0.0)
     np.fill_diagonal(weights, 0.0)
     return np.asarray(weights)

@@ -1,9 +1,9 @@
 """Linear discriminants with shrinkage: directions in which classes differ, from few labels.
 
 With few examples, the scatter within classes is far too small in some directions. Dividing by it
-would amplify noise. So it is shrunk toward a sphere. scikit-learn estimates how much, by the
-method of Ledoit and Wolf ("A well-conditioned estimator for large-dimensional covariance
-matrices", 2004).
+would amplify noise. So it is shrunk toward a sphere. scikit-learn estimates the share of the
+sphere, by the method of Ledoit and Wolf ("A well-conditioned estimator for large-dimensional
+covariance matrices", 2004).
 
 The discriminants themselves are our own code. scikit-learn's LDA estimates a share for each
 class, which two examples of a class do not allow. It also finds no directions beyond the C - 1
@@ -61,9 +61,9 @@ def discriminants(
     values, vectors = scipy.linalg.eigh(_shrunk(within, len(rows) - len(sizes), shrinkage))
     whitening = vectors / np.sqrt(values)
     deviations = (means - rows.mean(axis=0)) * np.sqrt(sizes / sizes.sum())[:, None]
-    parting, between = _parting(deviations @ whitening)
-    rest = _by_variance(parting, values)
-    axes = np.hstack([whitening @ parting, whitening @ rest])[:, :count]
+    separating, between = _separating(deviations @ whitening)
+    rest = _by_variance(separating, values)
+    axes = np.hstack([whitening @ separating, whitening @ rest])[:, :count]
     between = np.concatenate([between, np.zeros(rest.shape[1])])[:count]
     return Discriminants(fix_signs(axes), between, shrinkage)
 
@@ -99,28 +99,29 @@ def _shrunk(within: FloatArray, freedom: int, shrinkage: float) -> FloatArray:
 
 
 def _class_means(rows: FloatArray, labels: IntArray) -> tuple[FloatArray, FloatArray]:
-    """The means (C, d) of the classes, and how many rows each class has, (C,)."""
+    """The means (C, d) of the classes, and their numbers of rows (C,)."""
     sizes = np.bincount(labels).astype(np.float64)
     means = np.zeros((len(sizes), rows.shape[1]))
     np.add.at(means, labels, rows)
     return means / sizes[:, None], sizes
 
 
-def _parting(deviations: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _separating(deviations: FloatArray) -> tuple[FloatArray, FloatArray]:
     """The directions (d, C-1) that separate classes, and the variances (C-1,) along them.
 
     deviations: (C, d) class means less the total mean, whitened, weighted by class size.
     """
-    most = min(len(deviations) - 1, deviations.shape[1])
+    count = min(len(deviations) - 1, deviations.shape[1])
     _, lengths, directions = np.linalg.svd(deviations, full_matrices=False)
-    return directions[:most].T, lengths[:most] ** 2
+    return directions[:count].T, lengths[:count] ** 2
 
 
-def _by_variance(parting: FloatArray, values: FloatArray) -> FloatArray:
-    """(d, d-C+1) the directions orthogonal to `parting` (d, C-1), by falling variance.
+def _by_variance(separating: FloatArray, values: FloatArray) -> FloatArray:
+    """(d, d-C+1) the directions orthogonal to `separating` (d, C-1), by falling variance.
 
     values: (d,) the variances within classes before whitening, one for each whitened dimension.
     """
-    beside = np.linalg.svd(parting, full_matrices=True)[0][:, parting.shape[1] :]
-    _, turn = scipy.linalg.eigh((beside.T * values) @ beside)
-    return np.asarray(beside @ turn[:, ::-1])
+    complement = np.linalg.svd(separating, full_matrices=True)[0][:, separating.shape[1] :]
+    # eigenvalues rise, so the columns are reversed
+    _, rotation = scipy.linalg.eigh((complement.T * values) @ complement)
+    return np.asarray(complement @ rotation[:, ::-1])

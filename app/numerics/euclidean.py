@@ -4,7 +4,7 @@
 distance above 0. These few pairs are computed again by subtraction. So the result is as exact as
 that of `scipy.spatial.distance.cdist`, which subtracts all pairs. cdist has no single precision,
 and takes 3 to 5 times as long for rows of 39 numbers or more (257 x 257 rows of 128: 2.4 ms
-against 0.5). It is faster, by microseconds, for one row or for points of the plane.
+against 0.5). cdist is faster, by microseconds, for one row or for points of the plane.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ import numpy as np
 from app.numerics.arrays import FloatArray, IntArray
 
 TOO_CLOSE_SINGLE = 1e-4
-"""float32: squared distances up to this share of the squared length are computed again."""
+"""float32 squared distances up to this share of the squared length are computed again."""
 
 TOO_CLOSE_DOUBLE = 1e-8
-"""float64: the same."""
+"""The same for float64."""
 
-RETAKEN_AT_ONCE = 10_000
-"""How many pairs are computed again at a time. It bounds the memory."""
+MAX_RECOMPUTED_PAIRS = 10_000
+"""The largest number of pairs that are computed again at a time. It bounds the memory."""
 
 
 def squared_lengths(rows: FloatArray) -> FloatArray:
@@ -40,8 +40,8 @@ def distances(
 
     The parameters, precision and exactness are those of `squared_distances`.
     """
-    apart = squared_distances(rows, others, squares, parts)
-    return np.asarray(np.sqrt(apart, out=apart))
+    between = squared_distances(rows, others, squares, parts)
+    return np.asarray(np.sqrt(between, out=between))
 
 
 def squared_distances(
@@ -62,26 +62,27 @@ def squared_distances(
     twice = -2.0 * rows
     lead = np.broadcast_shapes(rows.shape[:-2], others.shape[:-2])
     shape = (*lead, rows.shape[-2], others.shape[-2])
-    apart = np.empty(shape, dtype=np.result_type(twice, others))
+    between = np.empty(shape, dtype=np.result_type(twice, others))
     for part in parts:
-        np.matmul(twice, others[..., part, :].swapaxes(-1, -2), out=apart[..., part])
-    apart += squared_lengths(rows)[..., None]
-    apart += squares[..., None, :]
-    share = TOO_CLOSE_SINGLE if apart.dtype == np.float32 else TOO_CLOSE_DOUBLE
-    close = np.flatnonzero(apart <= (share * squares)[..., None, :])
-    for first in range(0, len(close), RETAKEN_AT_ONCE):
-        _subtract(apart, rows, others, close[first : first + RETAKEN_AT_ONCE])
-    return np.asarray(apart)
+        np.matmul(twice, others[..., part, :].swapaxes(-1, -2), out=between[..., part])
+    # (..., n, k) -2 a.b + |a|^2 + |b|^2, added in place because the table is the largest array
+    between += squared_lengths(rows)[..., None]
+    between += squares[..., None, :]
+    share = TOO_CLOSE_SINGLE if between.dtype == np.float32 else TOO_CLOSE_DOUBLE
+    close = np.flatnonzero(between <= (share * squares)[..., None, :])
+    for first in range(0, len(close), MAX_RECOMPUTED_PAIRS):
+        _subtract(between, rows, others, close[first : first + MAX_RECOMPUTED_PAIRS])
+    return np.asarray(between)
 
 
-def _subtract(apart: FloatArray, rows: FloatArray, others: FloatArray, pairs: IntArray) -> None:
-    """Compute the squared distances of `pairs` again by subtraction, in place in `apart`.
+def _subtract(between: FloatArray, rows: FloatArray, others: FloatArray, pairs: IntArray) -> None:
+    """Compute the squared distances of `pairs` again by subtraction, in place in `between`.
 
-    apart: (..., n, k). pairs: (p,) positions in the flat array; numpy finds these many times
-    faster than indices.
+    between: (..., n, k). pairs: (p,) positions in the flat array; numpy finds them many times
+    faster than indices along each axis.
     """
-    *lead, row, other = np.unravel_index(pairs, apart.shape)
-    rows = np.broadcast_to(rows, (*apart.shape[:-2], *rows.shape[-2:]))
-    others = np.broadcast_to(others, (*apart.shape[:-2], *others.shape[-2:]))
+    *lead, row, other = np.unravel_index(pairs, between.shape)
+    rows = np.broadcast_to(rows, (*between.shape[:-2], *rows.shape[-2:]))
+    others = np.broadcast_to(others, (*between.shape[:-2], *others.shape[-2:]))
     difference = rows[(*lead, row)] - others[(*lead, other)]
-    apart[(*lead, row, other)] = squared_lengths(difference)
+    between[(*lead, row, other)] = squared_lengths(difference)

@@ -11,9 +11,9 @@ from app.numerics.arrays import FloatArray
 def rising_means(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     """The mean x (k,) and mean y (k,) of the k pools of an isotonic regression of y on x.
 
-    x, y: (n,) the points, at least one, in any order. Points of equal x are averaged first; then
-    scipy pools adjacent points whose y falls (least squares). Mean x rises strictly, mean y
-    rises. A caller interpolates between the pools.
+    x, y: (n,) the points, at least one, in any order. Points of equal x are averaged first. Then
+    scipy pools adjacent points with falling y (least squares). The mean x of the pools rises
+    strictly, and their mean y rises. The caller interpolates between the pools.
     """
     values, member, counts = np.unique(x, return_inverse=True, return_counts=True)
     weights = counts.astype(np.float64)

@@ -32,7 +32,7 @@ PENALTIES = (1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0, 3.0)
 """Candidates for the ridge penalty."""
 
 _BLOCK = 1000
-"""Rows that are computed at once. It bounds the memory to _BLOCK * m floats."""
+"""The number of rows that are computed at once. It bounds the memory to _BLOCK * m floats."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,11 +119,12 @@ def leave_one_out_errors(kernel: FloatArray, outputs: FloatArray) -> FloatArray:
 def _tune(rows: FloatArray, outputs: FloatArray) -> tuple[float, float]:
     """The width and penalty with the smallest leave-one-out error.
 
-    Of equally good widths the largest is taken.
+    Among equally good widths, the largest is used.
     """
     squares = squared_distances(rows, rows)
-    apart = np.sqrt(squares[np.triu_indices(len(rows), 1)])
-    unit = float(np.median(apart)) if apart.size and np.median(apart) > 0.0 else 1.0
+    distances = np.sqrt(squares[np.triu_indices(len(rows), 1)])
+    # a single row, or mostly equal rows, have no typical distance
+    unit = float(np.median(distances)) if distances.size and np.median(distances) > 0.0 else 1.0
     best, chosen = np.inf, (unit, PENALTIES[-1])
     for share in reversed(WIDTHS):
         errors = leave_one_out_errors(np.exp(squares / (-2.0 * (share * unit) ** 2)), outputs)
@@ -145,5 +146,6 @@ def _solve(
         block = gaussian_kernel(rows[first : first + _BLOCK], centers, width)
         normal += block.T @ block
         target += block.T @ outputs[first : first + _BLOCK]
+    # centers that are nearly equal would make the matrix singular
     jitter = 1e-8 * float(np.trace(normal)) / len(centers)
     return np.asarray(np.linalg.solve(normal + jitter * np.eye(len(centers)), target))

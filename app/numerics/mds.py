@@ -1,9 +1,9 @@
-"""Multidimensional scaling: points whose distances are given (Takano, eqs 3-4).
+"""Multidimensional scaling: points from their distances (Takano, eqs 3-4).
 
 Classical scaling gives the start. Then the paper's error T is minimized (eq. 3: the s-stress of
 Takane, each pair weighted by 1 / 4 D^2). We use L-BFGS instead of the paper's Newton-Raphson,
-because it needs no Hessian of all points. A point that comes later is placed alone, against fixed
-landmarks, under the same error. Shapes: points N, landmarks L, dimensions d.
+because it needs no Hessian of all points. A new point is placed alone, relative to fixed
+landmarks, with the same error. Shapes: points N, landmarks L, dimensions d.
 
 scikit-learn minimizes only the raw stress (app.numerics.smacof). That leaves a larger error T:
 .229 for each pair against .216 here, for 166 real symbols in 10 dimensions, in the same time.
@@ -22,13 +22,13 @@ REFINING_STEPS = 200
 """The largest number of L-BFGS iterations. On real libraries the error settles long before."""
 
 PLACING_STEPS = 20
-"""Levenberg-Marquardt steps for a new point."""
+"""The number of Levenberg-Marquardt steps for a new point."""
 
 MIN_SHARE = 1e-3
 """The smallest distance, as a share of the mean distance. Eq. 3 divides by distances."""
 
 _BLOCK = 2000
-"""New points that are placed at once. It bounds the memory to _BLOCK * L * d floats."""
+"""The number of points that are placed at once. It bounds the memory to _BLOCK * L * d floats."""
 
 
 def classical_mds(distances: FloatArray, dimensions: int) -> FloatArray:
@@ -57,14 +57,14 @@ def metric_mds(distances: FloatArray, dimensions: int) -> FloatArray:
     if len(start) < 3:
         return start
     squares = _floored(distances) ** 2
-    found = scipy.optimize.minimize(
+    result = scipy.optimize.minimize(
         lambda flat: _stress_and_slope(flat.reshape(start.shape), squares),
         start.ravel(),
         jac=True,
         method="L-BFGS-B",
         options={"maxiter": REFINING_STEPS},
     )
-    return np.asarray(found.x.reshape(start.shape))
+    return np.asarray(result.x.reshape(start.shape))
 
 
 def stress(points: FloatArray, distances: FloatArray) -> float:
@@ -86,57 +86,60 @@ def place(distances: FloatArray, landmarks: FloatArray) -> FloatArray:
 
 
 def _floored(distances: FloatArray) -> FloatArray:
-    """The distances, of any shape, none smaller than MIN_SHARE of their mean."""
-    wanted = np.asarray(distances, dtype=np.float64)
-    return np.maximum(wanted, max(MIN_SHARE * float(wanted.mean()), 1e-12))
+    """The distances, of any shape, with MIN_SHARE of their mean as the smallest."""
+    targets = np.asarray(distances, dtype=np.float64)
+    return np.maximum(targets, max(MIN_SHARE * float(targets.mean()), 1e-12))
 
 
 def _stress_and_slope(points: FloatArray, squares: FloatArray) -> tuple[float, FloatArray]:
     """The error T and its gradient (N d,); squares: (N, N) the given squared distances."""
     excess = squares - squared_distances(points, points)
     np.fill_diagonal(excess, 0.0)
-    pull = excess / squares
+    pull = excess / squares  # (N, N); eq. 3 divides by 4 D^2
     slope = pull @ points - pull.sum(axis=1)[:, None] * points
     return float((excess * pull).sum() / 8.0), slope.ravel()
 
 
 def _place_block(distances: FloatArray, landmarks: FloatArray) -> FloatArray:
-    wanted = _floored(distances)
-    points = _triangulate(wanted, landmarks)
+    """(N, d) as `place`, for some of the points."""
+    targets = _floored(distances)
+    points = _triangulate(targets, landmarks)
     damping = np.full(len(points), 1e-2)
-    residuals, slopes = _misfit(points, wanted, landmarks)
+    residuals, slopes = _misfit(points, targets, landmarks)
     for _ in range(PLACING_STEPS):
         moved = points + _damped_step(residuals, slopes, damping)
-        new_residuals, new_slopes = _misfit(moved, wanted, landmarks)
+        new_residuals, new_slopes = _misfit(moved, targets, landmarks)
         is_better = (new_residuals**2).sum(axis=1) < (residuals**2).sum(axis=1)
         points[is_better] = moved[is_better]
         residuals[is_better], slopes[is_better] = new_residuals[is_better], new_slopes[is_better]
-        damping *= np.where(is_better, 0.3, 5.0)
+        damping *= np.where(is_better, 0.3, 5.0)  # a worse step is dropped, and the next is shorter
     return points
 
 
-def _triangulate(wanted: FloatArray, landmarks: FloatArray) -> FloatArray:
+def _triangulate(targets: FloatArray, landmarks: FloatArray) -> FloatArray:
+    """(N, d) the least-squares points for the distances `targets` (N, L) to the landmarks."""
     center = landmarks.mean(axis=0)
     spread = landmarks - center
     # |x - l|^2 = |x|^2 - 2 x.l + |l|^2: differences over landmarks are linear in x
-    known = (spread**2).sum(axis=1) - wanted**2
-    known = known - known.mean(axis=1, keepdims=True)
-    return np.asarray(0.5 * known @ np.linalg.pinv(spread, rcond=1e-6).T + center)
+    products = (spread**2).sum(axis=1) - targets**2
+    products = products - products.mean(axis=1, keepdims=True)  # removes |x|^2, which is unknown
+    return np.asarray(0.5 * products @ np.linalg.pinv(spread, rcond=1e-6).T + center)
 
 
 def _misfit(
-    points: FloatArray, wanted: FloatArray, landmarks: FloatArray
+    points: FloatArray, targets: FloatArray, landmarks: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """The residuals (N, L) and their derivatives (N, L, d) by the coordinates of `points`.
 
-    wanted: (N, L) the given distances. The squared residuals sum to the error of eq. 3.
+    targets: (N, L) the given distances. The squared residuals sum to the error of eq. 3.
     """
     offsets = points[:, None] - landmarks
-    residuals = (wanted**2 - (offsets**2).sum(axis=2)) / (2.0 * wanted)
-    return residuals, -offsets / wanted[:, :, None]
+    residuals = (targets**2 - (offsets**2).sum(axis=2)) / (2.0 * targets)
+    return residuals, -offsets / targets[:, :, None]
 
 
 def _damped_step(residuals: FloatArray, slopes: FloatArray, damping: FloatArray) -> FloatArray:
+    """(N, d) the Levenberg-Marquardt step of each point; damping: (N,)."""
     normal = slopes.transpose(0, 2, 1) @ slopes  # (N, d, d)
     scale = np.trace(normal, axis1=1, axis2=2) / normal.shape[1] + 1e-12
     normal += (damping * scale)[:, None, None] * np.eye(normal.shape[1])

@@ -2,8 +2,8 @@
 
 |q - x|^2 = |q|^2 - 2 q.x + |x|^2 needs one pass over the vectors but loses digits. The error has
 a bound (Higham 2002, section 3.1: a sum of d products errs by at most d u |q| |x|, in any order).
-So every vector that could be among the nearest is kept, and its distance is computed again in
-float64.
+So all vectors that can be among the nearest are collected, and their distances are computed again
+in float64.
 
 scikit-learn's NearestNeighbors is not used. It has no masks, no blocks that grow, and no pages
 beyond a distance. Its brute force takes 3 times as long (11.5 ms against 3.8 for the 10 nearest
@@ -29,13 +29,14 @@ DECIMALS = 9
 UNIT = 2.0**-24
 """The largest relative error of one float32 operation (u)."""
 
-FEW = 16
-"""If a mask selects less than one in FEW vectors, only these are multiplied, else all are."""
+GATHER_RATIO = 16
+"""If a mask selects less than one vector in this many, only the selected vectors are copied and
+multiplied. Else all are multiplied."""
 
 _ROUNDING = 10.0**-DECIMALS
-_HELD = 4096
-"""Rows that a search holds, besides 4 times the count, before it drops the far ones."""
-_LARGEST = float(np.finfo(np.float32).max)
+_MAX_SPARE_ROWS = 4096
+"""A search drops far rows as soon as it has this many more than 4 times the requested count."""
+_MAX_FLOAT32 = float(np.finfo(np.float32).max)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,30 +69,32 @@ def nearest(
     masks: Sequence[BoolArray | None],
     query: FloatArray,
     count: int,
-    least: float | None = None,
+    min_distance: float | None = None,
 ) -> tuple[IntArray, FloatArray]:
     """The rows (m,) and the rounded float64 Euclidean distances (m,) of the nearest vectors.
 
-    masks: for each block (n,) which vectors may be found, None for all. query: (d,), used as
-    float32. count: at least 1.
+    masks: for each block (n,) which vectors are searched, None for all. query: (d,), used as
+    float32. count: at least 1. min_distance: for the next page, the rounded distance of the last
+    vector of the page before.
 
-    The result holds the `count` nearest and all that are as far as the last of them. It can hold
-    some that are farther, and has no order: the caller sorts. least: a rounded distance, to get
-    the next page; then vectors nearer than it are left out, all at this distance are in the
-    result, and the `count` nearest are counted among those beyond it.
+    The result has the `count` nearest vectors, and all others at the distance of the last of
+    them. It can have some farther vectors too, and it is not sorted: the caller sorts it. With
+    `min_distance`, nearer vectors are left out, all vectors at this distance are in the result,
+    and the `count` nearest are counted among the farther ones.
     Raises DeadlineExceeded or ClientLeft (app.deadline).
     """
     query = np.asarray(query, dtype=np.float32)
-    search = _Search(query, count, least, _longest(blocks))
+    search = _Search(query, count, min_distance, _max_length(blocks))
     first = 0
     for block, mask in zip(blocks, masks, strict=True):
         check()
-        search.look(block, mask, first)
+        search.add(block, mask, first)
         first += len(block)
-    rows = search.found()
+    rows = search.rows()
     distances = distances_to(blocks, rows, query)
-    if least is not None:
-        rows, distances = rows[distances >= least], distances[distances >= least]
+    if min_distance is not None:
+        is_far = distances >= min_distance
+        rows, distances = rows[is_far], distances[is_far]
     return rows, distances
 
 
@@ -102,22 +105,22 @@ def squared_distances(blocks: Sequence[Block], query: FloatArray) -> tuple[Float
     """
     query = np.asarray(query, dtype=np.float32)
     length = float(np.linalg.norm(query.astype(np.float64)))
-    error = _largest_error(len(query), length, _longest(blocks))
-    found = np.empty(sum(len(block) for block in blocks), dtype=np.float32)
+    error = _max_error(len(query), length, _max_length(blocks))
+    squares = np.empty(sum(len(block) for block in blocks), dtype=np.float32)
     first = 0
     for block in blocks:
         check()
-        values = found[first : first + len(block)]
+        values = squares[first : first + len(block)]
         np.matmul(block.vectors, query, out=values)
         values *= -2.0
         values += block.squares
         first += len(block)
-    found += np.float32(length**2)
-    return found, error
+    squares += np.float32(length**2)
+    return squares, error
 
 
 def distances_to(blocks: Sequence[Block], rows: IntArray, query: FloatArray) -> FloatArray:
-    """(m,) float64 distances of `query` (d,) to the vectors of `rows` (m,), to DECIMALS places.
+    """(m,) float64 distances of `query` (d,) to the vectors of `rows` (m,), rounded to DECIMALS.
 
     rows: ascending. The query is used as float32.
     """
@@ -135,22 +138,23 @@ def distances_to(blocks: Sequence[Block], rows: IntArray, query: FloatArray) -> 
 
 
 def gather(blocks: Sequence[Block], rows: IntArray) -> FloatArray:
-    """(m, d) float32 the vectors of `rows` (m,), in the order of `rows`, which may be any."""
+    """(m, d) float32 the vectors of `rows` (m,), which may be in any order."""
     order = np.argsort(rows, kind="stable")
     ends = np.cumsum([len(block) for block in blocks])
     parts = np.split(rows[order], np.searchsorted(rows[order], ends[:-1]))
     firsts = [0, *ends[:-1].tolist()]
-    found = [
+    vectors = [
         block.vectors.take(part - first, axis=0)
         for block, part, first in zip(blocks, parts, firsts, strict=True)
     ]
+    # the inverse of the permutation `order`
     back = np.empty_like(order)
     back[order] = np.arange(len(order))
-    return np.asarray(np.concatenate(found)[back])
+    return np.asarray(np.concatenate(vectors)[back])
 
 
-def _longest(blocks: Sequence[Block]) -> float:
-    """The largest length of a vector; 0 if there are none."""
+def _max_length(blocks: Sequence[Block]) -> float:
+    """The largest Euclidean length of a vector; 0 without vectors."""
     return float(np.sqrt(max((float(b.squares.max()) for b in blocks if len(b)), default=0.0)))
 
 
@@ -160,92 +164,97 @@ class _Search:
     The value of a row is |x|^2 - 2 q.x in float32, which is its squared distance less |q|^2.
     """
 
-    def __init__(self, query: FloatArray, count: int, least: float | None, longest: float) -> None:
+    def __init__(
+        self, query: FloatArray, count: int, min_distance: float | None, max_length: float
+    ) -> None:
         self._query = query
         self._count = count
         self._square = float(query.astype(np.float64) @ query.astype(np.float64))
-        self._error = _largest_error(len(query), np.sqrt(self._square), longest)
+        self._error = _max_error(len(query), np.sqrt(self._square), max_length)
         self._bound = np.inf
         self._low, self._high = -np.inf, -np.inf
-        if least is not None:
-            self._low = self._value(least - _ROUNDING) - self._error
-            self._high = self._value(least + _ROUNDING) + self._error
+        if min_distance is not None:
+            # A value below _low is nearer than `min_distance`. A value above _high is farther.
+            # Between them, rounding decides, so these rows are measured in float64.
+            self._low = self._value(min_distance - _ROUNDING) - self._error
+            self._high = self._value(min_distance + _ROUNDING) + self._error
         self._rows: list[IntArray] = []
         self._values: list[FloatArray] = []
-        self._held = 0
+        self._row_count = 0
 
-    def look(self, block: Block, mask: BoolArray | None, first: int) -> None:
-        """Keep the rows of a block that can be among the nearest; `first` is its first row."""
-        if mask is not None and np.count_nonzero(mask) * FEW < len(mask):
+    def add(self, block: Block, mask: BoolArray | None, first: int) -> None:
+        """Collect the rows of a block that can be among the nearest; `first` is its first row."""
+        if mask is not None and np.count_nonzero(mask) * GATHER_RATIO < len(mask):
             chosen = np.flatnonzero(mask)
             values = block.squares[chosen] - 2.0 * (
                 block.vectors.take(chosen, axis=0) @ self._query
             )
-            kept = self._may_be(values)
-            self._hold(first + chosen[kept], values[kept])
+            near = self._within_bounds(values)
+            self._collect(first + chosen[near], values[near])
             return
         values = block.vectors @ self._query
         values *= -2.0
         values += block.squares
         if mask is not None:
             values[~mask] = np.inf
-        kept = self._may_be(values)
-        self._hold(first + kept, values[kept])
+        near = self._within_bounds(values)
+        self._collect(first + near, values[near])
 
-    def found(self) -> IntArray:
+    def rows(self) -> IntArray:
         """All rows that can be among the nearest, ascending."""
-        self._narrow()
+        self._drop_far()
         return self._rows[0] if self._rows else np.zeros(0, dtype=np.int64)
 
     def _value(self, distance: float) -> float:
+        """The value of a row at `distance` from the query."""
         return max(distance, 0.0) ** 2 - self._square
 
-    def _may_be(self, values: FloatArray) -> IntArray:
+    def _within_bounds(self, values: FloatArray) -> IntArray:
         """The ascending indices of the `values` (n,) that are within the bounds."""
         if self._bound == np.inf:
             self._bound = self._bound_of(values)
-        keep = values <= self._bound
+        is_near = values <= self._bound
         if self._low > -np.inf:
-            keep &= values >= self._low
-        return np.flatnonzero(keep)
+            is_near &= values >= self._low
+        return np.flatnonzero(is_near)
 
-    def _hold(self, rows: IntArray, values: FloatArray) -> None:
+    def _collect(self, rows: IntArray, values: FloatArray) -> None:
         self._rows.append(rows)
         self._values.append(values)
-        self._held += len(rows)
-        if self._held > 4 * self._count + _HELD:
-            self._narrow()
+        self._row_count += len(rows)
+        if self._row_count > 4 * self._count + _MAX_SPARE_ROWS:
+            self._drop_far()
 
-    def _narrow(self) -> None:
-        """Drop the rows that cannot be among the `count` nearest beyond `least`."""
+    def _drop_far(self) -> None:
+        """Drop the rows that cannot be among the `count` nearest beyond `min_distance`."""
         if len(self._rows) < 2:
             return
         rows, values = np.concatenate(self._rows), np.concatenate(self._values)
         self._bound = min(self._bound, self._bound_of(values))
-        kept = np.flatnonzero(values <= self._bound)
-        self._rows, self._values, self._held = [rows[kept]], [values[kept]], len(kept)
+        near = np.flatnonzero(values <= self._bound)
+        self._rows, self._values, self._row_count = [rows[near]], [values[near]], len(near)
 
     def _bound_of(self, values: FloatArray) -> float:
-        """A bound: no larger value is among the `count` nearest beyond `least`.
+        """A bound: no larger value is among the `count` nearest beyond `min_distance`.
 
         The bound allows for all rounding errors. A row that the mask leaves out has the value
         infinity.
         """
         beyond = values[values > self._high] if self._high > -np.inf else values
         if len(beyond) <= self._count:
-            return _LARGEST
+            return _MAX_FLOAT32
         last = float(np.partition(beyond, self._count - 1)[self._count - 1])
         if last == np.inf:
-            return _LARGEST
-        farthest = np.sqrt(max(last + self._error + self._square, 0.0))
-        return self._value(farthest + 2 * _ROUNDING) + self._error
+            return _MAX_FLOAT32
+        max_distance = np.sqrt(max(last + self._error + self._square, 0.0))
+        return self._value(max_distance + 2 * _ROUNDING) + self._error
 
 
-def _largest_error(width: int, query: float, longest: float) -> float:
+def _max_error(width: int, query_length: float, max_length: float) -> float:
     """A bound of the rounding error of a row's value.
 
-    width: d; query: the query's length; longest: the largest length of a vector. The error comes
+    width: d. query_length: |q|. max_length: the largest length of a vector. The error comes
     from the product, the squares, the subtraction, and from computing this bound (1 %).
     """
-    product = 2.0 * (width + 2) * UNIT * query * longest
-    return 1.01 * (product + 4.0 * UNIT * (longest**2 + query**2))
+    product = 2.0 * (width + 2) * UNIT * query_length * max_length
+    return 1.01 * (product + 4.0 * UNIT * (max_length**2 + query_length**2))

@@ -50,7 +50,8 @@ def principal_axes(samples: FloatArray, count: int, *, centered: bool = True) ->
     count = min(count, len(gram))
     values, vectors = scipy.linalg.eigh(gram, subset_by_index=(len(gram) - count, len(gram) - 1))
     values, vectors = values[::-1], vectors[:, ::-1]
-    kept = max(int((values > _RELATIVE_FLOOR * values[0]).sum()), 1)
-    axes = vectors[:, :kept] if tall else rows.T @ vectors[:, :kept]
+    rank = max(int((values > _RELATIVE_FLOOR * values[0]).sum()), 1)
+    # eigenvectors of X X' become axes by X'; their lengths differ, so they are made orthonormal
+    axes = vectors[:, :rank] if tall else rows.T @ vectors[:, :rank]
     axes, _ = np.linalg.qr(axes)
     return PrincipalAxes(center, fix_signs(axes))

@@ -1,4 +1,4 @@
-"""How far a covariance matrix of few samples must be shrunk toward a sphere."""
+"""The shrinkage toward a sphere of a covariance matrix that was estimated from few samples."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ def oracle_share(covariance: FloatArray, freedom: float) -> float:
     fewer degrees of freedom than samples, which this formula allows.
     """
     size = len(covariance)
+    # tr(S^2) and tr(S)^2
     of_squares, square = float((covariance**2).sum()), float(np.trace(covariance)) ** 2
-    wanted = (1 - 2 / size) * of_squares + square
-    given = (freedom + 1 - 2 / size) * (of_squares - square / size)
-    return 1.0 if given <= wanted else wanted / given
+    numerator = (1 - 2 / size) * of_squares + square
+    denominator = (freedom + 1 - 2 / size) * (of_squares - square / size)
+    return 1.0 if denominator <= numerator else numerator / denominator

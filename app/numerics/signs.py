@@ -1,7 +1,7 @@
 """Fixed signs for singular vectors and eigenvectors.
 
 The sign of a singular vector is arbitrary and differs between LAPACK builds. Stored vectors are
-compared for years. So the sign is chosen such that the entry of largest magnitude is positive.
+compared with new ones for years. So signs are fixed: the entry of largest magnitude is positive.
 """
 
 from __future__ import annotations

@@ -13,6 +13,7 @@ from app.numerics.arrays import FloatArray
 from app.numerics.mds import classical_mds
 
 STEPS = 300
+"""The largest number of iterations."""
 
 
 def smacof(distances: FloatArray, dimensions: int) -> FloatArray:
@@ -24,12 +25,12 @@ def smacof(distances: FloatArray, dimensions: int) -> FloatArray:
     """
     from sklearn.manifold import smacof as majorized  # slow to load
 
-    wanted = np.asarray(distances, dtype=np.float64)
-    start = classical_mds(wanted, dimensions)
-    if len(start) < 3 or not wanted.any():  # scikit-learn divides by the stress
+    target = np.asarray(distances, dtype=np.float64)
+    start = classical_mds(target, dimensions)
+    if len(start) < 3 or not target.any():  # scikit-learn divides by the stress
         return start
     points, _ = majorized(
-        (wanted + wanted.T) / 2,
+        (target + target.T) / 2,
         n_components=dimensions,
         init=start,
         n_init=1,

@@ -1,1 +1,1 @@
-"""The index over motion vectors, shortlist and re-rank."""
+"""Indexes of vectors in memory, and rankings of clips."""

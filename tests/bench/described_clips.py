@@ -10,7 +10,7 @@ import numpy as np
 from app.analysis.analyze import describe_for_search
 from app.formats.read import read_recording
 from app.models.folds import recording_of
-from app.models.metric.learned_metric import INPUTS, Described
+from app.models.metric.learned_metric import INPUTS, ClipDescriptors
 from app.motion.canonical.canonical import canonicalize
 from tests.real_clips import manifest, real_clips
 
@@ -33,8 +33,8 @@ class RealClips:
         return len(self.arrays)
 
     @property
-    def described(self) -> Described:
-        return Described(*(self.column(name) for name in INPUTS))
+    def described(self) -> ClipDescriptors:
+        return ClipDescriptors(*(self.column(name) for name in INPUTS))
 
     def column(self, name: str) -> np.ndarray:
         return np.stack([arrays[name] for arrays in self.arrays]).astype(np.float64)

@@ -28,8 +28,8 @@ from app.models.held_out.synthesis import (
     Trial,
     draw_trials,
     held_out_synthesis,
-    made,
     nearest_labels,
+    synthesized,
 )
 from app.models.synthesis.body import Donor, embody, same_body
 from app.models.synthesis.model import Synthesis, fit_synthesis
@@ -121,7 +121,7 @@ def test_all_others_did_it(second: list[Clip]) -> None:
         for task in record.tasks:
             others = tuple(name for name in record.who_did(task) if name != person)
             found = nearest_labels(
-                record, made(record, NEW_TASK, Trial(person, task, others)).shape
+                record, synthesized(record, NEW_TASK, Trial(person, task, others)).shape
             )
             right = (found == (person, task), found[0] == person, found[1] == task)
             hits.append((*right, person in HELD))
@@ -223,7 +223,7 @@ def _table(title: str, record: Synthesis, trials: int) -> dict[str, list[dict[st
 
 def _made(record: Synthesis, clips: list[Clip], kind: str, trial: Trial) -> Motion:
     """Make the motion as the service does, without the clips of the cell itself."""
-    predicted = made(record, kind, trial)
+    predicted = synthesized(record, kind, trial)
     shape = predicted.shape
     away = record.distances(shape)
     tasks = trial.given if kind == NEW_PERSON else record.tasks

@@ -49,7 +49,7 @@ CLIPS = 10_000
 SPREAD = 0.05
 """Deviation of the noise, relative to that of a statistic, and in the units of the channels."""
 STATISTICS, MOVED = "symbol_statistics", "symbol_means"
-AS_THEY_ARE = tuple({*NAMES} - {VECTOR, STATISTICS, MOVED})
+UNCHANGED_ARRAYS = tuple({*NAMES} - {VECTOR, STATISTICS, MOVED})
 """The other arrays that a fit reads."""
 QUERIES = 101
 AT_ONCE = 500
@@ -71,7 +71,7 @@ def _disturbed(sample: Sample, rng: np.random.Generator) -> dict[str, FloatArray
     statistics = sample.arrays[STATISTICS] + rng.normal(size=spread.shape) * spread * SPREAD
     means = sample.arrays[MOVED] + rng.normal(size=sample.arrays[MOVED].shape[1]) * SPREAD
     moved = {STATISTICS: statistics.astype(np.float32), MOVED: means.astype(np.float32)}
-    return moved | {name: sample.arrays[name] for name in AS_THEY_ARE}
+    return moved | {name: sample.arrays[name] for name in UNCHANGED_ARRAYS}
 
 
 def _describe(store: Store) -> None:

@@ -14,7 +14,7 @@ def test_takes_of_one_person_at_one_task_share_a_cell() -> None:
     np.testing.assert_array_equal(cells.takes, [1, 2])
 
 
-def test_a_clip_without_one_label_is_alone_and_without_both_nowhere() -> None:
+def test_a_clip_with_one_label_has_its_own_cell_and_without_labels_none() -> None:
     cells = find_cells(["a", None, "", None, "a"], ["run", "run", "run", None, None])
     assert len(cells) == 4
     assert cells.member[1] != cells.member[2]

@@ -28,6 +28,6 @@ def test_the_ends_of_the_scale() -> None:
     assert area_under_curve(low, high) == 0.0
 
 
-def test_where_one_kind_is_missing_it_is_chance() -> None:
+def test_without_one_kind_the_area_is_one_half() -> None:
     assert area_under_curve(np.zeros(0), np.ones(3)) == 0.5
     assert area_under_curve(np.ones(3), np.zeros(0)) == 0.5

@@ -12,7 +12,7 @@ VOTES = [(0, 1), (1, 1), (0, 7), (5, 7), (17, 34), (29, 34), (32, 34), (34, 34),
 
 
 @pytest.mark.parametrize(("successes", "trials"), VOTES)
-def test_the_probability_counts_all_that_is_as_far_from_one_half(
+def test_the_probability_counts_all_shares_as_far_from_one_half(
     successes: int, trials: int
 ) -> None:
     far = [k for k in range(trials + 1) if abs(2 * k - trials) >= abs(2 * successes - trials)]
@@ -37,7 +37,7 @@ def test_the_paper_s_table_2_is_no_chance() -> None:
     assert fair_coin_probability(92, 102) < 1e-15
 
 
-def test_no_votes_say_nothing() -> None:
+def test_without_votes_the_result_is_neutral() -> None:
     assert wilson_interval(0, 0) == (0.0, 1.0)
     assert fair_coin_probability(0, 0) == 1.0
 
@@ -50,7 +50,7 @@ def test_more_votes_than_voters_are_refused(count: object) -> None:
         count(-1, 2)  # type: ignore[operator]
 
 
-def test_thousands_of_votes_are_no_trouble() -> None:
+def test_thousands_of_votes_give_finite_results() -> None:
     assert 0 <= fair_coin_probability(4_000, 10_000) < 1e-80
     low, high = wilson_interval(4_000, 10_000)
     assert 0.39 < low < 0.4 < high < 0.41

@@ -52,7 +52,7 @@ def test_clusters_are_counted_and_exceed_chance() -> None:
     assert found.gap > 0.3
 
 
-def test_a_cloud_is_as_clustered_as_clouds_are() -> None:
+def test_points_without_clusters_have_no_gap() -> None:
     cloud = np.random.default_rng(3).normal(size=(60, 3)) * [3.0, 1.0, 0.5]
     found = clusteredness(cloud)
     assert found is not None
@@ -63,11 +63,11 @@ def test_a_cloud_is_as_clustered_as_clouds_are() -> None:
 
 
 @pytest.mark.parametrize("points", [np.zeros((0, 3)), np.zeros((2, 3)), np.ones((9, 3))])
-def test_nothing_is_said_of_too_little(points: FloatArray) -> None:
+def test_too_few_points_have_no_result(points: FloatArray) -> None:
     assert clusteredness(points) is None
 
 
-def test_points_that_repeat_are_clusters_of_no_size() -> None:
+def test_repeated_points_are_clusters_of_size_zero() -> None:
     found = clusteredness(np.repeat(np.eye(3), 4, axis=0))
     assert found is not None
     assert (found.clusters.silhouette, found.clusters.count) == (1.0, 3)

@@ -35,7 +35,7 @@ def naive_closeness(distances: FloatArray, radii: FloatArray) -> FloatArray:
 
 @given(n=st.integers(2, 25), k=st.integers(1, 30), seed=st.integers(0, 10_000))
 @settings(max_examples=40, deadline=None)
-def test_it_equals_the_sum_over_all_walks(n: int, k: int, seed: int) -> None:
+def test_closeness_is_the_sum_over_all_walks(n: int, k: int, seed: int) -> None:
     distances = between(np.random.default_rng(seed).normal(size=(n, 3)))
     radii = neighbor_radii(distances, k)
     for row, radius in enumerate(radii):
@@ -46,7 +46,7 @@ def test_it_equals_the_sum_over_all_walks(n: int, k: int, seed: int) -> None:
     assert ((found >= 0) & (found <= 1)).all()
 
 
-def test_what_is_reached_by_small_steps_is_closer_than_what_is_nearer_beyond_a_gap() -> None:
+def test_a_point_at_the_end_of_small_steps_is_closer_than_one_beyond_a_gap() -> None:
     """Two half moons, the classic: the own far end against the other's near one."""
     angles = np.linspace(0, np.pi, 40)
     own = np.column_stack([np.cos(angles), np.sin(angles)])
@@ -71,7 +71,7 @@ def test_a_small_move_changes_little() -> None:
     assert worst < 1e-4
 
 
-def test_points_in_one_place_and_two_points_alone_are_no_trouble() -> None:
+def test_equal_points_and_two_points_give_finite_results() -> None:
     same = np.zeros((4, 4))
     found = diffused_closeness(same, neighbor_radii(same, 2))
     assert np.isfinite(found).all()

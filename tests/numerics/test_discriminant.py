@@ -44,7 +44,7 @@ def test_the_fewer_the_examples_the_more_their_scatter_is_shrunk() -> None:
 
 
 @pytest.mark.parametrize("sizes", [[1, 1, 1], [3, 3]])
-def test_what_does_not_vary_is_taken_for_a_sphere(sizes: list[int]) -> None:
+def test_constant_points_give_a_sphere(sizes: list[int]) -> None:
     labels = np.repeat(np.arange(len(sizes)), sizes)
     assert discriminants(np.eye(3)[labels % 3], labels, 3).shrinkage == 1.0
 
@@ -63,7 +63,7 @@ def test_without_shrinkage_axes_are_those_of_scikit_learn(sizes: list[int]) -> N
 
 
 @given(st.integers(0, 10_000), st.integers(2, 5), st.integers(2, 6))
-def test_coordinates_are_white_within_classes_and_as_told_between(
+def test_coordinates_have_unit_variance_within_classes_and_between_as_reported(
     seed: int, classes: int, width: int
 ) -> None:
     points, labels = classes_of([6] * classes, width, seed)
@@ -79,7 +79,7 @@ def test_coordinates_are_white_within_classes_and_as_told_between(
     assert np.all(np.diff(found.between) <= 1e-9)
 
 
-def test_beyond_what_parts_classes_axes_follow_by_their_variance() -> None:
+def test_axes_after_the_separating_ones_are_sorted_by_variance() -> None:
     rng = np.random.default_rng(0)
     labels = np.repeat([0, 1], 500)
     points = rng.normal(size=(1000, 4)) * [1, 3, 0.5, 2]
@@ -90,7 +90,7 @@ def test_beyond_what_parts_classes_axes_follow_by_their_variance() -> None:
 
 
 @pytest.mark.parametrize("points", [np.zeros((4, 3)), np.ones((2, 3)), np.eye(3)[[0, 0, 1, 1]]])
-def test_the_smallest_and_stillest_classes_give_finite_axes(points: np.ndarray) -> None:
+def test_small_classes_and_equal_points_give_finite_axes(points: np.ndarray) -> None:
     found = discriminants(points, np.arange(len(points)) // max(len(points) // 2, 1), 3)
     assert np.isfinite(found.axes).all()
     assert np.isfinite(found.between).all()

@@ -23,11 +23,11 @@ def test_distances_are_those_of_subtraction(scale: float) -> None:
 
 
 @pytest.mark.parametrize("pairs_at_once", [3, 10_000])
-def test_close_rows_keep_their_digits_and_equal_ones_are_not_apart(
+def test_close_rows_keep_their_digits_and_equal_rows_have_distance_zero(
     monkeypatch: pytest.MonkeyPatch, pairs_at_once: int
 ) -> None:
     rng = np.random.default_rng(2)
-    monkeypatch.setattr(euclidean, "RETAKEN_AT_ONCE", pairs_at_once)
+    monkeypatch.setattr(euclidean, "MAX_RECOMPUTED_PAIRS", pairs_at_once)
     rows = (100 + rng.normal(size=(4, 20))).astype(np.float32)
     near = rows + rng.normal(scale=1e-3, size=rows.shape).astype(np.float32)
     others = np.concatenate([rows, near])
@@ -37,7 +37,7 @@ def test_close_rows_keep_their_digits_and_equal_ones_are_not_apart(
     np.testing.assert_allclose(np.diag(found[:, 4:]), expected, rtol=1e-4)
 
 
-def test_nothing_is_at_no_distance_from_nothing() -> None:
+def test_empty_tables_have_empty_distances() -> None:
     nothing = np.zeros((0, 3), dtype=np.float32)
     assert distances(np.ones((2, 3), np.float32), nothing, squared_lengths(nothing)).shape == (2, 0)
 

@@ -20,7 +20,7 @@ def data() -> tuple[np.ndarray, np.ndarray]:
     return rows, outputs + rng.normal(size=outputs.shape) * 0.05
 
 
-def test_closed_form_leave_one_out_is_leaving_one_out(data) -> None:  # type: ignore[no-untyped-def]
+def test_the_closed_form_equals_leaving_each_row_out(data) -> None:  # type: ignore[no-untyped-def]
     rows, outputs = data[0][:25], data[1][:25]
     kernel = gaussian_kernel(rows, rows, 1.0)
     for penalty, error in zip(PENALTIES, leave_one_out_errors(kernel, outputs), strict=True):
@@ -34,7 +34,7 @@ def test_closed_form_leave_one_out_is_leaving_one_out(data) -> None:  # type: ig
         assert error == pytest.approx((np.array(residuals) ** 2).mean())
 
 
-def test_learns_what_it_has_not_seen(data) -> None:  # type: ignore[no-untyped-def]
+def test_held_out_rows_are_predicted(data) -> None:  # type: ignore[no-untyped-def]
     rows, outputs = data
     model = fit_kernel_ridge(rows[:90], outputs[:90])
     error = ((model.predict(rows[90:]) - outputs[90:]) ** 2).mean()
@@ -53,7 +53,7 @@ def test_a_subset_of_centers_predicts_nearly_the_same(  # type: ignore[no-untype
     assert np.abs(part.predict(rows) - whole).mean() < 0.05
 
 
-def test_far_from_everything_it_answers_the_mean(data) -> None:  # type: ignore[no-untyped-def]
+def test_far_from_all_centers_it_predicts_the_mean(data) -> None:  # type: ignore[no-untyped-def]
     rows, outputs = data
     far = fit_kernel_ridge(rows, outputs).predict(np.full((1, 3), 1e3))
     np.testing.assert_allclose(far[0], outputs.mean(axis=0))

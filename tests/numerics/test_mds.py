@@ -55,10 +55,10 @@ def test_new_points_are_placed_where_they_belong(points: np.ndarray) -> None:
 
 def test_placing_is_no_worse_than_triangulation_under_noise(points: np.ndarray) -> None:
     landmarks = points[:20]
-    wanted = distorted(points)[20:, :20]
-    found = place(wanted, landmarks)
-    error = ((wanted**2 - cdist(found, landmarks) ** 2) ** 2 / (4 * wanted**2)).sum()
-    true = ((wanted**2 - cdist(points[20:], landmarks) ** 2) ** 2 / (4 * wanted**2)).sum()
+    targets = distorted(points)[20:, :20]
+    found = place(targets, landmarks)
+    error = ((targets**2 - cdist(found, landmarks) ** 2) ** 2 / (4 * targets**2)).sum()
+    true = ((targets**2 - cdist(points[20:], landmarks) ** 2) ** 2 / (4 * targets**2)).sum()
     assert error < true
 
 

@@ -43,7 +43,7 @@ def _questions(draw: st.DrawFn) -> tuple[np.ndarray, np.ndarray]:
 
 @settings(max_examples=150, deadline=None)
 @given(_questions(), st.integers(1, 12), st.integers(1, 25), st.booleans(), st.data())
-def test_none_of_the_nearest_is_missed(
+def test_no_nearest_vector_is_missed(
     question: tuple[np.ndarray, np.ndarray],
     count: int,
     size: int,
@@ -89,7 +89,7 @@ def test_a_few_of_many_are_gathered_rather_than_multiplied() -> None:
     assert rows.tolist() == [3, 77, 400]
 
 
-def test_a_vector_is_at_no_distance_from_itself() -> None:
+def test_a_vector_has_distance_zero_to_itself() -> None:
     rng = np.random.default_rng(4)
     vectors = (100 * rng.normal(size=(50, 128))).astype(np.float32)
     blocks = _blocks(vectors, 20)
@@ -97,7 +97,7 @@ def test_a_vector_is_at_no_distance_from_itself() -> None:
     assert dict(zip(rows.tolist(), distances.tolist(), strict=True))[30] == 0.0
 
 
-def test_nothing_has_nothing_near() -> None:
+def test_empty_blocks_have_no_nearest_vectors() -> None:
     rows, distances = nearest([], [], np.zeros(3), 5)
     assert (len(rows), len(distances)) == (0, 0)
     rows, _ = nearest([Block.of(np.zeros((4, 3)))], [np.zeros(4, dtype=bool)], np.zeros(3), 5)

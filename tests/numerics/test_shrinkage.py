@@ -13,7 +13,7 @@ def mixed(covariance: np.ndarray, share: float) -> np.ndarray:
 
 @pytest.mark.parametrize("samples", [8, 30, 200])
 @pytest.mark.parametrize("least", [1.0, 0.3, 0.02])
-def test_hardly_any_share_errs_less(samples: int, least: float) -> None:
+def test_few_other_shares_have_a_smaller_error(samples: int, least: float) -> None:
     """The slow twin knows the truth and tries all shares."""
     rng = np.random.default_rng(samples)
     deviations = np.geomspace(1, least, 12)
@@ -28,7 +28,7 @@ def test_hardly_any_share_errs_less(samples: int, least: float) -> None:
     assert ours <= 1.15 * errors.min() + 0.02 * errors[0]
 
 
-def test_what_is_round_stays_round_and_what_is_not_is_believed() -> None:
+def test_spheres_stay_spheres_and_clear_shapes_are_kept() -> None:
     assert oracle_share(np.eye(5), 10) == 1.0
     assert oracle_share(np.zeros((3, 3)), 10) == 1.0
     assert oracle_share(np.diag([1.0, 0, 0, 0]), 1000) < 0.01

@@ -20,11 +20,11 @@ def _distances(seed: int, count: int = 20, noise: float = 0.3) -> np.ndarray:
     return made
 
 
-def raw_stress(points: np.ndarray, wanted: np.ndarray) -> float:
-    return float(np.square(cdist(points, points) - wanted).sum() / 2)
+def raw_stress(points: np.ndarray, targets: np.ndarray) -> float:
+    return float(np.square(cdist(points, points) - targets).sum() / 2)
 
 
-def test_points_are_found_again_but_for_turns() -> None:
+def test_points_are_recovered_except_for_rotations() -> None:
     points = np.random.default_rng(0).normal(size=(15, 3))
     found = smacof(cdist(points, points), 3)
     assert np.allclose(cdist(found, found), cdist(points, points), atol=1e-4)
@@ -33,30 +33,30 @@ def test_points_are_found_again_but_for_turns() -> None:
 @given(st.integers(0, 50), st.integers(1, 3))
 @settings(max_examples=15, deadline=None)
 def test_stress_is_no_worse_than_that_of_classical_scaling(seed: int, dimensions: int) -> None:
-    wanted = _distances(seed)
-    assert raw_stress(smacof(wanted, dimensions), wanted) <= raw_stress(
-        classical_mds(wanted, dimensions), wanted
+    targets = _distances(seed)
+    assert raw_stress(smacof(targets, dimensions), targets) <= raw_stress(
+        classical_mds(targets, dimensions), targets
     )
 
 
 def test_no_small_step_lowers_the_stress() -> None:
-    wanted, rng = _distances(3), np.random.default_rng(0)
-    found = smacof(wanted, 2)
-    least = raw_stress(found, wanted)
+    targets, rng = _distances(3), np.random.default_rng(0)
+    found = smacof(targets, 2)
+    least = raw_stress(found, targets)
     steps = (rng.normal(size=found.shape) for _ in range(30))
-    assert min(raw_stress(found + 1e-2 * step, wanted) for step in steps) > least
+    assert min(raw_stress(found + 1e-2 * step, targets) for step in steps) > least
 
 
 def test_the_same_distances_give_the_same_points() -> None:
-    wanted = _distances(4)
-    np.testing.assert_array_equal(smacof(wanted, 3), smacof(wanted.copy(), 3))
+    targets = _distances(4)
+    np.testing.assert_array_equal(smacof(targets, 3), smacof(targets.copy(), 3))
 
 
 def test_points_are_turned_as_classical_scaling_turns_them() -> None:
-    wanted = _distances(5)
-    assert (np.sum(smacof(wanted, 3) * classical_mds(wanted, 3), axis=0) > 0).all()
+    targets = _distances(5)
+    assert (np.sum(smacof(targets, 3) * classical_mds(targets, 3), axis=0) > 0).all()
 
 
-def test_few_points_and_equal_points_are_no_trouble() -> None:
+def test_few_points_and_equal_points_give_finite_results() -> None:
     assert smacof(np.zeros((1, 1)), 2).shape == (1, 2)
     assert np.isfinite(smacof(np.zeros((4, 4)), 2)).all()

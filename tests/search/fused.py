@@ -1,4 +1,4 @@
-"""Fused distances of every vector at once; the search measures them piece by piece."""
+"""Fused distances of all vectors at once; the search measures them in parts."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.analyze import describe_for_search
-from app.models.metric.learned_metric import INPUTS, Described, Factor, MetricAxes, fit_axes
+from app.models.metric.learned_metric import INPUTS, ClipDescriptors, Factor, MetricAxes, fit_axes
 from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
 from app.search.example.distances import distances_to
@@ -29,19 +29,19 @@ class Gallery:
 
     def distances(self, query: Arrays) -> dict[Method, FloatArray]:
         """(n,) distances of all motions to a query, by method."""
-        names = [str(place) for place in range(len(self.arrays))]
+        names = [str(number) for number in range(len(self.arrays))]
 
         def load(clip_ids: Sequence[str], name: str) -> Arrays:
             return {i: self.arrays[int(i)][name] for i in clip_ids}
 
-        found = {method: distances_to(query, names, method, load) for method in RERANKED}
+        by_method = {method: distances_to(query, names, method, load) for method in RERANKED}
         vectors = np.stack([arrays[VECTOR] for arrays in self.arrays]).astype(float)
-        found[Method.VECTOR] = np.linalg.norm(vectors - query[VECTOR], axis=1)
-        found[Method.FUSED] = fused_distances(query[VECTOR], vectors, found[Method.DTW])
+        by_method[Method.VECTOR] = np.linalg.norm(vectors - query[VECTOR], axis=1)
+        by_method[Method.FUSED] = fused_distances(query[VECTOR], vectors, by_method[Method.DTW])
         for method, axes in self.metrics.items():
             points = axes.project(described(self.arrays))
-            found[method] = np.linalg.norm(points - axes.project(described([query])), axis=1)
-        return found
+            by_method[method] = np.linalg.norm(points - axes.project(described([query])), axis=1)
+        return by_method
 
 
 def gallery(motions: Sequence[Motion], persons: Sequence[str], tasks: Sequence[str]) -> Gallery:
@@ -57,5 +57,5 @@ def gallery(motions: Sequence[Motion], persons: Sequence[str], tasks: Sequence[s
     return Gallery(arrays, metrics)
 
 
-def described(arrays: Sequence[Arrays]) -> Described:
-    return Described(*(np.stack([some[name] for some in arrays]) for name in INPUTS))
+def described(arrays: Sequence[Arrays]) -> ClipDescriptors:
+    return ClipDescriptors(*(np.stack([some[name] for some in arrays]) for name in INPUTS))

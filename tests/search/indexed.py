@@ -1,4 +1,4 @@
-"""Clips as an index takes them, made up; and what a filter lets pass, one clip at a time."""
+"""Generated clips for an index, and a filter that checks one clip at a time."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ WORDS = ("slow", "fast", "sad", "left_leg")
 
 def indexed(clip_id: str, array: np.ndarray | None = None, **labels: Any) -> IndexedClip:
     """A ready clip with labels, by default with none."""
-    known: dict[str, Any] = {"person": None, "task": None, "license": None, "source": None}
-    known |= {"duration": 1.0, "words": frozenset()}
-    return IndexedClip(id=clip_id, is_ready=True, array=array, **known | labels)
+    defaults: dict[str, Any] = {"person": None, "task": None, "license": None, "source": None}
+    defaults |= {"duration": 1.0, "words": frozenset()}
+    return IndexedClip(id=clip_id, is_ready=True, array=array, **defaults | labels)
 
 
 LABELS = st.fixed_dictionaries(
@@ -45,14 +45,14 @@ FILTERS = st.builds(
 )
 
 
-def passes(clip: IndexedClip, wanted: ClipFilter) -> bool:
-    """The slow twin of a filter."""
+def passes(clip: IndexedClip, clip_filter: ClipFilter) -> bool:
+    """Whether a clip passes a filter, without an index."""
     for name in ("person", "task", "license", "source"):
-        values = getattr(wanted, name)
+        values = getattr(clip_filter, name)
         if values and getattr(clip, name) not in values:
             return False
-    if wanted.word and not any(word in clip.words for word in wanted.word):
+    if clip_filter.word and not any(word in clip.words for word in clip_filter.word):
         return False
-    if wanted.min_duration is not None and clip.duration < wanted.min_duration:
+    if clip_filter.min_duration is not None and clip.duration < clip_filter.min_duration:
         return False
-    return wanted.max_duration is None or clip.duration <= wanted.max_duration
+    return clip_filter.max_duration is None or clip.duration <= clip_filter.max_duration

@@ -1,4 +1,4 @@
-"""Place, heading, size, unit and frame rate change no answer, by any method (DESIGN 4).
+"""Position, heading, size, unit and frame rate do not change distances, by any method.
 
 The clip itself stays first, and its distances to all others change by less than 1 %.
 """
@@ -28,16 +28,16 @@ ALLOWED = 0.01
 """Largest change of a distance, as a share of it."""
 
 ALLOWED_ITSELF = 0.03
-"""Largest distance of a clip from itself, as a share of that to its nearest neighbour."""
+"""Largest distance of a clip to itself, as a share of the distance to its nearest neighbor."""
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
 REAL_EVERY = 23
-"""One in so many of the real clips is taken."""
+"""One real clip in this many is tested."""
 
 
 @dataclass(frozen=True)
-class Known:
-    """Motions, how their files told them, and the distances between them."""
+class DemoClips:
+    """Motions, the recordings in their files, and the distances between them."""
 
     recordings: list[Recording]
     motions: list[Motion]
@@ -49,16 +49,16 @@ class Known:
 
 
 @pytest.fixture(scope="module")
-def demo() -> Known:
+def demo() -> DemoClips:
     clips = list(demo_clips(("ada", "bruno", "chika"), ("walk", "kick", "wave"), takes=1))
     recordings = [read_recording(clip.content) for clip in clips]
     motions = [canonicalize(recording) for recording in recordings]
     persons, tasks = [clip.person for clip in clips], [clip.task for clip in clips]
-    return Known(recordings, motions, gallery(motions, persons, tasks))
+    return DemoClips(recordings, motions, gallery(motions, persons, tasks))
 
 
 @pytest.fixture(scope="module")
-def distances(demo: Known) -> list[dict[Method, np.ndarray]]:
+def distances(demo: DemoClips) -> list[dict[Method, np.ndarray]]:
     return demo.between
 
 
@@ -76,7 +76,7 @@ def assert_nothing_changed(
         assert change.max() < ALLOWED, (method, change.max())
 
 
-def test_every_method_is_looked_at(distances: list[dict[Method, np.ndarray]]) -> None:
+def test_every_method_is_tested(distances: list[dict[Method, np.ndarray]]) -> None:
     assert set(distances[0]) == set(Method)
 
 
@@ -87,8 +87,8 @@ def test_every_method_is_looked_at(distances: list[dict[Method, np.ndarray]]) ->
     scale=st.floats(0.4, 2.5),
 )
 @settings(max_examples=25, deadline=None)
-def test_where_it_is_where_it_looks_and_how_large_it_is_do_not_matter(
-    demo: Known,
+def test_position_heading_and_size_do_not_matter(
+    demo: DemoClips,
     distances: list[dict[Method, np.ndarray]],
     which: int,
     angle: float,
@@ -103,8 +103,8 @@ def test_where_it_is_where_it_looks_and_how_large_it_is_do_not_matter(
 
 @pytest.mark.parametrize("unit", UNITS)
 @pytest.mark.parametrize("is_said", [True, False])
-def test_the_unit_does_not_matter_whether_it_is_said_or_guessed(
-    demo: Known, distances: list[dict[Method, np.ndarray]], unit: str, is_said: bool
+def test_a_declared_or_guessed_unit_does_not_matter(
+    demo: DemoClips, distances: list[dict[Method, np.ndarray]], unit: str, is_said: bool
 ) -> None:
     for which in range(0, 9, 2):
         recording = demo.recordings[which]
@@ -125,7 +125,7 @@ def test_the_unit_does_not_matter_whether_it_is_said_or_guessed(
 @given(which=st.integers(0, 8), rate=st.sampled_from([60.0, 90.0, 120.0, 240.0]))
 @settings(max_examples=12, deadline=None)
 def test_a_higher_frame_rate_does_not_matter(
-    demo: Known, distances: list[dict[Method, np.ndarray]], which: int, rate: float
+    demo: DemoClips, distances: list[dict[Method, np.ndarray]], which: int, rate: float
 ) -> None:
     changed = describe_for_search(resampled(demo.motions[which], rate)).arrays
     assert_nothing_changed(demo.gallery, which, distances[which], changed)

@@ -1,4 +1,4 @@
-"""Going through a ranking page by page, as a client does with cursors."""
+"""Reads a ranking page by page, as a client does with cursors."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ QUESTION = digest("walking")
 
 
 def cursor_behind(page: Page, ranked: Ranked, rank: int) -> Position:
-    """Where the next page begins, as a cursor brings it back."""
+    """The position after a page, encoded in a cursor and decoded."""
     last = Position(rank, float(page.distances[-1]), str(page.ids[-1]), ranked.anchor)
     return decode(encode(last, QUESTION), QUESTION)
 
 
 def walk(rank_from: Callable[[Position | None], Ranked], size: int) -> list[Page]:
-    """All pages; each is taken from a ranking of its own, given where it begins."""
+    """All pages; `rank_from` makes a new ranking for each page, from the position before it."""
     pages: list[Page] = []
     position: Position | None = None
     while True:

@@ -11,7 +11,7 @@ from app.api.schemas.filters import Filter
 from app.api.schemas.query_source import ClipId, QueryFields
 from app.api.schemas.search import Hit, MotionHits
 from app.motion.roles.joint_roles import SUN_ROLES
-from app.search.pose.pose_places import Places
+from app.search.pose.pose_matches import MatchesPerClip
 from app.services.find import hits as services
 from app.services.find.by_pose import PoseQuery
 
@@ -51,8 +51,8 @@ class PoseSearch(QueryFields):
         description=f"x, y (up) and z of {', '.join(SUN_ROLES)}, in this order, in meters. "
         "Position, heading and size do not matter.",
     )
-    places: Places = Field(
-        Places.BEST,
+    places: MatchesPerClip = Field(
+        MatchesPerClip.BEST,
         description="best: one hit for each clip, at its nearest pose; all: one hit for each time "
         "at which a clip takes the pose.",
     )

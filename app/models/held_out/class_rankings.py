@@ -35,29 +35,29 @@ class JudgedRanking:
     retrieved: FloatArray
 
 
-def judge_ranking(found: IntArray, own: int, classes: int, k: int) -> JudgedRanking:
+def judge_ranking(ranked: IntArray, own: int, classes: int, k: int) -> JudgedRanking:
     """Judge the ranking of one query.
 
-    found: (n,) the class index of each ranked item, `classes` for an item of none of the C
-    classes; the query itself is not in it. Raises ValueError if no item has the class `own`.
+    ranked: (n,) the class index of each item in order, `classes` for an item that is in none of
+    the C classes; without the query itself. Raises ValueError if no item has the class `own`.
     """
-    is_relevant = found == own
+    is_relevant = ranked == own
     relevant = int(is_relevant.sum())
     if not relevant:
-        raise ValueError("a query without anything relevant cannot be judged")
+        raise ValueError("a query without relevant items cannot be judged")
     depth = min(k, relevant)
-    nearest = found[found < classes][:depth]
+    nearest = ranked[ranked < classes][:depth]
     return JudgedRanking(
         own=own,
-        precision=np.array([is_relevant[:place].mean() for place in DEPTHS]),
-        average_precision=average_precision(-np.arange(float(len(found))), is_relevant),
+        precision=np.array([is_relevant[:count].mean() for count in DEPTHS]),
+        average_precision=average_precision(-np.arange(float(len(ranked))), is_relevant),
         true_positives=float(is_relevant[:depth].mean()),
         retrieved=np.bincount(nearest, minlength=classes) / len(nearest),
     )
 
 
 def true_positive_rates(judged: Sequence[JudgedRanking], classes: int) -> FloatArray:
-    """(C,) mean true-positive rate over the queries of each class; 0 for a class without."""
+    """(C,) mean true-positive rate of the queries of each class; 0 for a class without queries."""
     return _mean_by_class(judged, np.array([[one.true_positives] for one in judged]), classes)[:, 0]
 
 

@@ -22,7 +22,7 @@ class DancedTasks:
     """n segments of dances.
 
     poses: (n, POSES, 13, 3) in the body frame, in body lengths; persons, tasks: (n,) labels;
-    cycle: (n,) how often the person did the task before this segment, from 0.
+    cycle: (n,) the number of times that the person did the task before this segment.
     """
 
     poses: FloatArray
@@ -70,17 +70,19 @@ def arrange(
 
 
 def _in_phase(of_task: list[int], clips: Sequence[DancedCycles]) -> list[tuple[int, FloatArray]]:
-    """Each clip of a task with its cycles (c, m, ...), shifted to the first clip's."""
+    """The index and the cycles (c, m, ...) of each clip of a task, shifted to the first clip."""
     counts = Counter(clips[i].length for i in of_task)
     usual = max(counts, key=lambda length: (counts[length], -length))
-    alike = [i for i in of_task if clips[i].length == usual]
-    reference = clips[alike[0]].cycles().mean(axis=0)
-    return [(i, _shifted(clips[i], reference)) for i in alike]
+    chosen = [i for i in of_task if clips[i].length == usual]
+    reference = clips[chosen[0]].cycles().mean(axis=0)
+    return [(i, _shifted(clips[i], reference)) for i in chosen]
 
 
 def _shifted(clip: DancedCycles, reference: FloatArray) -> FloatArray:
-    """(c, m, ...) the cycles of `clip` from the segment that most resembles the first of the
-    `reference` (m, ...)."""
-    ways = [clip.cycles(shift) for shift in range(clip.length)]
-    far = [np.square(way.mean(axis=0) - reference).sum() if len(way) else np.inf for way in ways]
-    return ways[int(np.argmin(far))]
+    """(c, m, ...) the cycles of `clip`, shifted to be nearest to the `reference` cycle (m, ...)."""
+    shifted = [clip.cycles(shift) for shift in range(clip.length)]
+    distances = [
+        np.square(cycles.mean(axis=0) - reference).sum() if len(cycles) else np.inf
+        for cycles in shifted
+    ]
+    return shifted[int(np.argmin(distances))]

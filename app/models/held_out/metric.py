@@ -18,13 +18,13 @@ import numpy as np
 
 from app.errors import NotEnoughLabels
 from app.models.held_out.ranking import average_precision
-from app.models.holding_out import Held, rounds
-from app.models.metric.learned_metric import Described, Factor, check_labels, fit_axes
+from app.models.holding_out import HeldOut, rounds
+from app.models.metric.learned_metric import ClipDescriptors, Factor, check_labels, fit_axes
 from app.models.metric.pair_calibration import PairCalibration, calibrate_pairs
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 MAX_CLIPS = 2000
-"""Larger libraries are judged on a random subset of this many labeled clips."""
+"""Of larger libraries, a random subset of this many labeled clips is judged."""
 
 NEAREST = 20
 """Precision is computed among this many nearest clips, or fewer if fewer are relevant."""
@@ -32,8 +32,8 @@ NEAREST = 20
 MAX_PAIRS = 200_000
 """Largest number of pairs of clips for the calibration."""
 
-TOLD_LABELS = 200
-"""Largest number of labels whose clip counts are listed; those with the fewest clips first."""
+MAX_LISTED_LABELS = 200
+"""Largest number of labels with a listed number of clips; the rarest labels are listed."""
 
 BINS = 10
 """Number of bins of the calibration error."""
@@ -43,7 +43,10 @@ Labels = Sequence[str | None]
 
 @dataclass(frozen=True, slots=True)
 class MetricEvaluation:
-    """figures: JSON-able, by what was held out; calibration: fitted on the held-out clips."""
+    """The figures of a metric, and the calibration of its distances.
+
+    figures: JSON-able, by kind of held-out thing; calibration: fitted on the held-out clips.
+    """
 
     figures: dict[str, Any]
     calibration: PairCalibration
@@ -51,7 +54,11 @@ class MetricEvaluation:
 
 @dataclass(frozen=True, slots=True)
 class _Judged:
-    """The results of the queries of some rounds: relevance rows and pairs, an array per query."""
+    """The results of the queries of some rounds; each list has one array (m,) for each query.
+
+    learned, plain: whether each clip is relevant, in the order of the learned metric and of the
+    motion vectors; distances: learned distances of all clips; same: whether each is relevant.
+    """
 
     learned: list[BoolArray] = field(default_factory=list)
     plain: list[BoolArray] = field(default_factory=list)
@@ -60,7 +67,11 @@ class _Judged:
 
 
 def held_out_metric(
-    described: Described, persons: Labels, tasks: Labels, groups: Sequence[str], factor: Factor
+    described: ClipDescriptors,
+    persons: Labels,
+    tasks: Labels,
+    groups: Sequence[str],
+    factor: Factor,
 ) -> MetricEvaluation:
     """Judge a metric of `factor` on n clips; groups: (n,) equal for files of one recording.
 
@@ -70,17 +81,17 @@ def held_out_metric(
     check_labels(labels, factor)
     counts = Counter(label for label in labels if label)
     index = _judged_clips(labels)
-    part = _Part(
+    part = _LabeledClips(
         described.part(index),
         *([names[i] for i in index] for names in (persons, tasks, groups, labels)),
     )
-    found = {held: _Judged() for held in Held}
-    for held, training, probes in rounds(part.persons, part.tasks, part.groups):
-        _judge_round(part, factor, training, probes, found[held])
-    clips = found[Held.CLIPS]
+    judged = {kind: _Judged() for kind in HeldOut}
+    for kind, training, probes in rounds(part.persons, part.tasks, part.groups):
+        _judge_round(part, factor, training, probes, judged[kind])
+    clips = judged[HeldOut.CLIPS]
     distances, same = _pairs(clips)
     calibration = calibrate_pairs(distances, same)
-    figures = {f"{held}_held_out": _figures(judged) for held, judged in found.items()}
+    figures = {f"{kind}_held_out": _figures(results) for kind, results in judged.items()}
     document = {name: shares for name, shares in figures.items() if shares}
     error = {"calibration_error": calibration_error(calibration, distances, same)}
     counted = {"labels": _label_counts(counts, by_name=factor is Factor.TASK)}
@@ -99,15 +110,16 @@ def calibration_error(
     scores = calibration.probabilities(distances)
     bins = np.minimum((scores * BINS).astype(np.int64), BINS - 1)
     sizes = np.bincount(bins, minlength=BINS)
-    apart = np.bincount(bins, scores, BINS) - np.bincount(bins, same.astype(np.float64), BINS)
-    return float(np.abs(apart).sum() / sizes.sum())
+    # (BINS,) sum of scores minus number of pairs with the same label
+    excess = np.bincount(bins, scores, BINS) - np.bincount(bins, same.astype(np.float64), BINS)
+    return float(np.abs(excess).sum() / sizes.sum())
 
 
 @dataclass(frozen=True, slots=True)
-class _Part:
+class _LabeledClips:
     """The labeled clips that are judged."""
 
-    described: Described
+    described: ClipDescriptors
     persons: list[str | None]
     tasks: list[str | None]
     groups: list[str]
@@ -115,22 +127,24 @@ class _Part:
 
 
 def _judged_clips(labels: Labels) -> IntArray:
-    known = np.array([i for i, label in enumerate(labels) if label])
-    return np.sort(np.random.RandomState(0).permutation(known)[:MAX_CLIPS])
+    """Ascending indices of at most MAX_CLIPS labeled clips, drawn with a fixed seed."""
+    labeled = np.array([i for i, label in enumerate(labels) if label])
+    return np.sort(np.random.RandomState(0).permutation(labeled)[:MAX_CLIPS])
 
 
 def _judge_round(
-    part: _Part, factor: Factor, training: IntArray, probes: IntArray, judged: _Judged
+    part: _LabeledClips, factor: Factor, training: IntArray, probes: IntArray, judged: _Judged
 ) -> None:
     """Fit without the probes, rank by each probe, and add the results to `judged`."""
     try:
-        known = [part.labels[i] for i in training]
-        axes = fit_axes(part.described.part(training), known, factor)
+        labels = [part.labels[i] for i in training]
+        axes = fit_axes(part.described.part(training), labels, factor)
     except NotEnoughLabels:
-        return
+        return  # too few labels are left without the probes: this round has no figures
     points = axes.project(part.described)
     names, group = np.array(part.labels), np.array(part.groups)
     for probe in probes.tolist():
+        # other files of the same recording would be trivial matches
         others = np.flatnonzero(group != group[probe])
         same = names[others] == names[probe]
         if not same.any():
@@ -168,20 +182,24 @@ def _figures(judged: _Judged) -> dict[str, float | int]:
 
 
 def _means(rankings: list[BoolArray]) -> list[float]:
+    """Means of three figures: the nearest is relevant, precision at NEAREST, average precision."""
     rows = [
         (
-            found[0],
-            found[: min(NEAREST, np.count_nonzero(found))].mean(),
-            average_precision(-np.arange(float(len(found))), found),
+            relevant[0],
+            relevant[: min(NEAREST, np.count_nonzero(relevant))].mean(),
+            average_precision(-np.arange(float(len(relevant))), relevant),
         )
-        for found in rankings
+        for relevant in rankings
     ]
     return [float(value) for value in np.mean(rows, axis=0)]
 
 
 def _label_counts(counts: Counter[str], *, by_name: bool) -> dict[str, Any]:
-    """Counts of clips by label. Persons are not named, since figures stay stored after a person
-    is forgotten."""
+    """Numbers of clips by label.
+
+    by_name: False for persons. They are not named, because the figures stay stored when a person
+    is removed from the library.
+    """
     fewest = sorted(counts.items(), key=lambda item: (item[1], item[0]))
     document = {
         "count": len(counts),
@@ -189,4 +207,4 @@ def _label_counts(counts: Counter[str], *, by_name: bool) -> dict[str, Any]:
         "fewest_clips": fewest[0][1],
         "most_clips": fewest[-1][1],
     }
-    return document | ({"clips_of": dict(fewest[:TOLD_LABELS])} if by_name else {})
+    return document | ({"clips_of": dict(fewest[:MAX_LISTED_LABELS])} if by_name else {})

@@ -5,10 +5,10 @@ tensor does not have (Tables 4 and 5), a second cycle of the training segments g
 objective in another cycle: F*_k (eq. 15) of each category k. A probe is new if its F*_Pr (eq. 16)
 is not within thresholds of F*_k.
 
-Reading.PRINTED: eq. 14 maximized, and a category holds what lies within the range of its F*_k,
-which makes new what is nearer than the trained cycle ever was. Reading.LEAST minimizes
-(see app.models.recognition.task_model), has no lower side, and takes for F*_k the mean over the
-category's segments; in Table 5 the largest of a task's segments from those of its other dancers.
+Reading.PRINTED maximizes eq. 14. A category accepts values within the range of its F*_k. So a probe
+that is nearer than every trained cycle counts as new. Reading.LEAST minimizes (see
+app.models.recognition.task_model). It has no lower limit. Its F*_k is the mean over the segments of
+the category. In Table 5, it is the largest distance of a task's segments to those of other dancers.
 """
 
 from __future__ import annotations
@@ -41,10 +41,11 @@ MIN_LABELS = 2
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A line of the paper's Tables 3-5: segments probed and recognized, over all rounds.
+    """A row of the paper's Tables 3-5, over all rounds.
 
-    paper: the accuracy printed in the paper; known_probed, known_accepted: only in Table 4, the
-    numbers of segments of known persons (tasks) that were probed, and that were called known.
+    probed, correct: numbers of segments that were probed, and recognized correctly. paper: the
+    accuracy that the paper prints. known_probed, known_accepted: only in Table 4, the numbers of
+    segments of known persons (tasks) that were probed, and that were called known.
     """
 
     table: int
@@ -58,7 +59,7 @@ class Row:
 
     @property
     def accuracy(self) -> float:
-        """Share recognized, 0..1."""
+        """Share of the probed segments that were recognized correctly, 0..1."""
         return self.correct / max(self.probed, 1)
 
     @property
@@ -75,9 +76,9 @@ def perera_tables(danced: DancedTasks, reading: Reading = Reading.LEAST) -> tupl
     Raises NotEnoughLabels without two persons and two tasks with two cycles each.
     """
     tables: dict[str, Row] = {}
-    for found in (*_known(danced, reading), *_alien(danced, reading)):
-        tables[found.category] = _sum(tables.get(found.category), found)
-    return tuple(sorted(tables.values(), key=lambda row: (row.table, -row.paper)))
+    for row in (*_rows_of_table_3(danced, reading), *_rows_of_tables_4_and_5(danced, reading)):
+        tables[row.category] = _sum(tables.get(row.category), row)
+    return tuple(sorted(tables.values(), key=lambda each: (each.table, -each.paper)))
 
 
 def _sum(one: Row | None, other: Row) -> Row:
@@ -95,8 +96,8 @@ def _sum(one: Row | None, other: Row) -> Row:
     )
 
 
-def _known(danced: DancedTasks, reading: Reading) -> Iterator[Row]:
-    """Table 3, a round for each choice of the training cycle."""
+def _rows_of_table_3(danced: DancedTasks, reading: Reading) -> Iterator[Row]:
+    """One round for each choice of the training cycle."""
     use = _with_cycles(danced, 2)
     if min(len(set(use.persons)), len(set(use.tasks))) < MIN_LABELS:
         raise NotEnoughLabels(
@@ -107,42 +108,47 @@ def _known(danced: DancedTasks, reading: Reading) -> Iterator[Row]:
         model = _fit(use.part(use.cycle == train))
         probes = use.part(use.cycle == probe)
         distances = model.joint_distances(probes.poses)
-        for view, paper in ((_tasks(model), 0.9791), (_persons(model), 0.875)):
-            truth = view.labels_of(probes)
-            best = view.objective(distances, reading).argmin(axis=1)
-            correct = sum(view.names[b] == t for b, t in zip(best, truth, strict=True))
-            yield Row(3, f"{view.what} recognition", reading, len(truth), correct, paper)
+        for factor, paper in ((_tasks(model), 0.9791), (_persons(model), 0.875)):
+            truth = factor.labels_of(probes)
+            best = factor.objective(distances, reading).argmin(axis=1)
+            correct = sum(factor.names[b] == t for b, t in zip(best, truth, strict=True))
+            yield Row(3, f"{factor.what} recognition", reading, len(truth), correct, paper)
 
 
-def _alien(danced: DancedTasks, reading: Reading) -> Iterator[Row]:
-    """Tables 4 and 5, a round for each choice of the three cycles."""
+def _rows_of_tables_4_and_5(danced: DancedTasks, reading: Reading) -> Iterator[Row]:
+    """One round for each order of the three cycles, and for each left-out person and task."""
     use = _with_cycles(danced, 3)
     for first in range(MAX_ROUNDS):
         train, again, probe = ((use.cycle == (first + k) % 3) for k in range(3))
         for person in _left_out(use.persons):
             stays = np.array([name != person for name in use.persons])
-            trained = _Trained.on(use.part(train & stays), use.part(again & stays))
+            trained = _Trained.fit(use.part(train & stays), use.part(again & stays))
             new, known = use.part(probe & ~stays), use.part(probe & stays)
-            yield trained.new_ones("person", new, known, reading)
-            yield trained.named("task recognition of alien person", new, reading)
-            yield trained.named("task recognition of known person", known, reading)
+            yield trained.row_of_table_4("person", new, known, reading)
+            yield trained.row_of_table_5("task recognition of alien person", new, reading)
+            yield trained.row_of_table_5("task recognition of known person", known, reading)
         for task in _left_out(use.tasks):
             stays = np.array([name != task for name in use.tasks])
-            trained = _Trained.on(use.part(train & stays), use.part(again & stays))
-            yield trained.new_ones(
+            trained = _Trained.fit(use.part(train & stays), use.part(again & stays))
+            yield trained.row_of_table_4(
                 "task", use.part(probe & ~stays), use.part(probe & stays), reading
             )
 
 
-def _with_cycles(danced: DancedTasks, least: int) -> DancedTasks:
-    """The segments of each person and task that have at least `least` cycles."""
+def _with_cycles(danced: DancedTasks, min_cycles: int) -> DancedTasks:
+    """The segments of each person and task with at least `min_cycles` cycles."""
     pairs = list(zip(danced.persons, danced.tasks, strict=True))
-    last = {pair for pair, cycle in zip(pairs, danced.cycle, strict=True) if cycle == least - 1}
+    last = {
+        pair for pair, cycle in zip(pairs, danced.cycle, strict=True) if cycle == min_cycles - 1
+    }
     return danced.part(np.array([pair in last for pair in pairs], dtype=bool))
 
 
 def _left_out(labels: Sequence[str]) -> list[str]:
-    """The labels to leave out in turn, evenly chosen; none if too few would remain."""
+    """The labels to leave out in turn: at most MAX_LEFT_OUT, evenly chosen.
+
+    The list is empty if too few labels would remain.
+    """
     names = sorted(set(labels))
     if len(names) <= MIN_LABELS:
         return []
@@ -155,8 +161,12 @@ def _fit(danced: DancedTasks) -> TaskModel:
 
 
 @dataclass(frozen=True, slots=True)
-class _View:
-    """The tensor flattened along persons or tasks. label: (c,) of the model's cells."""
+class _Factor:
+    """One factor of a task model, the persons or the tasks.
+
+    what: "person" or "task"; names: the labels; label: (c,) the label index of each cell of the
+    model; weights: (13,) of the joints.
+    """
 
     what: str
     names: tuple[str, ...]
@@ -172,38 +182,44 @@ class _View:
         return danced.tasks if self.what == "task" else danced.persons
 
     def index(self, danced: DancedTasks) -> IntArray:
-        """(n,) the true labels as indices into `names`, which has them all."""
+        """(n,) the true labels as indices into `names`. Raises ValueError for an unknown label."""
         return np.array([self.names.index(name) for name in self.labels_of(danced)], np.int64)
 
 
-def _tasks(model: TaskModel) -> _View:
-    return _View("task", model.tasks, model.task, model.weights)
+def _tasks(model: TaskModel) -> _Factor:
+    return _Factor("task", model.tasks, model.task, model.weights)
 
 
-def _persons(model: TaskModel) -> _View:
-    return _View("person", model.persons, model.person, model.weights)
+def _persons(model: TaskModel) -> _Factor:
+    return _Factor("person", model.persons, model.person, model.weights)
 
 
 @dataclass(frozen=True, slots=True)
 class _Trained:
-    """A model, and the distances (n, c, 13) of the repeated segments `again` (n,)."""
+    """A model of one cycle, and its distances to a second cycle of the same dances.
+
+    again: n segments of the second cycle; distances: (n, c, 13) their joint distances.
+    """
 
     model: TaskModel
     again: DancedTasks
     distances: FloatArray
 
     @classmethod
-    def on(cls, first: DancedTasks, again: DancedTasks) -> _Trained:
+    def fit(cls, first: DancedTasks, again: DancedTasks) -> _Trained:
         model = _fit(first)
         return cls(model, again, model.joint_distances(again.poses))
 
-    def new_ones(self, what: str, new: DancedTasks, known: DancedTasks, reading: Reading) -> Row:
+    def row_of_table_4(
+        self, what: str, new: DancedTasks, known: DancedTasks, reading: Reading
+    ) -> Row:
         """A row of Table 4: segments of new labels, and segments of known labels."""
-        view, paper = (
+        factor, paper = (
             (_tasks(self.model), 0.9166) if what == "task" else (_persons(self.model), 0.8333)
         )
         accepted = [
-            self._within(view, part, NEW_THRESHOLD, reading)[0].any(axis=1) for part in (new, known)
+            self._within(factor, part, NEW_THRESHOLD, reading)[0].any(axis=1)
+            for part in (new, known)
         ]
         return Row(
             4,
@@ -216,25 +232,25 @@ class _Trained:
             int(accepted[1].sum()),
         )
 
-    def named(self, category: str, probes: DancedTasks, reading: Reading) -> Row:
+    def row_of_table_5(self, category: str, probes: DancedTasks, reading: Reading) -> Row:
         """A row of Table 5: a segment counts if the nearest task within thresholds is right."""
-        view = _tasks(self.model)
-        within, far = self._within(view, probes, NAMED_THRESHOLD, reading)
-        best = np.where(within, far, np.inf).argmin(axis=1)
+        factor = _tasks(self.model)
+        within, objectives = self._within(factor, probes, NAMED_THRESHOLD, reading)
+        best = np.where(within, objectives, np.inf).argmin(axis=1)
         right = [
-            within[row].any() and view.names[label] == truth
+            within[row].any() and factor.names[label] == truth
             for row, (label, truth) in enumerate(zip(best.tolist(), probes.tasks, strict=True))
         ]
         paper = 0.8333 if "alien" in category else 0.9166
         return Row(5, category, reading, len(probes), int(np.sum(right)), paper)
 
     def _within(
-        self, view: _View, probes: DancedTasks, threshold: float, reading: Reading
+        self, factor: _Factor, probes: DancedTasks, threshold: float, reading: Reading
     ) -> tuple[BoolArray, FloatArray]:
         """(n, names) whether F*_Pr is within thresholds of F*_k, and (n, names) the objectives
         of eq. 16; the smallest is the best."""
-        low, high = self._trained(view, reading, of_others=threshold == NAMED_THRESHOLD)
-        signed = view.objective(self.model.joint_distances(probes.poses), reading)
+        low, high = self._trained(factor, reading, of_others=threshold == NAMED_THRESHOLD)
+        signed = factor.objective(self.model.joint_distances(probes.poses), reading)
         value = np.abs(signed)
         within = value * (1 - threshold) <= high * (1 + threshold)
         if reading is Reading.PRINTED:
@@ -242,19 +258,21 @@ class _Trained:
         return within, signed
 
     def _trained(
-        self, view: _View, reading: Reading, *, of_others: bool
+        self, factor: _Factor, reading: Reading, *, of_others: bool
     ) -> tuple[FloatArray, FloatArray]:
         """The smallest and the largest accepted F*_k (eq. 15) for each of `names`.
 
         of_others: F*_k is computed between different persons who did the same task, not between
         cycles of one person, since the task of an alien person cannot be nearer.
         """
-        distances, own = self.distances, view.index(self.again)
+        distances, own = self.distances, factor.index(self.again)
         if of_others and reading is Reading.LEAST:
-            theirs = _persons(self.model).index(self.again)[:, None] == self.model.person
-            distances = np.where(theirs[..., None], np.inf, distances)
-        found = np.abs(view.objective(distances, reading))[np.arange(len(own)), own]
-        values = [found[(own == k) & np.isfinite(found)] for k in range(len(view.names))]
+            same_person = _persons(self.model).index(self.again)[:, None] == self.model.person
+            distances = np.where(same_person[..., None], np.inf, distances)
+        own_values = np.abs(factor.objective(distances, reading))[np.arange(len(own)), own]
+        # a task without another dancer has an infinite distance
+        usable = np.isfinite(own_values)
+        values = [own_values[(own == k) & usable] for k in range(len(factor.names))]
         if reading is Reading.LEAST and not of_others:
             values = [each.mean(keepdims=True) if len(each) else each for each in values]
         low = np.array([each.min(initial=np.inf) for each in values])

@@ -18,17 +18,17 @@ def average_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
     0.0 if nothing is relevant.
     """
     hits = is_relevant[_best_first(scores)]
-    places = np.flatnonzero(hits) + 1
-    if not places.size:
+    ranks = np.flatnonzero(hits) + 1  # of the relevant candidates, from 1
+    if not ranks.size:
         return 0.0
-    return float((np.arange(1, places.size + 1) / places).mean())
+    return float((np.arange(1, ranks.size + 1) / ranks).mean())
 
 
 def mean_average_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
     """Mean of eq. 20 over the rows of (Q, N) with a relevant candidate; 0.0 without any."""
     rows = np.flatnonzero(is_relevant.any(axis=1))
-    found = [average_precision(scores[row], is_relevant[row]) for row in rows]
-    return float(np.mean(found)) if found else 0.0
+    precisions = [average_precision(scores[row], is_relevant[row]) for row in rows]
+    return float(np.mean(precisions)) if precisions else 0.0
 
 
 def f_where_recall_is_precision(scores: FloatArray, is_relevant: BoolArray) -> float:
@@ -46,8 +46,8 @@ def f_where_recall_is_precision(scores: FloatArray, is_relevant: BoolArray) -> f
 def top_k_rate(scores: FloatArray, labels: BoolArray, k: int) -> float:
     """Share of the rows of (N, V) with labels that have a true label among the k best."""
     rows = np.flatnonzero(labels.any(axis=1))
-    found = [labels[row, _best_first(scores[row])[:k]].any() for row in rows]
-    return float(np.mean(found)) if found else 0.0
+    has_label = [labels[row, _best_first(scores[row])[:k]].any() for row in rows]
+    return float(np.mean(has_label)) if has_label else 0.0
 
 
 def precision_at_recalls(
@@ -59,27 +59,28 @@ def precision_at_recalls(
     retrieved; 0.0 if none is relevant.
     """
     hits = is_relevant.ravel()[_best_first(scores.ravel())]
-    places = np.flatnonzero(hits) + 1
-    if not places.size:
+    ranks = np.flatnonzero(hits) + 1
+    if not ranks.size:
         return np.zeros(len(recalls))
-    found = np.clip(np.ceil(recalls * places.size - 1e-9).astype(np.int64), 1, places.size)
-    return np.asarray(found / places[found - 1])
+    # the number of relevant pairs that each recall needs; 1e-9 absorbs rounding of the product
+    needed = np.clip(np.ceil(recalls * ranks.size - 1e-9).astype(np.int64), 1, ranks.size)
+    return np.asarray(needed / ranks[needed - 1])
 
 
-def calibration_error(probabilities: FloatArray, is_so: BoolArray, bins: int = 10) -> float:
+def calibration_error(probabilities: FloatArray, is_true: BoolArray, bins: int = 10) -> float:
     """Expected calibration error: mean difference of probability and true share in equal bins.
 
-    probabilities, is_so: any equal shapes; each bin has the weight of its members.
+    probabilities, is_true: any equal shapes; each bin has the weight of its members.
     """
-    chances, truth = probabilities.ravel(), is_so.ravel().astype(np.float64)
-    place = np.clip((chances * bins).astype(np.int64), 0, bins - 1)
-    off = np.bincount(place, chances - truth, minlength=bins)
-    return float(np.abs(off).sum() / max(len(chances), 1))
+    chances, truth = probabilities.ravel(), is_true.ravel().astype(np.float64)
+    bin_of = np.clip((chances * bins).astype(np.int64), 0, bins - 1)
+    excess = np.bincount(bin_of, chances - truth, minlength=bins)
+    return float(np.abs(excess).sum() / max(len(chances), 1))
 
 
-def brier_score(probabilities: FloatArray, is_so: BoolArray) -> float:
-    """Mean squared difference of `probabilities` and the truth `is_so`; any equal shapes."""
-    return float(np.square(probabilities - is_so).mean()) if probabilities.size else 0.0
+def brier_score(probabilities: FloatArray, is_true: BoolArray) -> float:
+    """Mean squared difference of `probabilities` and the truth `is_true`; any equal shapes."""
+    return float(np.square(probabilities - is_true).mean()) if probabilities.size else 0.0
 
 
 def _best_first(scores: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.intp]]:

@@ -52,14 +52,17 @@ def held_out_recognition_figures(
     """Shares of recognized clips; each clip is judged by a model of the other folds.
 
     samples: (clips, 1250); wide: (clips, 512) wide motion vectors, for the default method;
-    groups: (clips,) clips of one recording share a value and a fold. No label is given.
-    Returns for "default", "multilinear", "perera", "pca" (flat PCA) and "prior" (the most frequent
-    label of the training folds) the shares "person", "task" and "both" over the clips that have
-    the label, and "clips", the number with both labels. The best candidate counts, even if the
-    method calls it new. A method that cannot be fitted is left out.
+    groups: (clips,) clips of one recording share a value and a fold. The methods get no label of
+    a judged clip.
+
+    Returns figures by method: "default", "multilinear", "perera", "pca" (flat PCA) and "prior"
+    (the most frequent label of the training folds). They are the shares "person", "task" and
+    "both" of the clips that have the label, and "clips", the number of clips with both labels.
+    The best candidate counts, even if the method calls it new. A method that cannot be fitted is
+    left out.
     """
-    seen = samples if wide is None else full_samples(samples, wide)
-    default = _figures({"default": _default}, seen, persons, tasks, groups, folds, seed)
+    full = samples if wide is None else full_samples(samples, wide)
+    default = _figures({"default": _default}, full, persons, tasks, groups, folds, seed)
     methods = {
         "multilinear": _multilinear,
         "perera": _perera,
@@ -106,9 +109,9 @@ def unknown_figures(record: Recognizer | TensorRecognizer) -> dict[str, dict[str
     """False acceptance, false rejection, balanced accuracy and area under the curve for "person"
     and "task", and "curve", from which a false-accept rate can be chosen.
 
-    They come from the clips, persons and tasks that were held out when `record` was fitted. The
-    threshold was chosen on them too, so the figures are slightly too good. If takes were hardly
-    repeated, the known clips are simulated takes.
+    The figures are those of the clips, persons and tasks that were held out when `record` was
+    fitted. The threshold was chosen on them too, so the figures are slightly too good. If the
+    library has few repeated takes, the clips of known labels are simulated takes.
     """
     figures: dict[str, dict[str, Any]] = {}
     for name in ("person", "task"):
@@ -133,14 +136,15 @@ def _guesses(
     groups: Sequence[str],
     fold: IntArray,
 ) -> list[tuple[str | None, str | None]]:
+    """For each clip the best person and task, by a model of all other folds."""
     guesses: list[tuple[str | None, str | None]] = [(None, None)] * len(fold)
     for each in np.unique(fold):
         train, probe = (np.flatnonzero(chosen).tolist() for chosen in (fold != each, fold == each))
         who, what = ([labels[i] for i in train] for labels in (persons, tasks))
         clips = Clips(samples[train], who, what, [groups[i] for i in train])
-        found = method(clips, samples[probe])
-        for index, one in zip(probe, found, strict=True):
-            guesses[index] = (_best(one.person), _best(one.task))
+        recognitions = method(clips, samples[probe])
+        for index, recognition in zip(probe, recognitions, strict=True):
+            guesses[index] = (_best(recognition.person), _best(recognition.task))
     return guesses
 
 
@@ -176,7 +180,7 @@ def _signatures(clips: Clips, probes: FloatArray) -> list[Recognition]:
 
 
 def _perera(clips: Clips, probes: FloatArray) -> list[Recognition]:
-    # the decision on unknown labels is not needed here, so its costly calibration is left out
+    # Only the best candidate counts, so the costly calibration of unknown labels is left out.
     return recognize_by_tensor(uncalibrated(clips.samples, clips.persons, clips.tasks), probes)
 
 

@@ -1,4 +1,6 @@
-"""How well the motion symbol space preserves the divergences (Takano, section 3, fig. 3).
+"""How well the distances in the motion symbol space agree with the divergences.
+
+Source: Takano, section 3, fig. 3.
 
 The figures are the error T of eq. 3 by the number of dimensions, for classical scaling, SMACOF and
 the minimum of the paper's own error (s-stress); the error of placing a symbol by landmarks only;
@@ -23,10 +25,12 @@ from app.numerics.mds import classical_mds, metric_mds, place, stress
 from app.numerics.smacof import smacof
 
 MAX_SYMBOLS = 200
-"""Largest number of symbols that are scaled at once; of more, a random subset."""
+"""Largest number of symbols that are scaled at once. Of more symbols, a random subset is used."""
 MAX_DIMENSIONS = 15
-COMPARED = 12
+MONTE_CARLO_SYMBOLS = 12
+"""Number of symbols whose pairs are estimated by Monte Carlo."""
 DRAWS = 10
+"""Sequences that are drawn for each Monte Carlo estimate."""
 MIN_SYMBOLS = 5
 
 
@@ -34,7 +38,7 @@ MIN_SYMBOLS = 5
 class SpaceErrors:
     """The error T of eq. 3 per pair, for one number of dimensions, by scaling method.
 
-    gamma: the share by which one more dimension lowers the error of s_stress, nan at the last.
+    gamma: the share by which one more dimension lowers the error of s_stress, None at the last.
     """
 
     dimensions: int
@@ -48,9 +52,9 @@ class SpaceErrors:
 class SymbolFigures:
     """Figures of a symbol space.
 
-    symbols: number of scaled symbols; errors: by number of dimensions; placing_error: mean
-    absolute difference of the distance and its target for symbols placed by landmarks, divided
-    by the mean distance; there is the same figure for the landmarks themselves; agreement:
+    symbols: number of scaled symbols; errors: by number of dimensions; placing_error: for
+    symbols that are placed by landmarks, the mean absolute difference between the distance and
+    its target, divided by the mean target; fitting_error: the same for the landmarks; agreement:
     Spearman's rank correlation of the fast and the Monte Carlo divergences, over `pairs` pairs.
     """
 
@@ -63,7 +67,7 @@ class SymbolFigures:
 
 
 def symbol_figures(
-    symbols: Sequence[GaussianHMM], *, compared: int = COMPARED, seed: int = 0
+    symbols: Sequence[GaussianHMM], *, compared: int = MONTE_CARLO_SYMBOLS, seed: int = 0
 ) -> SymbolFigures:
     """The figures of a library's symbols; deterministic for a seed.
 
@@ -79,14 +83,14 @@ def symbol_figures(
     chosen = [symbols[int(row)] for row in rows]
     distances = symbol_distances(chosen, chosen)
     fitting, placing = _placing_errors(distances, rng)
-    some = chosen[:: max(len(chosen) // compared, 1)][:compared]
+    compared_symbols = chosen[:: max(len(chosen) // compared, 1)][:compared]
     return SymbolFigures(
         symbols=len(chosen),
         errors=_errors(distances),
         placing_error=placing,
         fitting_error=fitting,
-        agreement=_agreement(some, seed),
-        pairs=len(some) * (len(some) - 1),
+        agreement=_agreement(compared_symbols, seed),
+        pairs=len(compared_symbols) * (len(compared_symbols) - 1),
     )
 
 
@@ -94,16 +98,16 @@ _Scaling = Callable[[FloatArray, int], FloatArray]
 
 
 def _errors(distances: FloatArray) -> tuple[SpaceErrors, ...]:
-    most = min(MAX_DIMENSIONS, len(distances) - 1)
+    max_dimensions = min(MAX_DIMENSIONS, len(distances) - 1)
     pairs = len(distances) * (len(distances) - 1) / 2
-    ways: tuple[_Scaling, ...] = (classical_mds, smacof, metric_mds)
-    found = [
-        [stress(way(distances, count), distances) / pairs for way in ways]
-        for count in range(1, most + 1)
+    methods: tuple[_Scaling, ...] = (classical_mds, smacof, metric_mds)
+    errors = [
+        [stress(scale(distances, count), distances) / pairs for scale in methods]
+        for count in range(1, max_dimensions + 1)
     ]
     return tuple(
-        SpaceErrors(count, by_classical, by_smacof, s_stress, _gamma(s_stress, found[count:]))
-        for count, (by_classical, by_smacof, s_stress) in enumerate(found, 1)
+        SpaceErrors(count, by_classical, by_smacof, s_stress, _gamma(s_stress, errors[count:]))
+        for count, (by_classical, by_smacof, s_stress) in enumerate(errors, 1)
     )
 
 
@@ -122,9 +126,10 @@ def _placing_errors(distances: FloatArray, rng: np.random.RandomState) -> tuple[
     return _relative(points, points, among), _relative(placed, points, across)
 
 
-def _relative(left: FloatArray, right: FloatArray, wanted: FloatArray) -> float:
-    reached = scipy.spatial.distance.cdist(left, right)
-    return float(np.abs(reached - wanted).mean() / max(float(wanted.mean()), 1e-12))
+def _relative(left: FloatArray, right: FloatArray, target: FloatArray) -> float:
+    """The mean absolute error of the distances of two sets of points, by the mean target."""
+    distances = scipy.spatial.distance.cdist(left, right)
+    return float(np.abs(distances - target).mean() / max(float(target.mean()), 1e-12))
 
 
 def _agreement(symbols: Sequence[GaussianHMM], seed: int) -> float:
@@ -133,5 +138,5 @@ def _agreement(symbols: Sequence[GaussianHMM], seed: int) -> float:
         [monte_carlo_divergence(one, other, draws=DRAWS, seed=seed) for other in symbols]
         for one in symbols
     ]
-    apart = ~np.eye(len(symbols), dtype=bool)
-    return float(scipy.stats.spearmanr(fast[apart], np.array(slow)[apart]).statistic)
+    different = ~np.eye(len(symbols), dtype=bool)  # a symbol has divergence 0 from itself
+    return float(scipy.stats.spearmanr(fast[different], np.array(slow)[different]).statistic)

@@ -1,7 +1,7 @@
 """Held-out figures of synthesis: how often a synthesized motion is recognized as intended.
 
-Vasilescu's check (section 7): a cell is left out and synthesized. Is the real clip that is nearest
-to the synthesized motion by the same person, and of the same task?
+Vasilescu's test (section 7): a cell is left out and synthesized. It is a hit if the real clip that
+is nearest to the synthesized motion has the same person and the same task.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from app.models.synthesis.prediction import Predicted, predict
 from app.models.synthesis.solving import effects_only
 from app.numerics.arrays import FloatArray
 
-GIVEN = (1, 2, 3, 5, 8)
-"""Numbers of other persons (or tasks) of which takes are given."""
+GIVEN_COUNTS = (1, 2, 3, 5, 8)
+"""Numbers of other persons (or tasks) with takes that a prediction may use."""
 
 TRIALS = 32
-"""Cells left out for each row; a random subset if there are more."""
+"""Largest number of cells that are left out for each row; of more cells, a random subset."""
 
 NEW_TASK, NEW_PERSON = "new_task", "new_person"
 
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """A left-out cell: person and task; given: the other persons, or the other tasks, to use."""
+    """A left-out cell, the person at the task; given: the other persons, or other tasks, to use."""
 
     person: str
     task: str
@@ -36,7 +36,7 @@ class Trial:
 
 
 def held_out_synthesis(record: Synthesis, trials: int = TRIALS) -> dict[str, list[dict[str, Any]]]:
-    """Rows for "new_task" and "new_person", one for each number of GIVEN.
+    """Rows for "new_task" and "new_person", one for each number in GIVEN_COUNTS.
 
     "new_task": a task of a known person, from takes by `given` other persons. "new_person": a
     task of a new person, from takes of `given` of their tasks; all other persons are known.
@@ -49,7 +49,7 @@ def held_out_synthesis(record: Synthesis, trials: int = TRIALS) -> dict[str, lis
     "real" is an upper limit of what synthesis can reach.
     """
     return {
-        kind: [row for given in GIVEN if (row := _row(record, kind, given, trials))]
+        kind: [row for given in GIVEN_COUNTS if (row := _row(record, kind, given, trials))]
         for kind in (NEW_TASK, NEW_PERSON)
     }
 
@@ -59,29 +59,29 @@ def nearest_labels(record: Synthesis, shape: FloatArray) -> tuple[str, str]:
     return record.labels_of(int(np.argmin(record.distances(shape))))
 
 
-def made(record: Synthesis, kind: str, trial: Trial) -> Predicted:
+def synthesized(record: Synthesis, kind: str, trial: Trial) -> Predicted:
     """The synthesized cell of a trial."""
     own = record.tasks_of(trial.person)
     if kind == NEW_PERSON:
         own = {task: own[task] for task in trial.given}
-        return predict(record, own, trial.task, but=(trial.person,))
+        return predict(record, own, trial.task, exclude=(trial.person,))
     strangers = set(record.persons) - set(trial.given)
-    return predict(record, own, trial.task, but=tuple(strangers))
+    return predict(record, own, trial.task, exclude=tuple(strangers))
 
 
 def draw_trials(record: Synthesis, kind: str, given: int, trials: int) -> list[Trial]:
     """At most `trials` cells that have `given` others to use; deterministic."""
     rng = np.random.default_rng(given)
-    found = []
+    possible = []
     for person, task in zip(record.person, record.task, strict=True):
         who, what = record.persons[person], record.tasks[task]
         pool = _others(record, who, what, kind)
         if len(pool) >= given:
             chosen = rng.choice(len(pool), given, replace=False)
-            found.append(Trial(who, what, tuple(pool[i] for i in sorted(chosen))))
-    if len(found) <= trials:
-        return found
-    return [found[i] for i in np.sort(rng.choice(len(found), trials, replace=False))]
+            possible.append(Trial(who, what, tuple(pool[i] for i in sorted(chosen))))
+    if len(possible) <= trials:
+        return possible
+    return [possible[i] for i in np.sort(rng.choice(len(possible), trials, replace=False))]
 
 
 def _others(record: Synthesis, person: str, task: str, kind: str) -> list[str]:
@@ -104,9 +104,9 @@ def _row(record: Synthesis, kind: str, given: int, trials: int) -> dict[str, Any
         name: round(float(hit), 4) for name, hit in zip(names, hits.mean(axis=0), strict=True)
     }
     followed = np.array([follows for _, follows in judged])
-    parted = {"followed": _hit(hits[followed, 2]), "averaged": _hit(hits[~followed, 2])}
+    by_way = {"followed": _hit(hits[followed, 2]), "averaged": _hit(hits[~followed, 2])}
     real = real_hit(record, drawn)
-    return {"given": given, "trials": len(drawn), **shares, **parted, "real": real}
+    return {"given": given, "trials": len(drawn), **shares, **by_way, "real": real}
 
 
 def _hit(hits: FloatArray) -> dict[str, Any]:
@@ -120,19 +120,22 @@ def real_hit(record: Synthesis, drawn: list[Trial]) -> float | None:
     for trial in drawn:
         takes = record.clips_of(trial.person, trial.task)
         for take in takes if len(takes) > 1 else []:
-            away = np.linalg.norm(record.points - record.points[take], axis=1)
-            away[take] = np.inf
-            hits.append(record.labels_of(int(np.argmin(away))) == (trial.person, trial.task))
+            distances = np.linalg.norm(record.points - record.points[take], axis=1)
+            distances[take] = np.inf  # not the take itself
+            hits.append(record.labels_of(int(np.argmin(distances))) == (trial.person, trial.task))
     return round(float(np.mean(hits)), 4) if hits else None
 
 
 def _judged(
     record: Synthesis, kind: str, drawn: list[Trial]
 ) -> Iterator[tuple[tuple[bool, ...], bool]]:
-    """For each trial, what is right, and whether it follows one person."""
+    """For each trial, whether each of five results is right, and whether it follows one person.
+
+    The results are the person, the task, both, and both by each of the two baselines.
+    """
     for trial in drawn:
         label = (trial.person, trial.task)
-        predicted = made(record, kind, trial)
+        predicted = synthesized(record, kind, trial)
         who, what = nearest_labels(record, predicted.shape)
         baselines = (
             nearest_labels(record, baseline(record, kind, trial, by)) == label
@@ -143,6 +146,7 @@ def _judged(
 
 
 Baseline = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
+"""Predicts a shape (1378,) from basis, target and own shapes, as `effects_only` does."""
 
 
 def baseline(record: Synthesis, kind: str, trial: Trial, by: Baseline) -> FloatArray:
@@ -154,13 +158,13 @@ def baseline(record: Synthesis, kind: str, trial: Trial, by: Baseline) -> FloatA
     others = trial.given if kind == NEW_TASK else record.who_did(trial.task)
     cells = {name: record.tasks_of(name) for name in others if name != trial.person}
     shared = [task for task in own if all(task in did for did in cells.values())]
-    wanted = np.stack([did[trial.task] for did in cells.values()])
+    target = np.stack([did[trial.task] for did in cells.values()])
     if not shared:
-        return task_mean(wanted, wanted, wanted)
+        return task_mean(target, target, target)
     basis = np.stack([[did[task] for task in shared] for did in cells.values()])
-    return by(basis, wanted, np.stack([own[task] for task in shared]))
+    return by(basis, target, np.stack([own[task] for task in shared]))
 
 
-def task_mean(_: FloatArray, wanted: FloatArray, __: FloatArray) -> FloatArray:
-    """(1378,) the mean of the wanted task by others (K, 1378): a baseline."""
-    return np.asarray(wanted.mean(axis=0))
+def task_mean(_: FloatArray, target: FloatArray, __: FloatArray) -> FloatArray:
+    """(1378,) the mean of the target task by K others, `target` (K, 1378): a baseline."""
+    return np.asarray(target.mean(axis=0))

@@ -20,8 +20,11 @@ PRIOR, DEFAULT, CCA_SCORE = "prior", "default", "cca-score"
 
 @dataclass(frozen=True, slots=True)
 class LabeledClips:
-    """Labeled clips: distances (N, N) of their symbols, statistics (N, p), labels (N, V),
-    groups (N), fold (N,); likelihoods (N, N) of each motion under each symbol, where known.
+    """N labeled clips.
+
+    distances: (N, N) of their symbols; statistics: (N, p); labels: (N, V); groups: N, equal for
+    files of one recording; fold: (N,); likelihoods: (N, N) log likelihood of each motion under
+    each symbol, None without it.
     """
 
     distances: FloatArray
@@ -34,47 +37,50 @@ class LabeledClips:
 
 @dataclass(frozen=True, slots=True)
 class Scores:
-    """words: (n, V) scores of the words of each held-out clip; clips: a function from label
-    vectors (queries, V) to scores of the clips (queries, n)."""
+    """The scores of n held-out clips by one method.
+
+    words: (n, V) scores of the words of each clip; clips: a function from label vectors
+    (queries, V) to scores of the clips (queries, n).
+    """
 
     words: FloatArray
     clips: Callable[[FloatArray], FloatArray]
 
 
-def score(clips: LabeledClips, training: IntArray, held: IntArray) -> dict[str, Scores]:
+def score(clips: LabeledClips, training: IntArray, held_out: IntArray) -> dict[str, Scores]:
     """Scores of the held-out rows by each method, fitted on the training rows.
 
     "cca" ranks by angle, as the search mode does. "cca-score" ranks by the probabilities that
     the mode reports (a fold with fewer training clips of a word then ranks behind others).
     "cca-distance" is Takano's retrieval as printed, by Euclidean distance; "cca-pinv" also uses
     the pseudo-inverse instead of the ridge. "cca-symbol" is his recognition: a motion is
-    replaced by its most likely training symbol, which needs likelihoods; the others place its
-    own symbol.
+    represented by its most likely training symbol. This needs likelihoods. The other methods
+    represent it by its own symbol.
     """
     labels = clips.labels[training]
     own_groups = [clips.groups[row] for row in training]
-    frequency = np.tile(labels.mean(axis=0), (len(held), 1))
+    frequency = np.tile(labels.mean(axis=0), (len(held_out), 1))
     model = fit_word_model(clips.statistics[training], labels)
     curve = calibrate(model, clips.statistics[training], labels, own_groups)
-    every = symbol_points(clips, training)
-    space = fit_correlated_space(every[training], labels)
-    printed = fit_correlated_space(every[training], labels, ridge=0.0)
+    points = symbol_points(clips, training)
+    space = fit_correlated_space(points[training], labels)
+    printed = fit_correlated_space(points[training], labels, ridge=0.0)
     calibrations = tuple(
-        calibrate_cosines(every[training], labels, own_groups, cosines_of)
+        calibrate_cosines(points[training], labels, own_groups, cosines_of)
         for cosines_of in (CorrelatedSpace.single_word_cosines, CorrelatedSpace.word_cosines)
     )
-    found = {
+    scores = {
         PRIOR: _by_cosine(frequency),
-        DEFAULT: _by_surprise(curve, model.outputs(clips.statistics[held])),
-        "cca": _by_angle(space, every[held]),
-        CCA_SCORE: _by_chance(space, every[held], calibrations, curve),
-        "cca-distance": _by_distance(space, every[held]),
-        "cca-pinv": _by_distance(printed, every[held]),
+        DEFAULT: _by_surprise(curve, model.outputs(clips.statistics[held_out])),
+        "cca": _by_angle(space, points[held_out]),
+        CCA_SCORE: _by_chance(space, points[held_out], calibrations, curve),
+        "cca-distance": _by_distance(space, points[held_out]),
+        "cca-pinv": _by_distance(printed, points[held_out]),
     }
     if clips.likelihoods is not None:
-        likeliest = training[np.argmax(clips.likelihoods[np.ix_(held, training)], axis=1)]
-        found["cca-symbol"] = _by_angle(space, every[likeliest])
-    return found
+        likeliest = training[np.argmax(clips.likelihoods[np.ix_(held_out, training)], axis=1)]
+        scores["cca-symbol"] = _by_angle(space, points[likeliest])
+    return scores
 
 
 def symbol_points(clips: LabeledClips, training: IntArray) -> FloatArray:

@@ -1,9 +1,9 @@
 """Figures of word prediction (Takano, section 3), held out and in-sample.
 
-Held out, a method is fitted on all folds but one and scored on that one. In-sample, as in the paper
-for retrieval, it is scored on the clips of its fit. The figures are of the words of a clip (top-3
-recognition), of clips for a single word (F at recall = precision over all words, fig. 7), and of
-clips for the label set of each clip (MAP, eq. 20).
+Held out: a method is fitted on all folds except one, and is scored on that fold. In-sample, as in
+the paper for retrieval: it is scored on the clips of its fit. There are figures for the words of a
+clip (top-3 recognition), for clips by a single word (F at recall = precision over all words, fig.
+7), and for clips by the label set of each clip (MAP, eq. 20).
 """
 
 from __future__ import annotations
@@ -42,12 +42,12 @@ from app.numerics.hmm.model import GaussianHMM
 
 FOLDS = 5
 MAX_CLIPS = 1000
-"""Larger libraries are judged on a random subset of this many clips."""
+"""Of larger libraries, a random subset of this many clips is judged."""
 
 RECALLS = np.linspace(0.0, 1.0, 21)
 
 MIN_RECORDINGS = 5
-"""Recordings with a word that are needed to judge the word by itself: about one in each fold."""
+"""Recordings with a word that are needed to judge the word alone: about one in each fold."""
 
 TOP_WORDS = 3
 """Takano counts a clip as recognized if one of its words is among this many best words."""
@@ -81,10 +81,11 @@ class Reliability:
 
 @dataclass(frozen=True, slots=True)
 class JudgedWord:
-    """Held-out figures of one word; clips, recordings: the numbers that carry it.
+    """Held-out figures of one word.
 
-    too_rare: it is in fewer than MIN_RECORDINGS recordings, so its own figures are mostly
-    chance. The figures over all words include it.
+    clips, recordings: the numbers of clips and of recordings with the word. too_rare: the word
+    is in fewer than MIN_RECORDINGS recordings, so its own figures are mostly chance. The
+    figures over all words include it.
     """
 
     word: str
@@ -118,7 +119,11 @@ class WordEvaluation:
 
 @dataclass(frozen=True, slots=True)
 class _Tables:
-    """Scores of all clips: words (N, V), singles (V, N), sets (N, N)."""
+    """Scores of all clips by one method.
+
+    words: (N, V) of words for each clip; singles: (V, N) of clips for each word; sets: (N, N) of
+    clips for the label set of each clip.
+    """
 
     words: FloatArray
     singles: FloatArray
@@ -153,7 +158,7 @@ def held_out_word_figures(
     distances = symbol_distances(own_symbols, own_symbols)
     likelihoods = None
     if sequence is not None:
-        channels = sequence  # the function for the chosen rows
+        channels = sequence  # not None, also inside the lambda
         likelihoods = likelihoods_of_symbols(
             own_symbols, distances, lambda row: channels(int(chosen[row]))
         )
@@ -205,14 +210,14 @@ def _tables(clips: LabeledClips, parts: Sequence[tuple[IntArray, IntArray]]) -> 
     """
     count, vocabulary = clips.labels.shape
     tables: dict[str, _Tables] = {}
-    for training, held in parts:
-        for name, scores in score(clips, training, held).items():
+    for training, held_out in parts:
+        for name, scores in score(clips, training, held_out).items():
             if name not in tables:
                 shapes = (count, vocabulary), (vocabulary, count), (count, count)
                 tables[name] = _Tables(*(np.zeros(shape) for shape in shapes))
-            tables[name].words[held] = scores.words
-            tables[name].singles[:, held] = scores.clips(np.eye(vocabulary))
-            tables[name].sets[:, held] = scores.clips(clips.labels)
+            tables[name].words[held_out] = scores.words
+            tables[name].singles[:, held_out] = scores.clips(np.eye(vocabulary))
+            tables[name].sets[:, held_out] = scores.clips(clips.labels)
     return tables
 
 
@@ -242,13 +247,13 @@ def _carries_all(labels: FloatArray) -> BoolArray:
 
 def _reliability(tables: dict[str, _Tables], method: str, labels: FloatArray) -> Reliability:
     own, carries, carries_all = tables[method], labels > 0.0, _carries_all(labels)
-    together = np.exp(own.sets)
+    set_scores = np.exp(own.sets)  # these methods score sets by log probabilities
     return Reliability(
         word_error=calibration_error(own.words, carries),
         word_brier=brier_score(own.words, carries),
         prior_brier=brier_score(tables[PRIOR].words, carries),
-        set_error=calibration_error(together, carries_all),
-        set_brier=brier_score(together, carries_all),
+        set_error=calibration_error(set_scores, carries_all),
+        set_brier=brier_score(set_scores, carries_all),
     )
 
 
@@ -256,7 +261,7 @@ def _by_word(
     singles: FloatArray, clips: LabeledClips, words: Sequence[str]
 ) -> tuple[JudgedWord, ...]:
     """The figures of each word, the most frequent first; singles: (V, N)."""
-    found = []
+    judged_words = []
     for word, scores, carries in zip(words, singles, clips.labels.T > 0.0, strict=True):
         recordings = len({clips.groups[row] for row in np.flatnonzero(carries)})
         judged = JudgedWord(
@@ -268,8 +273,8 @@ def _by_word(
             area_under_curve=area_under_curve(scores[carries], scores[~carries]),
             too_rare=recordings < MIN_RECORDINGS,
         )
-        found.append(judged)
-    return tuple(sorted(found, key=lambda one: (-one.clips, one.word)))
+        judged_words.append(judged)
+    return tuple(sorted(judged_words, key=lambda one: (-one.clips, one.word)))
 
 
 def _correlations(clips: LabeledClips) -> dict[str, tuple[float, ...]]:

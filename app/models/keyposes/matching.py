@@ -1,4 +1,4 @@
-"""Matches found keyposes with true ones (Perera 2009, Table 1), for precision and recall."""
+"""Matches detected keyposes with true ones (Perera 2009, Table 1), for precision and recall."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from app.numerics.arrays import FloatArray
 
 TOLERANCE = 0.1
-"""Largest distance in seconds of a found keypose from the true one."""
+"""Largest distance, in seconds, of a detected keypose from the true one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """Numbers of keyposes: true ones, found ones, and found ones that match a true one."""
+    """Numbers of keyposes: true ones, detected ones (`found`), and correctly detected ones."""
 
     true: int
     found: int
@@ -21,17 +21,17 @@ class Counts:
 
     @property
     def precision(self) -> float:
-        """Share of the found keyposes that are correct (section 3.3); 0 if none was found."""
+        """Share of the detected keyposes that are correct (section 3.3); 0 if none is detected."""
         return self.correct / self.found if self.found else 0.0
 
     @property
     def recall(self) -> float:
-        """Share of the true keyposes that were found (section 3.3); 0 if there are none."""
+        """Share of the true keyposes that were detected (section 3.3); 0 without true ones."""
         return self.correct / self.true if self.true else 0.0
 
     @property
     def f(self) -> float:
-        """Harmonic mean of precision and recall; 1 if there are no true and no found ones."""
+        """Harmonic mean of precision and recall; 1 without true and detected keyposes."""
         both = self.found + self.true
         return 2 * self.correct / both if both else 1.0
 
@@ -47,17 +47,18 @@ def total(counts: Iterable[Counts]) -> Counts:
 
 
 def match(found: FloatArray, true: FloatArray, within: float = TOLERANCE) -> Counts:
-    """Pair the times (seconds) one to one; pairs are at most `within` seconds apart.
+    """Pair detected and true times one to one; pairs are at most `within` seconds apart.
 
-    The number of pairs is the largest possible. found: (n,), true: (m,).
+    The number of pairs is the largest possible. found: (n,) detected times, true: (m,) true
+    times, both in seconds and in any order.
     """
-    times, meant = sorted(found.tolist()), sorted(true.tolist())
+    times, true_times = sorted(found.tolist()), sorted(true.tolist())
     at = correct = 0
     for time in times:
         # the earliest free time is the best choice, since later ones stay free for later times
-        while at < len(meant) and meant[at] < time - within:
+        while at < len(true_times) and true_times[at] < time - within:
             at += 1
-        if at < len(meant) and meant[at] <= time + within:
+        if at < len(true_times) and true_times[at] <= time + within:
             at += 1
             correct += 1
-    return Counts(len(meant), len(times), correct)
+    return Counts(len(true_times), len(times), correct)

@@ -1,8 +1,8 @@
 """Learns the thresholds T1 and T2 from annotated clips (Perera 2009, sections 3.1 and 3.3).
 
-All pairs of thresholds on a grid are tried. The keyposes hardly depend on them (figs 4 and 5). So,
-of the pairs that are about as good as the best, the one nearest to the usual thresholds is taken: a
-few annotated clips must not move the thresholds to an extreme.
+All pairs of thresholds on a grid are tried. The keyposes hardly depend on them (figs 4 and 5). So
+several pairs are about as good as the best. Of these, the pair nearest to the usual thresholds is
+used, because a few annotated clips must not move the thresholds to an extreme.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from app.numerics.arrays import FloatArray, IntArray
 
 TRIED_T1 = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.8, 1.0)
 TRIED_T2 = (0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0, 1.25, 1.5, 2.0)
-"""In units of the median local maximum of an energy."""
+"""The grid of thresholds, in units of the median local maximum of an energy."""
 
-ABOUT_AS_WELL = 0.005
-"""Pairs whose F is at most this much below the best count as equally good."""
+MAX_F_LOSS = 0.005
+"""Pairs with an F at most this much below the best one count as equally good."""
 
 CURVE_T1 = tuple(np.round(np.arange(0.0, 2.01, 0.1), 2).tolist())
 CURVE_T2 = tuple(np.round(np.arange(0.0, 3.01, 0.15), 2).tolist())
@@ -47,7 +47,7 @@ class Example:
 
 @dataclass(frozen=True, slots=True)
 class Thresholds:
-    """A minimum below t1 is small; a drop of more than t2 is deep."""
+    """Thresholds of energy: a minimum below t1 is small, a drop of more than t2 is deep."""
 
     t1: float
     t2: float
@@ -104,19 +104,21 @@ class ThresholdGrid:
         return _best(self.counts.sum(axis=0))
 
     def held_out(self, groups: Sequence[str]) -> tuple[tuple[Thresholds, Counts], ...]:
-        """For each example, the thresholds learned from the other groups and its counts with
-        them; groups: (examples,) equal for examples that are held out together."""
+        """For each example, the thresholds learned from the other groups, and its counts with them.
+
+        groups: (examples,) equal for examples that are held out together.
+        """
         names = np.array(groups)
-        found = []
+        results = []
         for name, own in zip(groups, self.counts, strict=True):
             pair = _best(self.counts[names != name].sum(axis=0))
-            at = (TRIED_T1.index(pair.t1), TRIED_T2.index(pair.t2))
-            found.append((pair, Counts(*(int(count) for count in own[at]))))
-        return tuple(found)
+            cell = (TRIED_T1.index(pair.t1), TRIED_T2.index(pair.t2))
+            results.append((pair, Counts(*(int(count) for count in own[cell]))))
+        return tuple(results)
 
 
 def threshold_grid(examples: Sequence[Example], within: float = TOLERANCE) -> ThresholdGrid:
-    """Try all pairs of thresholds; about 50 ms for half a minute of dance.
+    """Try all pairs of thresholds. This takes about 50 ms for half a minute of dance.
 
     within: the largest distance in seconds of a match.
     """
@@ -151,9 +153,9 @@ def _best(counts: IntArray) -> Thresholds:
     true, found, correct = np.moveaxis(counts, -1, 0)
     f = 2 * correct / np.maximum(true + found, 1)
     t1, t2 = np.meshgrid(TRIED_T1, TRIED_T2, indexing="ij")
-    away = np.abs(np.log(t1 / USUAL.t1)) + np.abs(np.log(t2 / USUAL.t2))
-    at = int(np.argmin(np.where(f >= f.max() - ABOUT_AS_WELL, away, np.inf)))
-    return Thresholds(float(t1.flat[at]), float(t2.flat[at]))
+    distance = np.abs(np.log(t1 / USUAL.t1)) + np.abs(np.log(t2 / USUAL.t2))
+    best = int(np.argmin(np.where(f >= f.max() - MAX_F_LOSS, distance, np.inf)))
+    return Thresholds(float(t1.flat[best]), float(t2.flat[best]))
 
 
 def _curve(

@@ -3,8 +3,8 @@
 Linear discriminants (app.numerics.discriminant) of three descriptors of a clip: its motion
 vector, its motion sample (one gait cycle, or the whole) and its symbol statistics. Coordinates
 are normalized to unit length, so that their Euclidean distance, 0 to 2, ranks like their cosine.
-Directions that do not separate the known labels keep a small weight, so that tasks without a label
-do not collapse into one point.
+Directions that do not separate the labels of the fit have a small weight. Without it, clips of
+other tasks would all be near one point.
 """
 
 from __future__ import annotations
@@ -26,24 +26,25 @@ from app.numerics.principal_axes import principal_axes
 METRIC_VERSION = 1
 
 INPUTS = ("motion_vector", "motion_sample", "symbol_statistics")
-"""Names of the descriptors, in the order in which `Described` has them."""
+"""Names of the descriptors, in the order in which `ClipDescriptors` has them."""
 
 DIMENSIONS = 160
-"""Number of principal axes of the descriptors, before the discriminant; 100 to 250 are as good."""
+"""Number of principal axes of the descriptors, before the discriminants; 100 to 250 do as well."""
 
 COORDINATES = 64
 """Number of coordinates of a clip."""
 
-UNPARTED = 0.05
-"""Weight of a direction that separates no labels: a variance relative to that within a label."""
+UNSEPARATED_WEIGHT = 0.05
+"""Added to the variance between labels along each axis, in units of the variance within labels."""
 
 MIN_LABELS = 2
 """Number of labels with at least two clips each that a metric needs."""
 
 MAX_CLIPS = 20_000
-"""Largest number of labeled clips in a fit, drawn with a fixed seed; more hardly change it."""
+"""Largest number of labeled clips in a fit, drawn with a fixed seed; more change it very little."""
 
-_SMALLEST = 1e-9
+_MIN_DIVISOR = 1e-9
+"""Avoids divisions by 0."""
 
 
 class Factor(StrEnum):
@@ -65,8 +66,8 @@ on the other three takes.
 
 
 @dataclass(frozen=True, slots=True)
-class Described:
-    """The descriptors of n clips that metrics look at.
+class ClipDescriptors:
+    """The descriptors of n clips from which metrics are learned.
 
     vectors: (n, 128) motion vectors; samples: (n, 1250) motion samples; statistics: (n, 131)
     symbol statistics. Other widths are possible.
@@ -79,9 +80,9 @@ class Described:
     def __len__(self) -> int:
         return len(self.vectors)
 
-    def part(self, index: IntArray) -> Described:
+    def part(self, index: IntArray) -> ClipDescriptors:
         """The descriptors of the clips at these indices."""
-        return Described(self.vectors[index], self.samples[index], self.statistics[index])
+        return ClipDescriptors(self.vectors[index], self.samples[index], self.statistics[index])
 
     def widths(self) -> tuple[int, ...]:
         """The width of each descriptor."""
@@ -92,25 +93,25 @@ class Described:
 
         Statistics are transformed by asinh, since some (such as speeds) have heavy tails.
         """
-        tamed = np.arcsinh(np.asarray(self.statistics, dtype=np.float64))
-        return np.hstack([self.vectors, self.samples, tamed]).astype(np.float64)
+        compressed = np.arcsinh(np.asarray(self.statistics, dtype=np.float64))
+        return np.hstack([self.vectors, self.samples, compressed]).astype(np.float64)
 
 
 @dataclass(frozen=True, slots=True)
 class MetricAxes:
     """The map from descriptors to coordinates.
 
-    center: (d,) mean of `Described.concatenated`; axes: (d, k).
+    center: (d,) mean of `ClipDescriptors.concatenated`; axes: (d, k).
     """
 
     center: FloatArray
     axes: FloatArray
 
-    def project(self, described: Described) -> FloatArray:
+    def project(self, described: ClipDescriptors) -> FloatArray:
         """(n, k) coordinates of unit length (0 for a clip at the center)."""
         points = (described.concatenated() - self.center) @ self.axes
         lengths = np.linalg.norm(points, axis=1, keepdims=True)
-        return np.asarray(points / np.maximum(lengths, _SMALLEST))
+        return np.asarray(points / np.maximum(lengths, _MIN_DIVISOR))
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,24 +136,29 @@ class LearnedMetric:
         return cls(MetricAxes(arrays["centre"], arrays["axes"]), calibration)
 
 
-def fit_axes(described: Described, labels: Sequence[str | None], factor: Factor) -> MetricAxes:
+def fit_axes(
+    described: ClipDescriptors, labels: Sequence[str | None], factor: Factor
+) -> MetricAxes:
     """Learn from n clips with their labels (n,), None for no label.
 
     Raises NotEnoughLabels if `check_labels` does.
     """
     check_labels(labels, factor)
-    known = _drawn([i for i, label in enumerate(labels) if label])
-    part = described.part(known)
+    labeled = _drawn([i for i, label in enumerate(labels) if label])
+    part = described.part(labeled)
     rows = part.concatenated()
     center = rows.mean(axis=0)
     rows -= center
     scales = _scales(rows, part.widths(), factor)
-    found = principal_axes(rows * scales, DIMENSIONS, centered=False)
-    _, classes = np.unique([str(labels[i]) for i in known], return_inverse=True)
-    parted = discriminants(found.project(rows * scales), classes, COORDINATES)
-    strength = parted.between + UNPARTED
-    weights = np.sqrt(strength / (1.0 + strength))
-    return MetricAxes(center, scales[:, None] * (found.axes @ (parted.axes * weights)))
+    principal = principal_axes(rows * scales, DIMENSIONS, centered=False)
+    _, classes = np.unique([str(labels[i]) for i in labeled], return_inverse=True)
+    separating = discriminants(principal.project(rows * scales), classes, COORDINATES)
+    # the share of the variance along an axis that lies between labels
+    between = separating.between + UNSEPARATED_WEIGHT
+    weights = np.sqrt(between / (1.0 + between))
+    # one map (d, k) for scaling, principal axes, discriminants and weights
+    axes = scales[:, None] * (principal.axes @ (separating.axes * weights))
+    return MetricAxes(center, axes)
 
 
 def check_labels(labels: Sequence[str | None], factor: Factor) -> None:
@@ -166,24 +172,25 @@ def check_labels(labels: Sequence[str | None], factor: Factor) -> None:
         )
 
 
-def _drawn(known: list[int]) -> IntArray:
-    if len(known) <= MAX_CLIPS:
-        return np.array(known)
-    return np.sort(np.random.RandomState(0).permutation(known)[:MAX_CLIPS])
+def _drawn(labeled: list[int]) -> IntArray:
+    """At most MAX_CLIPS of the indices `labeled`, ascending."""
+    if len(labeled) <= MAX_CLIPS:
+        return np.array(labeled)
+    return np.sort(np.random.RandomState(0).permutation(labeled)[:MAX_CLIPS])
 
 
-def _scales(centred: FloatArray, widths: tuple[int, ...], factor: Factor) -> FloatArray:
-    """(d,) factors that give the descriptors in `centred` (n, d) their weights.
+def _scales(centered: FloatArray, widths: tuple[int, ...], factor: Factor) -> FloatArray:
+    """(d,) factors that give the descriptors in `centered` (n, d) their weights.
 
     The columns of the statistics have different units, so each is first divided by its standard
-    deviation. Columns that hardly vary get less, since they are mostly noise.
+    deviation. Columns that hardly vary get a smaller factor, since they are mostly noise.
     """
-    deviation = np.sqrt((centred**2).mean(axis=0))
+    deviation = np.sqrt((centered**2).mean(axis=0))
     ends = np.cumsum((0, *widths))
     scales = np.ones(len(deviation))
     last = slice(ends[-2], ends[-1])
-    scales[last] = 1.0 / (deviation[last] + max(0.1 * np.median(deviation[last]), _SMALLEST))
+    scales[last] = 1.0 / (deviation[last] + max(0.1 * np.median(deviation[last]), _MIN_DIVISOR))
     for weight, first, stop in zip(WEIGHTS[factor], ends[:-1], ends[1:], strict=True):
         total = np.linalg.norm(deviation[first:stop] * scales[first:stop])
-        scales[first:stop] *= weight / max(float(total), _SMALLEST)
+        scales[first:stop] *= weight / max(float(total), _MIN_DIVISOR)
     return scales

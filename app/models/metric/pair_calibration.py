@@ -1,8 +1,8 @@
-"""From the distance of two clips to the probability that they carry the same label.
+"""Converts the distance of two clips to the probability that they have the same label.
 
 A logistic curve is fitted to held-out pairs with the regularized targets of Platt ("Probabilistic
-outputs for support vector machines", 1999), so that a few cleanly separated pairs do not make it a
-step. The pairs are as frequent as in the library, so the probability is that of a random pair.
+outputs for support vector machines", 1999). So a few cleanly separated pairs do not make the curve
+a step. The pairs are as frequent as in the library, so the probability is that of a random pair.
 """
 
 from __future__ import annotations
@@ -15,12 +15,13 @@ import scipy
 from app.numerics.arrays import BoolArray, FloatArray
 
 LEVELS = (-12.0, 12.0)
+"""Bounds of the level."""
 SLOPES = (0.5, 200.0)
 """Bounds of the slope. The score must fall with the distance even if the pairs carry no
 information, and different printed distances must not round to the same score."""
 
 START = (3.0, 6.0)
-"""Level and slope without pairs of both kinds: probability one half at distance one half."""
+"""Level and slope of a fit without pairs of both kinds: probability 0.5 at distance 0.5."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +43,7 @@ class PairCalibration:
 def calibrate_pairs(distances: FloatArray, same: BoolArray) -> PairCalibration:
     """Fit the curve with maximum likelihood.
 
-    distances: (n,) of the pairs; same: (n,) whether the two clips carry the same label.
+    distances: (n,) of the pairs; same: (n,) whether the two clips have the same label.
     """
     positive = int(np.count_nonzero(same))
     if not 0 < positive < len(same):
@@ -53,11 +54,11 @@ def calibrate_pairs(distances: FloatArray, same: BoolArray) -> PairCalibration:
     def loss(curve: FloatArray) -> tuple[float, FloatArray]:
         level, slope = curve
         odds = level - slope * distances
-        missed = 1.0 / (1.0 + np.exp(-odds)) - targets
+        errors = 1.0 / (1.0 + np.exp(-odds)) - targets
         mean_loss = float(np.mean(np.logaddexp(0.0, odds) - targets * odds))
-        return mean_loss, np.array([missed.mean(), -np.mean(missed * distances)])
+        return mean_loss, np.array([errors.mean(), -np.mean(errors * distances)])
 
-    found = scipy.optimize.minimize(
+    result = scipy.optimize.minimize(
         loss, START, jac=True, method="L-BFGS-B", bounds=(LEVELS, SLOPES)
     )
-    return PairCalibration(*(float(value) for value in found.x))
+    return PairCalibration(*(float(value) for value in result.x))

@@ -1,1 +1,1 @@
-"""Who does what: recognizers of persons and tasks."""
+"""Recognition of persons and tasks."""

@@ -1,4 +1,4 @@
-"""Value types of recognition (who does what), shared by all recognizers."""
+"""The results of recognition of a person and a task, shared by all recognizers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 
 MAX_CANDIDATES = 10
-"""Candidates that an answer lists."""
+"""The largest number of candidates in an answer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,12 +23,13 @@ class Candidate:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The person or the task of a clip; label is None if unknown. candidates: by falling score;
-    the scores sum to at most 1.
+    """The recognized person, or the recognized task, of a clip.
 
-    score: belief in `label`, or, when unknown, in the best candidate (0 without any); novelty:
-    how far the clip lies beyond the threshold of the unknown; 0 or less if known, and 0 if the
-    recognizer does not compute it.
+    label: None if it is unknown. known: whether the person (or task) is one of the library.
+    score: belief in `label`, or in the best candidate if it is unknown; 0 without candidates.
+    candidates: by falling score; the scores sum to at most 1. novelty: the distance of the clip
+    beyond the threshold of the unknown; 0 or less for a known label, and 0 if the recognizer
+    does not compute it.
     """
 
     label: str | None
@@ -47,11 +48,11 @@ class Recognition:
 
 
 NO_ANSWER = Answer(label=None, known=False, score=0.0)
-"""For a factor that the library has no labels of."""
+"""The answer without candidates, such as the task in a library without task labels."""
 
 
 def answer(labels: Sequence[str], scores: FloatArray, known: bool, novelty: float = 0.0) -> Answer:
-    """The answer from `scores` (labels,), one for each label, 0..1, with a sum of at most 1."""
+    """The answer from the scores (labels,) of all labels, each 0..1, with a sum of at most 1."""
     if not labels:
         return NO_ANSWER
     order = np.argsort(-scores, kind="stable")[:MAX_CANDIDATES]

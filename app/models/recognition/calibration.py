@@ -1,7 +1,7 @@
-"""Calibration of a recognizer: the temperature of its evidence, and the threshold of unknown.
+"""Calibration of a recognizer: the temperature of its evidence, and the threshold of novelty.
 
-evidence: (n, labels) log evidence of each label; novelty: (n,) the log evidence of something new
-minus that of everything known; truth: (n,) the label index, NEW where the label was not among the
+evidence: (n, labels) log evidence of each label; novelty: (n,) the log evidence of a new label
+minus that of all known labels; truth: (n,) the index of the true label, NEW for a label without
 training clips. All of them come from held-out clips.
 """
 
@@ -17,30 +17,33 @@ from app.numerics.area_under_curve import area_under_curve
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 NEW = -1
+"""The index of a label without training clips."""
 
 TEMPERATURES = np.geomspace(1.0, 100.0, 25)
 SCALES = np.geomspace(0.5, 100.0, 25)
+"""Candidates for the temperature and for the scale of a calibration."""
 
 USUAL_FALSE_REJECTION = 0.02
-"""Share of known clips refused if the library is too small to hold anything out as unknown."""
+"""Share of known clips that are called unknown, if the library is too small to hold labels out."""
 
-MIN_USUAL = 20
-"""Clips of each kind that are needed to estimate its median and spread."""
+MIN_CLIPS = 20
+"""Clips, known and new, that are each needed to estimate their median and spread."""
 
 MIN_BELIEF = 1e-9
-"""Floor of the belief in being known, so that the labels of a surely new clip keep their order
-as candidates."""
+"""Smallest belief that a clip is known. So the candidates of a surely new clip stay in order."""
 
 TAIL = 0.02
-"""Share of the clips of each kind that is ignored when the gap between them is looked for."""
+"""Share of the known and of the new clips that is ignored for the gap between them."""
 
 WIDE_GAP = 6.0
-"""A gap of at least this width, in interquartile ranges of the known, alone sets the threshold."""
+"""If the gap is at least this wide, in interquartile ranges of the known clips, the threshold is
+the middle of the gap."""
 
 CURVE_POINTS = 50
 """Points of the curve of false acceptance against false rejection."""
 
-_FAR = 1e30
+_MIN_LOG = -1e30
+"""The largest logarithm of an empty row."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,9 +51,9 @@ class Calibration:
     """A fitted calibration.
 
     temperature: divides the log evidence. threshold: a clip with a larger novelty is unknown.
-    scale: the novelty over which the belief in being known falls. known_novelty, new_novelty:
-    sorted novelties of held-out clips (or of imagined ones, see fit_calibration), from which the
-    error rates at any threshold are computed.
+    scale: the novelty over which the belief that a clip is known falls. known_novelty,
+    new_novelty: sorted novelties of held-out known and new clips (or of simulated takes, see
+    fit_calibration), from which the error rates at any threshold are computed.
     """
 
     temperature: float
@@ -77,31 +80,34 @@ class Calibration:
         return cls(temperature, threshold, scale, known, new)
 
     def beliefs(self, evidence: FloatArray, novelty: FloatArray) -> FloatArray:
-        """(n, labels) belief in each label, 0..1, each row's sum = belief in being known."""
+        """(n, labels) belief in each label, 0..1. A row's sum is the belief that it is known."""
         known = np.maximum(sigmoid((self.threshold - novelty) / self.scale), MIN_BELIEF)
         return np.asarray(softmax(evidence / self.temperature) * known[:, None])
 
     def at_false_acceptance(self, rate: float) -> Calibration:
-        """The same calibration with the largest threshold at which at most `rate` (0..1, below 1)
-        of the new held-out clips are accepted. Without such clips it stays as it is."""
+        """The same calibration with another threshold.
+
+        It is the largest one that accepts at most the share `rate` (0 to less than 1) of the new
+        held-out clips. Without such clips, the threshold stays as it is.
+        """
         if not len(self.new_novelty):
             return self
         beyond = self.new_novelty[int(rate * len(self.new_novelty))]
-        every = np.concatenate([self.known_novelty, self.new_novelty])
-        within = every[every < beyond]
+        novelties = np.concatenate([self.known_novelty, self.new_novelty])
+        within = novelties[novelties < beyond]
         middle = (within.max() + beyond) / 2 if len(within) else beyond - 1.0
         return replace(self, threshold=float(middle))
 
     def curve(self) -> list[tuple[float, float, float]]:
         """(threshold, false acceptance, false rejection) along the held-out clips' novelties."""
-        every = np.unique(np.concatenate([self.known_novelty, self.new_novelty]))
-        if not len(every):
+        novelties = np.unique(np.concatenate([self.known_novelty, self.new_novelty]))
+        if not len(novelties):
             return []
-        chosen = np.unique(np.linspace(0, len(every) - 1, CURVE_POINTS).round().astype(int))
-        return [(float(t), *self.error_rates(float(t))) for t in every[chosen]]
+        chosen = np.unique(np.linspace(0, len(novelties) - 1, CURVE_POINTS).round().astype(int))
+        return [(float(t), *self.error_rates(float(t))) for t in novelties[chosen]]
 
     def area_under_curve(self) -> float:
-        """The chance that something new has a larger novelty than something known."""
+        """The probability that a new clip has a larger novelty than a known clip."""
         return area_under_curve(self.new_novelty, self.known_novelty)
 
     def error_rates(self, threshold: float | None = None) -> tuple[float, float]:
@@ -117,40 +123,41 @@ def fit_calibration(
     novelty: FloatArray,
     truth: IntArray,
     seen: BoolArray | None = None,
-    imagined: FloatArray | None = None,
+    simulated: FloatArray | None = None,
 ) -> Calibration:
     """Calibrate on held-out clips; without any, the calibration has fixed values.
 
-    seen: (n,) whether the same person at the same task was among the training clips; if not
-    given, none was. A known clip that was not seen looks newer than the clips that will be asked
-    about. So the threshold and the error rates come from the clips that were seen, where there
-    are MIN_USUAL of them; else from `imagined`: (m,) novelties that further takes of the
-    recorded cells would have.
+    seen: (n,) whether the same person at the same task was among the training clips; None for
+    none. simulated: (m,) novelties of simulated further takes of the recorded cells.
+
+    A known clip that was not seen has a larger novelty than the clips of later requests. So the
+    threshold and the error rates come from the seen clips, if there are MIN_CLIPS of them, else
+    from the simulated takes.
     """
     known = truth != NEW
-    new, around = novelty[~known], novelty[known]
+    new, scaled = novelty[~known], novelty[known]
     judged = novelty[known & seen] if seen is not None else novelty[:0]
-    if len(judged) < MIN_USUAL and imagined is not None:
-        judged = around = imagined
-    if min(len(judged), len(new)) >= MIN_USUAL:
-        threshold = _alike(judged, new)
-        if judged is not imagined:
+    if len(judged) < MIN_CLIPS and simulated is not None:
+        judged = scaled = simulated
+    if min(len(judged), len(new)) >= MIN_CLIPS:
+        threshold = _between_medians(judged, new)
+        if judged is not simulated:
             threshold = _in_the_gap(threshold, judged, new)
     else:
-        judged = around = novelty[known]
+        judged = scaled = novelty[known]
         threshold = _threshold(judged, new)
     return Calibration(
         temperature=_temperature(evidence[known], truth[known]),
         threshold=threshold,
-        scale=_scale(around - threshold, new - threshold),
+        scale=_scale(scaled - threshold, new - threshold),
         known_novelty=np.sort(judged),
         new_novelty=np.sort(new),
     )
 
 
 def softmax(logs: FloatArray) -> FloatArray:
-    """(n, k) rows of log weights to shares that sum to 1."""
-    shares = np.exp(logs - logs.max(axis=1, keepdims=True, initial=-_FAR))
+    """(n, k) shares that sum to 1 in each row, from log weights (n, k)."""
+    shares = np.exp(logs - logs.max(axis=1, keepdims=True, initial=_MIN_LOG))
     return np.asarray(shares / np.maximum(shares.sum(axis=1, keepdims=True), 1e-300))
 
 
@@ -184,7 +191,7 @@ def _threshold(known: FloatArray, new: FloatArray) -> float:
     return float(np.median(cuts[best]))  # if they separate cleanly, the middle of the gap
 
 
-def _alike(known: FloatArray, new: FloatArray) -> float:
+def _between_medians(known: FloatArray, new: FloatArray) -> float:
     """The novelty that is equally far from the medians of the known and of the new clips, each
     distance in interquartile ranges of its kind.
 
@@ -208,13 +215,14 @@ def _in_the_gap(threshold: float, known: FloatArray, new: FloatArray) -> float:
 
 
 def _range(part: FloatArray) -> float:
+    """The interquartile range, above 0."""
     return max(float(np.subtract(*np.quantile(part, [0.75, 0.25]))), 1e-9)
 
 
 def _scale(known: FloatArray, new: FloatArray) -> float:
-    """The scale of the logistic fall-off with the largest likelihood of the held-out clips.
+    """The scale of the logistic curve with the largest likelihood of the held-out clips.
 
-    known, new: their novelties beyond the threshold; both kinds have the same weight.
+    known, new: novelties minus the threshold; both kinds have the same weight.
     """
     if not len(known) or not len(new):
         return 1.0

@@ -1,8 +1,8 @@
 """Flat PCA, the baseline with which Vasilescu 2002 (section 5) compares her model.
 
-Each observed motion is a vector of coefficients of the principal axes. A person is represented by
-one vector for each task, where the multilinear model has one signature for the person. So nothing
-is known of what two tasks of one person have in common.
+Each observed motion is a vector of coefficients of the principal axes. A person has one vector for
+each task. (The multilinear model has one signature for each person.) So flat PCA does not model
+what two tasks of one person have in common.
 """
 
 from __future__ import annotations
@@ -53,13 +53,13 @@ def recognize_flat(
 ) -> Recognition:
     """Recognize who does what in one sample (w,) by the nearest cell.
 
-    Only the cells of a known person or task are compared; a known label that was never seen is
-    ignored. Nothing is called unknown. Scores are shares by nearness.
+    Only the cells of a known person or task are compared; a known label that the model does
+    not have is ignored. Nothing is called unknown. Scores are shares by nearness.
     """
     cells = record.cells
-    far = np.linalg.norm(record.coefficients - record.axes.project(sample), axis=1)
-    to_persons = _nearest(_among(far, cells.task, cells.tasks, known_task), cells.person)
-    to_tasks = _nearest(_among(far, cells.person, cells.persons, known_person), cells.task)
+    distances = np.linalg.norm(record.coefficients - record.axes.project(sample), axis=1)
+    to_persons = _nearest(_among(distances, cells.task, cells.tasks, known_task), cells.person)
+    to_tasks = _nearest(_among(distances, cells.person, cells.persons, known_person), cells.task)
     return Recognition(
         given(known_person, cells.persons)
         if known_person
@@ -71,15 +71,16 @@ def recognize_flat(
 
 
 def _among(
-    far: FloatArray, label: IntArray, names: tuple[str, ...], known: str | None
+    distances: FloatArray, label: IntArray, names: tuple[str, ...], known: str | None
 ) -> FloatArray:
+    """The distances (cells,); those of cells with another label than `known` are infinite."""
     if known not in names:
-        return far
-    return np.where(label == names.index(known), far, np.inf)
+        return distances
+    return np.where(label == names.index(known), distances, np.inf)
 
 
-def _nearest(far: FloatArray, label: IntArray) -> FloatArray:
-    """(labels,) the smallest of the distances `far` (cells,) of each label's cells."""
-    least = np.full(int(label.max()) + 1, np.inf)
-    np.minimum.at(least, label, far)
-    return least
+def _nearest(distances: FloatArray, label: IntArray) -> FloatArray:
+    """(labels,) the smallest of the `distances` (cells,) of each label's cells."""
+    smallest = np.full(int(label.max()) + 1, np.inf)
+    np.minimum.at(smallest, label, distances)
+    return smallest

@@ -35,8 +35,7 @@ SHRINKAGE = 0.1
 the share is larger if there are too few repeated takes to estimate the shape."""
 
 MIN_VARIANCE = 1e-6
-"""Floor of a mean variance, in squared body lengths. It prevents a division by 0 for identical
-takes."""
+"""Smallest mean variance, in squared body lengths. It avoids a division by 0 for equal takes."""
 
 MIN_FREEDOM = 5
 """With fewer repeated takes, the covariance within cells is a share of that between cells."""
@@ -81,13 +80,13 @@ class Hypotheses:
     whiteners: FloatArray
     log_scale: FloatArray
 
-    def further_takes(self, count: int, most_cells: int) -> FloatArray:
+    def further_takes(self, count: int, max_cells: int) -> FloatArray:
         """(n, d) random takes of cells from the SEEN distributions.
 
-        `count` takes of each of at most `most_cells` cells; the seed is fixed.
+        There are `count` takes of each of at most `max_cells` cells. The seed is fixed.
         """
         seen = np.flatnonzero(self.kind == Kind.SEEN)
-        seen = seen[np.linspace(0, len(seen) - 1, min(len(seen), most_cells)).astype(np.int64)]
+        seen = seen[np.linspace(0, len(seen) - 1, min(len(seen), max_cells)).astype(np.int64)]
         seen = np.repeat(seen, count)
         rng = np.random.default_rng(SEED)
         drawn = rng.standard_normal((len(seen), self.means.shape[1]))
@@ -95,6 +94,7 @@ class Hypotheses:
         out = np.empty_like(white)
         for form in np.unique(self.form[seen]):
             own = self.form[seen] == form
+            # white = point @ whitener, so the point solves whitener.T @ point = white
             out[own] = np.linalg.solve(self.whiteners[form].T, white[own].T).T
         return out
 
@@ -142,12 +142,12 @@ def fit_hypotheses(points: FloatArray, cells: Cells) -> Hypotheses:
     total = shrunk(np.cov(means.T, bias=True).reshape(2 * [points.shape[1]]))
     unseen = _unseen(means, cells, total)
     seen = _seen(points, means, cells, WITHIN_SHARE * unseen.covariance)
-    strangers = _like_others(means, cells, total)
-    persons = _new_task(means, cells, total)
-    nobody = np.array([-1])
+    new_person = _new_person(means, cells, total)
+    new_task = _new_task(means, cells, total)
+    no_label = np.array([-1])
     center = means.mean(axis=0, keepdims=True)
-    new = _Group(Kind.NEW_BOTH, center, nobody, nobody, total, np.ones(1))
-    return _whitened([*seen, unseen, strangers, persons, new])
+    new_both = _Group(Kind.NEW_BOTH, center, no_label, no_label, total, np.ones(1))
+    return _whitened([*seen, unseen, new_person, new_task, new_both])
 
 
 def shrunk(covariance: FloatArray, share: float = SHRINKAGE) -> FloatArray:
@@ -158,18 +158,18 @@ def shrunk(covariance: FloatArray, share: float = SHRINKAGE) -> FloatArray:
 
 
 def _seen(
-    points: FloatArray, means: FloatArray, cells: Cells, stand_in: FloatArray
+    points: FloatArray, means: FloatArray, cells: Cells, fallback: FloatArray
 ) -> list[_Group]:
     """A group for each task with repeated takes, and one group for all other cells.
 
-    stand_in: (d, d) the covariance if the library has fewer than MIN_FREEDOM repeated takes.
+    fallback: (d, d) the covariance if the library has fewer than MIN_FREEDOM repeated takes.
     """
     full = np.flatnonzero(cells.full)
     inside = np.flatnonzero(np.isin(cells.member, full))
     deviations = points[inside] - means[cells.member[inside]]
     freedom = len(deviations) - len(full)
     if freedom < MIN_FREEDOM:
-        scatter = Scatter.same(stand_in, cells)
+        scatter = Scatter.same(fallback, cells)
     else:
         within = deviations.T @ deviations / freedom
         pooled = shrunk(within, max(SHRINKAGE, oracle_share(within, freedom)))
@@ -182,11 +182,12 @@ def _seen(
     ]
 
 
-def _unseen(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
+def _unseen(means: FloatArray, cells: Cells, fallback: FloatArray) -> _Group:
+    """UNSEEN: one hypothesis for each pair of person and task that was never recorded."""
     effects = fit_effects(means, cells)
     person, task = np.nonzero(_missing(cells))
     enough = len(effects.errors) >= MIN_FREEDOM
-    spread = _second_moment(effects.errors) if enough else stand_in
+    spread = _second_moment(effects.errors) if enough else fallback
     predicted = effects.predict(person, task)
     return _Group(Kind.UNSEEN, predicted, person, task, spread, np.ones(len(person)))
 
@@ -202,7 +203,7 @@ def _missing(cells: Cells) -> BoolArray:
     return np.asarray(missing & (missing.sum() <= MAX_UNSEEN))
 
 
-def _like_others(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
+def _new_person(means: FloatArray, cells: Cells, fallback: FloatArray) -> _Group:
     """NEW_PERSON: one hypothesis for each cell with a task label.
 
     The covariance is that of the differences between the cells of two persons at one task,
@@ -216,12 +217,12 @@ def _like_others(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Grou
     # the sum of squares of all n (n - 1) differences is 2 n times that about the mean
     errors = deviations * np.sqrt(2 * counts[task] / max(pairs, 1))[:, None]
     enough = (counts[task] > 1).sum() >= MIN_FREEDOM
-    covariance = shrunk(errors.T @ errors) if enough else stand_in
-    nobody = np.full(len(has), -1)
-    return _Group(Kind.NEW_PERSON, means[has], nobody, task, covariance, np.ones(len(has)))
+    covariance = shrunk(errors.T @ errors) if enough else fallback
+    no_label = np.full(len(has), -1)
+    return _Group(Kind.NEW_PERSON, means[has], no_label, task, covariance, np.ones(len(has)))
 
 
-def _new_task(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
+def _new_task(means: FloatArray, cells: Cells, fallback: FloatArray) -> _Group:
     """NEW_TASK: one hypothesis for each person, at the mean of their cells (equal weights)."""
     label, labels = cells.person, len(cells.persons)
     has = np.flatnonzero(label >= 0)
@@ -229,10 +230,11 @@ def _new_task(means: FloatArray, cells: Cells, stand_in: FloatArray) -> _Group:
     centers = _centers(means, label, labels)
     several = has[counts[label[has]] > 1]
     others = counts[label[several]] - 1
+    # m - c times (1 + 1/others) is the cell minus the mean of the person's other cells
     errors = (means[several] - centers[label[several]]) * (1 + 1 / others)[:, None]
-    covariance = _second_moment(errors) if len(errors) >= MIN_FREEDOM else stand_in
-    index, nothing = np.arange(labels), np.full(labels, -1)
-    return _Group(Kind.NEW_TASK, centers, index, nothing, covariance, np.ones(labels))
+    covariance = _second_moment(errors) if len(errors) >= MIN_FREEDOM else fallback
+    index, no_label = np.arange(labels), np.full(labels, -1)
+    return _Group(Kind.NEW_TASK, centers, index, no_label, covariance, np.ones(labels))
 
 
 def _centers(means: FloatArray, label: IntArray, labels: int) -> FloatArray:
@@ -244,10 +246,12 @@ def _centers(means: FloatArray, label: IntArray, labels: int) -> FloatArray:
 
 
 def _second_moment(errors: FloatArray) -> FloatArray:
+    """(d, d) the shrunk mean of the outer products of `errors` (n, d)."""
     return shrunk(errors.T @ errors / len(errors))
 
 
 def _whitened(groups: list[_Group]) -> Hypotheses:
+    """All groups as one record; each group has a form, with its number."""
     factors = [np.linalg.cholesky(group.covariance) for group in groups]
     whiteners = [np.linalg.inv(factor).T for factor in factors]
     white = [group.means @ by for group, by in zip(groups, whiteners, strict=True)]

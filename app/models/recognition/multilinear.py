@@ -1,10 +1,11 @@
 """The multilinear model of Vasilescu 2002: signatures of persons, parameters of actions.
 
 D (persons P, tasks T, samples) = Z x_1 P x_2 A x_3 J (eq. 3). D holds the mean motion of each
-cell, a cell being a person at a task; a cell without clips gets the sum of the effects of its
-person and its task (app.models.cells). Samples are kept in at most 100 PCA coordinates. These are
-uncentered, so that the tensor is the paper's. Where the person or the task of a clip is known, the
-other is recognized as in section 5; where none is known, the nearest reconstructed cell is taken.
+cell. A cell is a person at a task. A cell without clips gets the sum of the effects of its person
+and its task (app.models.cells). Samples are represented by at most 100 PCA coordinates. They are
+not centered, because the tensor of the paper is not. If the caller knows the person or the task of
+a clip, the other label is recognized as in section 5. Else both labels are those of the nearest
+reconstructed cell.
 """
 
 from __future__ import annotations
@@ -28,20 +29,20 @@ from app.numerics.tensors.tensor import mode_product
 MULTILINEAR_VERSION = 2
 
 DIMENSIONS = 100
-"""Coordinates of the sample mode."""
+"""The largest number of coordinates of the sample mode."""
 
 MIN_SINGULAR = 0.005
 """Relative cut-off of the pseudo-inverses of B_a and C_p. Slices filled by completion have nearly
 low rank; without a cut-off the inverse would amplify noise."""
 
 MAX_CELLS = 20_000
-"""Persons x tasks; the tensor of a larger library would not fit a small machine."""
+"""The largest number of persons x tasks: a larger tensor would not fit a small machine."""
 
 RADIUS_SHARE = 95.0
-"""Percentile of the training clips' distances that counts as near."""
+"""Percentile of the training clips' distances to their cells that gives the radius."""
 
 RADIUS_SLACK = 1.5
-"""Factor on the radius: held-out takes lie farther out than the takes of the fit."""
+"""Factor on the radius: held-out takes are farther from their cells than the takes of the fit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +52,7 @@ class Multilinear:
     persons: (P,) and tasks: (T,) sorted labels. axes: the PCA coordinates. svd: the core tensor
     and the mode matrices: persons (P, R1), whose rows are the signatures, actions (T, R2), and
     eigenmotions (d, R3) in the coordinates of `axes`. radius: a clip that is farther than this
-    from every cell, in these coordinates, is unknown. task_means: the means onto which the motions
+    from all cells, in these coordinates, is unknown. task_means: the means onto which the motions
     of each task were warped before the fit; None if they were not.
     """
 
@@ -151,15 +152,18 @@ def fit_multilinear(
     tensor = complete_tensor(cell_means(points, cells), cells)
     svd = nmode_svd(tensor, [*ranks, None])
     own = svd.reconstruct()[cells.person[cells.member], cells.task[cells.member]]
-    reach = np.percentile(np.linalg.norm(points - own, axis=1), RADIUS_SHARE)
-    radius = float(reach * RADIUS_SLACK)
+    distance = np.percentile(np.linalg.norm(points - own, axis=1), RADIUS_SHARE)
+    radius = float(distance * RADIUS_SLACK)
     return Multilinear(cells.persons, cells.tasks, axes, svd, radius, task_means)
 
 
 def _aligned(
     samples: FloatArray, tasks: Sequence[str | None], moments: int
 ) -> tuple[FloatArray, TaskMeans]:
-    """`samples` (n, w), the poses that each begins with warped onto the mean of its task."""
+    """`samples` (n, w) with warped poses, and the means of the tasks onto which they are warped.
+
+    The first numbers of a sample are the poses of `moments` moments. The others stay as they are.
+    """
     width = samples.shape[1] // moments
     poses = samples[:, : moments * width].reshape(len(samples), moments, width)
     task_means = fit_task_means(poses, tasks)
@@ -168,7 +172,10 @@ def _aligned(
 
 
 def complete_tensor(means: FloatArray, cells: Cells) -> FloatArray:
-    """(P, T, d) of cell `means` (cells, d), missing cells by person + task effects."""
+    """(P, T, d) the tensor of the cell `means` (cells, d).
+
+    Missing cells are predicted from person and task effects.
+    """
     persons, tasks = len(cells.persons), len(cells.tasks)
     person, task = np.divmod(np.arange(persons * tasks), tasks)
     predicted = fit_effects(means, cells).predict(person, task)
@@ -185,14 +192,14 @@ def recognize_multilinear(
 ) -> Recognition:
     """Recognize who does what in one motion sample (1250,).
 
-    known_person, known_task: the label that the caller knows. It is part of the answer; a label
-    that the library does not have is not used to find the other. Scores are shares by nearness,
-    not probabilities. A clip that is farther than the radius from every cell is unknown.
+    known_person, known_task: the label that the caller knows. It is part of the answer. A label
+    that the library does not have is not used to recognize the other one. Scores are shares by
+    nearness, not probabilities. A clip that is farther than the radius from every cell is unknown.
     """
-    far = np.linalg.norm(record.svd.reconstruct() - record.axes.project(sample), axis=2)
+    distances = np.linalg.norm(record.svd.reconstruct() - record.axes.project(sample), axis=2)
     person = given(known_person, record.persons) if known_person else None
     task = given(known_task, record.tasks) if known_task else None
-    to_persons, to_tasks = far.min(axis=1), far.min(axis=0)
+    to_persons, to_tasks = distances.min(axis=1), distances.min(axis=0)
     if known_task in record.tasks:
         people = record.svd.factors[0]
         own = record.signature(record.aligned(sample, known_task), known_task)
@@ -205,10 +212,10 @@ def recognize_multilinear(
     if known_person in record.persons:
         actions = record.svd.factors[1]
         to_tasks = np.linalg.norm(record.action(sample, known_person) - actions, axis=1)
-    near = bool(far.min() <= record.radius)
+    is_known = bool(distances.min() <= record.radius)
     return Recognition(
-        person or answer(record.persons, shares(to_persons), near),
-        task or answer(record.tasks, shares(to_tasks), near),
+        person or answer(record.persons, shares(to_persons), is_known),
+        task or answer(record.tasks, shares(to_tasks), is_known),
     )
 
 
@@ -218,6 +225,6 @@ def _coordinates(basis: FloatArray, point: FloatArray) -> FloatArray:
 
 
 def shares(distances: FloatArray) -> FloatArray:
-    """(n,) shares that sum to 1 and fall with `distances` (n,); the smallest is the unit."""
+    """(n,) shares that sum to 1 and fall with `distances` (n,); the smallest one is the unit."""
     scale = max(float(distances.min()), 1e-9)
     return np.asarray(softmax(-0.5 * ((distances / scale) ** 2)[None])[0])

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from app.models.holding_out import Held, rounds
+from app.models.holding_out import HeldOut, rounds
 from app.models.recognition.answers import Answer, Recognition, answer, given
 from app.models.recognition.calibration import NEW, Calibration, fit_calibration
 from app.models.recognition.task_model import JOINTS, Reading, TaskModel, fit_task_model, objective
@@ -26,15 +26,18 @@ TENSOR_RECOGNIZER_VERSION = 1
 SHARPNESS = 20.0
 """Factor from logarithms of the objective to evidence and novelty; calibration rescales both."""
 
-_SMALLEST = 1e-12
-"""Floor of an objective, squared body lengths: a clip of the library itself has distance 0."""
+_MIN_OBJECTIVE = 1e-12
+"""Smallest objective, in squared body lengths: a clip of the library itself has distance 0."""
 
 Labels = Sequence[str | None]
 
 
 @dataclass(frozen=True, slots=True)
 class TensorRecognizer:
-    """A fitted recognizer. reach_of_persons (P,), reach_of_tasks (T,): F*_k of its categories."""
+    """A fitted recognizer.
+
+    reach_of_persons: (P,) and reach_of_tasks: (T,) F*_k of each person and task.
+    """
 
     model: TaskModel
     reach_of_persons: FloatArray
@@ -43,8 +46,10 @@ class TensorRecognizer:
     task_calibration: Calibration
 
     def accepting(self, false_accept_rate: float) -> TensorRecognizer:
-        """The same recognizer with the threshold at which at most this share (0..1) of new
-        held-out clips is called known."""
+        """The same recognizer with another threshold.
+
+        At most the share `false_accept_rate` (0..1) of new held-out clips is then called known.
+        """
         return replace(
             self,
             person_calibration=self.person_calibration.at_false_acceptance(false_accept_rate),
@@ -86,15 +91,18 @@ def fit_tensor_recognizer(
     who, what = [persons[i] for i in use], [tasks[i] for i in use]
     together = [groups[i] if groups is not None else str(i) for i in use]
     model = fit_task_model(poses, who, what)
-    held = [
+    results = [
         _Round.of(poses, who, what, kind, train, probe, model)
         for kind, train, probe in rounds(who, what, together)
     ]
-    people = [(one.of_persons, one.person, one.seen) for one in held if one.kind is not Held.TASKS]
-    doings = [(one.of_tasks, one.task, one.seen) for one in held]
-    reaches = _reach(people, len(model.persons)), _reach(doings, len(model.tasks))
+    person_results = [
+        (one.of_persons, one.person, one.seen) for one in results if one.kind is not HeldOut.TASKS
+    ]
+    task_results = [(one.of_tasks, one.task, one.seen) for one in results]
+    reaches = _reach(person_results, len(model.persons)), _reach(task_results, len(model.tasks))
     calibrations = [
-        _calibrated(each, reach) for each, reach in zip((people, doings), reaches, strict=True)
+        _calibrated(each, reach)
+        for each, reach in zip((person_results, task_results), reaches, strict=True)
     ]
     return TensorRecognizer(model, *reaches, *calibrations)
 
@@ -106,8 +114,14 @@ def uncalibrated(samples: FloatArray, persons: Labels, tasks: Labels) -> TensorR
     meaning. Raises NotEnoughLabels.
     """
     model = fit_task_model(poses_of(samples), persons, tasks)
-    people, doings = np.ones(len(model.persons)), np.ones(len(model.tasks))
-    return TensorRecognizer(model, people, doings, _calibrated([], people), _calibrated([], doings))
+    person_reach, task_reach = np.ones(len(model.persons)), np.ones(len(model.tasks))
+    return TensorRecognizer(
+        model,
+        person_reach,
+        task_reach,
+        _calibrated([], person_reach),
+        _calibrated([], task_reach),
+    )
 
 
 def recognize_by_tensor(
@@ -123,10 +137,16 @@ def recognize_by_tensor(
     """
     model = record.model
     distances = model.joint_distances(poses_of(samples))
-    people = _objectives(model, distances, "person", _only(model.tasks, model.task, known_task))
-    tasks = _objectives(model, distances, "task", _only(model.persons, model.person, known_person))
-    who = _answers(people, model.persons, record.reach_of_persons, record.person_calibration)
-    what = _answers(tasks, model.tasks, record.reach_of_tasks, record.task_calibration)
+    person_objectives = _objectives(
+        model, distances, "person", _only(model.tasks, model.task, known_task)
+    )
+    task_objectives = _objectives(
+        model, distances, "task", _only(model.persons, model.person, known_person)
+    )
+    who = _answers(
+        person_objectives, model.persons, record.reach_of_persons, record.person_calibration
+    )
+    what = _answers(task_objectives, model.tasks, record.reach_of_tasks, record.task_calibration)
     if known_person is not None:
         who = [given(known_person, model.persons)] * len(who)
     if known_task is not None:
@@ -136,9 +156,9 @@ def recognize_by_tensor(
 
 def poses_of(samples: FloatArray) -> FloatArray:
     """(n, 32, 13, 3) the poses of motion samples (n, 1250), without their turn and speed."""
-    places = np.asarray(samples, dtype=np.float64)[:, :-2]
-    moments = places.shape[1] // (3 * JOINTS)
-    return places.reshape(len(places), moments, JOINTS, 3)
+    positions = np.asarray(samples, dtype=np.float64)[:, :-2]
+    moments = positions.shape[1] // (3 * JOINTS)
+    return positions.reshape(len(positions), moments, JOINTS, 3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +170,7 @@ class _Round:
     training clips have both labels together.
     """
 
-    kind: Held
+    kind: HeldOut
     of_persons: FloatArray
     of_tasks: FloatArray
     person: IntArray
@@ -163,7 +183,7 @@ class _Round:
         poses: FloatArray,
         persons: Labels,
         tasks: Labels,
-        kind: Held,
+        kind: HeldOut,
         train: IntArray,
         probe: IntArray,
         whole: TaskModel,
@@ -194,37 +214,40 @@ def _objectives(
 
 
 def _only(names: tuple[str, ...], label: IntArray, known: str | None) -> BoolArray | None:
+    """(c,) whether each cell has the known label; None if the model does not have it."""
     return np.asarray(label == names.index(known)) if known in names else None
 
 
 def _spread(objectives: FloatArray, names: tuple[str, ...], whole: tuple[str, ...]) -> FloatArray:
+    """(n, whole) the objectives (n, names) in the columns of their names; inf in the others."""
     out = np.full((len(objectives), len(whole)), np.inf)
     out[:, [whole.index(name) for name in names]] = objectives
     return out
 
 
 def _index(labels: Labels, seen: tuple[str, ...], whole: tuple[str, ...]) -> IntArray:
-    places = [whole.index(str(label)) if label in seen else NEW for label in labels]
-    return np.array(places, dtype=np.int64)
+    """(n,) the index of each label in `whole`, NEW for a label that is not in `seen`."""
+    index = [whole.index(str(label)) if label in seen else NEW for label in labels]
+    return np.array(index, dtype=np.int64)
 
 
-_HeldOut = tuple[FloatArray, IntArray, BoolArray]
+_HeldOutResults = tuple[FloatArray, IntArray, BoolArray]
 """objectives (n, labels), truth (n,) and seen (n,), as `_Round` has them."""
 
 
-def _together(held: list[_HeldOut], labels: int) -> _HeldOut:
+def _concatenated(held: list[_HeldOutResults], labels: int) -> _HeldOutResults:
     empty = (np.zeros((0, labels)), np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool))
     objectives, truth, seen = (np.concatenate(part) for part in zip(empty, *held, strict=True))
     return objectives, truth, seen
 
 
-def _reach(held: list[_HeldOut], labels: int) -> FloatArray:
+def _reach(held: list[_HeldOutResults], labels: int) -> FloatArray:
     """(labels,) F*_k: the mean objective of the held-out clips of each label.
 
-    Clips whose cell was in the training are used if a label has any, else all its held-out
-    clips. A label without held-out clips gets the mean of all.
+    If there are held-out clips whose cells were in the training, only these are used, else all
+    held-out clips. A label without such clips gets the mean of all.
     """
-    objectives, truth, seen = _together(held, labels)
+    objectives, truth, seen = _concatenated(held, labels)
     usual = (truth != NEW) & seen
     chosen = usual if usual.any() else truth != NEW
     values, own = objectives[chosen, truth[chosen]], truth[chosen]
@@ -232,21 +255,21 @@ def _reach(held: list[_HeldOut], labels: int) -> FloatArray:
     otherwise = float(values.mean()) if len(values) else 1.0
     sums = np.bincount(own, values, minlength=labels)
     means = np.where(counts > 0, sums / np.maximum(counts, 1), otherwise)
-    return np.asarray(np.maximum(means, _SMALLEST))
+    return np.asarray(np.maximum(means, _MIN_OBJECTIVE))
 
 
-def _calibrated(held: list[_HeldOut], reach: FloatArray) -> Calibration:
-    objectives, truth, seen = _together(held, len(reach))
+def _calibrated(held: list[_HeldOutResults], reach: FloatArray) -> Calibration:
+    objectives, truth, seen = _concatenated(held, len(reach))
     return fit_calibration(_evidence(objectives), _novelty(objectives, reach), truth, seen)
 
 
 def _evidence(objectives: FloatArray) -> FloatArray:
-    return np.asarray(-SHARPNESS * np.log(np.maximum(objectives, _SMALLEST)))
+    return np.asarray(-SHARPNESS * np.log(np.maximum(objectives, _MIN_OBJECTIVE)))
 
 
 def _novelty(objectives: FloatArray, reach: FloatArray) -> FloatArray:
     """(n,) logarithm of the smallest ratio of an objective to its F*_k (eqs 15-16)."""
-    shares = np.maximum(objectives / reach, _SMALLEST)
+    shares = np.maximum(objectives / reach, _MIN_OBJECTIVE)
     return np.asarray(SHARPNESS * np.log(shares.min(axis=1, initial=np.inf)))
 
 

@@ -1,11 +1,11 @@
 """The default recognizer: which person does which task, or whether the person or task is new.
 
 A clip has two views (app.models.recognition.views). Each is projected to PCA coordinates and
-compared with all hypotheses (app.models.recognition.hypotheses). The evidence of a label is the
-sum of the densities of its hypotheses. The novelty is the log ratio of the hypotheses that say
-"new" to the others; it separates new from known better than the distance to the nearest cell
-divided by the radius of that cell. Both are calibrated on clips, persons and tasks that are held
-out of the fit.
+compared with all hypotheses (app.models.recognition.hypotheses). The evidence of a label is the sum
+of the densities of its hypotheses. The novelty is the log ratio of the densities of the hypotheses
+of a new label to those of the others. It separates new from known clips better than the distance to
+the nearest cell divided by the radius of that cell. Both are calibrated on clips, persons and tasks
+that are held out of the fit.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ import numpy as np
 from app.analysis.descriptors.motion_sample import SAMPLE_LENGTH
 from app.errors import NotEnoughLabels
 from app.models.cells import find_cells
-from app.models.holding_out import MAX_PROBES, Held, rounds
+from app.models.holding_out import MAX_PROBES, HeldOut, rounds
 from app.models.recognition.answers import Answer, Recognition, answer, given
 from app.models.recognition.calibration import NEW, Calibration, fit_calibration
 from app.models.recognition.hypotheses import fit_hypotheses
 from app.models.recognition.views import (
     SAMPLE_DIMENSIONS,
-    Logs,
-    Seen,
+    BothViews,
+    LogDensities,
     View,
     both_views,
     evidence,
@@ -42,8 +42,8 @@ MOSTLY_REPEATED = 0.5
 """The takes of a library count as repeated if at least this share of its clips has another clip of
 the same person at the same task."""
 
-IMAGINED = 3
-"""Simulated takes of each cell, by which novelty is calibrated if takes are not repeated."""
+SIMULATED_TAKES = 3
+"""Number of simulated takes of each cell. They calibrate the novelty if takes are not repeated."""
 
 _Arrays = dict[str, np.ndarray[Any, Any]]
 
@@ -54,7 +54,7 @@ class Recognizer:
 
     persons, tasks: sorted labels; label indices refer to them. sample, wide: the two views;
     their hypotheses have the same kinds and labels in the same order. persons_by_both: whether
-    both views decide that a person is new (see Logs).
+    both views decide that a person is new (see LogDensities).
     """
 
     persons: tuple[str, ...]
@@ -66,8 +66,10 @@ class Recognizer:
     task_calibration: Calibration
 
     def accepting(self, false_accept_rate: float) -> Recognizer:
-        """The same recognizer with the threshold at which at most this share (0..1) of new
-        held-out clips is called known."""
+        """The same recognizer with another threshold.
+
+        At most the share `false_accept_rate` (0..1) of new held-out clips is then called known.
+        """
         return replace(
             self,
             person_calibration=self.person_calibration.at_false_acceptance(false_accept_rate),
@@ -82,8 +84,8 @@ class Recognizer:
         meta["persons_by_both"] = self.persons_by_both
         for name in ("person", "task"):
             calibration: Calibration = getattr(self, f"{name}_calibration")
-            found, meta[f"{name}_calibration"] = calibration.to_arrays(name)
-            arrays |= found
+            own, meta[f"{name}_calibration"] = calibration.to_arrays(name)
+            arrays |= own
         return arrays, meta
 
     @classmethod
@@ -111,9 +113,9 @@ def fit_recognizer(
 ) -> Recognizer:
     """Fit on full samples with their labels (None: no label).
 
-    samples: (clips, 1762), motion samples of `sample_length` (1250) each followed by the clip's
-    wide motion vector; groups: (clips,) clips of one recording share a value and are held out
-    together. Raises NotEnoughLabels below two labeled clips.
+    samples: (clips, 1762); each is a motion sample of `sample_length` (1250), followed by the wide
+    motion vector of the clip; groups: (clips,) clips of one recording share a value and are held
+    out together. Raises NotEnoughLabels with fewer than two labeled clips.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if any(labels)]
     if len(use) < 2:
@@ -124,7 +126,7 @@ def fit_recognizer(
     cells = find_cells(persons, tasks)
     sample = principal_axes(rows.sample, SAMPLE_DIMENSIONS)
     wide = principal_axes(rows.wide, wide_dimensions(len(cells)))
-    points = Seen(sample.project(rows.sample), wide.project(rows.wide))
+    points = BothViews(sample.project(rows.sample), wide.project(rows.wide))
     views = (
         View(sample, fit_hypotheses(points.sample, cells)),
         View(wide, fit_hypotheses(points.wide, cells)),
@@ -158,9 +160,9 @@ def recognize_many(
     """`recognize` for each of `samples` (n, 1762)."""
     rows = both_views(samples, len(record.sample.axes.center))
     sample, wide = record.sample, record.wide
-    points = Seen(sample.axes.project(rows.sample), wide.axes.project(rows.wide))
+    points = BothViews(sample.axes.project(rows.sample), wide.axes.project(rows.wide))
     h = wide.hypotheses
-    logs = Logs.under(sample.hypotheses, h, points, persons_by_both=record.persons_by_both)
+    logs = LogDensities.under(sample.hypotheses, h, points, persons_by_both=record.persons_by_both)
     logs = logs.without_others(h.person, record.persons, known_person)
     logs = logs.without_others(h.task, record.tasks, known_task)
     of_factor = record.persons, record.person_calibration, known_person
@@ -178,7 +180,11 @@ def _answers(
     calibration: Calibration,
     known: str | None,
 ) -> list[Answer]:
-    """Answers from two arrays of log densities (n, h): one ranks labels, one decides novelty."""
+    """Answers from two arrays of log densities (n, h).
+
+    ranking: ranks labels; novelty: decides whether the label is new; label: (h,) of the
+    hypotheses; known: the label that the caller knows.
+    """
     if known is not None or not names:
         return [given(known or "", names)] * len(ranking)
     new = newness(novelty, label)
@@ -189,12 +195,12 @@ def _answers(
     ]
 
 
-_HeldOut = tuple[FloatArray, FloatArray, IntArray, BoolArray]
+_HeldOutResults = tuple[FloatArray, FloatArray, IntArray, BoolArray]
 """evidence (n, labels), novelty (n,), truth (n,), seen (n,), as `calibration` has them."""
 
 
 def _calibrations(
-    points: Seen,
+    points: BothViews,
     persons: Sequence[str | None],
     tasks: Sequence[str | None],
     groups: Sequence[str],
@@ -208,29 +214,32 @@ def _calibrations(
     """
     of_persons, of_tasks = [], []
     names = [tuple(sorted({label for label in labels if label})) for labels in (persons, tasks)]
-    for held, train, probe in rounds(persons, tasks, groups):
+    for kind, train, probe in rounds(persons, tasks, groups):
         seen = find_cells([persons[i] for i in train], [tasks[i] for i in train])
         sample, h = (fit_hypotheses(part, seen) for part in points.of(train))
-        logs = Logs.under(sample, h, points.of(probe), persons_by_both=persons_by_both)
+        logs = LogDensities.under(sample, h, points.of(probe), persons_by_both=persons_by_both)
         who, what = [persons[i] for i in probe], [tasks[i] for i in probe]
         pairs = {(persons[i], tasks[i]) for i in train}
-        again = np.array([pair in pairs for pair in zip(who, what, strict=True)], dtype=bool)
-        if held is not Held.TASKS:
+        seen_before = np.array([pair in pairs for pair in zip(who, what, strict=True)], dtype=bool)
+        # rounds that hold out tasks calibrate only the tasks
+        if kind is not HeldOut.TASKS:
             new = newness(logs.new_person, h.person)
             ranked = logs.ranking, h.person, seen.persons
-            of_persons.append(_held_out(*ranked, new, who, names[0], again))
+            of_persons.append(_held_out(*ranked, new, who, names[0], seen_before))
         # the task of a new person can be known: held-out persons count as known tasks
         new = newness(logs.new_task, h.task)
-        of_tasks.append(_held_out(logs.ranking, h.task, seen.tasks, new, what, names[1], again))
-    # The error rates are those of clips whose person and task were recorded together. A task of a
-    # new person may then be called unknown (with the right best candidate), unless there is a gap
-    # between new and known tasks.
+        of_tasks.append(
+            _held_out(logs.ranking, h.task, seen.tasks, new, what, names[1], seen_before)
+        )
+    # The error rates are those of clips with a recorded pair of person and task. So a task of a new
+    # person may be called unknown (with the right best candidate), except if there is a gap between
+    # new and known tasks.
     sample, h = (view.hypotheses for view in views)
-    further = Seen(*(each.further_takes(IMAGINED, MAX_PROBES) for each in (sample, h)))
-    imagined = Logs.under(sample, h, further, persons_by_both=persons_by_both)
+    further = BothViews(*(each.further_takes(SIMULATED_TAKES, MAX_PROBES) for each in (sample, h)))
+    simulated = LogDensities.under(sample, h, further, persons_by_both=persons_by_both)
     return (
-        _calibrated(of_persons, len(names[0]), newness(imagined.new_person, h.person)),
-        _calibrated(of_tasks, len(names[1]), newness(imagined.new_task, h.task)),
+        _calibrated(of_persons, len(names[0]), newness(simulated.new_person, h.person)),
+        _calibrated(of_tasks, len(names[1]), newness(simulated.new_task, h.task)),
     )
 
 
@@ -241,25 +250,29 @@ def _held_out(
     new: FloatArray,
     truth: Sequence[str | None],
     names: tuple[str, ...],
-    again: BoolArray,
-) -> _HeldOut:
-    """The results of a round for its labeled probes; labels that are not `seen` get no evidence."""
+    seen_before: BoolArray,
+) -> _HeldOutResults:
+    """The results of a round for its labeled probes.
+
+    seen: the labels of the training clips; the other labels get no evidence. seen_before: (n,)
+    whether the training clips have person and task of the probe together.
+    """
     has = np.array([bool(name) for name in truth], dtype=bool)
     if not seen or not has.any():
-        return _nothing(len(names))
-    found = np.full((int(has.sum()), len(names)), -np.inf)
-    found[:, [names.index(name) for name in seen]] = evidence(ranking[has], label, len(seen))
+        return _no_results(len(names))
+    by_label = np.full((int(has.sum()), len(names)), -np.inf)
+    by_label[:, [names.index(name) for name in seen]] = evidence(ranking[has], label, len(seen))
     index = [names.index(name) if name in seen else NEW for name in truth if name]
-    return found, new[has], np.array(index, dtype=np.int64), again[has]
+    return by_label, new[has], np.array(index, dtype=np.int64), seen_before[has]
 
 
-def _calibrated(held: list[_HeldOut], labels: int, imagined: FloatArray) -> Calibration:
-    parts = zip(_nothing(labels), *held, strict=True)
-    found, new, truth, again = (np.concatenate(part) for part in parts)
-    return fit_calibration(found, new, truth, again, imagined)
+def _calibrated(held: list[_HeldOutResults], labels: int, simulated: FloatArray) -> Calibration:
+    parts = zip(_no_results(labels), *held, strict=True)
+    by_label, new, truth, seen_before = (np.concatenate(part) for part in parts)
+    return fit_calibration(by_label, new, truth, seen_before, simulated)
 
 
-def _nothing(labels: int) -> _HeldOut:
+def _no_results(labels: int) -> _HeldOutResults:
     return (
         np.zeros((0, labels)),
         np.zeros(0),

@@ -2,7 +2,7 @@
 
 Gait cycles are aligned where they are cut (app.motion.frame.gait). Takes of other tasks are warped
 onto the mean of their task; see app.numerics.alignment.group_warping. The task of a probe is not
-known: it is warped onto the mean of each task with which it is compared.
+known. So it is warped onto the mean of each task with which it is compared.
 """
 
 from __future__ import annotations
@@ -18,7 +18,10 @@ from app.numerics.arrays import FloatArray, IntArray
 
 @dataclass(frozen=True, slots=True)
 class TaskMeans:
-    """tasks: (T,) sorted labels; means: (T, moments, d), the mean motion of each."""
+    """The mean motion of each task.
+
+    tasks: (T,) sorted labels; means: (T, moments, d).
+    """
 
     tasks: tuple[str, ...]
     means: FloatArray
@@ -28,8 +31,10 @@ class TaskMeans:
         return warped(motions, self.means[self.tasks.index(task)])
 
     def aligned(self, motions: FloatArray, tasks: Sequence[str | None]) -> FloatArray:
-        """(n, moments, d): each of `motions` (n, moments, d) warped onto the mean of its own
-        task. tasks: (n,); a motion whose task is unknown or None stays as it is."""
+        """(n, moments, d) `motions` (n, moments, d), each warped onto the mean of its own task.
+
+        tasks: (n,). A motion stays as it is if its task is None or not among `self.tasks`.
+        """
         out = np.array(motions, dtype=np.float64)
         known, group = _groups(tasks, self.tasks)
         out[known] = warped(out[known], self.means[group])
@@ -37,7 +42,10 @@ class TaskMeans:
 
 
 def fit_task_means(motions: FloatArray, tasks: Sequence[str | None]) -> TaskMeans:
-    """The means of `motions` (n, moments, d) by task (n,); motions without one are left out."""
+    """The means of `motions` (n, moments, d) by task; motions without a task are left out.
+
+    tasks: (n,).
+    """
     names = tuple(sorted({task for task in tasks if task}))
     known, group = _groups(tasks, names)
     own = np.asarray(motions, dtype=np.float64)[known]

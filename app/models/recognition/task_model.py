@@ -1,13 +1,13 @@
-"""Perera's task model (2009, section 5): who and what by weighted distances of joints.
+"""Perera's task model (2009, section 5): persons and tasks by weighted distances of joints.
 
 P (positions, people, tasks) = Q x_1 S_position x_2 S_people x_3 S_task (eq. 12), of motions
 scaled to one body and one length. A probe is projected onto the span of S_position. There, each of
 its joints is compared with the same joint of every training motion (eq. 13). A category is chosen
-by the least distances of its joints, weighted and summed (eq. 14).
+by the smallest distances of its joints, weighted and summed (eq. 14).
 
-As printed, eq. 14 maximizes a sum of distances. If each joint counts for the category in which it
-is nearest, that is a vote by joints (Reading.PRINTED), in which a far joint has more weight than a
-near one. As it was probably meant, the smallest sum over all joints wins (Reading.LEAST).
+As printed, eq. 14 maximizes a sum of distances. Each joint then votes for the category in which it
+is nearest, and far joints have more weight than near ones (Reading.PRINTED). The paper probably
+means the smallest sum over all joints (Reading.LEAST).
 """
 
 from __future__ import annotations
@@ -40,14 +40,14 @@ LINKS: dict[JointRole, int] = {
     **dict.fromkeys((JointRole.LEFT_KNEE, JointRole.RIGHT_KNEE), 2),
     **dict.fromkeys((JointRole.LEFT_FOOT, JointRole.RIGHT_FOOT), 3),
 }
-"""Number of links from the center of the body; the paper gives the waist one."""
+"""Number of links from the center of the body; in the paper, the waist has one."""
 
 MAX_AXES = 200
-"""Columns of S_position; the motions of a paper's library span fewer."""
+"""Largest number of columns of S_position; the motions of the paper's library span fewer."""
 
 
 class Reading(StrEnum):
-    """How eq. 14 is read."""
+    """How eq. 14 is interpreted."""
 
     LEAST = "least"
     """The category with the smallest weighted sum of its joints' distances."""
@@ -63,7 +63,7 @@ def link_weights() -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class TaskModel:
-    """A fitted task model, of which c cells (a person at a task) were recorded.
+    """A fitted task model with c recorded cells (a person at a task).
 
     persons: (P,) and tasks: (T,) sorted labels; axes: (d, r) uncentered axes that span the
     motions; svd: the factors of the tensor (r, P, T) in these coordinates; person, task: (c,) the
@@ -132,9 +132,9 @@ def fit_task_model(
 
     Motions without both labels are left out; the takes of one cell are averaged.
 
-    Cells that nobody recorded are completed for the factorization (app.models.cells), and never
-    compared with a probe. ranks: columns kept of S_position, S_people and S_task, None for all.
-    Raises NotEnoughLabels without a cell, or with more than MAX_CELLS cells.
+    Cells that nobody recorded are predicted for the factorization (app.models.cells). They are
+    never compared with a probe. ranks: columns kept of S_position, S_people and S_task, None for
+    all. Raises NotEnoughLabels without a cell, or with more than MAX_CELLS cells.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
     cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
@@ -163,18 +163,21 @@ def fit_task_model(
 def objective(
     distances: FloatArray, label: IntArray, labels: int, weights: FloatArray, reading: Reading
 ) -> FloatArray:
-    """(n, labels) the distance of each category by eq. 14; negative where eq. 14 is maximized.
+    """(n, labels) the objective of each category by eq. 14; the smallest is the best.
+
+    With Reading.PRINTED it is negative, because eq. 14 is maximized.
 
     distances: (n, c, 13) of `TaskModel.joint_distances`; label: (c,) the category of each cell,
     each of `labels` at least once; weights: (13,).
     """
     order = np.argsort(label, kind="stable")
     starts = np.searchsorted(label[order], np.arange(labels))
-    least = np.minimum.reduceat(distances[:, order], starts, axis=1)
+    # (n, labels, 13) for each category the smallest distance of each joint
+    smallest = np.minimum.reduceat(distances[:, order], starts, axis=1)
     if reading is Reading.LEAST:
-        return np.asarray(least @ weights)
-    nearest = least == least.min(axis=1, keepdims=True)
-    return np.asarray(-np.where(nearest, least, 0.0) @ weights)
+        return np.asarray(smallest @ weights)
+    is_nearest = smallest == smallest.min(axis=1, keepdims=True)
+    return np.asarray(-np.where(is_nearest, smallest, 0.0) @ weights)
 
 
 def _by_joint(flat: FloatArray) -> FloatArray:

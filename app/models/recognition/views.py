@@ -1,8 +1,9 @@
 """The two views of a clip in the default recognizer, and their log densities.
 
 A full sample (1762,) is the motion sample (1250,) followed by the wide motion vector (512,). The
-motion sample has 32 poses at known phases; the wide motion vector ignores when in the clip a hand
-waves. The views overlap: the last two numbers of the sample, turn and speed, belong to both.
+motion sample has 32 poses at known phases. The wide motion vector does not depend on the time in
+the clip at which a hand waves. The views overlap: the last two numbers of the sample, turn and
+speed, belong to both.
 """
 
 from __future__ import annotations
@@ -36,8 +37,8 @@ def wide_dimensions(cells: int) -> int:
     """The number of PCA coordinates of wide motion vectors for `cells` cells: half as many.
 
     The differences between persons, or tasks, are learned from cells. With too many coordinates
-    for the cells, new clips looked known: of libraries of 35 cells drawn from dataset 2, .79 of
-    the new tasks were found in 60 coordinates, and .97 in 20.
+    for the cells, new clips are called known. In libraries of 35 cells drawn from dataset 2, .79
+    of the new tasks were recognized as new with 60 coordinates, and .97 with 20.
     """
     return min(max(cells // 2, MIN_WIDTH), MAX_WIDTH)
 
@@ -68,18 +69,18 @@ class View:
         return cls(axes, Hypotheses(**parts))
 
 
-class Seen(NamedTuple):
+class BothViews(NamedTuple):
     """The same n clips in both views: (n, numbers or coordinates) each."""
 
     sample: FloatArray
     wide: FloatArray
 
-    def of(self, index: IntArray) -> Seen:
+    def of(self, index: IntArray) -> BothViews:
         """The rows of the clips at these indices."""
-        return Seen(self.sample[index], self.wide[index])
+        return BothViews(self.sample[index], self.wide[index])
 
 
-def both_views(samples: FloatArray, sample_length: int = SAMPLE_LENGTH) -> Seen:
+def both_views(samples: FloatArray, sample_length: int = SAMPLE_LENGTH) -> BothViews:
     """Split full samples (n, 1762) into motion samples of `sample_length` and wide vectors.
 
     If no wide vectors follow the motion samples, both views are the motion samples.
@@ -87,11 +88,11 @@ def both_views(samples: FloatArray, sample_length: int = SAMPLE_LENGTH) -> Seen:
     rows = np.asarray(samples)
     sample = rows[:, :sample_length]
     if rows.shape[1] <= sample_length:
-        return Seen(sample, sample)
-    return Seen(sample, rows[:, sample_length - TURN_AND_SPEED :])
+        return BothViews(sample, sample)
+    return BothViews(sample, rows[:, sample_length - TURN_AND_SPEED :])
 
 
-class Logs(NamedTuple):
+class LogDensities(NamedTuple):
     """Log densities (n, h) of n clips under h hypotheses.
 
     `ranking` ranks labels; the other two decide whether the person and the task are new.
@@ -103,14 +104,14 @@ class Logs(NamedTuple):
 
     @classmethod
     def under(
-        cls, sample: Hypotheses, wide: Hypotheses, points: Seen, *, persons_by_both: bool
-    ) -> Logs:
+        cls, sample: Hypotheses, wide: Hypotheses, points: BothViews, *, persons_by_both: bool
+    ) -> LogDensities:
         """The log densities of both views.
 
         The mean of both (Student's t) ranks labels; the wide view (Gaussian) decides what is
-        new. persons_by_both: both views decide whether a person is new, if takes are hardly
-        repeated. If they are repeated, the sample view only adds noise, since takes of one task
-        differ much in it.
+        new. persons_by_both: both views decide whether a person is new. This is better if few
+        takes are repeated. Else the sample view only adds noise, since takes of one task differ
+        much in it.
         """
         of_sample, of_wide = sample.squares(points.sample), wide.squares(points.wide)
         by_sample = sample.log_densities(of_sample, FREEDOM)
@@ -120,11 +121,13 @@ class Logs(NamedTuple):
             person = (sample.log_densities(of_sample) + task) / 2
         return cls((by_sample + by_wide) / 2, person, task)
 
-    def of(self, index: BoolArray) -> Logs:
-        """The rows of some clips."""
-        return Logs(*(logs[index] for logs in self))
+    def of(self, index: BoolArray) -> LogDensities:
+        """The rows of the clips where `index` (n,) is true."""
+        return LogDensities(*(logs[index] for logs in self))
 
-    def without_others(self, label: IntArray, names: tuple[str, ...], known: str | None) -> Logs:
+    def without_others(
+        self, label: IntArray, names: tuple[str, ...], known: str | None
+    ) -> LogDensities:
         """Exclude the hypotheses with another label than `known`.
 
         label: (h,) index in `names`, -1 for new.
@@ -132,12 +135,12 @@ class Logs(NamedTuple):
         if known is None:
             return self
         index = names.index(known) if known in names else NEW
-        left = (label == index) | (label == NEW)
-        return Logs(*(np.where(left, logs, -np.inf) for logs in self))
+        stays = (label == index) | (label == NEW)
+        return LogDensities(*(np.where(stays, logs, -np.inf) for logs in self))
 
 
 def evidence(ranking: FloatArray, label: IntArray, labels: int) -> FloatArray:
-    """(n, labels) log of the summed densities of each label's hypotheses.
+    """(n, labels) log of the sum of the densities of each label's hypotheses.
 
     ranking: (n, h) log densities; label: (h,), -1 for new. Each label occurs at least once.
     """
@@ -153,5 +156,5 @@ def newness(logs: FloatArray, label: IntArray) -> FloatArray:
     logs: (n, h); label: (h,), -1 for new.
     """
     new = label < 0
-    said_new = np.logaddexp.reduce(logs[:, new], axis=1)
-    return np.asarray(said_new - np.logaddexp.reduce(logs[:, ~new], axis=1))
+    log_new = np.logaddexp.reduce(logs[:, new], axis=1)
+    return np.asarray(log_new - np.logaddexp.reduce(logs[:, ~new], axis=1))

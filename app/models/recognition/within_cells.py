@@ -1,10 +1,10 @@
 """Covariance of the takes within a cell, for each task, with a factor for each person.
 
-Takes of a wave differ in when the hand moves; takes of a walk hardly differ. With one covariance
-for all cells, every walk would look familiar, and half of the waves would look new. So each task
-has its own covariance, shrunk toward the pooled one. Its size needs fewer takes than its shape,
-since all d numbers of a take contribute to the size. A person may also move more evenly than
-others in all tasks; a factor on the covariance models this.
+In takes of a wave, the hand moves at different times. Takes of a walk hardly differ. With one
+covariance for all cells, every walk would look known, and half of the waves would look new. So each
+task has its own covariance, shrunk toward the pooled one. Its size needs fewer takes than its
+shape, since all d numbers of a take contribute to the size. The takes of one person may also differ
+less than those of others, in all tasks. A factor on the covariance models this.
 
 Shapes: deviations (n, d) of n takes from the means of their cells, in the coordinates of one view.
 The shrinkage of class covariances toward the pooled one is regularized discriminant analysis
@@ -27,14 +27,17 @@ PRIOR_OF_SHAPE = 10.0
 """Weight of the pooled shape of a covariance, in repeated takes."""
 
 MAX_FORMS = 256
-"""Largest number of tasks with a covariance of their own: those with the most repeated takes. The
+"""Largest number of tasks with their own covariance: the tasks with the most repeated takes. The
 others have the pooled shape. (The whiteners take 7 MB in 60 dimensions.)"""
 
 
 @dataclass(frozen=True, slots=True)
 class Scatter:
-    """covariances: F matrices (d, d), the last one pooled; form: (cells,) the index of each
-    cell's covariance; spread: (cells,) the factor on it."""
+    """The covariance of each cell.
+
+    covariances: F matrices (d, d), the last one is the pooled one; form: (cells,) the index of
+    each cell's covariance; spread: (cells,) the factor on it.
+    """
 
     covariances: list[FloatArray]
     form: IntArray
@@ -70,6 +73,7 @@ def scatter_within(
     own = np.argsort(-freedom, kind="stable")[:MAX_FORMS]
     own = np.sort(own[freedom[own] > 0])
     shapes = [_shape(white[task == each], float(freedom[each])) for each in own]
+    # The last entry is for cells without a task (index -1), as is the appended 1.0 below.
     form = np.full(len(cells.tasks) + 1, len(own))
     form[own] = np.arange(len(own))
     spread = np.append(of_task, 1.0)[cells.task] * np.append(of_person, 1.0)[cells.person]

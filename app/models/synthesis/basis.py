@@ -11,7 +11,8 @@ from app.numerics.arrays import FloatArray, IntArray
 
 VELOCITY_WEIGHT = 0.3
 YAW_WEIGHT = 0.2
-"""Weight of velocities (body lengths per second, radians per second) relative to body lengths."""
+"""Weights of velocities (body lengths per second) and of yaw (radians per second). Positions (body
+lengths) have the weight 1."""
 
 _R = JointRole
 _PARTS = (
@@ -26,18 +27,19 @@ _PARTS = (
 def weights() -> FloatArray:
     """(1378,) the weight of each number of a motion shape."""
     channel = np.ones(CHANNELS)
+    # channels: 0..38 joints, 39 height, 40 and 41 velocity over the ground, 42 yaw velocity
     channel[40:42], channel[42] = VELOCITY_WEIGHT, YAW_WEIGHT
     return np.concatenate([np.tile(channel, SAMPLES), [1.0, 1.0]])
 
 
 def parts() -> list[IntArray]:
-    """Indices into a motion shape for each part: legs, trunk, arms, and the path and duration."""
-    place = np.arange(SAMPLES * CHANNELS).reshape(SAMPLES, CHANNELS)
-    found: list[IntArray] = []
+    """Indices into a motion shape by part: two legs, the trunk, two arms, path with duration."""
+    index = np.arange(SAMPLES * CHANNELS).reshape(SAMPLES, CHANNELS)
+    parts: list[IntArray] = []
     for roles in _PARTS:
         first = 3 * np.array([SUN_ROLES.index(role) for role in roles])
         columns = (first[:, None] + np.arange(3)).ravel()
-        found.append(place[:, columns].ravel())
-    whole = place[:, 39:].ravel()
-    found.append(np.concatenate([whole, SAMPLES * CHANNELS + np.arange(2)]))
-    return found
+        parts.append(index[:, columns].ravel())
+    path = index[:, 39:].ravel()
+    parts.append(np.concatenate([path, SAMPLES * CHANNELS + np.arange(2)]))
+    return parts

@@ -1,9 +1,9 @@
 """Transfers a course of 13 joint roles to the skeleton of a person.
 
-1. The rotations of the joints start as a kernel mean over the moments with the most similar poses
-   of the person. So twists, toes and fingers, which 13 roles do not show, come from the person.
-2. The joints are rotated until the roles are at their positions (app.motion.posing), and once more
-   with standing feet fixed (app.motion.frame.foot_contact).
+1. The joints start with the mean rotations of the moments at which the person has the most similar
+   poses. So twists, toes and fingers, which are not among the 13 roles, are those of the person.
+2. The joints are rotated until the roles are at their positions (app.motion.posing). This is
+   repeated with fixed positions of standing feet (app.motion.frame.foot_contact).
 3. The feet are put on the floor (app.models.synthesis.feet).
 """
 
@@ -27,11 +27,11 @@ from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.euclidean import squared_distances
 
 MAX_NEIGHBORS = 12
-"""Number of moments of the person whose mean is the start of a pose."""
+"""Largest number of moments of the person in the mean from which a pose starts."""
 
 SMOOTHING = 1.5
-"""Standard deviation in frames. The start needs smoothing, since the nearest moments change from
-frame to frame."""
+"""Standard deviation, in frames, of the smoothing of the start. It is needed because the nearest
+moments change from frame to frame."""
 
 _HIPS = SUN_ROLES.index(JointRole.HIPS)
 
@@ -58,38 +58,46 @@ def same_body(donors: Sequence[Donor]) -> list[Donor]:
 
 
 def embody(course: Course, donors: Sequence[Donor]) -> Animation:
-    """The course on the skeleton that the donors share; the floor is at Y = 0."""
+    """The course as an animation of the skeleton that the donors share; the floor is at Y = 0.
+
+    donors: at least one, all of the same body (see `same_body`).
+    """
     joints = donors[0].joints
     posed = pose_to(_start(course, donors), joints, course.positions)
-    wanted = np.array(course.positions)
+    targets = np.array(course.positions)
     reached = posed.positions()
     feet = [SUN_ROLES[foot] for foot in FEET]
     if all(role in joints for role in feet):
-        there = reached[:, [joints[role] for role in feet]]
-        wanted[:, FEET] = planted(there, ANALYSIS_RATE)
-        posed = pose_to(posed, joints, wanted)
+        ankles = reached[:, [joints[role] for role in feet]]
+        targets[:, FEET] = planted(ankles, ANALYSIS_RATE)
+        posed = pose_to(posed, joints, targets)
         reached = posed.positions()
         soles = feet_of(posed.skeleton, [joints[role] for role in feet])
         if soles:
-            deep = sole_depths(soles, [donor.animation.positions() for donor in donors])
-            return on_the_floor(_lowered(posed, floor_of(reached, soles, deep)), soles)
+            depths = sole_depths(soles, [donor.animation.positions() for donor in donors])
+            return on_the_floor(_lowered(posed, floor_of(reached, soles, depths)), soles)
     return _lowered(posed, float(np.quantile(reached[:, :, 1].min(axis=1), MIN_QUANTILE)))
 
 
 def _lowered(posed: Animation, floor: float) -> Animation:
+    """The animation moved down by `floor` meters."""
     translations = np.array(posed.translations)
     translations[:, 0, 1] -= floor
     return Animation(posed.skeleton, posed.rotations, translations, ANALYSIS_RATE)
 
 
 def _start(course: Course, donors: Sequence[Donor]) -> Animation:
-    """Kernel means of the donors' rotations at the moments most similar to the course."""
+    """An animation near the course, by which `pose_to` begins.
+
+    Each frame is the weighted mean of the donors' frames with the most similar poses. The root
+    follows the course.
+    """
     local = np.concatenate([donor.track.local for donor in donors])
     turns = np.concatenate([_toward_heading(donor) for donor in donors])
-    places = np.concatenate([donor.animation.translations for donor in donors])
-    near, weights = _alike(_poses(course), local)
+    offsets = np.concatenate([donor.animation.translations for donor in donors])
+    near, weights = _nearest_poses(_poses(course), local)
     rotations = _mean_turns(turns[near], weights)
-    translations = np.einsum("nk,nkjc->njc", weights, places[near])
+    translations = np.einsum("nk,nkjc->njc", weights, offsets[near])
     skeleton, hips = donors[0].animation.skeleton, donors[0].joints[JointRole.HIPS]
     rotations[:, hips] = multiply(_about_y(course.heading), rotations[:, hips])
     translations[:, hips] = course.positions[:, _HIPS]
@@ -103,14 +111,15 @@ def _start(course: Course, donors: Sequence[Donor]) -> Animation:
 
 
 def _poses(course: Course) -> FloatArray:
-    """(n, 13, 3) poses relative to the hips and to the heading, of any scale."""
+    """(n, 13, 3) meters, the poses relative to the hips and to the heading."""
     return turned(course.positions - course.positions[:, [_HIPS]], -course.heading)
 
 
-def _alike(poses: FloatArray, others: FloatArray) -> tuple[IntArray, FloatArray]:
+def _nearest_poses(poses: FloatArray, others: FloatArray) -> tuple[IntArray, FloatArray]:
     """The k of `others` (m, 13, 3) that are most similar to each of `poses` (n, 13, 3).
 
-    Returns their rows (n, k) and their weights (n, k), which sum to 1 for each pose.
+    `poses` are scaled to the mean size of `others`, so the units may differ. Returns the rows
+    (n, k) of the similar poses, and their weights (n, k), which sum to 1 for each pose.
     """
     rows, table = (values.reshape(len(values), -1) for values in (poses, others))
     rows = rows * (np.linalg.norm(table) / len(table) ** 0.5)
@@ -118,15 +127,16 @@ def _alike(poses: FloatArray, others: FloatArray) -> tuple[IntArray, FloatArray]
     squares = squared_distances(rows, table)
     count = min(MAX_NEIGHBORS, len(table))
     near = np.argsort(squares, axis=1, kind="stable")[:, :count]
-    away = np.take_along_axis(squares, near, axis=1)
-    weights = np.exp(-0.5 * away / np.maximum(away.mean(axis=1, keepdims=True), 1e-9))
+    chosen = np.take_along_axis(squares, near, axis=1)
+    weights = np.exp(-0.5 * chosen / np.maximum(chosen.mean(axis=1, keepdims=True), 1e-9))
     return near, weights / weights.sum(axis=1, keepdims=True)
 
 
 def _mean_turns(turns: FloatArray, weights: FloatArray) -> FloatArray:
     """(n, joints, 4) weighted means of quaternions (n, k, joints, 4), smoothed over time."""
-    side = np.sign(np.einsum("nkjc,njc->nkj", turns, turns[:, 0]))
-    mean = np.einsum("nk,nkj,nkjc->njc", weights, np.where(side == 0, 1.0, side), turns)
+    # q and -q are the same rotation: all get the sign of the first before the mean
+    sign = np.sign(np.einsum("nkjc,njc->nkj", turns, turns[:, 0]))
+    mean = np.einsum("nk,nkj,nkjc->njc", weights, np.where(sign == 0, 1.0, sign), turns)
     lengths = np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), 1e-9)
     smooth = scipy.ndimage.gaussian_filter1d(
         continuous(mean / lengths), SMOOTHING, axis=0, mode="nearest"
@@ -147,5 +157,5 @@ def _toward_heading(donor: Donor) -> FloatArray:
 
 def _about_y(angles: FloatArray) -> FloatArray:
     """(n, 4) rotations about Y by angles (n,), radians."""
-    nothing = np.zeros_like(angles)
-    return np.stack([np.cos(angles / 2), nothing, np.sin(angles / 2), nothing], axis=-1)
+    zeros = np.zeros_like(angles)
+    return np.stack([np.cos(angles / 2), zeros, np.sin(angles / 2), zeros], axis=-1)

@@ -1,9 +1,9 @@
 """Puts the feet of a synthesized body on the floor.
 
-The thirteen roles give the positions of the ankles, but not the directions of the feet, and other
-tasks of the person have other directions. So the height of the floor follows from the standing
-ankles, and the feet are rotated about the ankles. The tip of a foot stays on the floor from the
-moment the foot stands until the ankle is too far away. No part of a foot goes below the floor.
+The 13 joint roles give the positions of the ankles, but not the directions of the feet, and the
+other tasks of the person have other directions. So the height of the floor is computed from the
+standing ankles, and the feet are rotated about the ankles. When a foot stands, its tip is on the
+floor. It stays there until the ankle is too far away. No part of a foot is below the floor.
 """
 
 from __future__ import annotations
@@ -22,21 +22,23 @@ from app.motion.skeleton.rotations import conjugate, identity_quaternions, multi
 from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
 
-GIVING = 0.03
-"""Meters. The tip leaves the floor if the distance of ankle and tip differs by more than this from
-the length of the foot."""
+TIP_TOLERANCE = 0.03
+"""Meters. The tip leaves the floor if its distance to the ankle differs from the length of the foot
+by more than about this."""
 
 RELEASE = 2.0
 """Standard deviation in frames of the transition between a standing and a free tip."""
 
 MIN_QUANTILE = 0.01
-"""Hands, knees and other joints except the feet are below the floor in at most this share of the
-frames."""
+"""The floor may be above other joints than the feet (hands, knees) in this share of the frames."""
 
 
 @dataclass(frozen=True, slots=True)
 class Foot:
-    """An ankle, the joints below it, and the tip: the one that is farthest from the ankle."""
+    """The joint indices of a foot: the ankle, all joints below it, and the tip.
+
+    The tip is the joint that is farthest from the ankle.
+    """
 
     ankle: int
     below: list[int]
@@ -44,17 +46,20 @@ class Foot:
 
 
 def feet_of(skeleton: Skeleton, ankles: Sequence[int]) -> list[Foot]:
-    """The feet at the ankles; an ankle without joints below it has no foot."""
-    still = identity_quaternions((1, len(skeleton)))
-    rest = forward_kinematics(skeleton, still, skeleton.offsets[None])[0]
-    found = []
+    """The feet at the ankles.
+
+    The list is empty if one of the ankles has no joint below it.
+    """
+    no_rotation = identity_quaternions((1, len(skeleton)))
+    rest = forward_kinematics(skeleton, no_rotation, skeleton.offsets[None])[0]
+    feet = []
     for ankle in ankles:
         below = [joint for joint in range(len(skeleton)) if ankle in ancestors(skeleton, joint)]
-        away = np.linalg.norm(rest[below] - rest[ankle], axis=-1)
-        if not below or away.max() < 1e-3:
+        distances = np.linalg.norm(rest[below] - rest[ankle], axis=-1)
+        if not below or distances.max() < 1e-3:
             return []
-        found.append(Foot(ankle, below, below[int(np.argmax(away))]))
-    return found
+        feet.append(Foot(ankle, below, below[int(np.argmax(distances))]))
+    return feet
 
 
 def sole_depths(feet: Sequence[Foot], clips: Sequence[FloatArray]) -> FloatArray:
@@ -62,79 +67,86 @@ def sole_depths(feet: Sequence[Foot], clips: Sequence[FloatArray]) -> FloatArray
 
     It is the median over real clips; each clip is the positions (n, joints, 3).
     """
-    deep = [
+    depths = [
         [_level(clip[:, foot.ankle, 1]) - _level(_lowest(clip, foot)) for foot in feet]
         for clip in clips
     ]
-    return np.asarray(np.maximum(np.median(deep, axis=0), 0.0))
+    return np.asarray(np.maximum(np.median(depths, axis=0), 0.0))
 
 
 def floor_of(positions: FloatArray, feet: Sequence[Foot], depths: FloatArray) -> float:
-    """Y of the floor in meters: below the lowest standing foot, or lower if other joints are."""
-    stands = [
-        _level(positions[:, foot.ankle, 1]) - deep for foot, deep in zip(feet, depths, strict=True)
+    """Y of the floor in meters: under the lowest standing foot, or lower if other joints are lower.
+
+    positions: (n, joints, 3) meters; depths: (feet,) of `sole_depths`.
+    """
+    soles = [
+        _level(positions[:, foot.ankle, 1]) - depth
+        for foot, depth in zip(feet, depths, strict=True)
     ]
     of_feet = [joint for foot in feet for joint in foot.below]
     others = np.delete(positions[:, :, 1], of_feet, axis=1).min(axis=1)
-    return float(min(*stands, np.quantile(others, MIN_QUANTILE)))
+    return float(min(*soles, np.quantile(others, MIN_QUANTILE)))
 
 
 def on_the_floor(animation: Animation, feet: Sequence[Foot]) -> Animation:
     """The animation with its feet rotated about the ankles to fit the floor Y = 0."""
     positions = animation.positions()
     ankles = np.stack([positions[:, foot.ankle] for foot in feet], axis=1)
-    found = stances(ankles, animation.frame_rate)
+    all_stances = stances(ankles, animation.frame_rate)
     for side, foot in enumerate(feet):
-        mine = [stance for stance in found if stance.foot == side]
-        tips, sure = _standing_tips(positions, foot, mine)
+        own = [stance for stance in all_stances if stance.foot == side]
+        tips, weights = _standing_tips(positions, foot, own)
         bone = positions[:, foot.tip] - positions[:, foot.ankle]
-        wanted = tips - positions[:, foot.ankle]
-        animation = _turned(animation, foot, _between(bone, wanted, sure))
-        animation = _turned(animation, foot, _upwards(animation.positions(), foot))
+        target = tips - positions[:, foot.ankle]
+        animation = _rotated(animation, foot, _toward(bone, target, weights))
+        animation = _rotated(animation, foot, _above_floor(animation.positions(), foot))
     return animation
 
 
 def _level(heights: FloatArray) -> float:
+    """The height of a joint while its foot stands: a low percentile of `heights` (n,)."""
     return float(np.percentile(heights, LEVEL_PERCENTILE))
 
 
 def _lowest(positions: FloatArray, foot: Foot) -> FloatArray:
+    """(n,) the height of the lowest joint of the foot in each frame."""
     return np.asarray(positions[:, foot.below, 1].min(axis=1))
 
 
 def _standing_tips(
-    positions: FloatArray, foot: Foot, mine: Sequence[Stance]
+    positions: FloatArray, foot: Foot, own: Sequence[Stance]
 ) -> tuple[FloatArray, FloatArray]:
     """Target positions (n, 3) of a standing tip, and their weights (n,), 0..1."""
     ankle, n = positions[:, foot.ankle], len(positions)
     bones = positions[:, foot.tip] - ankle
     length = float(np.median(np.linalg.norm(bones, axis=-1)))
-    tips, sure = np.array(positions[:, foot.tip]), np.zeros(n)
-    for stance in mine:
+    tips, weights = np.array(positions[:, foot.tip]), np.zeros(n)
+    for stance in own:
         inside = slice(stance.first, stance.stop)
         ahead = bones[inside].mean(axis=0) * [1.0, 0.0, 1.0]
         base = np.median(ankle[inside], axis=0)
+        # by Pythagoras: the tip is on the floor, `length` from the ankle
         flat = np.sqrt(max(length**2 - base[1] ** 2, 0.0))
         tip = base * [1.0, 0.0, 1.0] + ahead / max(np.linalg.norm(ahead), 1e-9) * flat
-        near = np.exp(-(((np.linalg.norm(tip - ankle, axis=-1) - length) / GIVING) ** 2))
+        near = np.exp(-(((np.linalg.norm(tip - ankle, axis=-1) - length) / TIP_TOLERANCE) ** 2))
         near[inside] = 1.0
         # once the tip has left the floor, it stays free
         near[stance.stop :] = np.minimum.accumulate(near[stance.stop :])
         near[: stance.first] = np.minimum.accumulate(near[: stance.first][::-1])[::-1]
-        tips = np.where((near > sure)[:, None], tip, tips)
-        sure = np.maximum(sure, near)
-    return tips, np.asarray(scipy.ndimage.gaussian_filter1d(sure, RELEASE, mode="nearest"))
+        tips = np.where((near > weights)[:, None], tip, tips)
+        weights = np.maximum(weights, near)
+    return tips, np.asarray(scipy.ndimage.gaussian_filter1d(weights, RELEASE, mode="nearest"))
 
 
-def _between(start: FloatArray, end: FloatArray, share: FloatArray) -> FloatArray:
-    """(n, 4) world rotations by a share (n,) of the angle from start (n, 3) to end (n, 3)."""
+def _toward(start: FloatArray, end: FloatArray, share: FloatArray) -> FloatArray:
+    """(n, 4) world rotations of `start` (n, 3) toward `end` (n, 3) by a share (n,) of the angle."""
     across = np.cross(start, end)
     sine = np.linalg.norm(across, axis=-1)
     angle = np.arctan2(sine, (start * end).sum(axis=-1)) * share
     return _about(across / np.maximum(sine, 1e-9)[:, None], angle)
 
 
-def _upwards(positions: FloatArray, foot: Foot) -> FloatArray:
+def _above_floor(positions: FloatArray, foot: Foot) -> FloatArray:
     """(n, 4) world rotations that raise the tip until no joint of the foot is below the floor."""
     ankle = positions[:, foot.ankle]
     bone = positions[:, foot.tip] - ankle
@@ -158,7 +170,7 @@ def _about(axes: FloatArray, angles: FloatArray) -> FloatArray:
     )
 
 
-def _turned(animation: Animation, foot: Foot, turns: FloatArray) -> Animation:
+def _rotated(animation: Animation, foot: Foot, turns: FloatArray) -> Animation:
     """The animation with the ankle rotated by the world rotations `turns` (n, 4)."""
     above = identity_quaternions((len(turns),))
     for joint in ancestors(animation.skeleton, foot.ankle):

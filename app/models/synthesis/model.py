@@ -7,7 +7,7 @@ take that is most like the others replaces the mean.
 From these means, app.models.synthesis.prediction predicts the motion of a person at a task that
 they never recorded (Vasilescu 2002, section 4): a new task for known persons, or any known task
 for a person with only a few clips. Solving eq. 7 for a signature among few persons was much less
-accurate. Within these choices, everything is linear and deterministic.
+accurate. After these choices, all steps are linear and deterministic.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from app.models.cells import Cells, find_cells
 from app.models.synthesis.agreement import agree, agreement
 from app.models.synthesis.basis import weights
 from app.models.synthesis.sides import sides, to_side
-from app.models.synthesis.timing import medoid, together
+from app.models.synthesis.timing import medoid, warp_to_groups
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
 
@@ -43,7 +43,7 @@ class Synthesis:
 
     persons, tasks: sorted labels; means: (cells, 1378) mean motion shapes; person, task:
     (cells,) label indices; takes: (cells,) number of clips; agreement: (cells,) agreement of the
-    takes; below AGREED the "mean" is one of the takes.
+    takes; below MIN_AGREEMENT the "mean" is one of the takes.
 
     side: (cells,) side of each task, +1 or -1, 0 for a task without sides; aligned: (cells,
     1378) the means mirrored to the side +1 and in the time of the task; timing: (cells, 32), see
@@ -70,14 +70,15 @@ class Synthesis:
 
     def cell(self, person: str, task: str) -> FloatArray | None:
         """(1378,) the mean of a person's takes of a task, None if there is none."""
-        found = np.flatnonzero((self._of(person, self.persons) == self.person) & self.did(task))
-        return np.asarray(self.means[found[0]]) if len(found) else None
+        is_cell = (self._of(person, self.persons) == self.person) & self.did(task)
+        cells = np.flatnonzero(is_cell)
+        return np.asarray(self.means[cells[0]]) if len(cells) else None
 
     def cell_agreement(self, person: str, task: str) -> float | None:
         """The agreement of a person's takes of a task, None if there are fewer than two."""
-        mine = (self._of(person, self.persons) == self.person) & self.did(task)
-        found = np.flatnonzero(mine & (self.takes > 1))
-        return float(self.agreement[found[0]]) if len(found) else None
+        is_cell = (self._of(person, self.persons) == self.person) & self.did(task)
+        cells = np.flatnonzero(is_cell & (self.takes > 1))
+        return float(self.agreement[cells[0]]) if len(cells) else None
 
     def reference(self, task: str) -> FloatArray:
         """(1378,) the mean of all persons' aligned shapes of a task."""
@@ -117,11 +118,12 @@ class Synthesis:
         return np.flatnonzero(cells[self.member])
 
     def did(self, task: str) -> BoolArray:
-        """(cells,) whether each cell is of a task."""
+        """(cells,) whether each cell has this task."""
         return np.asarray(self.task == self._of(task, self.tasks))
 
     @staticmethod
     def _of(name: str, names: tuple[str, ...]) -> int:
+        # -2 differs from every label index, also from -1, which is a missing label
         return names.index(name) if name in names else -2
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
@@ -179,9 +181,9 @@ def fit_synthesis(
 ) -> Synthesis:
     """Fit on motion shapes (clips, 1378) that have both labels; others are left out.
 
-    ids: (clips,) by default their numbers. Of takes of one cell that are partly cyclic the
-    more frequent kind is kept. Raises NotEnoughLabels without two persons and two tasks, where
-    no two persons did the same, and with too many cells.
+    ids: (clips,) by default their numbers. If some takes of a cell are cyclic and others are not,
+    only the more frequent kind is used. Raises NotEnoughLabels with fewer than two persons or two
+    tasks, if no task was done by two persons, and with more than MAX_CELLS cells.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
     names = [str(i) if ids is None else ids[i] for i in use]
@@ -190,9 +192,9 @@ def fit_synthesis(
     _check(cells)
     means, agreed = _cell_means(rows, cells)
     side = _sides(means, cells)
-    timed = together(to_side(means, side, 1), cells.task)
-    counted = rows * weights()
-    axes = principal_axes(counted, DIMENSIONS)
+    timed = warp_to_groups(to_side(means, side, 1), cells.task)
+    weighted = rows * weights()
+    axes = principal_axes(weighted, DIMENSIONS)
     return Synthesis(
         cells.persons,
         cells.tasks,
@@ -205,7 +207,7 @@ def fit_synthesis(
         timed.shapes,
         timed.timing,
         axes,
-        axes.project(counted),
+        axes.project(weighted),
         tuple(names),
         cells.member,
     )
@@ -214,14 +216,14 @@ def fit_synthesis(
 def _cell_means(rows: FloatArray, cells: Cells) -> tuple[FloatArray, FloatArray]:
     """(cells, 1378) the mean of the takes of each cell (or, if they do not agree, the take that is
     most like the others), and (cells,) their agreement."""
-    kept = _of_one_kind(rows, cells)
-    member, rows = cells.member[kept], rows[kept]
+    used = _of_one_kind(rows, cells)
+    member, rows = cells.member[used], rows[used]
     order = np.argsort(member, kind="stable")
     takes = np.split(order, np.cumsum(np.bincount(member))[:-1])
-    turned = np.array(rows)
+    one_side = np.array(rows)
     for of_cell in takes:
-        turned[of_cell] = to_side(rows[of_cell], sides(rows[of_cell]), 1)
-    timed = together(turned, member).shapes
+        one_side[of_cell] = to_side(rows[of_cell], sides(rows[of_cell]), 1)
+    timed = warp_to_groups(one_side, member).shapes
     means, agreed = np.empty((len(cells), SHAPE_LENGTH)), np.empty(len(cells))
     for cell, of_cell in enumerate(takes):
         agreed[cell] = agreement(timed[of_cell])
@@ -233,12 +235,12 @@ def _cell_means(rows: FloatArray, cells: Cells) -> tuple[FloatArray, FloatArray]
 
 
 def _sides(means: FloatArray, cells: Cells) -> IntArray:
-    """(cells,) the side of each cell, found by comparison with the other cells of its task."""
-    found = np.zeros(len(cells), dtype=np.int64)
+    """(cells,) the side of each cell, by comparison with the other cells of its task."""
+    side = np.zeros(len(cells), dtype=np.int64)
     for task in range(len(cells.tasks)):
         of_task = np.flatnonzero(cells.task == task)
-        found[of_task] = sides(means[of_task])
-    return found
+        side[of_task] = sides(means[of_task])
+    return side
 
 
 def mean_of_takes(shapes: FloatArray) -> FloatArray:
@@ -258,7 +260,7 @@ def _check(cells: Cells) -> None:
 
 
 def _of_one_kind(rows: FloatArray, cells: Cells) -> IntArray:
-    """Indices of the clips that are cyclic, or not, like most clips of their cell."""
+    """Indices of the clips that are of the kind (cyclic or not) of most clips of their cell."""
     is_cyclic = rows[:, -1] >= 0.5
     share = np.bincount(cells.member, weights=is_cyclic, minlength=len(cells)) / cells.takes
     return np.flatnonzero(is_cyclic == (share >= 0.5)[cells.member])

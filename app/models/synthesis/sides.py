@@ -16,9 +16,10 @@ from app.models.synthesis.basis import weights
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.signs import fix_signs
 
-LEFT_OF_SCATTER = 0.8
-"""A task has two sides if mirroring leaves at most this share of its takes' scatter. Measured:
-1.00 for all tasks of real clips except a dance; .45 for the demo's kicks, .23 for its waves."""
+MAX_SCATTER_LEFT = 0.8
+"""A task has two sides if mirroring lowers the scatter of its takes to at most this share.
+Measured: 1.00 for all tasks of real clips except a dance; .45 for the demo's kicks, .23 for its
+waves."""
 
 ROUNDS = 4
 """Rounds of assigning sides by the mean; few takes change after the first round."""
@@ -34,47 +35,50 @@ def sides(shapes: FloatArray) -> IntArray:
     if len(shapes) < 2 or (shapes[:, -1] >= 0.5).any():
         return none
     rows = np.asarray(shapes, dtype=np.float64)
-    apart = (rows - mirrored(rows)) / 2 * weights()
-    gram = apart @ apart.T
+    asymmetric = (rows - mirrored(rows)) / 2 * weights()
+    gram = asymmetric @ asymmetric.T
     side = _halves(gram)
     if abs(side.sum()) == len(side):
         return none
     # mirroring keeps norms; it changes only the part of the mean that differs between the sides
-    centred = (rows - rows.mean(axis=0)) * weights()
-    scatter = float((centred**2).sum())
+    centered = (rows - rows.mean(axis=0)) * weights()
+    scatter = float((centered**2).sum())
     gained = float(side @ gram @ side - gram.sum()) / len(side)
-    if gained < (1 - LEFT_OF_SCATTER) * scatter:
+    if gained < (1 - MAX_SCATTER_LEFT) * scatter:
         return none
     return side * (1 if (side.sum() or side[0]) > 0 else -1)
 
 
-def to_side(shapes: FloatArray, side: IntArray, wanted: int | IntArray) -> FloatArray:
-    """(n, 1378) the motion shapes (n, 1378), mirrored where their side is not the wanted one.
+def to_side(shapes: FloatArray, side: IntArray, target: int | IntArray) -> FloatArray:
+    """(n, 1378) the motion shapes (n, 1378), mirrored if their side is not the target side.
 
-    side: (n,) their sides; wanted: one side, or (n,) sides. A shape with a 0 in either stays as
-    it is.
+    side: (n,) their sides; target: one side, or (n,) sides. A shape stays as it is if one of the
+    two is 0.
     """
-    changed = np.asarray(side) * wanted < 0
+    changed = np.asarray(side) * target < 0
     turned = np.array(shapes, dtype=np.float64)
     if changed.any():
         turned[changed] = mirrored(turned[changed])
     return turned
 
 
-def likely_side(asked: Sequence[int], theirs: Sequence[IntArray], wanted: IntArray) -> int:
-    """The likely side, +1 or -1, of a task by a person with the sides `asked` of other tasks.
+def likely_side(
+    own_sides: Sequence[int], other_sides: Sequence[IntArray], target_sides: IntArray
+) -> int:
+    """The likely side, +1 or -1, of the target task by a person who never did it.
 
-    theirs: for each of these tasks, the sides (K,) of K persons who did the wanted task to the
-    sides `wanted` (K,); 0 if unknown. The result follows the correlation of the sides of both
-    tasks; without one, it is the most frequent side.
+    own_sides: (T,) the sides of the person's other tasks. other_sides: for each of these tasks,
+    the sides (K,) of K other persons. target_sides: (K,) the sides to which these persons did the
+    target task. 0 is an unknown side. The result follows the correlation of the sides of the
+    tasks. Without correlation, it is the most frequent side.
     """
     votes = 0.0
-    for own, others in zip(asked, theirs, strict=True):
-        known = (others != 0) & (wanted != 0)
+    for own, others in zip(own_sides, other_sides, strict=True):
+        known = (others != 0) & (target_sides != 0)
         if own and known.any():
-            votes += own * float(np.mean(others[known] * wanted[known]))
+            votes += own * float(np.mean(others[known] * target_sides[known]))
     if abs(votes) < 1e-9:
-        votes = float(wanted.sum()) or 1.0
+        votes = float(target_sides.sum()) or 1.0
     return 1 if votes > 0 else -1
 
 

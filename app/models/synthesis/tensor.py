@@ -1,7 +1,8 @@
 """Collects the cells for a prediction, and aligns their sides and times so that they can be added.
 
-The motions of the asked person are never mirrored. Those of the others are mirrored to the sides of
-the asked person. Missing cells are completed by person and task effects.
+A prediction is for one person, the target person, at one task, the target task. The motions of the
+target person are never mirrored. The motions of the other persons are mirrored to the sides of the
+target person. Missing cells are predicted from person and task effects.
 """
 
 from __future__ import annotations
@@ -18,13 +19,13 @@ from app.models.synthesis.agreement import agreement
 from app.models.synthesis.basis import weights
 from app.models.synthesis.model import Synthesis
 from app.models.synthesis.sides import likely_side, sides, to_side
-from app.models.synthesis.timing import Timed, medoid, onto, together
+from app.models.synthesis.timing import Timed, medoid, warp_to_groups, warp_to_references
 from app.numerics.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True)
 class OwnMotions:
-    """The motions of the asked person.
+    """The motions of the target person.
 
     tasks: (T,) names; side: (T,) the person's side of each, 0 for a task without sides; timed:
     the shapes in the time of their tasks.
@@ -36,29 +37,35 @@ class OwnMotions:
 
 
 @dataclass(frozen=True, slots=True)
-class WantedMotions:
-    """The wanted task by K other persons.
+class TargetMotions:
+    """The target task by K other persons.
 
-    timed: their shapes, mirrored to the likely side of the asked person; agreement: their
-    agreement, for a single person that of their takes, None for a single take; most_like_all:
-    index of the person who is most like the others.
+    timed: their shapes, mirrored to the likely side of the target person; agreement: between the
+    persons, or between the takes of a single person, None for a single take; most_typical: the
+    index of the person whose shape is nearest to all others.
     """
 
     timed: Timed
     agreement: float | None
-    most_like_all: int
+    most_typical: int
 
 
 @dataclass(frozen=True, slots=True)
-class KnownTensor:
-    """basis: (K, T, 1378) shapes of T tasks by K other persons; timing: (K, T, 32)."""
+class BasisTensor:
+    """The tasks of the target person by K other persons.
+
+    basis: (K, T, 1378) the shapes of the T tasks; timing: (K, T, 32) their timing, see `Timed`.
+    """
 
     basis: FloatArray
     timing: FloatArray
 
 
 def own_motions(record: Synthesis, given: Mapping[str, FloatArray]) -> OwnMotions:
-    """The motions of the asked person, from shapes (1378,) by task."""
+    """The motions of the target person, from shapes (1378,) by task.
+
+    They are aligned at the side +1, which is the side of the references, and mirrored back then.
+    """
     tasks = tuple(given)
     shapes = np.stack([given[name] for name in tasks]).astype(np.float64)
     references = np.stack([record.reference(name) for name in tasks])
@@ -68,54 +75,62 @@ def own_motions(record: Synthesis, given: Mapping[str, FloatArray]) -> OwnMotion
             for name, shape, reference in zip(tasks, shapes, references, strict=True)
         ]
     )
-    timed = onto(to_side(shapes, side, 1), references)
-    as_they_do = to_side(timed.shapes, np.ones_like(side), side)
-    return OwnMotions(tasks, side, Timed(as_they_do, timed.timing))
+    timed = warp_to_references(to_side(shapes, side, 1), references)
+    mirrored_back = to_side(timed.shapes, np.ones_like(side), side)
+    return OwnMotions(tasks, side, Timed(mirrored_back, timed.timing))
 
 
-def wanted_motions(
+def target_motions(
     record: Synthesis, task: str, persons: list[str], own: OwnMotions
-) -> WantedMotions:
-    """The wanted task by `persons`; sides and time are computed from these persons only."""
+) -> TargetMotions:
+    """The target task by `persons`; sides and time are computed from these persons only."""
     cells = [record.cell(name, task) for name in persons]
     shapes = np.stack([cell for cell in cells if cell is not None])
     side = sides(shapes)
-    asked = likely_side(own.side.tolist(), _sides_of(record, persons, own.tasks), side)
-    timed = together(to_side(shapes, side, asked), np.zeros(len(shapes), dtype=np.int64))
-    usual = (shapes[:, -1] >= 0.5) == (np.mean(shapes[:, -1]) >= 0.5)
-    of_kind = np.flatnonzero(usual)
-    rows = timed.shapes[of_kind]
-    alone = len(persons) == 1
-    agreed = record.cell_agreement(persons[0], task) if alone else agreement(rows)
-    return WantedMotions(timed, agreed, int(of_kind[medoid(rows * weights())]))
+    target_side = likely_side(own.side.tolist(), _sides_of(record, persons, own.tasks), side)
+    timed = warp_to_groups(
+        to_side(shapes, side, target_side), np.zeros(len(shapes), dtype=np.int64)
+    )
+    # Cyclic and other shapes cannot be compared: only the more frequent kind is.
+    is_usual = (shapes[:, -1] >= 0.5) == (np.mean(shapes[:, -1]) >= 0.5)
+    usual = np.flatnonzero(is_usual)
+    rows = timed.shapes[usual]
+    is_single = len(persons) == 1
+    agreed = record.cell_agreement(persons[0], task) if is_single else agreement(rows)
+    return TargetMotions(timed, agreed, int(usual[medoid(rows * weights())]))
 
 
-def known_tensor(
-    record: Synthesis, persons: list[str], own: OwnMotions, wanted: Timed
-) -> KnownTensor:
-    """The asked person's tasks by `persons` (K).
+def basis_tensor(
+    record: Synthesis, persons: list[str], own: OwnMotions, target: Timed
+) -> BasisTensor:
+    """The target person's tasks by `persons` (K).
 
-    wanted: (K, ...) the wanted task by them; it helps to complete missing cells.
+    target: (K, ...) the target task by the same persons; it helps to predict missing cells.
     """
-    person, task = _places(record.persons, persons), _places(record.tasks, list(own.tasks))
-    kept = np.flatnonzero((person[record.person] >= 0) & (task[record.task] >= 0))
-    rows, columns = person[record.person[kept]], task[record.task[kept]]
-    known = np.full((len(persons), len(own.tasks), SHAPE_LENGTH + SAMPLES), np.nan)
-    shapes = to_side(record.aligned[kept], np.ones_like(kept), own.side[columns])
-    known[rows, columns] = np.hstack([shapes, record.timing[kept]])
-    missing = np.isnan(known[:, :, 0])
+    person, task = _index_in(record.persons, persons), _index_in(record.tasks, list(own.tasks))
+    used = np.flatnonzero((person[record.person] >= 0) & (task[record.task] >= 0))
+    rows, columns = person[record.person[used]], task[record.task[used]]
+    # (K, T, 1378 + 32) shape and timing of each cell side by side; NaN marks a missing cell
+    cells = np.full((len(persons), len(own.tasks), SHAPE_LENGTH + SAMPLES), np.nan)
+    shapes = to_side(record.aligned[used], np.ones_like(used), own.side[columns])
+    cells[rows, columns] = np.hstack([shapes, record.timing[used]])
+    missing = np.isnan(cells[:, :, 0])
     if missing.any():
-        known[missing] = _completed(known, own, wanted)
-    return KnownTensor(known[..., :SHAPE_LENGTH], known[..., SHAPE_LENGTH:])
+        cells[missing] = _predicted_cells(cells, own, target)
+    return BasisTensor(cells[..., :SHAPE_LENGTH], cells[..., SHAPE_LENGTH:])
 
 
-def _completed(known: FloatArray, own: OwnMotions, wanted: Timed) -> FloatArray:
-    """(missing, ...) the missing cells of `known`, predicted by person and task effects."""
+def _predicted_cells(known: FloatArray, own: OwnMotions, target: Timed) -> FloatArray:
+    """(missing, 1410) the missing cells of `known` (K, T, 1410), by person and task effects.
+
+    The target person is one more person, after the K others. The target task is one more task,
+    after the T tasks. Their cells take part in the fit.
+    """
     persons, tasks = known.shape[:2]
     missing = np.isnan(known[:, :, 0])
     rows, columns = np.nonzero(~missing)
-    asked = np.hstack([own.timed.shapes, own.timed.timing])
-    others = np.hstack([wanted.shapes, wanted.timing])
+    of_target_person = np.hstack([own.timed.shapes, own.timed.timing])
+    of_target_task = np.hstack([target.shapes, target.timing])
     cells = Cells(
         tuple(str(i) for i in range(persons + 1)),
         tuple(str(i) for i in range(tasks + 1)),
@@ -124,7 +139,8 @@ def _completed(known: FloatArray, own: OwnMotions, wanted: Timed) -> FloatArray:
         np.concatenate([columns, np.arange(tasks), np.full(persons, tasks)]),
         np.ones(len(rows) + tasks + persons, dtype=np.int64),
     )
-    effects = fit_effects(np.concatenate([known[rows, columns], asked, others]), cells)
+    means = np.concatenate([known[rows, columns], of_target_person, of_target_task])
+    effects = fit_effects(means, cells)
     return effects.predict(*np.nonzero(missing))
 
 
@@ -136,16 +152,16 @@ def _nearer_side(shape: FloatArray, reference: FloatArray) -> int:
 
 
 def _sides_of(record: Synthesis, persons: list[str], tasks: tuple[str, ...]) -> list[IntArray]:
-    """For each task, the sides (K,) of the persons; 0 if a person did not do it."""
-    found = np.zeros((len(tasks), len(persons)), dtype=np.int64)
-    person, task = _places(record.persons, persons), _places(record.tasks, list(tasks))
-    kept = np.flatnonzero((person[record.person] >= 0) & (task[record.task] >= 0))
-    found[task[record.task[kept]], person[record.person[kept]]] = record.side[kept]
-    return list(found)
+    """For each task, the sides (K,) of the persons; 0 if a person has no clip of it."""
+    side = np.zeros((len(tasks), len(persons)), dtype=np.int64)
+    person, task = _index_in(record.persons, persons), _index_in(record.tasks, list(tasks))
+    used = np.flatnonzero((person[record.person] >= 0) & (task[record.task] >= 0))
+    side[task[record.task[used]], person[record.person[used]]] = record.side[used]
+    return list(side)
 
 
-def _places(names: tuple[str, ...], chosen: list[str]) -> IntArray:
-    """(names,) the index of each name in `chosen`, -1 if it is not there."""
-    found = np.full(len(names), -1)
-    found[[names.index(name) for name in chosen]] = np.arange(len(chosen))
-    return found
+def _index_in(names: tuple[str, ...], chosen: list[str]) -> IntArray:
+    """(names,) the index of each of `names` in `chosen`, -1 for a name that was not chosen."""
+    index = np.full(len(names), -1)
+    index[[names.index(name) for name in chosen]] = np.arange(len(chosen))
+    return index

@@ -1,9 +1,9 @@
 """Warps motion shapes to the time of their group, and back to their own time.
 
-Takes that are not cycles begin at different times and have different speeds; without alignment,
+Takes that are not cycles begin at different times and have different speeds. Without alignment,
 their mean would show half a gesture twice. Each take is warped onto the mean of its group
 (app.numerics.alignment.group_warping). The difference between its time and that of the group is its
-*timing*, which is learned and carried over like the rest of a motion. Cycles are aligned where
+*timing*. It is learned and predicted like the rest of a motion. Cycles are aligned where
 they are cut, so they are not warped.
 """
 
@@ -31,24 +31,28 @@ from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.euclidean import distances
 
 _TIE = 1e-6
-"""Relative: distances that are this close count as equal, so that rounding does not decide."""
+"""Distances count as equal up to this relative difference, so that rounding does not decide."""
 
 _STEADY: FloatArray = np.arange(SAMPLES, dtype=np.float64)
+"""The times of a motion without a delay, in moments."""
 
 
 @dataclass(frozen=True, slots=True)
 class Timed:
-    """shapes: (n, 1378) motion shapes in the time of their group; timing: (n, 32) the delay, in
-    moments, of each in its own time; zeros for cycles and for single takes."""
+    """Motion shapes in the time of their group.
+
+    shapes: (n, 1378). timing: (n, 32) for each moment of the group's time, the time in the take
+    itself minus the time of the group, in moments; zeros for cycles and for single takes.
+    """
 
     shapes: FloatArray
     timing: FloatArray
 
 
-def together(shapes: FloatArray, group: IntArray) -> Timed:
+def warp_to_groups(shapes: FloatArray, group: IntArray) -> Timed:
     """Warp motion shapes (n, 1378) to the mean time of their group; group: (n,) its number.
 
-    Groups with a cycle among them stay as they are.
+    Groups that contain a cycle stay as they are.
     """
     shapes = np.array(shapes, dtype=np.float64)
     timing = np.zeros((len(shapes), SAMPLES))
@@ -58,7 +62,7 @@ def together(shapes: FloatArray, group: IntArray) -> Timed:
     moments = moments_of_shapes(shapes[chosen])
     group = np.unique(group[chosen], return_inverse=True)[1]
     medoids = moments[_medoids(moments, group)]
-    # the last round computes only the times
+    # The last round is not part of this call: only its times are needed.
     means = means_of_warped(moments, group, medoids, _by_movement, ROUNDS - 1)
     times = _times(moments, means[group])
     # the time of a group is the mean time of its members
@@ -69,7 +73,7 @@ def together(shapes: FloatArray, group: IntArray) -> Timed:
     return Timed(shapes, timing)
 
 
-def onto(shapes: FloatArray, references: FloatArray, smoothing: float = 0.0) -> Timed:
+def warp_to_references(shapes: FloatArray, references: FloatArray, smoothing: float = 0.0) -> Timed:
     """Warp each of `shapes` (n, 1378) to the time of the same row of `references` (n, 1378).
 
     A cycle stays as it is, and so does a shape whose reference is a cycle. smoothing: standard
@@ -80,8 +84,8 @@ def onto(shapes: FloatArray, references: FloatArray, smoothing: float = 0.0) -> 
     chosen = np.flatnonzero((shapes[:, -1] < 0.5) & (references[:, -1] == 0.0))
     if len(chosen):
         moments = moments_of_shapes(shapes[chosen])
-        aims = moments_of_shapes(references[chosen])
-        times = _times(moments, aims)
+        targets = moments_of_shapes(references[chosen])
+        times = _times(moments, targets)
         if smoothing > 0:
             times = smooth_times(times, smoothing)
         shapes[chosen, :-2] = read_at(moments, times).reshape(len(chosen), -1)
@@ -89,8 +93,8 @@ def onto(shapes: FloatArray, references: FloatArray, smoothing: float = 0.0) -> 
     return Timed(shapes, timing)
 
 
-def in_own_time(shape: FloatArray, timing: FloatArray) -> FloatArray:
-    """(1378,) a `shape` (1378,) in the time of its group, brought to its own `timing` (32,)."""
+def to_own_time(shape: FloatArray, timing: FloatArray) -> FloatArray:
+    """(1378,) a `shape` (1378,) in the time of its group, warped to its own `timing` (32,)."""
     times = inverse(rising(_STEADY + timing)[None])
     moments = read_at(moments_of_shapes(shape[None]), times)
     return np.concatenate([moments.ravel(), shape[-2:]])
@@ -102,7 +106,7 @@ def moments_of_shapes(shapes: FloatArray) -> FloatArray:
 
 
 def _can_be_warped(shapes: FloatArray, group: IntArray) -> BoolArray:
-    """(n,) whether each is in a group of several takes without a cycle."""
+    """(n,) whether each shape is in a group of several takes without a cycle."""
     count = np.bincount(group)
     cyclic = np.bincount(group, weights=shapes[:, -1] >= 0.5)
     return np.asarray(((count > 1) & (cyclic == 0))[group])
@@ -119,9 +123,9 @@ def _by_movement(moments: FloatArray, references: FloatArray) -> FloatArray:
 
 
 def _compared(moments: FloatArray) -> FloatArray:
-    """(n, 32, 43) what moments are compared by: the movement without the mean posture."""
-    weighed = moments * weights()[:CHANNELS]
-    return np.asarray(weighed - weighed.mean(axis=1, keepdims=True))
+    """(n, 32, 43) the weighted movement without the mean posture, by which moments are compared."""
+    weighted = moments * weights()[:CHANNELS]
+    return np.asarray(weighted - weighted.mean(axis=1, keepdims=True))
 
 
 def _medoids(moments: FloatArray, group: IntArray) -> IntArray:
@@ -131,6 +135,9 @@ def _medoids(moments: FloatArray, group: IntArray) -> IntArray:
 
 
 def medoid(rows: FloatArray) -> int:
-    """Which of `rows` (n, d) is nearest to all the others, the first where several are."""
-    away = distances(rows, rows).sum(axis=1)
-    return int(np.argmax(away <= (1 + _TIE) * away.min()))  # of two rows, both are the medoid
+    """The index of the row of `rows` (n, d) with the smallest sum of distances to all others.
+
+    Among equally good rows, it is the first one.
+    """
+    totals = distances(rows, rows).sum(axis=1)
+    return int(np.argmax(totals <= (1 + _TIE) * totals.min()))  # of two rows, both are the medoid

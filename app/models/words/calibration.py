@@ -1,9 +1,9 @@
-"""Calibration of the word model: from its outputs to probabilities, learned on held-out clips.
+"""Calibration of the word model: converts outputs to probabilities, learned on held-out clips.
 
 One monotone curve (isotonic regression) serves all words: the share of true (clip, word) pairs
-among pairs with similar outputs. A query of several words asks for clips with all of them. Since
-words occur together, this is more likely than the product of their probabilities.
-Shapes: clips N, words V, asked words q.
+among pairs with similar outputs. A query of several words requests clips with all of them. Since
+words occur together, the probability is larger than the product of their probabilities.
+Shapes: clips N, words V, words of a query q.
 """
 
 from __future__ import annotations
@@ -26,7 +26,9 @@ SMOOTHING = 1e-3
 """Share of a logistic curve in the calibration, so that it rises strictly also beyond the held-out
 outputs and below the smallest true one."""
 MAX_SETS = 300
+"""Largest number of label sets from which the dependence is learned."""
 _DEPENDENCES = np.linspace(0.0, 1.0, 21)
+"""Candidates for the dependence."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,10 +51,10 @@ class WordCalibration:
         return np.asarray((1.0 - SMOOTHING) * curve + SMOOTHING * logistic)
 
     def joint_surprise(self, probabilities: FloatArray) -> FloatArray:
-        """(N,) -ln of the probability that a clip carries all q words.
+        """(N,) -ln of the probability that a clip has all q words.
 
-        probabilities: (N, q) of the single words. The result is that of their geometric mean to
-        the power q^dependence; with dependence 1 this is their product.
+        probabilities: (N, q) of the single words. The probability of all is their geometric mean
+        to the power q^dependence. With dependence 1 this is their product.
         """
         count = probabilities.shape[1]
         smallest = np.finfo(np.float64).tiny
@@ -72,7 +74,7 @@ class WordCalibration:
         return cls(arrays["outputs"], arrays["shares"], float(meta["dependence"]))
 
 
-AS_THEY_ARE = WordCalibration(np.array([0.0, 1.0]), np.array([0.0, 1.0]), 1.0)
+IDENTITY_CALIBRATION = WordCalibration(np.array([0.0, 1.0]), np.array([0.0, 1.0]), 1.0)
 """The identity, for libraries with too few clips to hold some out."""
 
 
@@ -95,13 +97,13 @@ def calibrate(
     own = [groups[row] for row in chosen]
     folds = min(FOLDS, len(set(own)))
     if folds < 2:
-        return AS_THEY_ARE
+        return IDENTITY_CALIBRATION
     fold = grouped_folds(own, folds, seed=seed)
     outputs = np.zeros(truth.shape)
     for one in range(folds):
-        held = fold == one
-        taught = refit_word_model(model, rows[~held], truth[~held], seed=seed)
-        outputs[held] = taught.outputs(rows[held])
+        held_out = fold == one
+        fold_model = refit_word_model(model, rows[~held_out], truth[~held_out], seed=seed)
+        outputs[held_out] = fold_model.outputs(rows[held_out])
     knots, shares = rising_means(outputs.ravel(), truth.ravel())
     curve = WordCalibration(knots, shares, 1.0)
     dependence = _dependence(curve.probabilities(outputs), truth, seed)
@@ -115,10 +117,11 @@ def _dependence(probabilities: FloatArray, labels: FloatArray, seed: int) -> flo
         return 1.0
     sets = sets[np.random.RandomState(seed).permutation(len(sets))[:MAX_SETS]]
     losses = np.zeros(len(_DEPENDENCES))
-    for wanted in sets > 0.0:
-        is_so = labels[:, wanted].all(axis=1)
-        mean = -np.log(probabilities[:, wanted]).mean(axis=1)
-        surprise = mean * float(wanted.sum()) ** _DEPENDENCES[:, None]
-        losses += surprise[:, is_so].sum(axis=1)
-        losses -= np.log1p(-np.exp(-surprise[:, ~is_so])).sum(axis=1)
+    for in_set in sets > 0.0:
+        is_true = labels[:, in_set].all(axis=1)
+        mean = -np.log(probabilities[:, in_set]).mean(axis=1)
+        # (dependences, n) -ln of the probability that a clip has the whole set
+        surprise = mean * float(in_set.sum()) ** _DEPENDENCES[:, None]
+        losses += surprise[:, is_true].sum(axis=1)
+        losses -= np.log1p(-np.exp(-surprise[:, ~is_true])).sum(axis=1)
     return float(_DEPENDENCES[np.argmin(losses)])

@@ -32,7 +32,9 @@ MIN_CLIPS = 3
 
 @dataclass(frozen=True, slots=True)
 class CorrelatedSpace:
-    """pair: the canonical projections of x (d) and y (V); words_to_motions: (k, k) C;
+    """A fitted correlated space.
+
+    pair: the canonical projections of x (d) and y (V); words_to_motions: (k, k) C;
     motions_to_words: (k, k) D.
     """
 
@@ -50,34 +52,34 @@ class CorrelatedSpace:
 
     def clip_cosines(self, points: FloatArray, query: FloatArray) -> FloatArray:
         """(N,) cosine in -1..1 between each clip's f and C'g of a query's label vector (V,)."""
-        return _cosines(self.motions(points), self._wanted(query))[:, 0]
+        return _cosines(self.motions(points), self._query_point(query))[:, 0]
 
     def single_word_cosines(self, points: FloatArray) -> FloatArray:
         """(N, V) cosine in -1..1 between each clip's f and the C'g of each single word."""
         return _cosines(self.motions(points), self._single_words() @ self.words_to_motions)
 
     def clip_distances(self, points: FloatArray, query: FloatArray) -> FloatArray:
-        """(N,) distance of each clip's f to C'g of a query's label vector (V,), as printed."""
-        return np.asarray(np.linalg.norm(self.motions(points) - self._wanted(query), axis=1))
+        """(N,) distance of each clip's f to C'g of a query's label vector (V,), as in the paper."""
+        return np.asarray(np.linalg.norm(self.motions(points) - self._query_point(query), axis=1))
 
     def word_cosines(self, points: FloatArray) -> FloatArray:
         """(N, V) cosine in -1..1 between D'f of each clip and the g of each single word."""
-        return _cosines(self._reached(points), self._single_words())
+        return _cosines(self._word_points(points), self._single_words())
 
     def word_distances(self, points: FloatArray) -> FloatArray:
-        """(N, V) distance of D'f of each clip to the g of each single word, as printed."""
-        return distances(self._reached(points), self._single_words())
+        """(N, V) distance of D'f of each clip to the g of each single word, as in the paper."""
+        return distances(self._word_points(points), self._single_words())
 
-    def _wanted(self, query: FloatArray) -> FloatArray:
-        """(1, k) C'g."""
+    def _query_point(self, query: FloatArray) -> FloatArray:
+        """(1, k) C'g, the label vector (V,) of a query in the canonical space of motions."""
         return np.asarray(self.words(query[None]) @ self.words_to_motions)
 
-    def _reached(self, points: FloatArray) -> FloatArray:
-        """(N, k) D'f."""
+    def _word_points(self, points: FloatArray) -> FloatArray:
+        """(N, k) D'f, the motions in the canonical space of words."""
         return np.asarray(self.motions(points) @ self.motions_to_words)
 
     def _single_words(self) -> FloatArray:
-        """(V, k) g of a label set of one word."""
+        """(V, k) g of the label sets of one word each."""
         return self.words(np.eye(len(self.pair.y_mean)))
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
@@ -110,7 +112,7 @@ def fit_correlated_space(
 ) -> CorrelatedSpace:
     """Fit on symbol coordinates (n, d) and label vectors (n, V) of the labeled clips.
 
-    ridge: 0 selects the pseudo-inverse, as printed; then the covariance of g is the identity,
+    ridge: 0 selects the pseudo-inverse, as in the paper. Then the covariance of g is the identity,
     and C is the diagonal matrix of canonical correlations (eq. 16).
     Raises NotEnoughLabels with fewer than MIN_CLIPS clips or without words.
     """

@@ -1,4 +1,4 @@
-"""Calibration of the correlated space: from angles to probabilities, learned on held-out clips.
+"""Calibration of the correlated space: converts angles to probabilities, learned on held-out clips.
 
 An angle does not show how common a word is: a clip at the same angle to *walk* and to *juggle* is
 more likely a walk. So one logistic curve for all words depends on the cosine and on the log odds
@@ -8,8 +8,6 @@ For whole label sets, which were not part of the fit, it is .0073 instead of .00
 
 The search for clips by words and the search for words by clips have different angles (Takano,
 sections 2.3 and 2.4), so each has its own curve. Shapes: clips N, words V.
---
-<<
 """
 
 from __future__ import annotations
@@ -27,10 +25,11 @@ from app.numerics.arrays import FloatArray
 
 FOLDS = 5
 MAX_CLIPS = 2000
-"""Largest number of clips of the calibration; more hardly change its three numbers."""
+"""Largest number of clips of the calibration; more clips change its three numbers very little."""
 
 LEVELS, SLOPES, WEIGHTS = (-10.0, 10.0), (0.5, 50.0), (0.0, 2.0)
-"""Bounds: a score always rises with the cosine, and never falls with the frequency of a word."""
+"""Bounds of level, slope and weight. With them, a score always rises with the cosine, and never
+falls with the frequency of a word."""
 
 START = (0.0, 4.0, 1.0)
 """Level, slope and weight if there are too few clips to hold some out."""
@@ -40,7 +39,7 @@ START = (0.0, 4.0, 1.0)
 class CosineCalibration:
     """Probability 1 / (1 + exp(-level - slope cosine - weight ln(share / (1 - share)))).
 
-    shares: (V,) the share of clips that carry each word, in (0, 1).
+    shares: (V,) the share of clips that have each word, in (0, 1).
     """
 
     shares: FloatArray
@@ -51,13 +50,13 @@ class CosineCalibration:
     def probabilities(self, cosines: FloatArray, shares: FloatArray | float) -> FloatArray:
         """Probabilities of `cosines` (any shape), strictly ascending with them.
 
-        shares: the share of clips that carry the words of each cosine; it must broadcast.
+        shares: the share of clips that have the words of each cosine; it must broadcast.
         """
         odds = self.level + self.slope * cosines + self.weight * _log_odds(shares)
         return np.asarray(1.0 / (1.0 + np.exp(-odds)))
 
     def of_words(self, cosines: FloatArray) -> FloatArray:
-        """(N, V) probability that each clip carries each word, by the cosines (N, V)."""
+        """(N, V) probability that each clip has each word, by the cosines (N, V)."""
         return self.probabilities(cosines, self.shares)
 
     def to_arrays(self) -> tuple[dict[str, np.ndarray[Any, Any]], dict[str, Any]]:
@@ -92,6 +91,7 @@ def calibrate_cosines(
     points: (n, d) symbol coordinates; labels: (n, V); groups: n, clips of one group are held out
     together. Deterministic for a seed.
     """
+    # half a clip more, so that no share is 0 or 1
     shares = (labels.sum(axis=0) + 0.5) / (len(labels) + 1.0)
     chosen = np.sort(np.random.RandomState(seed).permutation(len(points))[:MAX_CLIPS])
     rows, truth, own = points[chosen], labels[chosen], [groups[row] for row in chosen]
@@ -99,13 +99,14 @@ def calibrate_cosines(
     if folds < 2:
         return CosineCalibration(shares, *START)
     fold = grouped_folds(own, folds, seed=seed)
+    # every fold must leave enough clips for a correlated space
     if np.bincount(fold).max() > len(rows) - MIN_CLIPS:
         return CosineCalibration(shares, *START)
     cosines = np.zeros(truth.shape)
     for one in range(folds):
-        held = fold == one
-        taught = fit_correlated_space(rows[~held], truth[~held])
-        cosines[held] = cosines_of(taught, rows[held])
+        held_out = fold == one
+        space = fit_correlated_space(rows[~held_out], truth[~held_out])
+        cosines[held_out] = cosines_of(space, rows[held_out])
     return CosineCalibration(shares, *_likeliest(cosines, shares, truth))
 
 
@@ -116,12 +117,12 @@ def _likeliest(
     terms = np.stack(
         [np.ones(cosines.size), cosines.ravel(), np.tile(_log_odds(shares), len(cosines))], axis=1
     )
-    is_so = truth.ravel()
+    is_true = truth.ravel()
 
     def loss(curve: FloatArray) -> tuple[float, FloatArray]:
         odds = terms @ curve
-        missed = 1.0 / (1.0 + np.exp(-odds)) - is_so
-        return float(np.mean(np.logaddexp(0.0, odds) - is_so * odds)), missed @ terms / len(terms)
+        errors = 1.0 / (1.0 + np.exp(-odds)) - is_true
+        return float(np.mean(np.logaddexp(0.0, odds) - is_true * odds)), errors @ terms / len(terms)
 
     bounds = (LEVELS, SLOPES, WEIGHTS)
     level, slope, weight = scipy.optimize.minimize(

@@ -18,7 +18,7 @@ from app.models.words.correlated_space import MIN_CLIPS, CorrelatedSpace, fit_co
 from app.models.words.cosine_calibration import CosineCalibration, calibrate_cosines
 from app.models.words.language.wordnet import Meanings
 from app.models.words.model import WordModel, fit_word_model
-from app.models.words.query import WordsAsked, understand
+from app.models.words.query import WordQuery, understand
 from app.models.words.symbol_space import SymbolSpace, fit_symbol_space
 from app.models.words.vocabulary import WordVocabulary
 from app.numerics.arrays import FloatArray
@@ -34,7 +34,7 @@ class LibraryWords:
 
     vocabulary: V words; model: the default word model; calibration: of its outputs; space: of
     all symbols; correlated: None if too few clips have words; cosines, back_cosines: the
-    calibrations of its angles from words to clips and from clips to words, None likewise;
+    calibrations of its angles from words to clips and from clips to words, None without it;
     meanings: related words from WordNet (app.models.words.language.wordnet), added by the
     caller of the fit.
     """
@@ -48,32 +48,31 @@ class LibraryWords:
     back_cosines: CosineCalibration | None
     meanings: Meanings = field(default_factory=Meanings)
 
-    def ask(self, texts: Iterable[str]) -> WordsAsked:
+    def ask(self, texts: Iterable[str]) -> WordQuery:
         """The meaning of a query of words, phrases or sentences in this library."""
         return understand(texts, self.vocabulary, self.meanings.related)
 
     def word_scores(self, statistics: FloatArray) -> FloatArray:
-        """(N, V) probability that each clip carries each word, from statistics (N, p)."""
+        """(N, V) probability that each clip has each word, from statistics (N, p)."""
         return self.calibration.probabilities(self.model.outputs(statistics))
 
     def clip_surprises(
-        self, scores: FloatArray, columns: Sequence[str], meant: Sequence[Mapping[str, float]]
+        self, scores: FloatArray, columns: Sequence[str], items: Sequence[Mapping[str, float]]
     ) -> FloatArray:
-        """(N,) -ln of the probability that clips carry everything that was asked for.
+        """(N,) -ln of the probability that a clip has all items of a query.
 
-        scores: (N, c) word_scores of the words `columns`; meant: at least one item, see
-        WordsAsked. If several words can replace an item, the most likely one counts, times its
-        weight.
+        scores: (N, c) word_scores of the words `columns`; items: at least one, see WordQuery. If
+        several words can replace an item, only the largest product of score and weight counts.
         """
-        place = {word: column for column, word in enumerate(columns)}
-        asked = [
-            np.max([weight * scores[:, place[word]] for word, weight in words.items()], axis=0)
-            for words in meant
+        column_of = {word: column for column, word in enumerate(columns)}
+        item_scores = [
+            np.max([weight * scores[:, column_of[word]] for word, weight in item.items()], axis=0)
+            for item in items
         ]
-        return self.calibration.joint_surprise(np.stack(asked, axis=1))
+        return self.calibration.joint_surprise(np.stack(item_scores, axis=1))
 
     def word_scores_cca(self, points: FloatArray) -> FloatArray:
-        """(N, V) probability that each clip carries each word, in the correlated space (Takano,
+        """(N, V) probability that each clip has each word, in the correlated space (Takano,
         section 2.4).
 
         points: (N, d) symbol coordinates. Raises NotEnoughLabels without a correlated space.
@@ -81,7 +80,7 @@ class LibraryWords:
         space, _, calibration = self._correlated()
         return calibration.of_words(space.word_cosines(points))
 
-    def clip_angles(self, points: FloatArray, asked: WordsAsked) -> FloatArray:
+    def clip_angles(self, points: FloatArray, asked: WordQuery) -> FloatArray:
         """(N,) 1 - cosine, 0..2, between clips at symbol coordinates (N, d) and a query.
 
         Raises NotEnoughLabels without a correlated space.
@@ -89,14 +88,14 @@ class LibraryWords:
         space, *_ = self._correlated()
         return 1.0 - space.clip_cosines(points, self.vocabulary.vector(asked.weights))
 
-    def angle_scores(self, angles: FloatArray, asked: WordsAsked) -> FloatArray:
-        """(N,) probability that clips at `clip_angles` (N,) carry everything asked for.
+    def angle_scores(self, angles: FloatArray, asked: WordQuery) -> FloatArray:
+        """(N,) probability that clips at `clip_angles` (N,) have all items of a query.
 
         Raises NotEnoughLabels without a correlated space.
         """
         _, calibration, _ = self._correlated()
         words = self.vocabulary.words
-        common = self.clip_surprises(calibration.shares[None], words, asked.meant)
+        common = self.clip_surprises(calibration.shares[None], words, asked.items)
         return calibration.probabilities(1.0 - angles, np.exp(-common))
 
     def _correlated(self) -> tuple[CorrelatedSpace, CosineCalibration, CosineCalibration]:
@@ -152,7 +151,7 @@ class LibraryWords:
 
 @dataclass(frozen=True, slots=True)
 class FittedWords:
-    """words: the fitted models; points: (N, d) coordinates of the clips' symbols in its space."""
+    """The results of a fit: the models, and (N, d) the coordinates of the clips in the space."""
 
     words: LibraryWords
     points: FloatArray
@@ -183,10 +182,10 @@ def fit_library_words(
     points = space.place(symbols)
     correlated, cosines, back = None, None, None
     if len(labeled) >= MIN_CLIPS:
-        there = points[labeled]
-        correlated = fit_correlated_space(there, truth)
-        cosines = calibrate_cosines(there, truth, own, seed=seed)
-        back = calibrate_cosines(there, truth, own, CorrelatedSpace.word_cosines, seed=seed)
+        own_points = points[labeled]
+        correlated = fit_correlated_space(own_points, truth)
+        cosines = calibrate_cosines(own_points, truth, own, seed=seed)
+        back = calibrate_cosines(own_points, truth, own, CorrelatedSpace.word_cosines, seed=seed)
     words = LibraryWords(vocabulary, model, calibration, space, correlated, cosines, back)
     return FittedWords(words, points)
 

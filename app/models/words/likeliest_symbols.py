@@ -17,9 +17,10 @@ from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM, log_likelihoods
 
 NEAREST = 20
-_UNASKED = -1e30
-"""Below every likelihood. A divergence is subtracted, so that symbols without a computed likelihood
-stay in order too."""
+"""The number of nearest symbols whose likelihoods are computed."""
+_NOT_COMPUTED = -1e30
+"""A number below every log likelihood. It is multiplied by 1 + distance, so that symbols without a
+computed likelihood are in order too."""
 
 
 def likelihoods_of_symbols(
@@ -30,12 +31,12 @@ def likelihoods_of_symbols(
 ) -> FloatArray:
     """(N, N) log P(motion i | symbol j) of the N motions of the symbols.
 
-    If a likelihood is not computed, the entry is _UNASKED minus a multiple of the distance.
+    If a likelihood is not computed, the entry is _NOT_COMPUTED minus a multiple of the distance.
     distances: (N, N) between the symbols; sequence: a function from a row to the channels
     (T, D) of its motion.
     """
-    found = _UNASKED * (1.0 + np.asarray(distances, dtype=np.float64))
+    likelihoods = _NOT_COMPUTED * (1.0 + np.asarray(distances, dtype=np.float64))
     for row in range(len(symbols)):
         near = np.argsort(distances[row], kind="stable")[:nearest]
-        found[row, near] = log_likelihoods([symbols[i] for i in near], sequence(row))
-    return found
+        likelihoods[row, near] = log_likelihoods([symbols[i] for i in near], sequence(row))
+    return likelihoods

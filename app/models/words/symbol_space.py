@@ -1,10 +1,11 @@
 """The motion symbol space: symbols as points with distances like their divergences
 (Takano, section 2.1, eqs 2-4).
 
-The distance of two symbols is log1p of their symmetric Kullback-Leibler divergence per
-frame. In a small library all symbols are scaled together. In a larger one random landmarks are
-scaled, and all others are placed by their distances to them, so that the cost grows with N and not
-with N squared. New symbols are placed likewise. Shapes: symbols N, landmarks L, dimensions d.
+The distance of two symbols is log1p of their symmetric Kullback-Leibler divergence per frame. In a
+small library, all symbols are scaled together. In a larger one, random landmarks are scaled. All
+other symbols are placed by their distances to the landmarks, so that the cost grows with N and not
+with N squared. New symbols are placed in the same way. Shapes: symbols N, landmarks L, dimensions
+d.
 """
 
 from __future__ import annotations
@@ -26,17 +27,20 @@ SYMBOL_SPACE_VERSION = 1
 DIMENSIONS = 10
 """Dimensions of the space (Takano, fig. 3)."""
 
-WHOLE_LIBRARY = 200
+MAX_WHOLE_LIBRARY = 200
 """Up to this number of symbols, all are landmarks."""
 
 LANDMARKS = 100
-"""Number of landmarks of a larger library: at least 2.5 x dimensions. The figures of word
-recognition do not change."""
+"""Number of landmarks of a larger library, at least 2.5 x dimensions. The figures of word
+recognition are the same as with all symbols."""
 
 
 @dataclass(frozen=True, slots=True)
 class SymbolSpace:
-    """landmarks: L symbols; points: (L, d) their coordinates, log1p nats per frame."""
+    """A fitted symbol space.
+
+    landmarks: L symbols; points: (L, d) their coordinates, log1p nats per frame.
+    """
 
     landmarks: tuple[GaussianHMM, ...]
     points: FloatArray
@@ -74,7 +78,7 @@ def fit_symbol_space(symbols: Sequence[GaussianHMM], *, seed: int = 0) -> Symbol
 def landmark_rows(count: int, *, seed: int = 0) -> IntArray:
     """(L,) sorted indices of the landmarks among `count` symbols; all in a small library."""
     rows = np.arange(count)
-    if count > WHOLE_LIBRARY:
+    if count > MAX_WHOLE_LIBRARY:
         rows = np.sort(np.random.RandomState(seed).permutation(count)[:LANDMARKS])
     return rows
 

@@ -20,7 +20,7 @@ from app.numerics.arrays import FloatArray, IntArray
 
 @dataclass(frozen=True, slots=True)
 class WordVocabulary:
-    """The words of a library, sorted, normalized base forms; V of them."""
+    """The V words of a library: sorted, normalized base forms."""
 
     words: tuple[str, ...]
 
@@ -30,43 +30,43 @@ class WordVocabulary:
     @classmethod
     def of(cls, label_sets: Iterable[Iterable[str]]) -> WordVocabulary:
         """All words of the label sets, each in its base form if that is a word too."""
-        carried = {word for labels in label_sets for word in normalize_words(labels)}
+        all_labels = {word for labels in label_sets for word in normalize_words(labels)}
 
         def is_word(word: str) -> bool:
-            return word in carried or is_known(word)
+            return word in all_labels or is_known(word)
 
-        return cls(tuple(sorted({_label(word, is_word) for word in carried})))
+        return cls(tuple(sorted({_label(word, is_word) for word in all_labels})))
 
     def find(self, word: str) -> str | None:
         """The vocabulary's word for a normalized word, inflected or not; None if there is none.
 
         *jumps* finds *jump*, and *jump* finds *jumping* if the library has only that.
         """
-        found = base_form(word, self._column_of().__contains__)
-        if found is not None:
-            return found
-        return next((ours for ours in self.words if word in base_forms(ours)), None)
+        base = base_form(word, self._column_of().__contains__)
+        if base is not None:
+            return base
+        return next((own for own in self.words if word in base_forms(own)), None)
 
     def label_matrix(self, label_sets: Sequence[Iterable[str]]) -> FloatArray:
         """(N, V) float64 of ones and zeros; words outside the vocabulary are ignored."""
         columns = self._column_of()
         matrix = np.zeros((len(label_sets), len(self.words)))
-        found: dict[str, str | None] = {}
+        words: dict[str, str | None] = {}  # many clips share their labels
         for row, labels in enumerate(label_sets):
             for word in normalize_words(labels):
-                if word not in found:
-                    found[word] = self.find(word)
-                if (ours := found[word]) is not None:
-                    matrix[row, columns[ours]] = 1.0
+                if word not in words:
+                    words[word] = self.find(word)
+                if (own := words[word]) is not None:
+                    matrix[row, columns[own]] = 1.0
         return matrix
 
     def vector(self, weights: Mapping[str, float]) -> FloatArray:
         """(V,) `weights` by word of the vocabulary, 0 elsewhere."""
         columns = self._column_of()
-        made = np.zeros(len(self.words))
+        vector = np.zeros(len(self.words))
         for word, weight in weights.items():
-            made[columns[word]] = weight
-        return made
+            vector[columns[word]] = weight
+        return vector
 
     def columns(self, words: Iterable[str]) -> IntArray:
         """(c,) column indices of these words of the vocabulary."""
@@ -77,7 +77,7 @@ class WordVocabulary:
 
 
 def _label(word: str, is_word: Callable[[str], bool]) -> str:
-    """The base form under which a word is counted; the word itself if there is no other."""
+    """The base form of a label; the label itself if it has no base form that is a word."""
     if is_known(word):
         return word
     return next(filter(is_word, base_forms(word)), word)

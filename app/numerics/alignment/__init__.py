@@ -1,1 +1,1 @@
-"""Dynamic time warping, whole and inside, and cross-correlation."""
+"""Dynamic time warping of whole sequences and of parts, and cross-correlation."""

@@ -15,8 +15,9 @@ import scipy
 from app.deadline import check
 from app.numerics.arrays import FloatArray, IntArray
 
-CELLS_AT_ONCE = 1 << 16
-"""Numbers that are transformed at once (half a megabyte). They stay in the processor's cache."""
+MAX_CELLS_AT_ONCE = 1 << 16
+"""The largest number of numbers that are transformed at once (half a megabyte). So they stay in the
+processor's cache."""
 
 MAX_WASTE = 1.25
 """The largest ratio of the longest to the shortest transform of the candidates of a batch."""
@@ -34,9 +35,9 @@ def max_cross_correlations(query: FloatArray, candidates: Sequence[FloatArray]) 
     lengths = np.array([len(candidate) for candidate in candidates], dtype=np.int64)
     values = np.zeros(len(lengths))
     if len(query):
-        for chosen in _batches(lengths, len(query)):
+        for batch in _batches(lengths, len(query)):
             check()
-            values[chosen] = _by_transform(query, [candidates[i] for i in chosen])
+            values[batch] = _by_transform(query, [candidates[i] for i in batch])
     return values
 
 
@@ -65,18 +66,19 @@ def _batches(lengths: IntArray, n: int) -> Iterator[IntArray]:
     ordered = lengths[order]
     first = int(np.searchsorted(ordered, 0, side="right"))
     while first < len(order):
-        longest = int(MAX_WASTE * (n + ordered[first])) - n
-        alike = int(np.searchsorted(ordered, max(longest, ordered[first]), side="right")) - first
-        count = min(alike, max(1, CELLS_AT_ONCE // (n + longest)))
+        # A transform has about n + m numbers. All transforms of a batch get the longest length.
+        max_length = int(MAX_WASTE * (n + ordered[first])) - n
+        stop = int(np.searchsorted(ordered, max(max_length, ordered[first]), side="right"))
+        count = min(stop - first, max(1, MAX_CELLS_AT_ONCE // (n + max_length)))
         yield order[first : first + count]
         first += count
 
 
 def _by_transform(query: FloatArray, candidates: list[FloatArray]) -> FloatArray:
     """(c,) the maxima of c candidates of similar length, none empty."""
-    longest = max(len(candidate) for candidate in candidates)
-    # The correlation is circular, but long enough for all lags, so nothing overlaps.
-    length = scipy.fft.next_fast_len(len(query) + longest - 1, real=True)
+    max_length = max(len(candidate) for candidate in candidates)
+    # The correlation is circular, but long enough for all lags, so the ends do not overlap.
+    length = scipy.fft.next_fast_len(len(query) + max_length - 1, real=True)
     padded = np.zeros((len(candidates), length))
     for row, candidate in zip(padded, candidates, strict=True):
         row[: len(candidate)] = candidate

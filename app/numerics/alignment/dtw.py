@@ -22,18 +22,19 @@ from app.deadline import check
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.euclidean import distances, squared_lengths
 
-CELLS_AT_ONCE = 1_000_000
-"""Cost cells of one batch (4 bytes each). It bounds the memory, and keeps it near the caches."""
+MAX_CELLS_AT_ONCE = 1_000_000
+"""The largest number of cost cells of one batch (4 bytes each). So a batch fits the caches."""
 
 MAX_BATCH = 256
 """The largest number of candidates in a batch."""
 
 STRIP_CELLS = 16_000_000
-"""Cost cells of one strip of a long pair, as far as MIN_ROWS and MAX_ROWS allow."""
+"""The number of cost cells of one strip of a long pair, within MIN_ROWS and MAX_ROWS."""
 
 MIN_ROWS, MAX_ROWS = 256, 1024
-"""Rows of a strip. Fewer rows need more steps; more rows do not fit the caches. 36 million cells
-take 0.4 s with 512 rows, 0.35 s with 1,024, 0.7 s with 6,000, 2.5 s with 64."""
+"""Bounds of the number of rows of a strip. Fewer rows need more steps. More rows do not fit the
+caches. 36 million cells take 0.4 s with 512 rows, 0.35 s with 1,024, 0.7 s with 6,000, 2.5 s with
+64."""
 
 
 def dtw_distances(
@@ -52,15 +53,15 @@ def dtw_distances(
         raise ValueError("cannot warp an empty sequence")
     totals = np.empty(len(lengths))
     center = query.mean(axis=0)  # differences of small numbers keep more digits
-    for chosen in _batches(lengths, len(query)):
+    for batch in _batches(lengths, len(query)):
         check()
-        frames = np.concatenate([_as_table(candidates[i]) for i in chosen])
+        frames = np.concatenate([_as_table(candidates[i]) for i in batch])
         frames -= center  # in place: these rows are wide, and new memory costs time
-        if len(query) * len(frames) > CELLS_AT_ONCE:
-            totals[chosen] = _in_strips(query - center, frames)
+        if len(query) * len(frames) > MAX_CELLS_AT_ONCE:
+            totals[batch] = _in_strips(query - center, frames)
             continue
-        cost = _side_by_side(_costs(query - center, frames, lengths[chosen]), lengths[chosen])
-        totals[chosen] = _accumulate(cost, lengths[chosen])
+        cost = _side_by_side(_costs(query - center, frames, lengths[batch]), lengths[batch])
+        totals[batch] = _accumulate(cost, lengths[batch])
     return totals / (len(query) + lengths) if per_step else totals
 
 
@@ -70,7 +71,7 @@ def _as_table(sequence: FloatArray) -> FloatArray:
 
 
 def _batches(lengths: IntArray, frames: int) -> list[IntArray]:
-    """Indices of candidates in groups of similar length whose costs fit CELLS_AT_ONCE.
+    """Indices of candidates in groups of similar length whose costs fit MAX_CELLS_AT_ONCE.
 
     lengths: (c,). frames: the length of the query.
     """
@@ -78,8 +79,9 @@ def _batches(lengths: IntArray, frames: int) -> list[IntArray]:
     batches: list[IntArray] = []
     first = 0
     while first < len(order):
-        longest = int(lengths[order[first]])
-        count = int(np.clip(CELLS_AT_ONCE // (frames * longest), 1, MAX_BATCH))
+        # lengths fall, so the first candidate of a batch is its longest
+        max_length = int(lengths[order[first]])
+        count = int(np.clip(MAX_CELLS_AT_ONCE // (frames * max_length), 1, MAX_BATCH))
         batches.append(order[first : first + count])
         first += count
     return batches
@@ -93,8 +95,8 @@ def _costs(query: FloatArray, frames: FloatArray, lengths: IntArray) -> FloatArr
     ranking that is computed in pieces must agree with itself to the last bit.
     """
     if query.shape[1] == 1:
-        apart = query - frames[:, 0]
-        return np.asarray(np.abs(apart, out=apart))
+        differences = query - frames[:, 0]
+        return np.asarray(np.abs(differences, out=differences))
     ends = np.cumsum(lengths).tolist()
     parts = [slice(first, stop) for first, stop in zip([0, *ends], ends, strict=False)]
     return distances(query, frames, squared_lengths(frames), parts)
@@ -113,10 +115,12 @@ def _side_by_side(table: FloatArray, lengths: IntArray) -> FloatArray:
 
 
 def _accumulate(cost: FloatArray, lengths: IntArray) -> FloatArray:
-    """(c,) the totals D at the last frame of each candidate; cost: (n, m, c) C-contiguous.
+    """(c,) the total cost D at the last frame of each candidate.
+
+    cost: (n, m, c) C-contiguous. lengths: (c,), at most m.
 
     Anti-diagonal k holds D[i, k - i] at row i + 1. A row of infinity before and after it stands
-    for the cells outside the table; the next two diagonals read only these.
+    for the cells outside the table. The next two diagonals read no other cells outside it.
     """
     rows, columns, count = cost.shape
     totals = np.empty(count, dtype=cost.dtype)
@@ -132,6 +136,7 @@ def _accumulate(cost: FloatArray, lengths: IntArray) -> FloatArray:
         inside = new[low + 1 : high + 2]
         np.minimum(old[low + 1 : high + 2], old[low : high + 1], out=inside)
         np.minimum(inside, older[low : high + 1], out=inside)
+        # the costs of an anti-diagonal are equally far apart in the flat array
         start, last = low * columns + k - low, high * columns + k - high
         inside += flat[start : last + 1 : step]
         new[low] = np.inf
@@ -164,7 +169,7 @@ def _last_row(cost: FloatArray, above: FloatArray) -> FloatArray:
     rows, columns = cost.shape
     older, old, new = (np.full(rows + 2, np.inf, dtype=cost.dtype) for _ in range(3))
     older[0], old[0] = above[0], above[1]
-    found, flat, step = np.full_like(above, np.inf), cost.ravel(), max(columns - 1, 1)
+    last_row, flat, step = np.full_like(above, np.inf), cost.ravel(), max(columns - 1, 1)
     for k in range(rows + columns - 1):
         check()
         low, high = max(k - columns + 1, 0), min(k, rows - 1)
@@ -178,6 +183,6 @@ def _last_row(cost: FloatArray, above: FloatArray) -> FloatArray:
         if k + 2 <= columns:
             new[0] = above[k + 2]
         if k >= rows - 1:
-            found[k - rows + 2] = new[rows]
+            last_row[k - rows + 2] = new[rows]
         older, old, new = old, new, older
-    return found
+    return last_row

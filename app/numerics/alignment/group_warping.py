@@ -33,11 +33,12 @@ ROUNDS = 2
 SMOOTHING = 1.0
 """Standard deviation, in moments, of the smoothing of times. A path has only whole steps."""
 
-SLOWEST = 0.2
-"""The fewest moments of a take that pass in one moment of the reference. Time never stops."""
+MIN_TIME_STEP = 0.2
+"""The smallest number of moments of a take in one moment of the reference. So time never stops."""
 
-AT_ONCE = 2000
-"""Takes whose cost tables are in memory together: about 100 MB with 32 moments."""
+MAX_TAKES_AT_ONCE = 2000
+"""The largest number of takes whose cost tables are in memory together: about 100 MB with 32
+moments."""
 
 Warp = Callable[[FloatArray, FloatArray], FloatArray]
 """A function of takes (n, m, d) and their references (n, m, d) to the warped takes (n, m, d)."""
@@ -79,6 +80,7 @@ def warped(motions: FloatArray, references: FloatArray) -> FloatArray:
     out = np.empty(motions.shape)
     for part in _parts(len(motions)):
         weights = _weights(motions[part], references[part])
+        # moment i of a take contributes to moment j of its reference: (n, m, m), (n, m, d)
         out[part] = np.einsum("nij,nid->njd", weights, motions[part])
     return out
 
@@ -89,10 +91,10 @@ def warping_times(motions: FloatArray, references: FloatArray) -> FloatArray:
     motions, references: (n, m, d). The times rise strictly, within 0 .. m - 1.
     """
     steady = np.arange(motions.shape[1], dtype=np.float64)
-    held = np.empty(motions.shape[:2])
+    times = np.empty(motions.shape[:2])
     for part in _parts(len(motions)):
-        held[part] = np.einsum("nij,i->nj", _weights(motions[part], references[part]), steady)
-    return smooth_times(held, SMOOTHING)
+        times[part] = np.einsum("nij,i->nj", _weights(motions[part], references[part]), steady)
+    return smooth_times(times, SMOOTHING)
 
 
 def smooth_times(times: FloatArray, deviation: float) -> FloatArray:
@@ -109,11 +111,11 @@ def smooth_times(times: FloatArray, deviation: float) -> FloatArray:
 def rising(times: FloatArray) -> FloatArray:
     """(..., m) `times` (..., m) changed so that they rise strictly within 0 .. m - 1.
 
-    Steps smaller than SLOWEST become SLOWEST. Then all steps are scaled, so that the times still
-    run from their first to their last value (both clipped to 0 .. m - 1).
+    Smaller steps than MIN_TIME_STEP become MIN_TIME_STEP. Then all steps are scaled. So the first
+    and the last time stay as they are (but are clipped to 0 .. m - 1).
     """
     last = times.shape[-1] - 1
-    steps = np.cumsum(np.maximum(np.diff(times, axis=-1), SLOWEST), axis=-1)
+    steps = np.cumsum(np.maximum(np.diff(times, axis=-1), MIN_TIME_STEP), axis=-1)
     share = np.concatenate([np.zeros((*times.shape[:-1], 1)), steps / steps[..., -1:]], axis=-1)
     first = np.clip(times[..., :1], 0, last - 1)
     end = np.clip(times[..., -1:], first + 1, last)
@@ -145,7 +147,8 @@ def read_at(motions: FloatArray, times: FloatArray) -> FloatArray:
 
 
 def _parts(count: int) -> list[slice]:
-    return [slice(first, first + AT_ONCE) for first in range(0, count, AT_ONCE)]
+    firsts = range(0, count, MAX_TAKES_AT_ONCE)
+    return [slice(first, first + MAX_TAKES_AT_ONCE) for first in firsts]
 
 
 def _weights(motions: FloatArray, references: FloatArray) -> FloatArray:

@@ -7,15 +7,16 @@ distance of query frame i to stream frame j,
                   D[i-1, j-2] + (c[i, j-1] + c[i, j]) / 2,
                   D[i-2, j-1] + c[i-1, j] + c[i, j]),      D[-1, j] = 0.
 
-Every query frame has weight 1, so matches of any start and length compare fairly. D / n is the
-mean distance of a query frame to the place where it is found. A match is between half and twice as
-long as the query, so none shrinks to a single frame. No cell depends on its own row, so one numpy
-step computes a row of many streams laid end to end. The step that led to each cell is kept, and
-followed back from every end that is a local minimum.
+Every query frame has weight 1. So the costs of matches of any start and length can be compared.
+D / n is the mean distance of a query frame to the part of the stream that it is matched with. A
+match is between half and twice as long as the query, so it cannot shrink to a single frame. No
+cell depends on its own row. So one numpy step computes a row of many streams, laid end to end. The
+step to each cell is stored. From every end that is a local minimum, the steps are followed back.
 
 Sequences are (frames, dimensions). A stream is a curve, and its frames are samples of it. Each
-frame stands for the two half lines to the frames next to it: c is the Euclidean distance of a query
-frame to those. So the result hardly depends on when the samples were taken.
+stream frame represents two half lines: the first halves of the lines to the frames before and after
+it. c is the Euclidean distance of a query frame to the nearest point of these half lines. So the
+result hardly depends on the times of the samples.
 """
 
 from __future__ import annotations
@@ -29,14 +30,15 @@ from app.deadline import check
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.euclidean import squared_distances, squared_lengths
 
-CELLS_AT_ONCE = 4_000_000
-"""Cells (query frames x stream frames) of one table, two bytes each."""
+MAX_CELLS_AT_ONCE = 4_000_000
+"""The largest number of cells (query frames x stream frames) of one table, two bytes each."""
 
 MAX_FRAMES_AT_ONCE = 20_000
-"""The most stream frames of one table, so that its rows stay near the caches."""
+"""The largest number of stream frames of one table. So its rows fit the caches."""
 
-COSTS_AT_ONCE = 250_000
-"""Costs (4 bytes each) that are computed at a time, so that they stay near the caches."""
+MAX_COSTS_AT_ONCE = 250_000
+"""The largest number of costs (4 bytes each) that are computed at a time, so that they fit the
+caches."""
 
 STILL = 1e-9
 """The squared length up to which a line between two frames counts as a point."""
@@ -49,7 +51,8 @@ WALL = 2
 
 _ROWS_BACK = np.array([1, 1, 2, 2])
 _COLUMNS_BACK = np.array([1, 2, 1, 1])
-"""Indexed by the step to a cell: 0 one row and column, 1 two columns, 2 and 3 two rows."""
+"""How many rows and columns a step goes, indexed by its kind: 0 goes one row and one column, 1 goes
+two columns, 2 and 3 go two rows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +61,8 @@ class Matches:
 
     streams: (k,) the index of the stream, ascending. starts: (k,) the first frame of the match.
     ends: (k,) the first frame after it, ascending within a stream. costs: (k,) float32, the mean
-    distance of a query frame to the place where it is matched, in the unit of the sequences.
+    distance of a query frame to the part of the stream that it is matched with, in the unit of
+    the sequences.
     """
 
     streams: IntArray
@@ -71,9 +75,9 @@ class Matches:
 class _Piece:
     """A part of a stream.
 
-    stream: its index. first: the part's first frame in the stream. frames: (m, d). valid: matches
-    that end before this frame of the part belong to the part before. is_last: whether the part
-    ends the stream.
+    stream: its index. first: the index in the stream of the first frame of the piece. frames:
+    (m, d). valid: matches that end before this frame of the piece are reported by the piece
+    before. is_last: whether the piece is at the end of the stream.
     """
 
     stream: int
@@ -90,19 +94,21 @@ def subsequence_dtw(query: FloatArray, streams: Sequence[FloatArray]) -> Matches
     (app.deadline).
     """
     if not len(query):
-        raise ValueError("cannot look for an empty sequence")
+        raise ValueError("cannot search for an empty sequence")
     # differences of small numbers keep more digits
     center = np.asarray(query.mean(axis=0, dtype=np.float64), dtype=np.float32)
-    wanted = np.asarray(query, dtype=np.float32) - center
-    at_once = max(min(MAX_FRAMES_AT_ONCE, CELLS_AT_ONCE // len(query)), 4 * len(query) + 8)
-    found = [_in_pieces(wanted, some, center) for some in _batches(streams, len(query), at_once)]
-    if not found:
-        nothing = np.zeros(0, dtype=np.int64)
-        return Matches(nothing, nothing, nothing, np.zeros(0, dtype=np.float32))
-    return Matches(*(np.concatenate(column) for column in zip(*found, strict=True)))
+    centered = np.asarray(query, dtype=np.float32) - center
+    at_once = max(min(MAX_FRAMES_AT_ONCE, MAX_CELLS_AT_ONCE // len(query)), 4 * len(query) + 8)
+    batches = _batches(streams, len(query), at_once)
+    columns = [_in_pieces(centered, pieces, center) for pieces in batches]
+    if not columns:
+        none = np.zeros(0, dtype=np.int64)
+        return Matches(none, none, none, np.zeros(0, dtype=np.float32))
+    return Matches(*(np.concatenate(column) for column in zip(*columns, strict=True)))
 
 
 _Columns = tuple[IntArray, IntArray, IntArray, FloatArray]
+"""Streams, starts, ends and costs (k,), as `Matches` has them."""
 
 
 def _batches(
@@ -125,8 +131,8 @@ def _batches(
 def _pieces(stream: int, whole: FloatArray, query_frames: int, at_once: int) -> Iterator[_Piece]:
     """A long stream in pieces that overlap by more than the length of a match.
 
-    So no match is lost. The first and last frame of a piece lack the line to the next frame of
-    the stream; no match that the piece reports touches them.
+    So no match is lost. The first and the last frame of a piece lack the line to the next frame
+    of the stream. A piece reports no match that touches them.
     """
     overlap = MAX_MATCH_LENGTH * query_frames + 3
     first, valid = 0, 0
@@ -139,6 +145,7 @@ def _pieces(stream: int, whole: FloatArray, query_frames: int, at_once: int) -> 
 
 
 def _in_pieces(query: FloatArray, pieces: Sequence[_Piece], center: FloatArray) -> _Columns:
+    """The matches of `query` (n, d), less `center` (d,), in pieces that are searched together."""
     laid, firsts = _end_to_end(pieces, center)
     costs, skips, stays = _accumulate(query, laid, firsts)
     ends = np.concatenate([_ends(costs, p, f) for p, f in zip(pieces, firsts, strict=True)])
@@ -191,8 +198,11 @@ def _accumulate(
 
 
 def _cost_rows(query: FloatArray, laid: FloatArray, firsts: IntArray) -> Iterator[FloatArray]:
-    """For each query frame, its (k,) distances to the columns; walls are infinitely far."""
-    squares = squared_lengths(laid)
+    """For each query frame, its (k,) distances to the columns; walls are infinitely far.
+
+    The line to a wall is no part of a stream, so it is left out.
+    """
+    lengths = squared_lengths(laid)
     walls = np.concatenate([firsts - back for back in range(1, WALL + 1)])
     steps = squared_lengths(laid[1:] - laid[:-1])
     is_line = steps > STILL
@@ -200,50 +210,56 @@ def _cost_rows(query: FloatArray, laid: FloatArray, firsts: IntArray) -> Iterato
     is_line[walls[walls > 0] - 1] = False
     share = np.zeros_like(steps)
     np.divide(0.25, steps, out=share, where=is_line)
-    rows = max(1, COSTS_AT_ONCE // len(laid))
+    rows = max(1, MAX_COSTS_AT_ONCE // len(laid))
     for first in range(0, len(query), rows):
-        costs = squared_distances(query[first : first + rows], laid, squares)
-        _draw_near(costs, steps, share)
+        costs = squared_distances(query[first : first + rows], laid, lengths)
+        _use_half_lines(costs, steps, share)
         costs[:, walls] = np.inf
         yield from np.sqrt(costs, out=costs)
 
 
-def _draw_near(apart: FloatArray, steps: FloatArray, share: FloatArray) -> None:
+def _use_half_lines(squares: FloatArray, steps: FloatArray, share: FloatArray) -> None:
     """Change squared distances to columns into squared distances to their half lines, in place.
 
-    apart: (n, k) squared distances to the columns. steps: (k - 1,) squared lengths s of the lines
+    squares: (n, k) squared distances to the columns. steps: (k - 1,) squared lengths s of the lines
     from a column to the next. share: (k - 1,) 1 / (4 s), 0 where there is no line.
 
     Let a and b be the squared distances to the ends of a line. The squared distance to its point
     t is a - t g + t^2 s, with g = a - b + s. It is smallest at t = g / (2 s), which for the first
-    half is limited to 0..1/2. For the half of the next column, a and b change places.
+    half is limited to 0..1/2. For the half of the next column, a and b are exchanged.
     """
-    to_here, to_next = apart[:, :-1].copy(), apart[:, 1:].copy()
+    to_here, to_next = squares[:, :-1].copy(), squares[:, 1:].copy()
     gain = to_here - to_next
     gain += steps
-    held = np.clip(gain, 0.0, steps)
-    to_here -= held * (2.0 * gain - held) * share
+    clipped = np.clip(gain, 0.0, steps)
+    to_here -= clipped * (2.0 * gain - clipped) * share
     np.subtract(2.0 * steps, gain, out=gain)
-    np.clip(gain, 0.0, steps, out=held)
-    to_next -= held * (2.0 * gain - held) * share
-    np.minimum(apart[:, :-1], to_here, out=apart[:, :-1])
-    np.minimum(apart[:, 1:], to_next, out=apart[:, 1:])
+    np.clip(gain, 0.0, steps, out=clipped)
+    to_next -= clipped * (2.0 * gain - clipped) * share
+    np.minimum(squares[:, :-1], to_here, out=squares[:, :-1])
+    np.minimum(squares[:, 1:], to_next, out=squares[:, 1:])
     # only rounding makes values negative
-    np.maximum(apart, 0.0, out=apart)
+    np.maximum(squares, 0.0, out=squares)
 
 
 def _ends(costs: FloatArray, piece: _Piece, first: int) -> IntArray:
-    """The columns of a piece at which the cost of ending is a local minimum."""
+    """The columns of a piece at which the cost of a match that ends there is a local minimum.
+
+    costs: (columns,) of all pieces. first: the first column of the piece.
+    """
     own = np.concatenate([[np.inf], costs[first : first + len(piece.frames)], [np.inf]])
-    least = (own[1:-1] <= own[:-2]) & (own[1:-1] < own[2:]) & np.isfinite(own[1:-1])
-    least[: piece.valid] = False
+    is_minimum = (own[1:-1] <= own[:-2]) & (own[1:-1] < own[2:]) & np.isfinite(own[1:-1])
+    is_minimum[: piece.valid] = False
     if not piece.is_last:
-        least[-2:] = False
-    return np.flatnonzero(least) + first
+        is_minimum[-2:] = False
+    return np.flatnonzero(is_minimum) + first
 
 
 def _starts(skips: BoolArray, stays: BoolArray, ends: IntArray) -> IntArray:
-    """(k,) the columns at which the matches begin that end at the columns `ends` (k,)."""
+    """(k,) the first columns of the matches that end at the columns `ends` (k,).
+
+    All matches are followed back together, one step at a time.
+    """
     width = skips.shape[1]
     took_skip, took_stay = skips.reshape(-1).view(np.uint8), stays.reshape(-1).view(np.uint8)
     columns, rows = ends.copy(), np.full(len(ends), len(skips) - 1)

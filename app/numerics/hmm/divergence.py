@@ -23,9 +23,9 @@ from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.hmm.model import GaussianHMM, log_likelihood
 
 BLOCK = 1000
-"""Targets that are scored at once. It bounds the memory to BLOCK * K^2 floats."""
+"""The number of targets that are scored at once. It bounds the memory to BLOCK * K^2 floats."""
 
-_NEVER = np.float32(-1e30)
+_LOG_ZERO = np.float32(-1e30)
 """The log probability of an impossible event. It is finite, so that differences are not NaN."""
 
 
@@ -51,19 +51,20 @@ def expected_path_divergences(
     All models must have the same channels; their numbers of states may differ. Values below 0,
     which the approximation can give, become 0.
     """
-    found = np.zeros((len(sources), len(targets)))
+    divergences = np.zeros((len(sources), len(targets)))
     if not sources or not targets:
-        return found
+        return divergences
     states = max(model.states for model in (*sources, *targets))
     for first in range(0, len(targets), BLOCK):
         block = targets[first : first + BLOCK]
         stack = _stack(block, states)
         for row, source in enumerate(sources):
             check()
-            _put(stack, len(block), source)
+            # the last column is the source itself: d = (score of the source) - (score of a target)
+            _write(stack, len(block), source)
             scores = _scores(source, stack)
-            found[row, first : first + len(block)] = scores[-1] - scores[:-1]
-    return np.maximum(found, 0.0)
+            divergences[row, first : first + len(block)] = scores[-1] - scores[:-1]
+    return np.maximum(divergences, 0.0)
 
 
 def symmetric_divergences(left: Sequence[GaussianHMM], right: Sequence[GaussianHMM]) -> FloatArray:
@@ -71,9 +72,9 @@ def symmetric_divergences(left: Sequence[GaussianHMM], right: Sequence[GaussianH
 
     left: L models, right: R models. If both are the same object, each pair is computed once.
     """
-    there = expected_path_divergences(left, right)
-    back = there if left is right else expected_path_divergences(right, left)
-    return np.asarray((there + back.T) / 2.0)
+    forward = expected_path_divergences(left, right)
+    backward = forward if left is right else expected_path_divergences(right, left)
+    return np.asarray((forward + backward.T) / 2.0)
 
 
 def monte_carlo_divergence(
@@ -96,21 +97,23 @@ def monte_carlo_divergence(
 
 
 def _stack(models: Sequence[GaussianHMM], states: int) -> _Targets:
-    """All models stacked, with `states` states each, and an empty last column for one more."""
+    """All models stacked, with `states` states each, and an empty last column for another model."""
     count, channels = len(models) + 1, models[0].means.shape[1]
     stack = _Targets(
         np.zeros((2 * channels + 1, states, count), dtype=np.float32),
         np.zeros((states, count), dtype=np.float32),
-        np.full((states, count), _NEVER, dtype=np.float32),
+        np.full((states, count), _LOG_ZERO, dtype=np.float32),
     )
     for column, model in enumerate(models):
-        _put(stack, column, model)
+        _write(stack, column, model)
     return stack
 
 
-def _put(stack: _Targets, column: int, model: GaussianHMM) -> None:
+def _write(stack: _Targets, column: int, model: GaussianHMM) -> None:
     """Write a model into a column of the stack, in place of the model there."""
     own = model.states
+    # log N(x) = -(x^2 - 2 m x + m^2) / 2 v - log(2 pi v) / 2: its expectation is linear in the
+    # moments E[x^2], E[x] and 1
     precision = 1.0 / np.asarray(model.variances, dtype=np.float64)
     means = np.asarray(model.means, dtype=np.float64)
     constant = np.log(2.0 * np.pi / precision) + means**2 * precision
@@ -119,7 +122,7 @@ def _put(stack: _Targets, column: int, model: GaussianHMM) -> None:
     stack.weights[-1, :own, column] = -0.5 * constant.sum(axis=1)
     stack.weights[:, own:, column] = 0.0
     stack.log_stay[:own, column], stack.log_stay[own:, column] = model.log_stay(), 0.0
-    stack.log_move[1:own, column], stack.log_move[own:, column] = model.log_move(), _NEVER
+    stack.log_move[1:own, column], stack.log_move[own:, column] = model.log_move(), _LOG_ZERO
 
 
 def _scores(source: GaussianHMM, targets: _Targets) -> FloatArray:
@@ -132,7 +135,7 @@ def _scores(source: GaussianHMM, targets: _Targets) -> FloatArray:
     weights = targets.weights.reshape(len(targets.weights), -1)
     expected = (moments @ weights).reshape(source.states, states, count)
     path = source.expected_path()
-    alpha = np.full((states, count), _NEVER, dtype=np.float32)
+    alpha = np.full((states, count), _LOG_ZERO, dtype=np.float32)
     alpha[0] = expected[path[0], 0]
     arrived = expected[:, 1:] + targets.log_move[1:]
     stayed = np.add(expected, targets.log_stay, out=expected)

@@ -64,12 +64,12 @@ def fit_left_to_right(
     floor = np.broadcast_to(np.asarray(variance_floor, dtype=np.float64), data.shape[1:])
     center = data.mean(axis=0)  # keeps the products of log_emissions well conditioned
     start = _equal_parts(data - center, states_for(len(data), states), floor)
-    found = _improve(start, data - center, floor, iterations) if iterations else start
-    return GaussianHMM(found.transitions, found.means + center, found.variances)
+    model = _improve(start, data - center, floor, iterations) if iterations else start
+    return GaussianHMM(model.transitions, model.means + center, model.variances)
 
 
 def states_for(frames: int, states: int) -> int:
-    """How many states, at most `states` and at least 1, a sequence of `frames` frames can fill."""
+    """The number of states, 1..`states`, that a sequence of `frames` frames can fill."""
     return max(1, min(states, frames // FRAMES_PER_STATE))
 
 

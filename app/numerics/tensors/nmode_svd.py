@@ -37,8 +37,8 @@ def nmode_svd(tensor: FloatArray, ranks: Sequence[int | None] | None = None) -> 
     min(I_n, product of the other sizes). With smaller ranks the result is the truncated HOSVD.
     It needs no iteration, and its error is within a factor sqrt(N) of the smallest possible.
     """
-    wanted = ranks if ranks is not None else [None] * tensor.ndim
-    factors = tuple(mode_matrix(tensor, mode, rank) for mode, rank in enumerate(wanted))
+    mode_ranks = ranks if ranks is not None else [None] * tensor.ndim
+    factors = tuple(mode_matrix(tensor, mode, rank) for mode, rank in enumerate(mode_ranks))
     core = multiply_modes(tensor, [factor.T for factor in factors])
     return NModeSVD(core, factors)
 

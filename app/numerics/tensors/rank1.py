@@ -28,7 +28,7 @@ millionth. The paper's limit, 1e-10, is for the difference to the volume. No vol
 
 @dataclass(frozen=True, slots=True)
 class Rank1:
-    """The approximation weight * primary o primary o secondary, and how it was reached.
+    """The approximation weight * primary o primary o secondary, and the course of the iterations.
 
     weight: lambda, 0 or more. primary: rho (I,), of unit length, with a sum of 0 or more.
     secondary: epsilon (K,), of unit length. errors: (iterations,) |A - approximation| / |A|
@@ -53,12 +53,12 @@ def symmetric_rank1(
     volume: FloatArray,
     *,
     max_iterations: int = MAX_ITERATIONS,
-    smallest_change: float = MIN_CHANGE,
+    min_change: float = MIN_CHANGE,
 ) -> Rank1:
     """The best rank-1 approximation by alternating least squares (algorithm 1).
 
     volume: (I, I, K), symmetric in its first two axes, finite. max_iterations: 1 or more.
-    smallest_change: see MIN_CHANGE. The start is constant, so the result is deterministic. A
+    min_change: see MIN_CHANGE. The start is constant, so the result is deterministic. A
     volume of zeros has weight 0 and constant vectors. If the iterations do not converge, the
     last result is returned with `converged` false.
     """
@@ -72,15 +72,15 @@ def symmetric_rank1(
     while not converged and len(weights) <= max_iterations:
         check()
         before = rho
-        if change <= smallest_change:
+        if change <= min_change:
             # Lambda is constant but rho is not: rho alternates between two vectors. Power
             # iteration does so if two eigenvalues differ only in their sign.
             rho = _unit(rho + _step(volume, rho, epsilon)[0], otherwise=rho)
         rho, epsilon = _step(volume, rho, epsilon)
         weights.append(_weight(volume, rho, epsilon))
         change = _change(weights)
-        converged = max(change, float(np.sum((rho - before) ** 2))) <= smallest_change
-    return _settled(volume, rho, np.array(weights), converged)
+        converged = max(change, float(np.sum((rho - before) ** 2))) <= min_change
+    return _result(volume, rho, np.array(weights), converged)
 
 
 def _step(
@@ -93,7 +93,7 @@ def _step(
     )
 
 
-def _settled(volume: FloatArray, rho: FloatArray, weights: FloatArray, converged: bool) -> Rank1:
+def _result(volume: FloatArray, rho: FloatArray, weights: FloatArray, converged: bool) -> Rank1:
     """The result, with the sign of rho fixed. Epsilon and the weight follow from rho.
 
     weights: (iterations + 1,) lambda at the start and after each iteration.

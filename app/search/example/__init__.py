@@ -1,1 +1,1 @@
-"""Search by example: distances, their fusion, re-ranking."""
+"""Search by example: distances of clips, their fusion, and rankings in two stages."""

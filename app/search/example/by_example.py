@@ -1,4 +1,4 @@
-"""Rank the library against a query motion, by any method."""
+"""Ranks the clips of a library by their distance to a query motion, by any method."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from app.numerics.arrays import FloatArray, IntArray
 from app.search.example.distances import Descriptors, Loader, distances_to
 from app.search.example.fusion import SHORTLIST, FusedDistance
 from app.search.example.methods import Method
-from app.search.example.reranking import ReRanked
+from app.search.example.reranking import ShortlistRanking
 from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.vector_index import VECTOR, VectorIndex
 from app.search.ranking.cursor import Anchor
@@ -25,7 +25,7 @@ SCALES = {
     Method.MSV_DTW: 1.0,
     Method.MSV_XCORR: 0.1,
 }
-"""Distance at which the score is one half: about that of two clips of unlike tasks."""
+"""Distance with a score of 0.5: about the distance of two clips of different tasks."""
 
 
 def rank_by_example(
@@ -39,31 +39,36 @@ def rank_by_example(
 ) -> Ranked:
     """All clips that pass the filter and are not excluded, in order of distance.
 
-    anchor: of the cursor whose next page is asked for, if there is one.
+    exclude: clip ids. load: loads arrays of clips. anchor: from the cursor of the request, if the
+    request has one.
     """
     if method in (Method.FUSED, Method.VECTOR):
         near = index.nearest(query[VECTOR], clip_filter, exclude)
         if method is Method.VECTOR:
             return near
-        return ReRanked(near, partial(_fused, query, near, load), SHORTLIST, anchor)
+        return ShortlistRanking(near, partial(_fused, query, near, load), SHORTLIST, anchor)
     ids = index.candidates(clip_filter, exclude).ids
-    return _known(ids, distances_to(query, list(ids), method, load))
+    return _ranking(ids, distances_to(query, list(ids), method, load))
 
 
 def _fused(query: Descriptors, near: NearestRanking, load: Loader, shortlist: Page) -> LowerBounds:
-    """The fused distances of the shortlist; warping costs most, so it is measured last."""
+    """The fused distances of the shortlist.
+
+    Warping is the slowest part, so it is measured last, and only if a page needs it.
+    """
     ids = shortlist.ids
-    known = FusedDistance.of(query[VECTOR], near.vectors(ids))
+    by_vectors = FusedDistance.of(query[VECTOR], near.vectors(ids))
 
     def measure(rows: IntArray) -> FloatArray:
         warped = distances_to(query, ids[rows].tolist(), Method.DTW, load)
-        return known.distances(rows, warped)
+        return by_vectors.distances(rows, warped)
 
-    every = np.arange(len(ids))
-    return LowerBounds(ids, known.distances(every, np.zeros(len(ids))), measure)
+    # with 0 for all warping distances, fused distances are lower bounds
+    bounds = by_vectors.distances(np.arange(len(ids)), np.zeros(len(ids)))
+    return LowerBounds(ids, bounds, measure)
 
 
-def _known(ids: IdArray, distances: FloatArray) -> Ranking:
+def _ranking(ids: IdArray, distances: FloatArray) -> Ranking:
     """The ranking; clips that were deleted during the comparison are left out."""
-    there = np.isfinite(distances)
-    return Ranking(ids[there], distances[there])
+    is_stored = np.isfinite(distances)
+    return Ranking(ids[is_stored], distances[is_stored])

@@ -21,7 +21,7 @@ from app.search.example.methods import Method
 
 FEATURES, RHO, EPSILON = "features_10hz", "msv_rho", "msv_epsilon"
 BATCH = 256
-"""Clips compared at a time."""
+"""The number of clips that are compared at a time."""
 
 Loader = Callable[[Sequence[str], str], Mapping[str, FloatArray]]
 """Loads one array of many clips: (clip ids, array name) -> arrays by clip id."""
@@ -37,22 +37,22 @@ def distances_to(
 ) -> FloatArray:
     """(n,) distances of clips to `query` by DTW, MSV_DTW or MSV_XCORR.
 
-    A clip whose arrays are gone (it was deleted meanwhile) is infinitely far.
+    A clip without the arrays (it was deleted during the search) has an infinite distance.
     """
     names, compare = _COMPARISONS[method]
-    found = np.full(len(clip_ids), np.inf)
+    distances = np.full(len(clip_ids), np.inf)
     for start in range(0, len(clip_ids), BATCH):
         check()
         loaded = [load(clip_ids[start : start + BATCH], name) for name in names]
-        there = [
+        rows = [
             row
             for row, clip_id in enumerate(clip_ids[start : start + BATCH], start)
             if all(clip_id in arrays for arrays in loaded)
         ]
-        columns = [[arrays[clip_ids[row]] for row in there] for arrays in loaded]
-        if there:
-            found[there] = compare(query, columns)
-    return found
+        columns = [[arrays[clip_ids[row]] for row in rows] for arrays in loaded]
+        if rows:
+            distances[rows] = compare(query, columns)
+    return distances
 
 
 def _by_features(query: Descriptors, columns: list[list[FloatArray]]) -> FloatArray:
@@ -64,6 +64,7 @@ def _by_volume_dtw(query: Descriptors, columns: list[list[FloatArray]]) -> Float
 
 
 def _by_volume_correlation(query: Descriptors, columns: list[list[FloatArray]]) -> FloatArray:
+    # a correlation is larger for more similar motions, so it is subtracted from its maximum
     likeness = cross_correlations(query[RHO], query[EPSILON], np.stack(columns[0]), columns[1])
     return np.asarray(np.maximum(MAX_CROSS_CORRELATION - likeness, 0.0))
 

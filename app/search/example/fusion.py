@@ -1,9 +1,9 @@
 """The distance of the method `fused`: of vectors, of warping, and along a graph of clips.
 
-Within a shortlist, a clip is also near if a path of short steps leads to it from the query, over
-other clips. Such paths join the takes of one task by people of many manners, although a clip of
-another task by the same person may be nearer. The graph is built for each query, from the clips
-that pass its filter. Nothing is fitted, so a clip is part of it as soon as it is ready.
+Within a shortlist, a clip is also near if a path of short steps leads from the query through other
+clips to it. Paths connect the takes of one task by different persons, although a clip of another
+task by the same person may be nearer. The graph is built for each query, from the clips that pass
+its filter. It needs no fit, so a clip is part of it as soon as the clip is ready.
 """
 
 from __future__ import annotations
@@ -17,29 +17,30 @@ from app.numerics.diffusion import diffused_closeness, neighbor_radii
 from app.numerics.euclidean import distances
 
 SHORTLIST = 300
-"""Number of clips in the graph; its cost grows with the cube of it, and is 12 ms."""
+"""Number of clips in the graph. The time grows with the cube of this number, and is 12 ms."""
 
 DTW_WEIGHT = 0.25
-"""Weight of the DTW distance, where that of the vectors weighs 1."""
+"""Weight of the DTW distance; the distance of the vectors has weight 1."""
 
 NEIGHBORS = 0.7
-"""A clip has so many neighbors in the graph, times the square root of the number of clips."""
+"""Number of neighbors of a clip in the graph, divided by the square root of the number of clips."""
 
 DETOUR = 1.0
-"""Weight of a long way along the graph, in units of the distance between neighbors."""
+"""Weight of the path along the graph, in units of the distance between neighbors."""
 
 MIN_CLOSENESS = 1e-3
-"""Clips that are less close on the graph count as if no path led to them."""
+"""Smallest closeness on the graph. Less close clips count as clips without a path."""
 
 MAX_DETOUR = 5.0
-"""The graph adds at most so many times the distance itself. So the same motion keeps distance 0."""
+"""The graph adds at most this multiple of the distance. So an equal motion has distance 0."""
 
 
 @dataclass(frozen=True, slots=True)
 class FusedDistance:
     """The part of the fused distance that needs only vectors, which is cheaper than warping.
 
-    near: (n,) the distances of the vectors to the query; far: (n,) the most that the graph adds.
+    near: (n,) the distances of the vectors to the query; far: (n,) the largest number that the
+    graph adds to each distance.
     """
 
     near: FloatArray
@@ -47,12 +48,13 @@ class FusedDistance:
 
     @classmethod
     def of(cls, query: FloatArray, vectors: FloatArray) -> FusedDistance:
-        """query: (d,) and vectors: (n, d), motion vectors."""
-        if not len(vectors):
+        """The distances of motion vectors (n, d) to a query (d,)."""
+        if not len(vectors):  # a graph needs two points
             return cls(np.zeros(0), np.zeros(0))
         between = _distances(np.vstack([query, vectors]).astype(np.float64))
         radii = neighbor_radii(between, max(1, round(NEIGHBORS * len(between) ** 0.5)))
         closeness = diffused_closeness(between, radii)[1:]
+        # The logarithm makes the closeness, 1..0, a length: 0 for the query, larger for far clips.
         far = -np.log((closeness + MIN_CLOSENESS) / (1.0 + MIN_CLOSENESS))
         return cls(between[0, 1:], float(np.median(radii)) * far)
 
@@ -69,7 +71,7 @@ class FusedDistance:
 def _distances(points: FloatArray) -> FloatArray:
     """(n, n) symmetric Euclidean distances of `points` (n, d).
 
-    Those from the first point are exact: it is the origin, so that its products are zero.
+    The distances from the first point are exact: it is the origin, so its products are zero.
     """
     centered = points - points[0]
     between = distances(centered, centered)

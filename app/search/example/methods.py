@@ -1,4 +1,4 @@
-"""How two motions are compared in a search by example ."""
+"""The methods that compare two motions in a search by example."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ class Method(StrEnum):
     MSV_DTW = "msv-dtw"
     """Sun 2011, equation 7: DTW of the primary vectors, twice, and of the secondary ones."""
     MSV_XCORR = "msv-xcorr"
-    """Sun 2011, equation 6: 3 - D_xcorr, the cross-correlation likeness turned around."""
+    """Sun 2011, equation 6: 3 - D_xcorr, so that more similar motions have smaller distances."""
     METRIC_TASK = "metric-task"
     """Euclidean distance in coordinates learned from the library's tasks: the same task first."""
     METRIC_PERSON = "metric-person"
-    """The same, learned from its persons: the same person, or style, first."""
+    """The same for coordinates learned from persons: the same person, or style, first."""
 
 
 LEARNED = frozenset({Method.METRIC_TASK, Method.METRIC_PERSON})
-"""What needs a fitted model, and scores by the probability that the labels are the same."""
+"""Methods with a fitted model. Their score is the probability that the labels are the same."""

@@ -1,7 +1,7 @@
 """A ranking in two stages: the first clips, the shortlist, are ranked again by a costly distance.
 
-The other clips follow in the order of the first stage. A cursor holds where the shortlist ended
-(`Anchor`), so the next page has the same shortlist although clips came and went.
+The other clips follow in the order of the first stage. A cursor stores the end of the shortlist
+(`Anchor`). So the next page has the same shortlist, also after clips were added and deleted.
 """
 
 from __future__ import annotations
@@ -19,36 +19,40 @@ from app.search.ranking.lower_bounds import LowerBoundRanking, LowerBounds
 from app.search.ranking.ranking import IdArray, Page
 
 STEP = 10.0**-DECIMALS
-"""Added to the distances behind the shortlist, so that each is larger than all in the shortlist."""
+"""Added to the distances after the shortlist, so that each is larger than all in the shortlist."""
 
 Rerank = Callable[[Page], LowerBounds]
-"""Gives the clips of a shortlist with the distances of the second stage."""
+"""Returns the clips of a shortlist with the distances of the second stage."""
 
 
-class ReRanked:
-    """A ranking (see `ranking.Ranked`): a shortlist in its final order, the rest behind it.
+class ShortlistRanking:
+    """A ranking (see `ranking.Ranked`): a shortlist in its final order, then the other clips.
 
-    The rest keeps the order and the spacing of the first stage, shifted to begin where the
-    shortlist ends. This end is known only when all of the shortlist is measured. No page goes
-    beyond the shortlist before that.
+    The other clips have the order and the differences in distance of the first stage. A constant
+    is added to their distances, so that they begin where the shortlist ends. This end is known
+    only when all of the shortlist is measured. Until then, pages end in the shortlist.
     """
 
     def __init__(
         self, first: NearestRanking, rerank: Rerank, size: int, anchor: Anchor | None = None
     ) -> None:
-        """first: all clips; size: of the shortlist; anchor: of the last page's cursor."""
+        """Prepare the ranking; distances are measured when a page is read.
+
+        first: the first stage, of all clips. rerank: the second stage. size: of the shortlist.
+        anchor: from the cursor of the page before, None for the first page.
+        """
         self._first = first
         self._rerank = rerank
         self._size = size
         self._given = anchor
-        self._seen = 0.0
+        self._seen = 0.0  # the distance of the last clip on earlier pages
 
     def __len__(self) -> int:
         return len(self._first)
 
     @property
     def anchor(self) -> Anchor | None:
-        """Where the shortlist ends, as far as this is known; None where there is no clip."""
+        """The end of the shortlist, as far as it is known; None for a ranking without clips."""
         given, shortlist = self._given, self._shortlist
         if given is not None and given.end is not None:
             return given
@@ -56,7 +60,7 @@ class ReRanked:
             return None
         end = self._head.end
         if end is not None:
-            # Clips on earlier pages must not be farther than those that follow.
+            # Clips on earlier pages must not be farther than the clips of later pages.
             end = max(end, self._seen)
         if given is not None:
             return Anchor(given.distance, given.clip_id, end)
@@ -73,7 +77,10 @@ class ReRanked:
         return self._whole.distances
 
     def page(self, after: Position | None, limit: int) -> Page:
-        """The first `limit` clips behind a position."""
+        """The first `limit` clips after a position.
+
+        There are three cases: a page in the shortlist, a page across its end, a page after it.
+        """
         given = self._given
         if given is None and not len(self._shortlist.ids):
             return self._first.page(None, limit)
@@ -86,24 +93,24 @@ class ReRanked:
         page = self._head.page(after, limit)
         if page.more:
             return page
-        return self._going_on(page, limit)
+        return self._filled(page, limit)
 
-    def _going_on(self, page: Page, limit: int) -> Page:
-        """The end of the shortlist, then as many of the rest as the page has room for."""
+    def _filled(self, page: Page, limit: int) -> Page:
+        """The last clips of the shortlist, and the next clips until the page is full."""
         anchor = self.anchor
-        if anchor is None or anchor.end is None:  # cannot be: all of the shortlist was measured
+        if anchor is None or anchor.end is None:  # impossible: all of the shortlist was measured
             return page
-        behind = Position(0, anchor.distance, anchor.clip_id)
-        rest = self._rest(_shift(anchor, anchor.end), behind, limit - len(page.ids))
+        last = Position(0, anchor.distance, anchor.clip_id)
+        rest = self._rest(_shift(anchor, anchor.end), last, limit - len(page.ids))
         return Page(
             np.concatenate([page.ids, rest.ids]),
             np.concatenate([page.distances, rest.distances]),
             rest.more,
         )
 
-    def _rest(self, shift: float, behind: Position, limit: int) -> Page:
-        """The clips behind a position of the first stage, with final distances."""
-        page = self._first.page(behind, limit)
+    def _rest(self, shift: float, after: Position, limit: int) -> Page:
+        """The clips after a position of the first stage, with final distances."""
+        page = self._first.page(after, limit)
         return Page(page.ids, np.round(page.distances + shift, DECIMALS), page.more)
 
     @cached_property
@@ -121,10 +128,10 @@ class ReRanked:
         clips, given = self._rerank(self._shortlist), self._given
         if given is None or given.end is None:
             return LowerBoundRanking(clips)
-        # Clips that came since the first page must not move behind clips that follow the shortlist.
-        return LowerBoundRanking(clips, most=given.end)
+        # New clips must not get larger distances than the clips after the shortlist.
+        return LowerBoundRanking(clips, max_distance=given.end)
 
 
 def _shift(anchor: Anchor, end: float) -> float:
-    """What is added to a distance of the first stage, behind a shortlist that ends at `end`."""
+    """The number to add to distances of the first stage, after a shortlist that ends at `end`."""
     return end + STEP - anchor.distance

@@ -1,1 +1,1 @@
-"""Rows in memory: filters and nearest neighbors."""
+"""Vectors and labels of the clips in memory: filters and nearest neighbors."""

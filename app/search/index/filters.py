@@ -1,8 +1,9 @@
 """Filters: the conditions that a clip must meet before it is ranked.
 
-A filter has any of the keys `person task word license source` (a string, or an array that means any
-of them), the same keys with `not_` before them (none of them), and `min_duration max_duration`
-(seconds). All conditions must hold. A clip without a label meets every `not_` condition for it.
+The keys of a filter are `person task word license source` (a string, or an array: the clip has one
+of its values), the same keys with the prefix `not_` (the clip has none of the values), and
+`min_duration max_duration` (seconds). A clip must meet all conditions. A clip without a label meets
+all `not_` conditions for this label.
 """
 
 from __future__ import annotations
@@ -18,18 +19,18 @@ from app.store.clips.filter import ClipFilter
 
 LABEL_KEYS = ("person", "task", "word", "license", "source")
 NOT = "not_"
-REFUSAL_KEYS = tuple(NOT + key for key in LABEL_KEYS)
+NOT_KEYS = tuple(NOT + key for key in LABEL_KEYS)
 MAX_LABELS = 100
-"""Labels of one kind in a filter."""
+"""Largest number of values of one key in a filter."""
 MAX_LABEL_LENGTH = 300
-"""Characters of a label; no clip has a longer one."""
+"""Largest number of characters of a label; no clip has a longer one."""
 DURATION_KEYS = ("min_duration", "max_duration")
 
 
 def parse_filter(given: Mapping[str, Any] | None) -> ClipFilter:
-    """Read a filter as a client sends it.
+    """Read a filter of a request.
 
-    Raises BadField naming each unknown key and each value of a wrong kind.
+    Raises BadField, with a location for each unknown key and for each bad value.
     """
     places: list[Place] = []
     values: dict[str, Any] = {}
@@ -44,23 +45,23 @@ def parse_filter(given: Mapping[str, Any] | None) -> ClipFilter:
 
 
 def as_filter(given: ClipFilter | Mapping[str, Any] | None) -> ClipFilter:
-    """A filter that was parsed already, unchanged; any other is parsed by `parse_filter`."""
+    """A parsed filter: a ClipFilter stays as it is, any other filter is parsed."""
     return given if isinstance(given, ClipFilter) else parse_filter(given)
 
 
-def as_kept(key: str, value: str) -> str:
-    """A label in the form in which clips keep it: NFC, without outer spaces; words normalized."""
-    tidy = unicodedata.normalize("NFC", value).strip()
-    return normalize_word(tidy) if key == "word" else tidy
+def as_stored(key: str, value: str) -> str:
+    """A label as it is stored: in NFC, without outer spaces; words are normalized."""
+    stripped = unicodedata.normalize("NFC", value).strip()
+    return normalize_word(stripped) if key == "word" else stripped
 
 
 def _read(key: str, value: Any) -> tuple[str, ...] | float | None:
-    if key in LABEL_KEYS or key in REFUSAL_KEYS:
+    if key in LABEL_KEYS or key in NOT_KEYS:
         return _labels(key.removeprefix(NOT), value)
     if key in DURATION_KEYS:
         return _seconds(value)
-    known = ", ".join((*LABEL_KEYS, *REFUSAL_KEYS, *DURATION_KEYS))
-    raise ValueError(f"there is no such filter; known are {known}")
+    keys = ", ".join((*LABEL_KEYS, *NOT_KEYS, *DURATION_KEYS))
+    raise ValueError(f"is not a key of a filter; the keys are {keys}")
 
 
 def _labels(key: str, value: Any) -> tuple[str, ...]:
@@ -72,8 +73,10 @@ def _labels(key: str, value: Any) -> tuple[str, ...]:
     if not values:
         raise ValueError("an empty array has no meaning; leave the key out")
     if len(values) > MAX_LABELS or any(len(v) > MAX_LABEL_LENGTH for v in values):
-        raise ValueError(f"must be at most {MAX_LABELS}, of at most {MAX_LABEL_LENGTH} characters")
-    return tuple(as_kept(key, v) for v in values)
+        raise ValueError(
+            f"must be at most {MAX_LABELS} strings of at most {MAX_LABEL_LENGTH} characters"
+        )
+    return tuple(as_stored(key, v) for v in values)
 
 
 def _seconds(value: Any) -> float | None:

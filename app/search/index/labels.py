@@ -1,7 +1,7 @@
 """The labels of the clips in an index, as columns of small integers that filters compare.
 
-Columns only grow. A search reads a `LabelView`: the first entries of the columns, which no later
-change touches. So searches need no lock.
+Columns only grow. A search reads a `LabelView`: the first entries of the columns, which later
+changes do not affect. So searches need no lock.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _FIRST_CAPACITY = 1024
 
 
 class Column:
-    """An array (n, *tail) that grows at its end; views that were taken of it never change."""
+    """An array (n, *tail) that grows at its end; earlier views of it never change."""
 
     def __init__(self, dtype: DTypeLike, tail: tuple[int, ...] = ()) -> None:
         self._data = np.empty((_FIRST_CAPACITY, *tail), dtype=dtype)
@@ -36,6 +36,7 @@ class Column:
         """Add entries (m, *tail)."""
         count = self._count + len(values)
         if count > len(self._data):
+            # twice the size, so that n entries are copied O(n) times in all
             capacity = max(count, 2 * len(self._data))
             grown = np.empty((capacity, *self._data.shape[1:]), self._data.dtype)
             grown[: self._count] = self.view()
@@ -48,14 +49,14 @@ class Column:
         return self._data[: self._count]
 
     def copy(self) -> Column:
-        """A copy whose entries may be changed, because nobody has a view of it."""
-        made = Column(self._data.dtype, self._data.shape[1:])
-        made.extend(self.view())
-        return made
+        """A copy. Its entries may be changed, because it has no views yet."""
+        copy = Column(self._data.dtype, self._data.shape[1:])
+        copy.extend(self.view())
+        return copy
 
 
 class Coded:
-    """A column of labels, each kept as a small integer; a new label gets the next one."""
+    """A column of labels, each stored as a small integer; a new label gets the next integer."""
 
     def __init__(self) -> None:
         self.column = Column(np.int32)
@@ -71,7 +72,7 @@ class Coded:
         return self._labels[int(self.column.view()[number])]
 
     def codes(self, labels: Iterable[str]) -> list[int]:
-        """The codes of those labels that some clip has had."""
+        """The codes of the labels; labels that no clip ever had are left out."""
         return [self._code_of[label] for label in labels if label in self._code_of]
 
     def _code(self, label: str | None) -> int:
@@ -84,7 +85,7 @@ class Coded:
 
 
 class CodedWords:
-    """A column of sets of words, each kept as a small integer, and the sets that contain each word.
+    """A column of sets of words, each stored as a small integer, and the sets of each word.
 
     Many clips have equal sets, so a filter by words checks each set once, then each clip's code.
     """
@@ -100,12 +101,12 @@ class CodedWords:
         self.column.extend([self._code(words) for words in sets])
 
     def codes(self, words: Iterable[str]) -> list[int]:
-        """The codes of the sets that hold any of `words`."""
+        """The codes of the sets that contain any of `words`."""
         return [code for word in set(words) for code in tuple(self._with_word.get(word, ()))]
 
     @property
     def sets(self) -> tuple[frozenset[str], ...]:
-        """All sets that some clip has had, by code."""
+        """All sets that clips have or had, by code."""
         return tuple(self._sets)
 
     def at(self, number: int) -> frozenset[str]:
@@ -127,8 +128,8 @@ class CodedWords:
 class LabelView:
     """The labels of n clips at one moment, by the clips' numbers 0..n-1.
 
-    ids: (n,) objects; alive: (n,) whether it is still there; durations: (n,) seconds;
-    coded: the columns of codes (n,) by label; `labels` knows the codes.
+    ids: (n,) objects; alive: (n,) whether the clip was not removed; durations: (n,) seconds;
+    coded: the columns of codes (n,) by label; labels: maps labels to codes.
     """
 
     ids: IdArray
@@ -149,7 +150,7 @@ class LabelView:
             mask &= self.durations <= clip_filter.max_duration
         for name, codes in self.labels.codes(clip_filter).items():
             mask &= _any_of(self.coded[name], codes)
-        for name, codes in self.labels.codes(clip_filter, refused=True).items():
+        for name, codes in self.labels.codes(clip_filter, negated=True).items():
             mask &= ~_any_of(self.coded[name], codes)
         for clip_id in exclude:
             mask[self._numbers_of(clip_id)] = False
@@ -160,21 +161,21 @@ class LabelView:
         return self.coded["word"], self.labels.words.sets
 
     def numbers(self, ids: IdArray) -> IntArray:
-        """(m,) numbers of clips (m,) that are there."""
+        """(m,) the numbers of clips (m,), which must be in the index."""
         return np.array([self._numbers_of(clip_id)[-1] for clip_id in ids], dtype=np.int64)
 
     def _numbers_of(self, clip_id: str) -> list[int]:
         number = self.labels.number_of.get(clip_id)
         if number is not None and number < len(self.ids):
             return [number]
-        # The clip changed or was deleted since this view was taken, or it was never here.
+        # The clip changed or was deleted after this view was made, or it was never in the index.
         return [int(n) for n in np.flatnonzero(self.ids == clip_id) if self.alive[n]]
 
 
 class Labels:
     """The labels of clips; clips are added and removed.
 
-    A clip that changes is removed and added again with a new number: numbers are never used twice.
+    A changed clip is removed and added again with a new number. Numbers are never used twice.
     """
 
     def __init__(self) -> None:
@@ -186,16 +187,16 @@ class Labels:
         self._alive = Column(np.bool_)
 
     def __len__(self) -> int:
-        """Clips that are there."""
+        """The number of clips that were not removed."""
         return len(self.number_of)
 
     @property
     def used(self) -> int:
-        """How many numbers were given to clips so far."""
+        """The number of clips that were added so far, with the removed ones."""
         return len(self._ids)
 
     def add(self, clips: Sequence[IndexedClip]) -> None:
-        """Add clips that are not there; they get the next numbers."""
+        """Add clips that are not in the index; they get the next numbers."""
         first = self.used
         self._ids.extend([clip.id for clip in clips])
         self._durations.extend([clip.duration for clip in clips])
@@ -206,26 +207,29 @@ class Labels:
         self.number_of.update((clip.id, first + i) for i, clip in enumerate(clips))
 
     def remove(self, clip_ids: Iterable[str]) -> list[int]:
-        """Remove those of the clips that are there; returns their numbers."""
+        """Remove the clips that are in the index, and return their numbers."""
         numbers = [self.number_of.pop(i) for i in clip_ids if i in self.number_of]
         if numbers:
-            self._alive = self._alive.copy()  # views that were taken keep the old one
+            self._alive = self._alive.copy()  # earlier views must not change
             self._alive.view()[numbers] = False
         return numbers
 
-    def codes(self, clip_filter: ClipFilter, *, refused: bool = False) -> dict[str, list[int]]:
-        """For each label in a filter, the codes that pass, or with `refused` those that do not."""
-        before = "not_" if refused else ""
-        found = {
+    def codes(self, clip_filter: ClipFilter, *, negated: bool = False) -> dict[str, list[int]]:
+        """For each label in a filter, the codes of its values.
+
+        negated: of the `not_` conditions, instead of the others.
+        """
+        prefix = "not_" if negated else ""
+        codes = {
             name: coded.codes(values)
             for name, coded in self._named.items()
-            if (values := getattr(clip_filter, before + name))
+            if (values := getattr(clip_filter, prefix + name))
         }
-        words = getattr(clip_filter, before + "word")
-        return found | ({"word": self.words.codes(words)} if words else {})
+        words = getattr(clip_filter, prefix + "word")
+        return codes | ({"word": self.words.codes(words)} if words else {})
 
     def clip_at(self, number: int, array: NDArray[Any] | None) -> IndexedClip:
-        """A clip as it was added, with an array."""
+        """A clip with the labels with which it was added, and an array."""
         named = {name: coded.at(number) for name, coded in self._named.items()}
         return IndexedClip(
             id=self._ids.view()[number],
@@ -252,6 +256,7 @@ def _any_of(column: IntArray, codes: Sequence[int]) -> BoolArray:
     """(n,) whether each code of `column` (n,) is one of `codes`."""
     if len(codes) < 2:
         return np.asarray(column == codes[0] if codes else np.zeros(len(column), dtype=bool))
+    # one lookup for each entry, whatever the number of codes
     table = np.zeros(int(column.max(initial=0)) + 1, dtype=bool)
     chosen = np.array(codes)
     table[chosen[chosen < len(table)]] = True

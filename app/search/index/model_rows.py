@@ -1,9 +1,9 @@
-"""The rows that a fitted model computes for the clips of an index, in the index's own order.
+"""The rows that a fitted model computes for the clips of an index, in the order of the index.
 
-So the labels of the index filter these rows too, and a search looks no clip up by its id. Rows are
-computed when a search first asks for them, and then only for clips that came or changed since. This
-is the out-of-sample extension of every model: searches need no new fit. Rows that the fit computed
-are taken over when the model is first used. A search takes a lock only while rows are missing.
+So the labels of the index filter these rows too, and a search needs no lookup by clip id. The first
+search computes the rows of all clips. Later searches compute only the rows of new and changed
+clips. So a new clip is found without a new fit. The rows that the fit computed are used when a
+search uses the model for the first time. A search takes a lock only while rows are missing.
 """
 
 from __future__ import annotations
@@ -19,17 +19,19 @@ from app.numerics.arrays import BoolArray, FloatArray
 from app.search.index.labels import Column, Labels, LabelView
 
 BATCH = 2000
-"""Clips that are computed at a time; this bounds the memory for what is read of them."""
+"""Number of clips whose rows are computed at a time. It bounds the memory for their arrays."""
 
 Compute = Callable[[Sequence[str]], Mapping[str, FloatArray]]
-"""Rows (width,) by clip id; clips that are gone are left out."""
+"""A function from clip ids to rows (width,) by clip id; deleted clips are left out."""
 
-Known = Callable[[], tuple[Sequence[str], FloatArray]]
-"""Ids (n) and rows (n, width) that the fit of the model computed and that are still right."""
+FittedRows = Callable[[], tuple[Sequence[str], FloatArray]]
+"""A function that returns clip ids (n) and rows (n, width) that the fit computed.
+
+Clips that changed since the fit are left out."""
 
 
-def nothing_known() -> tuple[Sequence[str], FloatArray]:
-    """The rows of a model that keeps none."""
+def no_fitted_rows() -> tuple[Sequence[str], FloatArray]:
+    """The rows of a model that stored no rows when it was fitted."""
     return (), np.zeros((0, 0))
 
 
@@ -37,12 +39,12 @@ def nothing_known() -> tuple[Sequence[str], FloatArray]:
 class ModelRowsView:
     """Rows of a model for the n clips of an index at one moment.
 
-    values: (n, width) float32, 0 where nothing could be computed; there: (n,) whether it could;
+    values: (n, width) float32, 0 for clips without a row; has_row: (n,) whether a clip has a row;
     series: the same object as long as values are only added at the end.
     """
 
     values: FloatArray
-    there: BoolArray
+    has_row: BoolArray
     series: object
 
 
@@ -53,9 +55,9 @@ class ModelRows:
         self._model = ""
         self._labels: Labels | None = None
         self._values = Column(np.float32)
-        self._there = Column(np.bool_)
-        self._kept: dict[str, FloatArray] = {}
-        self._kept_for = 0
+        self._has_row = Column(np.bool_)
+        self._fitted: dict[str, FloatArray] = {}
+        self._fitted_clips = 0
         self._done: tuple[str, Labels, ModelRowsView] | None = None
         self._lock = threading.Lock()
 
@@ -65,47 +67,48 @@ class ModelRows:
         model: str,
         width: int,
         compute: Compute,
-        known: Known = nothing_known,
+        fitted: FittedRows = no_fitted_rows,
     ) -> ModelRowsView:
-        """The rows of all clips of an index, always the same one.
+        """The rows of all clips in a view of an index, which must always be the same index.
 
-        model: id of the model that `compute` and `known` belong to.
+        model: the id of the model. width: of a row. compute: computes rows of the model. fitted:
+        the rows that the fit of the model computed.
         """
-        return self._finished(clips, model) or self._completed(clips, model, width, compute, known)
+        return self._finished(clips, model) or self._completed(clips, model, width, compute, fitted)
 
     def _finished(self, clips: LabelView, model: str) -> ModelRowsView | None:
-        """The rows if all of them are there; read without a lock."""
+        """The rows, if all of them were computed; else None. This needs no lock."""
         done, count = self._done, len(clips.ids)
-        if done is None or done[:2] != (model, clips.labels) or len(done[2].there) < count:
+        if done is None or done[:2] != (model, clips.labels) or len(done[2].has_row) < count:
             return None
-        return ModelRowsView(done[2].values[:count], done[2].there[:count], done[2].series)
+        return ModelRowsView(done[2].values[:count], done[2].has_row[:count], done[2].series)
 
     def _completed(
-        self, clips: LabelView, model: str, width: int, compute: Compute, known: Known
+        self, clips: LabelView, model: str, width: int, compute: Compute, fitted: FittedRows
     ) -> ModelRowsView:
-        """The rows, those that are missing computed."""
+        """The rows, after the missing rows were computed."""
         ids, alive = clips.ids, clips.alive
         with self._lock:
             if (self._model, self._labels) != (model, clips.labels):
-                # Not later: these rows are right only until one of these clips changes.
-                self._kept = dict(zip(*known(), strict=True))
-                self._kept_for = len(ids)
+                # Read now: the rows are valid only until one of these clips changes.
+                self._fitted = dict(zip(*fitted(), strict=True))
+                self._fitted_clips = len(ids)
                 self._model, self._labels = model, clips.labels
                 self._values = Column(np.float32, (width,))
-                self._there = Column(np.bool_)
-            while (start := len(self._there)) < len(ids):
-                # The known rows belong to the clips that were there then, not to later ones. They
-                # are kept until those clips are done: a request may stop when its time is up.
-                kept = self._kept if start < self._kept_for else {}
-                stop = min(start + BATCH, self._kept_for if kept else len(ids))
+                self._has_row = Column(np.bool_)
+            while (start := len(self._has_row)) < len(ids):
+                # The fitted rows belong to the clips of the first search, not to later clips. They
+                # stay until these clips are done, because a request may stop at its deadline.
+                fitted_rows = self._fitted if start < self._fitted_clips else {}
+                stop = min(start + BATCH, self._fitted_clips if fitted_rows else len(ids))
                 batch = slice(start, stop)
-                missing = [i for i in ids[batch][alive[batch]] if i not in kept]
-                found = ChainMap(kept, dict(compute(missing)) if missing else {})
-                nothing = np.zeros(width)
-                self._values.extend(np.stack([found.get(i, nothing) for i in ids[batch]]))
-                self._there.extend([i in found for i in ids[batch]])
-            if len(self._there) >= self._kept_for:
-                self._kept = {}
-            every = ModelRowsView(self._values.view(), self._there.view(), self._values)
-            self._done = model, clips.labels, every
-            return ModelRowsView(every.values[: len(ids)], every.there[: len(ids)], every.series)
+                missing = [i for i in ids[batch][alive[batch]] if i not in fitted_rows]
+                rows = ChainMap(fitted_rows, dict(compute(missing)) if missing else {})
+                no_row = np.zeros(width)
+                self._values.extend(np.stack([rows.get(i, no_row) for i in ids[batch]]))
+                self._has_row.extend([i in rows for i in ids[batch]])
+            if len(self._has_row) >= self._fitted_clips:
+                self._fitted = {}
+            view = ModelRowsView(self._values.view(), self._has_row.view(), self._values)
+            self._done = model, clips.labels, view
+            return ModelRowsView(view.values[: len(ids)], view.has_row[: len(ids)], view.series)

@@ -1,4 +1,4 @@
-"""Clips in order of their vectors' distance to a query, measured as far as pages are read."""
+"""Clips in order of the distance of their vectors to a query, computed page by page."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from app.search.index.rows import RowsView
 from app.search.ranking.cursor import Position
 from app.search.ranking.ranking import IdArray, Page, Ranking
 
-FIRST_LOOK = 256
-"""Clips that are ranked first where it is not known how many are needed."""
+FIRST_COUNT = 256
+"""Clips that are ranked first, if the number of needed clips is unknown."""
 
 
 class NearestRanking:
-    """A ranking (see `ranking.Ranked`) over the rows of an index, one row a clip.
+    """A ranking (see `ranking.Ranked`) of the rows of an index with one row for each clip.
 
-    Each page costs one pass over the vectors, the last as much as the first.
+    Each page needs one pass over the vectors; the last page takes as long as the first.
     """
 
     anchor = None
 
     def __init__(self, version: int, rows: RowsView, mask: BoolArray, query: FloatArray) -> None:
-        """mask: (n,) the clips that pass; query: (width,); version: the library's."""
+        """version: of the library. mask: (n,) the clips that pass the filter. query: (width,)."""
         self.version = version
         self._rows = rows
         self._mask = mask
@@ -47,14 +47,17 @@ class NearestRanking:
         return self._whole.distances
 
     def page(self, after: Position | None, limit: int) -> Page:
-        """The first `limit` clips behind a position."""
-        least = None if after is None else after.distance
-        found = nearest(self._rows.blocks, self._masks, self._query, limit + 1, least)
-        return self._ranking(*found).page(after, limit)
+        """The first `limit` clips after a position."""
+        min_distance = None if after is None else after.distance
+        # one clip more than the page, so that the page knows whether others follow
+        rows, distances = nearest(
+            self._rows.blocks, self._masks, self._query, limit + 1, min_distance
+        )
+        return self._ranking(rows, distances).page(after, limit)
 
     def until(self, distance: float, clip_id: str) -> Page:
-        """All clips up to (distance, clip id), which is included."""
-        limit, key = FIRST_LOOK, (distance, clip_id)
+        """All clips up to (distance, clip id), inclusive."""
+        limit, key = FIRST_COUNT, (distance, clip_id)
         while True:
             page = self.page(None, limit)
             keys = list(zip(page.distances.tolist(), page.ids, strict=True))
@@ -64,7 +67,7 @@ class NearestRanking:
             limit *= 4
 
     def vectors(self, ids: IdArray) -> FloatArray:
-        """(m, width) float32 vectors of clips (m,) that a page named."""
+        """(m, width) float32 vectors of the clips `ids` (m,) of a page."""
         return gather(self._rows.blocks, self._rows.labels.numbers(ids))
 
     @cached_property

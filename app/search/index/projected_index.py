@@ -1,4 +1,4 @@
-"""Exact search among the coordinates that a fitted model gives to the clips of an index."""
+"""Exact search among the coordinates that a fitted model computes for the clips of an index."""
 
 from __future__ import annotations
 
@@ -10,7 +10,13 @@ import numpy as np
 from app.numerics.arrays import FloatArray
 from app.numerics.nearest import Block, squared_lengths
 from app.search.index.labels import Column
-from app.search.index.model_rows import Compute, Known, ModelRows, ModelRowsView, nothing_known
+from app.search.index.model_rows import (
+    Compute,
+    FittedRows,
+    ModelRows,
+    ModelRowsView,
+    no_fitted_rows,
+)
 from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.vector_index import VectorIndex
 from app.store.clips.filter import ClipFilter
@@ -33,20 +39,20 @@ class ProjectedIndex:
         query: FloatArray,
         clip_filter: ClipFilter,
         exclude: frozenset[str] = frozenset(),
-        known: Known = nothing_known,
+        fitted: FittedRows = no_fitted_rows,
     ) -> NearestRanking:
-        """The clips that pass a filter, ranked by how far their coordinates are from `query` (k,).
+        """The clips that pass a filter, ranked by the distance of their coordinates to a query.
 
-        model: id of the model that `project`, `query` and `known` belong to. The index must have
-        caught up.
+        query: (k,) coordinates. model: the id of the model. project: computes coordinates by the
+        model. fitted: the coordinates that its fit computed. Call `catch_up` of the index before.
         """
         version, rows = self._index.state
-        coordinates = self._coordinates.of(rows.labels, model, len(query), project, known)
+        coordinates = self._coordinates.of(rows.labels, model, len(query), project, fitted)
         rows = replace(rows, blocks=(self._block(coordinates),))
         return NearestRanking(version, rows, rows.labels.mask(clip_filter, exclude), query)
 
     def _block(self, coordinates: ModelRowsView) -> Block:
-        """Coordinates of all rows; 0 for those of clips that are gone."""
+        """The coordinates of all clips as a block; 0 for clips without coordinates."""
         count = len(coordinates.values)
         series, squares = self._squares
         if series is not coordinates.series or len(squares) < count:
@@ -54,7 +60,7 @@ class ProjectedIndex:
         return Block(coordinates.values, squares[:count])
 
     def _add_squares(self, coordinates: ModelRowsView) -> FloatArray:
-        """The squares of these coordinates and of all that were there before them."""
+        """The squared lengths of these coordinates; only those of new clips are computed."""
         with self._lock:
             if self._squares[0] is not coordinates.series:
                 self._column = Column(np.float32)

@@ -1,8 +1,8 @@
-"""What an index holds: the clips' labels, and one vector of each clip or several.
+"""The content of an index: the labels of the clips, and one or more vectors of each clip.
 
-Rows are added at the end, in blocks that never move. The rows of a clip that is gone stay as dead
-rows; when too many are dead, the living rows are copied. A search reads a `RowsView`, which no
-later change touches.
+Rows are added at the end, in blocks that never move. The rows of a removed clip stay as dead rows.
+If too many rows are dead, the others are copied. A search reads a `RowsView`, which later changes
+do not affect.
 """
 
 from __future__ import annotations
@@ -22,24 +22,24 @@ from app.search.index.labels import Column, Labels, LabelView
 from app.store.clips.index_feed import IndexedClip
 
 BLOCK = 32_768
-"""Rows of one block."""
+"""The number of rows of a full block."""
 MAX_FEW_DEAD = 4096
-"""So many dead rows are kept however few are alive."""
-COPIED = 5000
-"""Rows that are copied at a time when the dead rows are dropped."""
-GATHERED = 4
-"""Where fewer than one row of a block in so many is asked for, these are copied and multiplied;
-else the whole block is."""
+"""Up to this number of dead rows, no rows are copied."""
+COPY_BATCH = 5000
+"""The number of rows that are copied at a time when the dead rows are dropped."""
+GATHER_RATIO = 4
+"""If less than one row of a block in this many is needed, only the needed rows are copied and
+multiplied. Else the whole block is multiplied."""
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
     """How the stored arrays of a clip become its rows.
 
-    arrays: their names in the store. A row is a row of each array, side by side: `facts` numbers
-    that describe the row (a time, a radius), then `width` numbers that are compared.
+    arrays: their names in the store. Their rows are put side by side. The first `facts` numbers
+    of a row describe it (a time, a radius). The other `width` numbers are the vector.
     several: whether a clip has any number of rows (m, facts + width), or one (facts + width,).
-    max_dead: the share of rows that may be dead before the others are copied.
+    max_dead: the largest share of dead rows; if it is exceeded, the others are copied.
     """
 
     arrays: tuple[str, ...]
@@ -49,9 +49,9 @@ class Layout:
     max_dead: float = 0.5
 
     def rows_of(self, array: NDArray[Any] | None) -> NDArray[Any] | None:
-        """(m, facts + width) rows of a clip, m > 0; None where `array` has another shape.
+        """(m, facts + width) the rows of a clip, m > 0; None if `array` has another shape.
 
-        An array of an earlier analysis has one, until the clip is analyzed again.
+        Arrays of an earlier version of the analysis can have another shape.
         """
         lengths = (self.facts + self.width,)
         if array is None or array.shape[self.several :] != lengths or not array.size:
@@ -63,9 +63,9 @@ class Layout:
 class RowsView:
     """Rows at one moment.
 
-    labels: of the n clips; blocks: vectors of all rows; facts: (rows, f) float32, what describes
-    each row; owners: (rows,) each row's clip, ascending; starts: (n,) each clip's first row. Both
-    are None where every clip has one row.
+    labels: of the n clips. blocks: the vectors of all rows. facts: (rows, f) float32, see
+    `Layout`. owners: (rows,) the number of each row's clip, ascending. starts: (n,) the first row
+    of each clip. owners and starts are None if every clip has one row.
     """
 
     labels: LabelView
@@ -92,16 +92,16 @@ class RowsView:
 
     def distances(self, queries: FloatArray, rows: IntArray) -> FloatArray:
         """(q, k) float32 Euclidean distances of `queries` (q, width) to ascending `rows` (k,)."""
-        found = np.empty((len(queries), len(rows)), dtype=np.float32)
+        distances = np.empty((len(queries), len(rows)), dtype=np.float32)
         queries = queries.astype(np.float32, copy=False)
         first = start = 0
         for block in self.blocks:
             check()
             stop = start + int(np.searchsorted(rows[start:], first + len(block)))
             own = rows[start:stop] - first
-            np.sqrt(_squared_distances(queries, block, own), out=found[:, start:stop])
+            np.sqrt(_squared_distances(queries, block, own), out=distances[:, start:stop])
             first, start = first + len(block), stop
-        return found
+        return distances
 
 
 class Rows:
@@ -117,19 +117,19 @@ class Rows:
         self._dead = 0
 
     def __len__(self) -> int:
-        """Clips that are there."""
+        """The number of clips that were not removed."""
         return len(self._labels)
 
     def put(self, clips: Sequence[IndexedClip]) -> None:
-        """Add clips, each once, and drop what was known of them; some may have no array."""
+        """Add clips, each once, and remove their earlier rows; a clip may have no usable array."""
         self.remove([clip.id for clip in clips])
         rows = [(clip, self._layout.rows_of(clip.array)) for clip in clips]
-        there = [(clip, some) for clip, some in rows if some is not None]
-        if there:
-            self._append([clip for clip, _ in there], [some for _, some in there])
+        usable = [(clip, some) for clip, some in rows if some is not None]
+        if usable:
+            self._append([clip for clip, _ in usable], [some for _, some in usable])
 
     def remove(self, clip_ids: Iterable[str]) -> None:
-        """Drop those of the clips that are there."""
+        """Remove the clips that are in the index."""
         numbers = self._labels.remove(clip_ids)
         self._dead += int(self._counts()[numbers].sum()) if numbers else 0
 
@@ -139,13 +139,16 @@ class Rows:
         return self._dead > max(MAX_FEW_DEAD, self._layout.max_dead * self._vectors.count)
 
     def living(self) -> Rows:
-        """The same without dead rows."""
-        found = Rows(self._layout)
+        """A copy without dead rows.
+
+        It is made in batches, to bound the memory.
+        """
+        copy = Rows(self._layout)
         numbers = np.flatnonzero(self._labels.view().alive)
-        batches = np.cumsum(self._counts()[numbers]) // COPIED
+        batches = np.cumsum(self._counts()[numbers]) // COPY_BATCH
         for some in np.split(numbers, np.flatnonzero(np.diff(batches)) + 1):
-            found.put([self._labels.clip_at(n, self._array_at(n)) for n in some.tolist()])
-        return found
+            copy.put([self._labels.clip_at(n, self._array_at(n)) for n in some.tolist()])
+        return copy
 
     def view(self) -> RowsView:
         """The rows at this moment."""
@@ -160,13 +163,14 @@ class Rows:
 
     def _append(self, clips: Sequence[IndexedClip], rows: list[NDArray[Any]]) -> None:
         counts = [len(some) for some in rows]
-        every = np.concatenate(rows)
+        # all rows of all clips, (rows, facts + width)
+        joined = np.concatenate(rows)
         if self._layout.several:
             numbers = self._labels.used + np.arange(len(clips))
             self._starts.extend(self._vectors.count + np.cumsum([0, *counts[:-1]]))
             self._owners.extend(np.repeat(numbers, counts))
-        self._facts.extend(every[:, : self._layout.facts])
-        self._vectors.extend(every[:, self._layout.facts :])
+        self._facts.extend(joined[:, : self._layout.facts])
+        self._vectors.extend(joined[:, self._layout.facts :])
         self._labels.add(clips)
 
     def _counts(self) -> IntArray:
@@ -176,7 +180,7 @@ class Rows:
         return np.diff(self._starts.view(), append=self._vectors.count)
 
     def _array_at(self, number: int) -> NDArray[Any]:
-        """The array that a clip was added with."""
+        """The array with which a clip was added."""
         first, stop = number, number + 1
         if self._layout.several:
             starts = self._starts.view()
@@ -188,15 +192,15 @@ class Rows:
 
 def _squared_distances(queries: FloatArray, block: Block, rows: IntArray) -> FloatArray:
     """(q, k) squared distances of `queries` (q, width) to ascending `rows` (k,) of a block."""
-    if GATHERED * len(rows) < len(block):
+    if GATHER_RATIO * len(rows) < len(block):
         vectors, squares = block.vectors.take(rows, axis=0), block.squares.take(rows)
         return squared_distances(queries, vectors, squares)
-    found = squared_distances(queries, block.vectors, block.squares)
-    return found if len(rows) == len(block) else found[:, rows]
+    every = squared_distances(queries, block.vectors, block.squares)
+    return every if len(rows) == len(block) else every[:, rows]
 
 
 class _Vectors:
-    """Vectors (rows, width) float32 in blocks that are filled one after another."""
+    """Vectors (rows, width) float32, in blocks that are filled one after the other."""
 
     def __init__(self, width: int) -> None:
         self.count = 0
@@ -208,11 +212,11 @@ class _Vectors:
         """Add vectors (m, width)."""
         done = 0
         while done < len(vectors):
-            held = self.count % BLOCK
-            some = vectors[done : done + BLOCK - held]
-            stop = held + len(some)
-            self._vectors[held:stop] = some
-            self._squares[held:stop] = squared_lengths(self._vectors[held:stop])
+            first = self.count % BLOCK
+            some = vectors[done : done + BLOCK - first]
+            stop = first + len(some)
+            self._vectors[first:stop] = some
+            self._squares[first:stop] = squared_lengths(self._vectors[first:stop])
             self.count += len(some)
             done += len(some)
             if stop == BLOCK:
@@ -220,7 +224,7 @@ class _Vectors:
                 self._vectors, self._squares = self._empty()
 
     def part(self, first: int, stop: int) -> FloatArray:
-        """(stop - first, width) copied."""
+        """(stop - first, width) a copy of the vectors of these rows."""
         blocks = [*(block.vectors for block in self._full), self._vectors]
         return np.concatenate(
             [
@@ -231,10 +235,10 @@ class _Vectors:
 
     def view(self) -> tuple[Block, ...]:
         """All vectors so far."""
-        held = self.count % BLOCK
-        last = [Block(self._vectors[:held], self._squares[:held])] if held else []
+        used = self.count % BLOCK
+        last = [Block(self._vectors[:used], self._squares[:used])] if used else []
         return (*self._full, *last)
 
     def _empty(self) -> tuple[FloatArray, FloatArray]:
-        # Memory is taken only as it is written.
+        # The system allocates the memory of an empty array only when it is written.
         return np.empty((BLOCK, self._width), np.float32), np.empty(BLOCK, np.float32)

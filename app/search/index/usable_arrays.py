@@ -1,7 +1,7 @@
 """Arrays of clips that this version of the analysis can use.
 
-After an upgrade a clip keeps its older arrays until it is analyzed again. Arrays of another shape
-are left out here, so comparisons work without that clip.
+After an upgrade, a clip has its old arrays until it is analyzed again. Arrays of another shape are
+left out here. So comparisons work, without that clip.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from app.store.database.engine import Tx
 
 
 def get_some(tx: Tx, clip_id: str, names: Collection[str]) -> dict[str, NDArray[Any]]:
-    """Those of the named arrays of a clip that are there and usable, by name."""
-    found = arrays.get_some(tx, clip_id, names)
-    return {name: array for name, array in found.items() if is_usable(name, array)}
+    """The usable arrays among `names` of a clip, by name; missing arrays are left out."""
+    stored = arrays.get_some(tx, clip_id, names)
+    return {name: array for name, array in stored.items() if is_usable(name, array)}
 
 
 def get_many(tx: Tx, clip_ids: Collection[str], name: str) -> dict[str, NDArray[Any]]:
-    """One array of many clips by clip id; clips without a usable one are left out."""
-    found = arrays.get_many(tx, clip_ids, name)
-    return {clip_id: array for clip_id, array in found.items() if is_usable(name, array)}
+    """One array of many clips, by clip id; clips without a usable array are left out."""
+    stored = arrays.get_many(tx, clip_ids, name)
+    return {clip_id: array for clip_id, array in stored.items() if is_usable(name, array)}

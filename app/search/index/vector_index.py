@@ -1,9 +1,9 @@
-"""The index: every ready clip's vectors in memory, and exact search over them.
+"""The index: the vectors of all ready clips in memory, and exact search among them.
 
-One class serves all that is searched in memory: motion vectors (one row a clip), and poses, windows
-and segments (several rows a clip); see `Layout`. An index follows the library's version: `catch_up`
-reads one number and loads what changed since. It takes a lock only where something changed. Each
-search reads its own `RowsView`, while changes are loaded at the same time.
+The same class is used for motion vectors (one row for each clip), and for poses, windows and
+segments (several rows for each clip); see `Layout`. An index follows the version of the library:
+`catch_up` reads the version, and loads the clips that changed. It takes a lock only if the version
+has changed. Each search reads its own `RowsView`, also while changes are loaded.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ VECTOR = "motion_vector"
 WIDTH = 128
 MOTION_VECTORS = Layout((VECTOR,), WIDTH)
 
-LOADED = 64
-"""Clips whose arrays are held at a time while several are joined: an hour of motion has 3 MB of
-windows."""
+JOIN_BATCH = 64
+"""Number of clips whose arrays are in memory at a time while they are joined. An hour of motion has
+3 MB of windows."""
 
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
     """Clips that passed a filter, in the index's order.
 
-    version: of the library; ids: (n,); seconds: (n,) how long the clips are.
+    version: of the library; ids: (n,); seconds: (n,) the durations of the clips.
     """
 
     version: int
@@ -48,14 +48,14 @@ class Candidates:
 
 
 class VectorIndex:
-    """Vectors float32 of the ready clips, with the labels that filters need."""
+    """The float32 vectors of the ready clips, and the labels that filters need."""
 
     def __init__(
         self,
         on_change: Callable[[tuple[str, ...]], None] | None = None,
         layout: Layout = MOTION_VECTORS,
     ) -> None:
-        """on_change: gets the ids of clips that changed or are gone; layout: what is kept."""
+        """on_change: is called with the ids of changed and deleted clips. layout: of the rows."""
         self._on_change = on_change
         self._layout = layout
         self._rows = Rows(layout)
@@ -68,12 +68,12 @@ class VectorIndex:
 
     @property
     def is_loaded(self) -> bool:
-        """Whether the library was loaded once."""
+        """Whether the library was loaded at least once."""
         return self._loaded
 
     @property
     def version(self) -> int:
-        """The library version whose clips it holds."""
+        """The library version of the clips in the index."""
         return self._state[0]
 
     @property
@@ -82,14 +82,15 @@ class VectorIndex:
         return self._state
 
     def catch_up(self, store: Store) -> int:
-        """Bring the index to the library's version and return that.
+        """Load all changes up to the present version of the library, and return this version.
 
-        One cheap query when nothing is new.
+        Without changes, this is one cheap query.
         """
         with store.read() as tx:
             if self._loaded and library.version(tx) == self.version:
                 return self.version
         with self._lock, store.read() as tx:
+            # Another thread may have loaded the changes while this one waited for the lock.
             now = library.version(tx)
             if not self._loaded or now != self.version:
                 self._follow(tx, now)
@@ -112,12 +113,12 @@ class VectorIndex:
         return NearestRanking(version, rows, rows.labels.mask(clip_filter, exclude), query)
 
     def _follow(self, tx: Tx, now: int) -> None:
-        """Load what changed up to version `now`; searches see all changes together, at the end."""
+        """Load the changes up to version `now`. Searches see all changes at once, at the end."""
         since = self.version
         if self._loaded:
             self._forget(library.deleted_since(tx, since))
         else:
-            self._rows = Rows(self._layout)  # a load that failed half-way may have left some
+            self._rows = Rows(self._layout)  # an earlier load may have failed halfway
         for batch in self._changed(tx, since):
             ready = [clip for clip in batch if clip.is_ready]
             self._forget(tuple(clip.id for clip in batch if not clip.is_ready))
@@ -135,8 +136,8 @@ class VectorIndex:
             yield from index_feed.changed_since(tx, since, names[0])
             return
         for batch in index_feed.changed_since(tx, since, array=""):
-            for first in range(0, len(batch), LOADED):
-                yield _joined(tx, batch[first : first + LOADED], names)
+            for first in range(0, len(batch), JOIN_BATCH):
+                yield _joined(tx, batch[first : first + JOIN_BATCH], names)
 
     def _forget(self, clip_ids: tuple[str, ...]) -> None:
         self._rows.remove(clip_ids)
@@ -148,12 +149,15 @@ class VectorIndex:
 
 
 def _joined(tx: Tx, clips: Sequence[IndexedClip], names: Sequence[str]) -> list[IndexedClip]:
-    """The clips with their named arrays side by side; None where one is missing or too short."""
+    """The clips with their named arrays side by side.
+
+    The array is None if one of the arrays is missing, or if their lengths differ.
+    """
     ids = [clip.id for clip in clips if clip.is_ready]
     arrays = [usable_arrays.get_many(tx, ids, name) for name in names]
-    found = []
+    joined = []
     for clip in clips:
         own = [by_id[clip.id] for by_id in arrays if clip.id in by_id]
         is_whole = len(own) == len(names) and len({len(array) for array in own}) == 1
-        found.append(replace(clip, array=np.hstack(own) if is_whole else None))
-    return found
+        joined.append(replace(clip, array=np.hstack(own) if is_whole else None))
+    return joined

@@ -1,1 +1,1 @@
-"""Search by one pose."""
+"""Search for frames with a similar pose."""

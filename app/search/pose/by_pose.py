@@ -1,8 +1,8 @@
 """Rank clips by the distance of their nearest frame to one pose, exactly.
 
 Each clip's pose cover gives a lower bound of this distance: the distance to a pose of the cover
-less that pose's radius. The frames of clips are compared in the order of these bounds, until no
-other clip can be nearer than those found. So nothing is missed, and most clips are never read.
+less that pose's radius. The frames of the clips are compared in the order of these bounds, until no
+other clip can be nearer than the hits. So no hit is missed, and most clips are never read.
 """
 
 from __future__ import annotations
@@ -17,44 +17,45 @@ from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.nearest import squared_distances
 from app.search.example.distances import Loader
 from app.search.index.rows import Layout, RowsView
-from app.search.pose.pose_places import Places, PosePlace, pose_places
+from app.search.pose.pose_matches import MatchesPerClip, PoseMatch, pose_matches
 from app.search.ranking.cursor import Position
 
 POSES = Layout(("pose_cover",), POSE_WIDTH, facts=2, several=True)
-"""Rows of the index of poses; their facts are frame and radius."""
+"""The rows of the pose index; their facts are frame and radius."""
 POSITIONS = "role_positions"
-AT_ONCE = 64
-"""Clips whose frames are compared at a time."""
+MAX_CLIPS_AT_ONCE = 64
+"""The largest number of clips whose frames are compared at a time."""
 
-FRAMES_AT_ONCE = 100_000
-"""Poses that are compared at a time."""
+MAX_FRAMES_AT_ONCE = 100_000
+"""The largest number of poses that are compared at a time."""
 
 _RADIUS = 1
+"""The column of the facts that holds the radius."""
 
 
 @dataclass(frozen=True, slots=True)
 class PoseHit:
-    """A place of a clip where a pose is taken."""
+    """A clip, and the frames in which it is near the pose."""
 
     clip_id: str
-    place: PosePlace
+    match: PoseMatch
 
     @property
     def key(self) -> tuple[float, str]:
-        """Orders hits, and names one in a cursor: by distance, clip, frame."""
-        return self.place.distance, f"{self.clip_id} {self.place.frame:08d}"
+        """Distance, then clip and frame: sorts hits, and identifies a hit in a cursor."""
+        return self.match.distance, f"{self.clip_id} {self.match.frame:08d}"
 
 
 @dataclass(frozen=True, slots=True)
 class PosePage:
-    """Part of a ranking by pose; more: whether hits follow."""
+    """Some hits of a ranking by pose. more: whether other hits follow."""
 
     hits: tuple[PoseHit, ...]
     more: bool
 
 
 class PoseRanking:
-    """All places of the clips that pass a filter, in order of distance."""
+    """The hits in all clips that pass a filter, the nearest first."""
 
     def __init__(
         self,
@@ -62,38 +63,50 @@ class PoseRanking:
         mask: BoolArray,
         query: FloatArray,
         load: Loader,
-        places: Places = Places.BEST,
+        per_clip: MatchesPerClip = MatchesPerClip.BEST,
     ) -> None:
-        """rows: of POSES; mask: (n,) the clips that pass; query: (36,) a pose vector."""
+        """Prepare a search; frames are compared when a page is read.
+
+        rows: of an index with the layout POSES. mask: (n,) the clips that pass the filter.
+        query: (36,) a pose vector. load: loads POSITIONS (frames, 13, 3) of clips. per_clip: how
+        many hits a clip may have.
+        """
         self._ids = rows.labels.ids
         self._query = query.astype(np.float64)
         self._load = load
-        self._places = places
+        self._per_clip = per_clip
         self._bounds = _bounds(rows, query)
         self._mask = mask
 
     def page(self, after: Position | None, limit: int) -> PosePage:
-        """The first `limit` places behind a position; its clip id is a `PoseHit.key`'s."""
-        behind = (-1.0, "") if after is None else (after.distance, after.clip_id)
+        """The first `limit` hits after a position. Its `clip_id` is the text of a `PoseHit.key`."""
+        last_seen = (-1.0, "") if after is None else (after.distance, after.clip_id)
         hits: list[PoseHit] = []
-        farthest, waiting = np.inf, self._mask.copy()
-        while len(numbers := self._next(waiting, farthest)):
-            hits += [hit for hit in self._look_into(numbers) if hit.key > behind]
+        max_distance, waiting = np.inf, self._mask.copy()
+        while len(numbers := self._next(waiting, max_distance)):
+            hits += [hit for hit in self._hits_in(numbers) if hit.key > last_seen]
             if len(hits) > limit:
+                # one hit more than the page, so that the page knows whether others follow
                 hits = sorted(hits, key=lambda hit: hit.key)[: limit + 1]
-                farthest = hits[-1].place.distance
+                max_distance = hits[-1].match.distance
         hits.sort(key=lambda hit: hit.key)
         return PosePage(tuple(hits[:limit]), len(hits) > limit)
 
-    def _next(self, waiting: BoolArray, farthest: float) -> IntArray:
-        """Numbers of the next clips that may be so near; they are removed from `waiting` (n,)."""
-        numbers = np.flatnonzero(waiting & (self._bounds <= farthest))
-        if len(numbers) > AT_ONCE:
-            numbers = numbers[np.argpartition(self._bounds[numbers], AT_ONCE)[:AT_ONCE]]
+    def _next(self, waiting: BoolArray, max_distance: float) -> IntArray:
+        """The numbers of the next clips to compare; they are removed from `waiting` (n,).
+
+        These clips can have a frame within `max_distance`, and have the smallest bounds.
+        """
+        numbers = np.flatnonzero(waiting & (self._bounds <= max_distance))
+        if len(numbers) > MAX_CLIPS_AT_ONCE:
+            numbers = numbers[
+                np.argpartition(self._bounds[numbers], MAX_CLIPS_AT_ONCE)[:MAX_CLIPS_AT_ONCE]
+            ]
         waiting[numbers] = False
         return numbers
 
-    def _look_into(self, numbers: IntArray) -> list[PoseHit]:
+    def _hits_in(self, numbers: IntArray) -> list[PoseHit]:
+        """The hits in the clips with these numbers; deleted clips have none."""
         clip_ids = [str(clip_id) for clip_id in self._ids[numbers]]
         loaded = self._load(clip_ids, POSITIONS)
         there = [clip_id for clip_id in clip_ids if clip_id in loaded]
@@ -102,25 +115,28 @@ class PoseRanking:
         ends = np.cumsum([len(loaded[clip_id]) for clip_id in there])
         distances = self._distances(np.concatenate([loaded[i] for i in there]))
         return [
-            PoseHit(clip_id, place)
+            PoseHit(clip_id, match)
             for clip_id, own in zip(there, np.split(distances, ends[:-1]), strict=True)
-            for place in pose_places(own, self._places)
+            for match in pose_matches(own, self._per_clip)
         ]
 
     def _distances(self, positions: FloatArray) -> FloatArray:
-        """(n,) of all poses, in batches; a request that has ended stops between two of them."""
-        found = np.empty(len(positions))
-        for first in range(0, len(positions), FRAMES_AT_ONCE):
+        """(n,) distances of poses (n, 13, 3), in batches.
+
+        A request whose client left, or whose time is up, stops between two batches.
+        """
+        distances = np.empty(len(positions))
+        for first in range(0, len(positions), MAX_FRAMES_AT_ONCE):
             check()
-            some = slice(first, first + FRAMES_AT_ONCE)
-            found[some] = pose_distances(positions[some], self._query)
-        return found
+            some = slice(first, first + MAX_FRAMES_AT_ONCE)
+            distances[some] = pose_distances(positions[some], self._query)
+        return distances
 
 
 def pose_distances(positions: FloatArray, query: FloatArray) -> FloatArray:
-    """(n,) RMS joint distances, body lengths, of poses (n, 13, 3) to a pose vector (36,).
+    """(n,) root mean square joint distances of poses (n, 13, 3) to a pose vector (36,).
 
-    Infinity for poses of no size.
+    The unit is the body length. Poses of size 0 have an infinite distance.
     """
     apart = pose_vectors(positions).astype(np.float64) - query
     distances = np.sqrt(np.vecdot(apart, apart))
@@ -128,7 +144,7 @@ def pose_distances(positions: FloatArray, query: FloatArray) -> FloatArray:
 
 
 def _bounds(rows: RowsView, query: FloatArray) -> FloatArray:
-    """(n,) for each clip a lower bound of the distances of its poses."""
+    """(n,) for each clip a lower bound of the distances of its frames to `query` (36,)."""
     if rows.starts is None or not len(rows.starts):
         return np.zeros(0)
     squares, error = squared_distances(rows.blocks, query)

@@ -1,9 +1,9 @@
 """Opaque cursors that page through a ranking.
 
-A cursor holds a digest of the query, and the rank, distance and clip id of the last hit of a page.
-The next page begins behind that hit, so clips that arrive between two pages shift nothing. A cursor
-of another query is refused. Where only a shortlist was ranked again, the cursor also holds where
-the shortlist ended.
+A cursor contains a digest of the query, and the rank, distance and clip id of the last hit of a
+page. The next page begins after that hit. So clips that are added between two pages do not shift
+the other hits. A cursor of another query is refused. If a shortlist was ranked again, the cursor
+also contains the end of the shortlist.
 """
 
 from __future__ import annotations
@@ -17,15 +17,16 @@ from app.store.database import cursor_codec
 from app.store.database.cursor_codec import as_count, as_number, as_text
 
 MAX_RANK = 10**9
+"""The largest rank in a valid cursor."""
 
 
 @dataclass(frozen=True, slots=True)
 class Anchor:
-    """Where a shortlist ended, so that the next page has the same shortlist.
+    """The end of a shortlist, so that the next page has the same shortlist.
 
-    distance, clip_id: of its farthest clip before it was ranked again; end: the largest
-    distance in it afterwards, behind which all other clips follow; None while pages are within
-    the shortlist and not all of it was measured.
+    distance, clip_id: of the farthest clip of the shortlist, before it was ranked again. end: the
+    largest distance in the shortlist afterwards; all other clips are farther. It is None until
+    the whole shortlist is measured.
     """
 
     distance: float
@@ -35,7 +36,7 @@ class Anchor:
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """The last hit that was seen: its rank (from 1), distance and clip id; see `Anchor`."""
+    """The last hit of a page: its rank (from 1), distance and clip id; anchor: see `Anchor`."""
 
     rank: int
     distance: float
@@ -44,13 +45,13 @@ class Position:
 
 
 def digest(*parts: object) -> str:
-    """A short digest of what identifies a query: the same parts give the same digest."""
+    """A short digest of the parts that identify a query. Equal parts have the same digest."""
     text = json.dumps([str(part) for part in parts])
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def encode(position: Position, query: str) -> str:
-    """A cursor for what follows `position` in the answer to a query, given by its digest."""
+    """The cursor for the page after `position`; query: the digest of the query."""
     values: list[str | float | None] = [
         query, position.rank, position.distance, position.clip_id
     ]  # fmt: skip
@@ -60,14 +61,17 @@ def encode(position: Position, query: str) -> str:
 
 
 def decode(cursor: str, query: str) -> Position:
-    """The position in a cursor. Raises BadField if it is no cursor, or one of another query."""
+    """The position in a cursor; query: the digest of the query.
+
+    Raises BadField if `cursor` is not a cursor, or the cursor of another query.
+    """
     try:
-        found, rank, distance, clip_id, *rest = cursor_codec.decode(cursor)
+        own_query, rank, distance, clip_id, *rest = cursor_codec.decode(cursor)
         anchor = _anchor(rest) if rest else None
         position = Position(as_count(rank, MAX_RANK), as_number(distance), as_text(clip_id), anchor)
     except ValueError as problem:
-        raise _refused("this is not a cursor that was given out") from problem
-    if found != query:
+        raise _refused("this is not a cursor of this server") from problem
+    if own_query != query:
         raise _refused("this cursor belongs to another query")
     return position
 

@@ -1,4 +1,4 @@
-"""Rankings: clips in order of distance, with scores that fall strictly with it.
+"""Rankings: clips in order of distance, with scores that fall strictly with the distance.
 
 Distances are rounded to nine decimals before they are ordered. So two distances that differ have
 scores that differ, although 1 / (1 + d) is rounded too. Clips with equal distances are in the order
@@ -23,7 +23,7 @@ IdArray = NDArray[np.object_]
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """Part of a ranking: ids (n,) and distances (n,) float64; more: whether clips follow."""
+    """Some clips of a ranking: ids (n,) and distances (n,) float64. more: whether others follow."""
 
     ids: IdArray
     distances: FloatArray
@@ -31,11 +31,11 @@ class Page:
 
 
 class Ranked(Protocol):
-    """Clips from the nearest to the farthest, ties by id."""
+    """Clips from the nearest to the farthest; clips with equal distances are sorted by id."""
 
     @property
     def anchor(self) -> Anchor | None:
-        """What a cursor must hold so that the next page continues the same ranking."""
+        """The part of a cursor that makes the next page continue the same ranking; see `Anchor`."""
 
     @property
     def ids(self) -> IdArray:
@@ -48,11 +48,11 @@ class Ranked(Protocol):
     def __len__(self) -> int: ...
 
     def page(self, after: Position | None, limit: int) -> Page:
-        """The first `limit` clips behind a position; the clip at it may be gone."""
+        """The first `limit` clips after a position; the clip at the position may be deleted."""
 
 
 class Ranking:
-    """Clips with distances that are all known."""
+    """A ranking of clips with known distances."""
 
     anchor: Anchor | None = None
 
@@ -75,10 +75,11 @@ class Ranking:
         return self._distances[self._order]
 
     def page(self, after: Position | None, limit: int) -> Page:
-        """The first `limit` clips behind a position."""
-        rows = np.arange(len(self)) if after is None else self._behind(after)
+        """The first `limit` clips after a position."""
+        rows = np.arange(len(self)) if after is None else self._rows_after(after)
         distances = self._distances[rows]
         if len(rows) > limit:
+            # only the clips of the page, and those as far as the next clip, are sorted
             near = distances <= np.partition(distances, limit)[limit]
             rows, distances = rows[near], distances[near]
         more = len(rows) > limit
@@ -89,22 +90,23 @@ class Ranking:
     def _order(self) -> IntArray:
         return in_order(self._ids, self._distances)
 
-    def _behind(self, after: Position) -> IntArray:
-        keep = self._distances > after.distance
-        level = np.flatnonzero(self._distances == after.distance)
-        keep[level] = [clip_id > after.clip_id for clip_id in self._ids[level]]
-        return np.flatnonzero(keep)
+    def _rows_after(self, after: Position) -> IntArray:
+        """The indices of the clips that are farther, or equally far with a larger id."""
+        is_after = self._distances > after.distance
+        equal = np.flatnonzero(self._distances == after.distance)
+        is_after[equal] = [clip_id > after.clip_id for clip_id in self._ids[equal]]
+        return np.flatnonzero(is_after)
 
 
 def in_order(ids: IdArray, distances: FloatArray) -> IntArray:
     """(n,) indices that sort clips by rounded distances (n,), then by id."""
     order = np.argsort(distances, kind="stable")
     if np.any(np.diff(distances[order]) == 0):
-        # Sorting by id as well costs ten times as much; only ties need it.
+        # A sort by distance and id takes ten times as long. Only equal distances need it.
         order = np.lexsort((ids.astype(str), distances))
     return order
 
 
 def score(distance: float, scale: float = 1.0) -> float:
-    """1 at distance 0, one half at distance `scale`, towards 0 beyond; strictly falling."""
+    """The score of a distance: 1 at 0, 0.5 at `scale`; it falls strictly, toward 0."""
     return scale / (scale + distance)

@@ -1,1 +1,1 @@
-"""Search inside long clips."""
+"""Search for parts of long clips."""

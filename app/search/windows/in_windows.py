@@ -1,7 +1,8 @@
-"""Find the parts of clips that are like a query: windows propose them, warping bounds them.
+"""Finds the parts of clips that are similar to a query, by windows and by warping.
 
-`vector` ranks windows by their vectors alone. `dtw` warps the query onto every clip that passes the
-filter. `fused` warps it onto the parts that the nearest windows propose, and adds both distances.
+Windows propose likely parts. Warping determines where they begin and end. `vector` ranks windows by
+their vectors. `dtw` warps the query onto every clip that passes the filter. `fused` warps it onto
+the parts near the nearest windows, and adds both distances.
 """
 
 from __future__ import annotations
@@ -19,22 +20,23 @@ from app.search.windows.proposals import (
     ExcludedInterval,
     Proposals,
     QuerySegment,
-    View,
+    WindowsAtScale,
     propose,
     scale_for,
 )
-from app.search.windows.warped_matches import Region, matches_in, merged, together
+from app.search.windows.warped_matches import Region, concatenated, matches_in, merged
 
 MAX_PROPOSED = 500
 MIN_PROPOSED = 10
-"""Number of parts that `fused` warps a query onto: as many as CELLS allow, between these."""
+"""Bounds of the number of parts onto which `fused` warps a query; CELLS determines the number."""
 
 CELLS = 2_500_000
-"""Pairs of frames that `fused` compares: about 80 ms, or one second for the longest query."""
+"""The number of pairs of frames that `fused` compares. This takes about 80 ms, or one second for
+the longest query."""
 
 VECTOR_WEIGHT = 0.02
-"""Weight of the windows' distance in `fused`, where that of warping weighs 1. It orders parts that
-are equally near by warping.
+"""Weight of the distance of windows in `fused`; the distance of warping has weight 1. It orders
+parts that are equally near by warping.
 
 Chosen on half of the real clips, AP@5: pieces hidden in 35 minutes .971 (0 .972, 0.1 .955,
 0.4 .907), other takes of the same task and person .870 (0 .867, 0.1 .876, 0.4 .868).
@@ -42,13 +44,15 @@ Chosen on half of the real clips, AP@5: pieces hidden in 35 minutes .971 (0 .972
 """
 
 WINDOW_SCORES = {Method.FUSED: 1.0, Method.VECTOR: 0.75, Method.DTW: 1.0}
-"""Distance at which the score is one half, by method: about that of the nearest parts that are not
-alike. A piece that was warped and hidden in a clip is found at .3 to .4."""
+"""Distance with a score of 0.5, by method: about the distance of the nearest parts that are not
+similar. A piece that was warped and hidden in a clip has a distance of .3 to .4."""
 
 
-def by_windows(view: View, segment: QuerySegment, excluded: ExcludedInterval | None) -> Candidates:
-    """One candidate for each window of the clips that pass: where the query would be."""
-    return propose(view, segment, excluded).candidates()
+def by_windows(
+    windows_at: WindowsAtScale, segment: QuerySegment, excluded: ExcludedInterval | None
+) -> Candidates:
+    """One candidate for each window of the clips that pass: the likely interval of the query."""
+    return propose(windows_at, segment, excluded).candidates()
 
 
 def by_warping(
@@ -58,61 +62,74 @@ def by_warping(
     excluded: ExcludedInterval | None,
     load: Loader,
 ) -> Candidates:
-    """All matches of the query in the clips (c,); seconds: (c,) how long these are."""
+    """All matches of the query in the clips (c,); seconds: (c,) the durations of the clips."""
     whole = [Region(number) for number in range(len(clips))]
     return matches_in(clips, seconds, whole, segment, excluded, load)
 
 
 def by_both(
-    view: View,
+    windows_at: WindowsAtScale,
     segment: QuerySegment,
     excluded: ExcludedInterval | None,
     load: Loader,
     anchor: Anchor | None = None,
 ) -> tuple[Candidates, Anchor | None]:
-    """The query's matches near the nearest windows; behind them, all windows in their order.
+    """The matches of the query near the nearest windows, and after them all windows in their order.
 
-    Give the returned anchor again for the next page. Then the same parts come first, although the
-    library has grown.
+    For the next page, pass the returned anchor as `anchor`. Then the same parts come first, also
+    if clips were added.
     """
-    proposed = propose(view, segment, excluded)
-    rest = proposed.candidates()
-    nearest = _nearest(rest, segment, anchor)
+    proposed = propose(windows_at, segment, excluded)
+    windows = proposed.candidates()
+    nearest = _nearest(windows, segment, anchor)
     if not nearest:
-        return rest, None
-    regions = _regions(proposed, [place.index for place in nearest], segment)
+        return windows, None
+    regions = _regions(proposed, [part.index for part in nearest], segment)
     ids = proposed.windows.ids
     matched = matches_in(ids, proposed.windows.seconds(), regions, segment, excluded, load)
     centers = (matched.starts + matched.ends) / 2
-    head = matched.distances + VECTOR_WEIGHT * proposed.distances_near(matched.owners, centers)
+    matched_distances = matched.distances + VECTOR_WEIGHT * proposed.distances_near(
+        matched.owners, centers
+    )
     last = nearest[-1]
-    end = float(head.max(initial=0.0))
+    end = float(matched_distances.max(initial=0.0))
     if anchor is None or anchor.end is None:
         anchor = Anchor(last.distance, last.key, end)
     else:
         end = anchor.end
-    tail = end + np.maximum(rest.distances - anchor.distance, 0.0)
-    return together([matched.at(head), rest.at(tail)]), anchor
+    # windows begin where the matches end, so that all matches come first
+    window_distances = end + np.maximum(windows.distances - anchor.distance, 0.0)
+    candidates = [
+        matched.with_distances(matched_distances),
+        windows.with_distances(window_distances),
+    ]
+    return concatenated(candidates), anchor
 
 
 def _nearest(
     proposed: Candidates, segment: QuerySegment, anchor: Anchor | None
 ) -> list[FoundInterval]:
-    """The parts that a query is warped onto: as many as it allows, or those before `anchor`."""
+    """The parts onto which a query is warped: the nearest ones, or those up to `anchor`."""
     if anchor is None:
-        return merge_overlapping(proposed, _how_many(segment))[0]
+        return merge_overlapping(proposed, _part_count(segment))[0]
     near = proposed.distances <= anchor.distance
-    return merge_overlapping(proposed, int(near.sum()), until=anchor.distance)[0]
+    return merge_overlapping(proposed, int(near.sum()), max_distance=anchor.distance)[0]
 
 
-def _how_many(segment: QuerySegment) -> int:
-    """Number of parts to warp the query onto: tables are about three times as wide as it is."""
+def _part_count(segment: QuerySegment) -> int:
+    """Number of parts onto which the query is warped.
+
+    A table of costs is about three times as wide as the query, see `_regions`.
+    """
     cells = 3 * len(segment.features) ** 2
     return int(np.clip(CELLS // cells, MIN_PROPOSED, MAX_PROPOSED))
 
 
 def _regions(proposed: Proposals, chosen: list[int], segment: QuerySegment) -> list[Region]:
-    """The chosen parts, longer by half the query on both sides, to find where they really are."""
+    """The chosen parts, extended by half the query on both sides.
+
+    The exact interval of a match can be outside of its window.
+    """
     hop = scale_for(len(segment.features)).hop / WARPING_RATE
     margin = segment.seconds / 2 + hop
     rows = proposed.allowed[chosen]

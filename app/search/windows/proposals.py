@@ -1,4 +1,4 @@
-"""What windows propose for a query: where in clips it may be, and at which distance."""
+"""Proposals for a query: for each window, a likely interval of the query and its distance."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from app.search.windows.overlap_merging import Candidates
 from app.search.windows.parts import Parts
 
 MAX_WINDOWS = 16
-"""Windows of a long query; the longer it is, the larger are the steps between them."""
+"""Largest number of windows of a query. In a longer query, the steps between them are larger."""
 
-View = Callable[[WindowScale], Parts]
-"""The windows of one scale, of the clips that pass the filter."""
+WindowsAtScale = Callable[[WindowScale], Parts]
+"""A function that returns the windows of one scale, of the clips that pass the filter."""
 
 
 @dataclass(frozen=True, slots=True)
 class QuerySegment:
-    """The query: features (m, 82) at 10 Hz, and how long it is in seconds."""
+    """The query: features (m, 82) at 10 Hz, and its duration in seconds."""
 
     features: FloatArray
     seconds: float
@@ -29,7 +29,7 @@ class QuerySegment:
 
 @dataclass(frozen=True, slots=True)
 class ExcludedInterval:
-    """A part of a clip, in seconds, where nothing may be found: the query itself."""
+    """A part of a clip, in seconds, in which no hit is allowed: the query itself."""
 
     clip_id: str
     start: float
@@ -38,7 +38,7 @@ class ExcludedInterval:
 
 @dataclass(frozen=True, slots=True)
 class Proposals:
-    """For each of n windows the interval where the query would be, and its distance.
+    """For each of n windows the likely interval of the query, and its distance.
 
     starts, ends: (n,) seconds; distances: (n,); allowed: (k,) the windows that do not touch the
     excluded interval.
@@ -62,36 +62,39 @@ class Proposals:
 
     def distances_near(self, owners: IntArray, centers: FloatArray) -> FloatArray:
         """(k,) distances of the windows of clips `owners` (k,) nearest to times `centers` (k,)."""
-        longest = float(self.ends.max(initial=0.0)) + 1.0
-        along = self.windows.owners * longest + (self.starts + self.ends) / 2
-        sought = owners * longest + centers
-        behind = np.searchsorted(along, sought)
+        # One time axis for all clips, one after the other, so that one search serves all.
+        max_length = float(self.ends.max(initial=0.0)) + 1.0
+        times = self.windows.owners * max_length + (self.starts + self.ends) / 2
+        targets = owners * max_length + centers
+        after = np.searchsorted(times, targets)
         firsts = np.searchsorted(self.windows.owners, owners)
         lasts = np.searchsorted(self.windows.owners, owners, side="right") - 1
-        left, right = np.clip(behind - 1, firsts, lasts), np.clip(behind, firsts, lasts)
-        is_left = np.abs(along[left] - sought) <= np.abs(along[right] - sought)
+        left, right = np.clip(after - 1, firsts, lasts), np.clip(after, firsts, lasts)
+        is_left = np.abs(times[left] - targets) <= np.abs(times[right] - targets)
         return np.asarray(self.distances[np.where(is_left, left, right)])
 
 
 def scale_for(frames: int) -> WindowScale:
-    """The longest windows that a query of so many frames at 10 Hz fills; else the shortest."""
+    """The longest windows that a query of `frames` frames at 10 Hz fills, else the shortest."""
     filled = [scale for scale in WINDOW_SCALES if scale.frames <= frames]
     return filled[-1] if filled else WINDOW_SCALES[0]
 
 
-def propose(view: View, segment: QuerySegment, excluded: ExcludedInterval | None) -> Proposals:
+def propose(
+    windows_at: WindowsAtScale, segment: QuerySegment, excluded: ExcludedInterval | None
+) -> Proposals:
     """Compare a query with all windows of the scale that suits it.
 
-    A query longer than a window is cut into windows too. Each is compared with the window of the
-    clip at the same step. Where the clip ends earlier, its last window is used instead.
+    A query longer than a window is cut into windows too. Each of them is compared with the window
+    of the clip at the same step. If the clip ends earlier, its last window is used instead.
     """
     scale = scale_for(len(segment.features))
-    windows = view(scale)
+    windows = windows_at(scale)
     steps = _steps(len(segment.features), scale)
-    apart = windows.distances(_vectors(segment, scale, steps))
+    distances = windows.distances(_vectors(segment, scale, steps))
     lasts, numbers = windows.last_parts(), np.arange(len(windows))
     total = np.zeros(len(windows))
-    for step, row in zip(steps, apart, strict=True):
+    for step, row in zip(steps, distances, strict=True):
         total += row[np.minimum(numbers + step, lasts)]
     starts, ends = _intervals(windows, segment.seconds, lasts, is_one=len(steps) == 1)
     allowed = np.flatnonzero(~_touching(windows, starts, ends, excluded))
@@ -99,16 +102,19 @@ def propose(view: View, segment: QuerySegment, excluded: ExcludedInterval | None
 
 
 def _steps(frames: int, scale: WindowScale) -> IntArray:
-    """(q,) hops from the query's start to each of its windows, half a window apart or more."""
+    """(q,) the hops from the start of the query to each of its windows.
+
+    The windows are at least half a window apart.
+    """
     last = round((frames - scale.frames) / scale.hop)
     if last <= 0:
         return np.zeros(1, dtype=np.int64)
-    apart = max(scale.frames // (2 * scale.hop), -(-last // (MAX_WINDOWS - 1)), 1)
-    return np.unique(np.append(np.arange(0, last, apart), last))
+    step = max(scale.frames // (2 * scale.hop), -(-last // (MAX_WINDOWS - 1)), 1)
+    return np.unique(np.append(np.arange(0, last, step), last))
 
 
 def _vectors(segment: QuerySegment, scale: WindowScale, steps: IntArray) -> FloatArray:
-    """(q, d) float32 vectors of the query's windows, or of all of it where there is one."""
+    """(q, d) float32 vectors of the query's windows; one window is the whole query."""
     frames = len(segment.features)
     firsts = np.minimum(steps * scale.hop, max(frames - scale.frames, 0))
     stops = firsts + scale.frames if len(steps) > 1 else np.array([frames])
@@ -119,7 +125,11 @@ def _vectors(segment: QuerySegment, scale: WindowScale, steps: IntArray) -> Floa
 def _intervals(
     windows: Parts, seconds: float, lasts: IntArray, *, is_one: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """(n,) starts and ends of the query at each window: around its middle, or from its start."""
+    """(n,) starts and ends of the likely interval of the query for each window, in seconds.
+
+    is_one: the query has one window, so the intervals have the same middle as the windows. Else
+    they begin where the windows begin.
+    """
     clip_ends = windows.ends[lasts].astype(np.float64)
     starts = windows.starts.astype(np.float64)
     if is_one:
@@ -130,7 +140,7 @@ def _intervals(
 def _touching(
     windows: Parts, starts: FloatArray, ends: FloatArray, excluded: ExcludedInterval | None
 ) -> BoolArray:
-    """(n,) whether a window, or its interval, overlaps the excluded one."""
+    """(n,) whether a window, or its interval, overlaps the excluded interval."""
     touching = np.zeros(len(windows), dtype=bool)
     if excluded is None:
         return touching

@@ -18,19 +18,19 @@ from app.search.windows.proposals import ExcludedInterval, QuerySegment
 
 MAX_CLIPS_AT_ONCE = 256
 MAX_FRAMES_AT_ONCE = 200_000
-"""Clips whose features are held at a time: 66 MB, or those of one clip that is longer."""
+"""Limits of the clips whose features are in memory at a time: 66 MB, or one longer clip."""
 
-EVERYTHING = 2**31 - 1
-"""More frames than any clip has."""
+MAX_FRAMES = 2**31 - 1
+"""The end of a region that has no end: no clip has more frames."""
 
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """Frames `first` to `stop` - 1, at 10 Hz, of the clip with that number."""
+    """A part of the clip with the number `clip`: frames `first` to `stop` - 1 at 10 Hz."""
 
     clip: int
     first: int = 0
-    stop: int = EVERYTHING
+    stop: int = MAX_FRAMES
 
 
 def matches_in(
@@ -41,23 +41,24 @@ def matches_in(
     excluded: ExcludedInterval | None,
     load: Loader,
 ) -> Candidates:
-    """The matches of a query in regions of the clips `ids` (c,), which do not overlap.
+    """The matches of a query in regions of the clips `ids` (c,).
 
-    seconds: (c,) how long the clips are. Clips that were deleted meanwhile have no matches.
+    seconds: (c,) the durations of the clips. regions: they do not overlap. Clips that were
+    deleted during the search have no matches.
     """
     allowed = [part for region in regions for part in _without(region, ids, excluded)]
     allowed.sort(key=lambda region: (region.clip, region.first))
-    found: list[Candidates] = [_none(ids)]
+    matches: list[Candidates] = [_no_matches(ids)]
     numbers = list(dict.fromkeys(region.clip for region in allowed))
-    for some in _together(numbers, seconds):
+    for some in _batches(numbers, seconds):
         check()
         features = load([str(ids[number]) for number in some], FEATURES)
-        found.append(_matches(ids, [r for r in allowed if r.clip in some], segment, features))
-    return together(found)
+        matches.append(_matches(ids, [r for r in allowed if r.clip in some], segment, features))
+    return concatenated(matches)
 
 
-def _together(numbers: Sequence[int], seconds: FloatArray) -> Iterator[set[int]]:
-    """The clips with these numbers, in groups whose features are in memory together."""
+def _batches(numbers: Sequence[int], seconds: FloatArray) -> Iterator[set[int]]:
+    """The numbers of clips in batches, within the limits above."""
     some: set[int] = set()
     frames = 0.0
     for number in numbers:
@@ -71,31 +72,31 @@ def _together(numbers: Sequence[int], seconds: FloatArray) -> Iterator[set[int]]
         yield some
 
 
-def together(found: Sequence[Candidates]) -> Candidates:
-    """Candidates of the same clips, one after the other."""
+def concatenated(parts: Sequence[Candidates]) -> Candidates:
+    """The candidates of all `parts`, at least one, which have the same `ids`."""
     return Candidates(
-        found[0].ids,
+        parts[0].ids,
         *(
-            np.concatenate([getattr(some, name) for some in found])
+            np.concatenate([getattr(some, name) for some in parts])
             for name in ("owners", "starts", "ends", "distances")
         ),
     )
 
 
 def merged(regions: Iterable[Region]) -> list[Region]:
-    """The regions; those that touch are joined."""
-    whole: list[Region] = []
+    """The regions, by clip and start; regions that overlap or touch are joined."""
+    joined: list[Region] = []
     for region in sorted(regions, key=lambda region: (region.clip, region.first)):
-        last = whole[-1] if whole else None
+        last = joined[-1] if joined else None
         if last is None or last.clip != region.clip or region.first > last.stop:
-            whole.append(region)
+            joined.append(region)
         else:
-            whole[-1] = Region(last.clip, last.first, max(last.stop, region.stop))
-    return whole
+            joined[-1] = Region(last.clip, last.first, max(last.stop, region.stop))
+    return joined
 
 
 def _without(region: Region, ids: IdArray, excluded: ExcludedInterval | None) -> list[Region]:
-    """What is left of a region without the frames of the excluded interval."""
+    """The parts of a region outside the excluded interval: none, one or two."""
     if excluded is None or ids[region.clip] != excluded.clip_id:
         return [region]
     first = int(np.floor(excluded.start * WARPING_RATE))
@@ -111,17 +112,17 @@ def _matches(
     segment: QuerySegment,
     features: Mapping[str, FloatArray],
 ) -> Candidates:
-    there = [region for region in regions if str(ids[region.clip]) in features]
-    streams = [features[str(ids[region.clip])][region.first : region.stop] for region in there]
-    found = subsequence_dtw(segment.features, streams)
-    clips = np.array([region.clip for region in there], dtype=np.int64)
-    firsts = np.array([region.first for region in there], dtype=np.int64)
-    starts = (found.starts + firsts[found.streams]) / WARPING_RATE
-    # the query goes on for a part of a frame behind its last one
+    loaded = [region for region in regions if str(ids[region.clip]) in features]
+    streams = [features[str(ids[region.clip])][region.first : region.stop] for region in loaded]
+    matches = subsequence_dtw(segment.features, streams)
+    clips = np.array([region.clip for region in loaded], dtype=np.int64)
+    firsts = np.array([region.first for region in loaded], dtype=np.int64)
+    starts = (matches.starts + firsts[matches.streams]) / WARPING_RATE
+    # the query is longer than its frames at 10 Hz by a part of a frame
     rest = segment.seconds - len(segment.features) / WARPING_RATE
-    ends = (found.ends + firsts[found.streams]) / WARPING_RATE + rest
-    return Candidates(ids, clips[found.streams], starts, ends, found.costs.astype(np.float64))
+    ends = (matches.ends + firsts[matches.streams]) / WARPING_RATE + rest
+    return Candidates(ids, clips[matches.streams], starts, ends, matches.costs.astype(np.float64))
 
 
-def _none(ids: IdArray) -> Candidates:
+def _no_matches(ids: IdArray) -> Candidates:
     return Candidates(ids, np.zeros(0, dtype=np.int64), *(np.zeros(0) for _ in range(3)))

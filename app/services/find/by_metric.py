@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from app.errors import ModelNotFitted
-from app.models.metric.learned_metric import INPUTS, Described, LearnedMetric
+from app.models.metric.learned_metric import INPUTS, ClipDescriptors, LearnedMetric
 from app.numerics.arrays import FloatArray
 from app.search.example.methods import Method
 from app.search.index import usable_arrays
@@ -59,7 +59,7 @@ def rank_by_metric(
         raise ModelNotFitted("Recognizing people by how they move is switched off here.")
     fitted = lib.models.metric(lib.store, kind)
     model = fitted.model
-    query = model.axes.project(Described(*(descriptors[name][None] for name in INPUTS)))[0]
+    query = model.axes.project(ClipDescriptors(*(descriptors[name][None] for name in INPUTS)))[0]
     found = lib.metrics[kind].nearest(
         fitted.id,
         partial(_project, lib, model),
@@ -79,5 +79,5 @@ def _project(lib: Library, model: LearnedMetric, clip_ids: Sequence[str]) -> dic
     there = [clip_id for clip_id in clip_ids if all(clip_id in part for part in found)]
     if not there:
         return {}
-    described = Described(*(np.stack([part[clip_id] for clip_id in there]) for part in found))
+    described = ClipDescriptors(*(np.stack([part[clip_id] for clip_id in there]) for part in found))
     return dict(zip(there, model.axes.project(described), strict=True))

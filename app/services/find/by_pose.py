@@ -12,7 +12,7 @@ from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.numerics.arrays import FloatArray
 from app.search.index.filters import as_filter
 from app.search.pose.by_pose import POSITIONS, PoseHit, PoseRanking
-from app.search.pose.pose_places import Places
+from app.search.pose.pose_matches import MatchesPerClip
 from app.search.ranking import cursor as cursors
 from app.search.ranking.ranking import score
 from app.services import fields
@@ -42,7 +42,7 @@ class PoseQuery:
     source: QuerySource | None = None
     time: float | None = None
     positions: Sequence[Sequence[Any]] | None = None
-    places: Places | str = Places.BEST
+    places: MatchesPerClip | str = MatchesPerClip.BEST
     limit: int = DEFAULT_LIMIT
     filter: Filter = None
     include_self: bool = False
@@ -100,14 +100,14 @@ def _given_pose(query: PoseQuery, positions: Sequence[Sequence[Any]]) -> FloatAr
 
 
 def _match(hit: PoseHit) -> Match:
-    """A place of a clip as the match of a page."""
+    """A hit of a pose search as the match of a page."""
     distance, key = hit.key
-    return Match(hit.clip_id, key, distance, hit.place.start, hit.place.end, hit.place.time)
+    return Match(hit.clip_id, key, distance, hit.match.start, hit.match.end, hit.match.time)
 
 
-def _places(value: Places | str) -> Places:
+def _places(value: MatchesPerClip | str) -> MatchesPerClip:
     try:
-        return Places(value)
+        return MatchesPerClip(value)
     except ValueError as problem:
-        known = ", ".join(Places)
+        known = ", ".join(MatchesPerClip)
         raise fields.bad_field("places", f"must be one of {known}") from problem

@@ -11,7 +11,7 @@ import numpy as np
 
 from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.words.library import LibraryWords
-from app.models.words.query import WordsAsked
+from app.models.words.query import WordQuery
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.search.index import usable_arrays
 from app.search.index.labels import LabelView
@@ -40,7 +40,7 @@ class WordRanking:
 
     ranking: Ranking
     model: str
-    asked: WordsAsked
+    asked: WordQuery
     to_score: Callable[[float], float]
 
 
@@ -102,7 +102,7 @@ def _probability(surprise: float) -> float:
     return math.exp(-surprise)
 
 
-def _angle_score(model: LibraryWords, asked: WordsAsked, angle: float) -> float:
+def _angle_score(model: LibraryWords, asked: WordQuery, angle: float) -> float:
     return float(model.angle_scores(np.array([angle]), asked)[0])
 
 
@@ -122,32 +122,32 @@ def _believed_to_carry(
 
 
 def _by_surprise(
-    lib: Library, fitted: Words, clips: LabelView, mask: BoolArray, asked: WordsAsked
+    lib: Library, fitted: Words, clips: LabelView, mask: BoolArray, asked: WordQuery
 ) -> tuple[IntArray, FloatArray]:
     """Rows (k,) and distances (k,) of the clips that pass and that the model knows."""
     words = tuple(asked.weights)
     model_rows = _word_scores(lib, fitted, clips)
-    rows = np.flatnonzero(mask & model_rows.there)
+    rows = np.flatnonzero(mask & model_rows.has_row)
     scores = model_rows.values[rows[:, None], fitted.model.vocabulary.columns(words)]
-    return rows, fitted.model.clip_surprises(scores, words, asked.meant)
+    return rows, fitted.model.clip_surprises(scores, words, asked.items)
 
 
 def _by_absence(
-    lib: Library, fitted: Words, clips: LabelView, mask: BoolArray, asked: WordsAsked
+    lib: Library, fitted: Words, clips: LabelView, mask: BoolArray, asked: WordQuery
 ) -> tuple[IntArray, FloatArray]:
     """As _by_surprise, but of carrying none of the excluded words."""
     model_rows = _word_scores(lib, fitted, clips)
-    rows = np.flatnonzero(mask & model_rows.there)
+    rows = np.flatnonzero(mask & model_rows.has_row)
     scores = model_rows.values[rows[:, None], fitted.model.vocabulary.columns(asked.excluded)]
     return rows, -np.log1p(-scores.astype(np.float64)).sum(axis=1)
 
 
 def _by_angle(
-    lib: Library, fitted: Words, clips: LabelView, mask: BoolArray, asked: WordsAsked
+    lib: Library, fitted: Words, clips: LabelView, mask: BoolArray, asked: WordQuery
 ) -> tuple[IntArray, FloatArray]:
     """Rows (k,) and distances (k,) of the clips that pass and that the model knows."""
     model_rows = clip_points(lib, fitted, clips)
-    rows = np.flatnonzero(mask & model_rows.there)
+    rows = np.flatnonzero(mask & model_rows.has_row)
     return rows, fitted.model.clip_angles(model_rows.values[rows], asked)
 
 

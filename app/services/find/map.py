@@ -96,7 +96,7 @@ def _placed(
         fitted = lib.models.words(lib.store)
         axes = principal_axes(fitted.model.space.points, dimensions)
         model_rows = clip_points(lib, fitted, every)
-        known = picked[model_rows.there[picked]]
+        known = picked[model_rows.has_row[picked]]
         return [str(i) for i in every.ids[known]], model_rows.values[known], axes, fitted.id
     ids = [str(i) for i in every.ids[picked]]
     with lib.store.read() as tx:

@@ -39,7 +39,7 @@ class Plan:
     shape: (1378,) the predicted motion shape; person: None if the clips have no person; own: ids
     of real clips of the person, for their skeleton; given_tasks: tasks of the person;
     given_persons: persons who did the task; takes: ids of real clips of the task by them;
-    follows: the person whose take is followed if the takes do not agree (see `AGREED`); then
+    follows: the person whose take is followed if the takes do not agree (see `MIN_AGREEMENT`); then
     `takes` are of that person; agreement: of the takes, None for a single take.
     """
 
@@ -91,7 +91,7 @@ def _of_clips(lib: Library, model: Synthesis, task: str, clip_ids: tuple[str, ..
     found, own = list(by_id.values()), tuple(by_id)
     person = _whose(found)
     given = _by_task(lib, model, found, task)
-    predicted = predict(model, given, task, but=(person,) if person else ())
+    predicted = predict(model, given, task, exclude=(person,) if person else ())
     others = tuple(name for name in model.who_did(task) if name != person)
     return _plan(model, SynthesisKind.NEW_PERSON, person, task, predicted, own, given, others)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.folds import recording_of
-from app.models.metric.learned_metric import INPUTS, Described
+from app.models.metric.learned_metric import INPUTS, ClipDescriptors
 from app.models.recognition.views import full_samples
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
@@ -84,9 +84,9 @@ class TrainingSet:
         return full_samples(self.samples, self.wide)
 
     @property
-    def described(self) -> Described:
+    def described(self) -> ClipDescriptors:
         """The input of learned metrics."""
-        return Described(self.vectors, self.samples, self.statistics)
+        return ClipDescriptors(self.vectors, self.samples, self.statistics)
 
 
 def ready_only(filter: ClipFilter | None) -> ClipFilter:

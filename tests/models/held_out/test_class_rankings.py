@@ -46,6 +46,6 @@ def test_a_perfect_ranking_is_perfect_and_rows_sum_to_one(seed: int, k: int) -> 
     assert judged.true_positives <= perfect.true_positives
 
 
-def test_nothing_relevant_is_refused() -> None:
-    with pytest.raises(ValueError, match="without anything relevant"):
+def test_a_query_without_relevant_items_is_refused() -> None:
+    with pytest.raises(ValueError, match="without relevant items"):
         judge_ranking(np.array([1, 2]), own=0, classes=3, k=20)

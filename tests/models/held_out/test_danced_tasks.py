@@ -29,7 +29,7 @@ def test_steps_are_tasks_and_cycles_are_counted_by_person() -> None:
     assert len([c for c in cells if c[0] == "bo"]) == 4
 
 
-def test_cycles_are_shifted_to_begin_alike() -> None:
+def test_cycles_are_shifted_to_the_same_start() -> None:
     clips = [DancedCycles(_steps("abcabc"), 3), DancedCycles(_steps("cabcabc", 1), 3)]
     danced = arrange(clips, ["ada", "bo"], ["salsa", "salsa"])
     for step in ("salsa 1", "salsa 2", "salsa 3"):

@@ -7,7 +7,7 @@ import pytest
 
 from app.errors import NotEnoughLabels
 from app.models.held_out.metric import MetricEvaluation, calibration_error, held_out_metric
-from app.models.metric.learned_metric import Described, Factor
+from app.models.metric.learned_metric import ClipDescriptors, Factor
 from app.models.metric.pair_calibration import PairCalibration
 from tests.models.factor_clips import FactorClips, factor_clips
 from tests.models.metric.test_learned_metric import described
@@ -24,7 +24,7 @@ def judge(
 
 
 @pytest.mark.parametrize("factor", list(Factor))
-def test_what_is_held_out_is_found_better_than_by_motion_vectors(factor: Factor) -> None:
+def test_held_out_clips_are_ranked_better_than_by_motion_vectors(factor: Factor) -> None:
     found = judge(factor_clips(noise=1.0 if factor is Factor.TASK else 0.6), factor)
     for held in ("clips_held_out", "tasks_held_out", "persons_held_out"):
         shares = found.figures[held]
@@ -37,7 +37,7 @@ def test_what_is_held_out_is_found_better_than_by_motion_vectors(factor: Factor)
     json.dumps(found.figures)
 
 
-def test_labels_without_any_sense_are_found_no_better_than_chance() -> None:
+def test_random_labels_are_ranked_no_better_than_chance() -> None:
     clips = factor_clips(persons=6, tasks=5, takes=4)
     senseless = np.random.default_rng(0).permutation(clips.tasks).tolist()
     found = judge(clips, Factor.TASK, senseless).figures["clips_held_out"]
@@ -45,7 +45,7 @@ def test_labels_without_any_sense_are_found_no_better_than_chance() -> None:
     assert found["nearest"] < 0.4
 
 
-def test_a_copy_of_a_recording_does_not_teach_the_answer_to_its_twin() -> None:
+def test_a_copy_of_a_recording_is_not_used_to_judge_the_other() -> None:
     clips = factor_clips(persons=6, tasks=5, takes=1)
     senseless = np.random.default_rng(0).permutation(clips.tasks)
     twice = FactorClips(
@@ -88,7 +88,7 @@ def test_too_few_labels_are_refused() -> None:
         judge(clips, Factor.PERSON)
 
 
-def test_the_error_of_a_calibration_is_how_far_it_is_from_the_truth() -> None:
+def test_the_calibration_error_is_the_mean_difference_from_the_truth() -> None:
     distances = np.linspace(0, 2, 1000)
     curve = PairCalibration(3.0, 5.0)
     told = curve.probabilities(distances)
@@ -99,9 +99,13 @@ def test_the_error_of_a_calibration_is_how_far_it_is_from_the_truth() -> None:
     )
 
 
-def test_two_clips_a_label_are_enough() -> None:
+def test_two_clips_for_each_label_are_enough() -> None:
     columns = np.random.default_rng(0).normal(size=(4, 3))
     found = held_out_metric(
-        Described(columns, columns, columns), [None] * 4, list("aabb"), list("wxyz"), Factor.TASK
+        ClipDescriptors(columns, columns, columns),
+        [None] * 4,
+        list("aabb"),
+        list("wxyz"),
+        Factor.TASK,
     )
     assert np.isfinite(found.calibration.probability(1.0))

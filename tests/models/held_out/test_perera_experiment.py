@@ -34,7 +34,7 @@ def test_noise_is_recognized_by_chance() -> None:
     assert rows[1].accuracy < 0.5
 
 
-def test_as_printed_what_is_nearer_than_ever_is_new() -> None:
+def test_as_printed_a_probe_nearer_than_all_trained_cycles_is_new() -> None:
     """Known segments probed are the trained ones themselves: at no distance."""
     danced = danced_by(5, 4, 3)
     first = {p: danced.poses[i] for i, p in enumerate(_cells(danced)) if danced.cycle[i] == 0}
@@ -62,7 +62,7 @@ def test_two_persons_leave_nobody_out() -> None:
 
 
 @pytest.mark.parametrize("shape", [(1, 4, 3), (4, 1, 3), (4, 4, 1)])
-def test_too_little_is_refused(shape: tuple[int, int, int]) -> None:
+def test_too_few_segments_are_refused(shape: tuple[int, int, int]) -> None:
     with pytest.raises(NotEnoughLabels, match="two"):
         perera_tables(danced_by(*shape))
 

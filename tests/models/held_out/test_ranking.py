@@ -38,7 +38,7 @@ def test_f_counts_all_pairs_at_once() -> None:
     assert f_where_recall_is_precision(scores, relevant & False) == 0.0
 
 
-def test_top_k_counts_clips_of_which_any_word_is_found() -> None:
+def test_top_k_counts_clips_with_any_word_among_the_best() -> None:
     scores = np.array([[0.9, 0.8, 0.1], [0.9, 0.8, 0.1], [0.0, 0.0, 0.0]])
     labels = np.array([[False, True, True], [False, False, True], [False, False, False]])
     assert top_k_rate(scores, labels, 2) == 0.5
@@ -57,9 +57,9 @@ def test_precision_at_a_recall_is_that_of_the_shortest_list_that_reaches_it() ->
     np.testing.assert_allclose(found, [1.0, 1.0, 2 / 3, 0.5])
 
 
-def test_scores_are_off_by_how_far_shares_lie_from_them() -> None:
+def test_the_calibration_error_is_the_difference_of_scores_and_shares() -> None:
     chances = np.repeat([0.15, 0.85], 20)
-    is_so = np.repeat([True, False, True, False], [3, 17, 17, 3])
-    assert calibration_error(chances, is_so) == pytest.approx(0.0, abs=1e-12)
-    assert calibration_error(1.0 - chances, is_so) == pytest.approx(0.7)
-    assert brier_score(chances, is_so) == pytest.approx(0.15 * 0.85)
+    is_true = np.repeat([True, False, True, False], [3, 17, 17, 3])
+    assert calibration_error(chances, is_true) == pytest.approx(0.0, abs=1e-12)
+    assert calibration_error(1.0 - chances, is_true) == pytest.approx(0.7)
+    assert brier_score(chances, is_true) == pytest.approx(0.15 * 0.85)

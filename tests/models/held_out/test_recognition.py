@@ -11,7 +11,7 @@ from app.models.recognition.recognizer import fit_recognizer
 from tests.models.factor_clips import POSES, factor_clips
 
 
-def test_models_stand_beside_the_prior() -> None:
+def test_models_are_compared_with_the_prior() -> None:
     clips = factor_clips(persons=4, tasks=5, takes=3, width=POSES)
     groups = [str(i) for i in range(len(clips.persons))]
     figures = held_out_recognition_figures(clips.samples, clips.persons, clips.tasks, groups)
@@ -50,7 +50,7 @@ def test_a_library_without_persons_has_task_figures_only() -> None:
     assert "person" not in figures["default"]
 
 
-def test_errors_on_the_unknown_are_told() -> None:
+def test_error_rates_for_unknown_labels_are_reported() -> None:
     clips = factor_clips()
     figures = unknown_figures(fit_recognizer(clips.samples, clips.persons, clips.tasks))
     assert set(figures) == {"person", "task"}

@@ -17,7 +17,7 @@ def found() -> SymbolFigures:
     return symbol_figures(symbols, compared=6)
 
 
-def test_more_dimensions_err_less(found: SymbolFigures) -> None:
+def test_more_dimensions_lower_the_error(found: SymbolFigures) -> None:
     errors = [each.s_stress for each in found.errors]
     assert [each.dimensions for each in found.errors] == list(range(1, len(errors) + 1))
     assert errors[-1] < 0.5 * errors[0]
@@ -25,7 +25,7 @@ def test_more_dimensions_err_less(found: SymbolFigures) -> None:
     assert found.errors[-1].gamma is None
 
 
-def test_the_paper_s_own_error_is_lowest_where_it_is_what_is_minimized(
+def test_the_error_of_the_paper_is_lowest_for_the_method_that_minimizes_it(
     found: SymbolFigures,
 ) -> None:
     short_of_exact = found.errors[:-1]  # as many dimensions as points leave nothing but rounding
@@ -43,7 +43,7 @@ def test_the_fast_divergence_ranks_as_monte_carlo_does(found: SymbolFigures) -> 
     assert found.pairs == 6 * 5
 
 
-def test_too_few_symbols_are_told() -> None:
+def test_too_few_symbols_are_refused() -> None:
     symbols, _, _ = word_clips(1)
     with pytest.raises(NotEnoughLabels):
         symbol_figures(symbols[:4])

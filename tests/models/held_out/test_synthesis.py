@@ -9,14 +9,14 @@ from app.models.held_out.synthesis import (
     Trial,
     draw_trials,
     held_out_synthesis,
-    made,
     real_hit,
+    synthesized,
 )
 from app.models.synthesis.model import fit_synthesis
 from tests.models.invented_shapes import invented_shapes
 
 
-def test_cells_are_left_out_wholly_and_judged_beside_the_baselines() -> None:
+def test_whole_cells_are_left_out_and_compared_with_the_baselines() -> None:
     clips = invented_shapes()
     record = fit_synthesis(clips.shapes, clips.persons, clips.tasks)
     found = held_out_synthesis(record, trials=10)
@@ -29,7 +29,7 @@ def test_cells_are_left_out_wholly_and_judged_beside_the_baselines() -> None:
     assert found == held_out_synthesis(record, trials=10)
 
 
-def test_what_followed_one_take_and_what_did_not_are_counted_apart() -> None:
+def test_followed_and_averaged_cells_are_counted_separately() -> None:
     clips = invented_shapes()
     shapes = clips.shapes.copy()
     alone = np.array([task == "t0" for task in clips.tasks])
@@ -38,7 +38,7 @@ def test_what_followed_one_take_and_what_did_not_are_counted_apart() -> None:
     record = fit_synthesis(shapes, clips.persons, clips.tasks)
     for row in held_out_synthesis(record, trials=100)[NEW_TASK]:
         drawn = draw_trials(record, NEW_TASK, row["given"], 100)
-        follows = [made(record, NEW_TASK, trial).follows is not None for trial in drawn]
+        follows = [synthesized(record, NEW_TASK, trial).follows is not None for trial in drawn]
         assert all(f for trial, f in zip(drawn, follows, strict=True) if trial.task == "t0")
         followed, averaged = row["followed"], row["averaged"]
         assert (followed["trials"], averaged["trials"]) == (sum(follows), len(drawn) - sum(follows))
@@ -47,7 +47,7 @@ def test_what_followed_one_take_and_what_did_not_are_counted_apart() -> None:
         assert followed["hit"] < averaged["hit"]
 
 
-def test_real_takes_are_judged_alike_where_there_are_two() -> None:
+def test_real_takes_of_cells_with_two_takes_are_judged_too() -> None:
     clips = invented_shapes()
     mixed = clips.shapes.copy()
     mixed[0], mixed[2] = clips.shapes[2], clips.shapes[0]  # a take of t0 for one of t1
@@ -74,11 +74,11 @@ def test_a_trial_does_not_see_its_own_cell(kind: str, lacking: list[tuple[str, s
         changed[mine] += 5.0
         other = fit_synthesis(changed, clips.persons, clips.tasks)
         np.testing.assert_array_equal(
-            made(record, kind, trial).shape, made(other, kind, trial).shape
+            synthesized(record, kind, trial).shape, synthesized(other, kind, trial).shape
         )
 
 
-def test_a_library_without_anything_to_leave_out_has_no_rows() -> None:
+def test_a_library_with_no_cell_to_leave_out_has_no_rows() -> None:
     shapes = invented_shapes(persons=3, tasks=1, takes=1).shapes
     record = fit_synthesis(shapes, ["p0", "p1", "p2"], ["t0", "t0", "t1"])
     assert held_out_synthesis(record) == {NEW_TASK: [], NEW_PERSON: []}

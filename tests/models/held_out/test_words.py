@@ -9,7 +9,7 @@ from app.numerics.hmm.model import mean_trajectory
 from tests.models.word_clips import word_clips
 
 
-def test_every_method_beats_the_prior_on_clips_that_can_be_told_apart() -> None:
+def test_every_method_beats_the_prior_on_separable_clips() -> None:
     symbols, statistics, words = word_clips(6)
     groups = [str(row) for row in range(len(words))]
     found = held_out_word_figures(symbols, statistics, words, groups)
@@ -23,7 +23,7 @@ def test_every_method_beats_the_prior_on_clips_that_can_be_told_apart() -> None:
     assert figures["cca"].set_map > figures["prior"].set_map + 0.1
 
 
-def test_a_copy_in_another_fold_does_not_teach_the_answer() -> None:
+def test_copies_of_a_recording_are_in_one_fold() -> None:
     """Each recording twice under one group: its words, which no other has, stay unknown."""
     symbols, statistics, _ = word_clips(2)
     words = [(f"only_{row}",) for row in range(8)]
@@ -50,7 +50,7 @@ def test_too_few_clips_are_refused(count: int) -> None:
         held_out_word_figures(symbols[:count], statistics[:count], words[:count], ["a"] * count)
 
 
-def test_words_are_judged_one_by_one_and_too_few_recordings_are_told() -> None:
+def test_each_word_is_judged_and_rare_words_are_marked() -> None:
     symbols, statistics, words = word_clips(6)
     groups = [str(row // 2) for row in range(len(words))]
     found = held_out_word_figures(symbols, statistics, words, groups)
@@ -61,7 +61,7 @@ def test_words_are_judged_one_by_one_and_too_few_recordings_are_told() -> None:
     assert (stroll.clips, stroll.recordings, stroll.too_rare) == (3, 3, True)
 
 
-def test_curves_correlations_and_reliability_are_told() -> None:
+def test_curves_correlations_and_reliability_are_reported() -> None:
     symbols, statistics, words = word_clips(6)
     found = held_out_word_figures(symbols, statistics, words, [str(i) for i in range(len(words))])
     for one in (*found.figures, *found.in_sample):

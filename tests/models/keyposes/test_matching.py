@@ -14,7 +14,9 @@ TIMES = st.lists(st.floats(0, 3), max_size=12)
 
 
 @given(TIMES, TIMES, st.floats(0.01, 0.5))
-def test_no_pairing_has_more_pairs(found: list[float], true: list[float], within: float) -> None:
+def test_the_number_of_pairs_is_the_largest_possible(
+    found: list[float], true: list[float], within: float
+) -> None:
     """A slow twin: the best assignment of all."""
     near = np.abs(np.subtract.outer(found, true)) <= within
     rows, columns = linear_sum_assignment(-near.astype(float))
@@ -23,14 +25,14 @@ def test_no_pairing_has_more_pairs(found: list[float], true: list[float], within
     assert (counts.found, counts.true) == (len(found), len(true))
 
 
-def test_two_that_meet_one_count_once() -> None:
+def test_two_detections_of_one_keypose_count_once() -> None:
     counts = match(np.array([1.0, 1.05]), np.array([1.02]))
     assert counts == Counts(true=1, found=2, correct=1)
     assert (counts.precision, counts.recall) == (0.5, 1.0)
     assert counts.f == pytest.approx(2 / 3)
 
 
-def test_nothing_found_and_nothing_meant() -> None:
+def test_clips_without_keyposes() -> None:
     none = np.zeros(0)
     assert match(none, none).f == 1.0
     assert match(none, np.array([1.0])).f == 0.0

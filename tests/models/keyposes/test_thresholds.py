@@ -44,13 +44,13 @@ DEEP = Example(Known((0.9, 0.9, 0.9), (0.45, 0.48, 0.55)), np.array([2.0]))
 """Its keypose is told by T2 alone, and only by a smaller one than usual."""
 
 
-def test_what_the_examples_need_is_learned() -> None:
+def test_the_thresholds_of_the_examples_are_learned() -> None:
     assert threshold_grid([SMALL]).learned() == Thresholds(0.4, USUAL.t2)
     assert threshold_grid([DEEP]).learned() == Thresholds(USUAL.t1, 0.5)
     assert threshold_grid([SMALL, DEEP]).learned() == Thresholds(0.4, 0.5)
 
 
-def test_without_examples_and_where_all_do_as_well_the_usual_ones_stay() -> None:
+def test_the_usual_thresholds_stay_without_examples_or_differences() -> None:
     assert threshold_grid([]).learned() == USUAL
     assert (
         threshold_grid([Example(Known((0.0, 0.0), (9.0, 9.0)), np.array([0.0, 1.0]))]).learned()
@@ -58,7 +58,7 @@ def test_without_examples_and_where_all_do_as_well_the_usual_ones_stay() -> None
     )
 
 
-def test_a_clip_is_judged_by_what_others_taught() -> None:
+def test_a_clip_is_judged_with_thresholds_from_the_other_clips() -> None:
     (pair, counts), _ = threshold_grid([SMALL, DEEP]).held_out(["one", "two"])
     assert pair == Thresholds(USUAL.t1, 0.5)
     assert (counts.true, counts.found) == (2, 0)
@@ -92,7 +92,7 @@ def annotated() -> list[Example]:
     ]
 
 
-def test_dances_teach_thresholds_that_find_other_dances() -> None:
+def test_thresholds_learned_from_dances_work_for_other_dances() -> None:
     examples = annotated()
     judged = total(counts for _, counts in threshold_grid(examples).held_out(list("abcd")))
     assert judged.f > 0.97
@@ -102,7 +102,7 @@ def test_dances_teach_thresholds_that_find_other_dances() -> None:
     assert curve.precision[wide].min() > 0.95
 
 
-def test_the_model_comes_back_from_what_is_stored() -> None:
+def test_a_stored_model_is_read_back() -> None:
     model = KeyposeThresholds({"rms": Thresholds(0.3, 0.8), "printed": USUAL})
     assert KeyposeThresholds.from_arrays(*model.to_arrays()) == model
     with pytest.raises(KeyError):

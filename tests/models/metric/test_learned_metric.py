@@ -9,7 +9,7 @@ from app.errors import NotEnoughLabels
 from app.models.held_out.ranking import mean_average_precision
 from app.models.metric.learned_metric import (
     COORDINATES,
-    Described,
+    ClipDescriptors,
     Factor,
     LearnedMetric,
     MetricAxes,
@@ -21,10 +21,10 @@ from tests.models.factor_clips import FactorClips, factor_clips
 WIDTHS = (12, 40, 8)
 
 
-def described(clips: FactorClips) -> Described:
+def described(clips: FactorClips) -> ClipDescriptors:
     """The samples of invented clips, taken apart into three descriptors of unlike units."""
     vectors, samples, statistics = np.split(clips.samples, np.cumsum(WIDTHS)[:-1], axis=1)
-    return Described(vectors, 7 * samples, statistics[:, ::-1] * np.geomspace(0.01, 30, 8))
+    return ClipDescriptors(vectors, 7 * samples, statistics[:, ::-1] * np.geomspace(0.01, 30, 8))
 
 
 def share_found(axes: MetricAxes, clips: FactorClips, labels: list[str], asks: np.ndarray) -> float:
@@ -51,7 +51,7 @@ def test_a_metric_brings_unseen_clips_of_one_label_together(factor: Factor) -> N
     assert learned > 0.85
 
 
-def test_more_labels_make_it_better_and_two_a_class_already_help() -> None:
+def test_more_labels_improve_a_metric_and_two_for_each_class_help() -> None:
     clips = factor_clips(persons=6, takes=5, noise=2.0)
     unseen = np.flatnonzero(clips.takes == 0)
     shares = []
@@ -67,7 +67,7 @@ def test_more_labels_make_it_better_and_two_a_class_already_help() -> None:
     assert shares[0] > share_found(nothing, clips, clips.tasks, unseen) + 0.1
 
 
-def test_a_task_that_nobody_labelled_is_still_told_from_others() -> None:
+def test_a_task_without_labels_is_separated_from_others() -> None:
     clips = factor_clips(tasks=8)
     new = np.array([task in ("t6", "t7") for task in clips.tasks])
     known = [None if is_new else task for is_new, task in zip(new, clips.tasks, strict=True)]
@@ -85,7 +85,7 @@ def test_coordinates_are_of_unit_length_and_few() -> None:
 def test_the_units_of_the_descriptors_do_not_matter() -> None:
     clips = factor_clips()
     plain = described(clips)
-    scaled = Described(100 * plain.vectors, 0.01 * plain.samples, plain.statistics)
+    scaled = ClipDescriptors(100 * plain.vectors, 0.01 * plain.samples, plain.statistics)
     ours = fit_axes(plain, clips.tasks, Factor.TASK).project(plain)
     theirs = fit_axes(scaled, clips.tasks, Factor.TASK).project(scaled)
     np.testing.assert_allclose(ours @ ours.T, theirs @ theirs.T, atol=1e-6)
@@ -97,16 +97,16 @@ def test_the_units_of_the_descriptors_do_not_matter() -> None:
 def test_too_few_labels_are_refused_with_their_number(labels: list[str | None]) -> None:
     empty = np.zeros((len(labels), 3))
     with pytest.raises(NotEnoughLabels, match=r"2 tasks with two clips each"):
-        fit_axes(Described(empty, empty, empty), labels, Factor.TASK)
+        fit_axes(ClipDescriptors(empty, empty, empty), labels, Factor.TASK)
 
 
 @pytest.mark.parametrize("spread", [0.0, 1.0])
-def test_the_smallest_and_stillest_libraries_give_finite_coordinates(spread: float) -> None:
+def test_small_libraries_and_motionless_clips_give_finite_coordinates(spread: float) -> None:
     columns = np.outer(spread * np.arange(4.0), np.ones(3)) + 1
-    clips = Described(columns, columns, columns)
+    clips = ClipDescriptors(columns, columns, columns)
     axes = fit_axes(clips, ["a", "a", "b", "b"], Factor.PERSON)
     far = np.full((1, 3), 1e6)
-    for probe in (clips, Described(far, far, far)):
+    for probe in (clips, ClipDescriptors(far, far, far)):
         assert np.isfinite(axes.project(probe)).all()
 
 

@@ -16,7 +16,7 @@ def pairs(level: float, slope: float, count: int, seed: int = 0) -> tuple[np.nda
 
 
 @pytest.mark.parametrize(("level", "slope"), [(2.0, 4.0), (6.0, 9.0), (-1.0, 1.0)])
-def test_the_curve_that_drew_the_pairs_is_found(level: float, slope: float) -> None:
+def test_the_curve_that_generated_the_pairs_is_fitted(level: float, slope: float) -> None:
     distances, same = pairs(level, slope, 40_000)
     found = calibrate_pairs(distances, same)
     twin = LogisticRegression(C=1e9).fit(distances[:, None], same)
@@ -29,7 +29,7 @@ def test_the_curve_that_drew_the_pairs_is_found(level: float, slope: float) -> N
             assert told[chosen].mean() == pytest.approx(same[chosen].mean(), abs=0.03)
 
 
-def test_pairs_that_part_cleanly_make_a_slope_and_no_step() -> None:
+def test_cleanly_separated_pairs_do_not_make_a_step() -> None:
     distances = np.array([0.1, 0.2, 0.3, 1.0, 1.1, 1.2])
     found = calibrate_pairs(distances, distances < 0.5)
     assert found.probability(0.1) > 0.6
@@ -41,13 +41,13 @@ def test_pairs_that_part_cleanly_make_a_slope_and_no_step() -> None:
 
 
 @pytest.mark.parametrize("same", [[], [True, True], [False, False]])
-def test_without_pairs_of_both_kinds_there_is_a_curve_all_the_same(same: list[bool]) -> None:
+def test_without_pairs_of_both_kinds_there_is_still_a_curve(same: list[bool]) -> None:
     found = calibrate_pairs(np.linspace(0, 1, len(same)), np.array(same, dtype=bool))
     assert found.probability(0) > 0.9
     assert found.probability(2) < 0.01
 
 
-def test_scores_fall_with_distance_whatever_the_pairs_say() -> None:
+def test_scores_fall_with_distance_for_any_pairs() -> None:
     rng = np.random.default_rng(0)
     distances = rng.uniform(0, 2, 1000)
     for same in (distances > 1, rng.uniform(size=1000) < 0.5, distances < 1e-3):
@@ -58,7 +58,7 @@ def test_scores_fall_with_distance_whatever_the_pairs_say() -> None:
 
 @pytest.mark.parametrize("level", LEVELS)
 @pytest.mark.parametrize("slope", SLOPES)
-def test_no_two_distances_that_are_told_apart_have_one_score(level: float, slope: float) -> None:
+def test_different_distances_have_different_scores(level: float, slope: float) -> None:
     curve = PairCalibration(level, slope)
     distances = np.round(np.concatenate([np.arange(2000) * 1e-9, np.linspace(0, 2, 2000)]), 9)
     scores = [curve.probability(float(d)) for d in np.unique(distances)]

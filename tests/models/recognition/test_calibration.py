@@ -10,7 +10,7 @@ from app.models.recognition.calibration import NEW, fit_calibration, softmax
 NONE = np.zeros((0, 2)), np.zeros(0), np.zeros(0, dtype=int)
 
 
-def test_the_threshold_parts_known_from_new() -> None:
+def test_the_threshold_separates_known_from_new_clips() -> None:
     novelty = np.array([-9.0, -7.0, 1.0, 3.0])
     found = fit_calibration(np.zeros((4, 2)), novelty, np.array([0, 1, -1, -1]))
     assert -7.0 < found.threshold < 1.0
@@ -35,7 +35,7 @@ def test_beliefs_sum_to_the_belief_in_being_known() -> None:
     np.testing.assert_allclose(beliefs.sum(axis=1), [1.0, 0.5, 0.0], atol=1e-9)
 
 
-def test_what_is_surely_new_still_has_a_best_candidate() -> None:
+def test_a_surely_new_clip_still_has_a_best_candidate() -> None:
     evidence = np.array([[-3.0, -1.0, -2.0]])
     for new in (0.0, 1e3, 1e9):
         beliefs = fit_calibration(*NONE).beliefs(evidence, np.array([new]))
@@ -43,7 +43,7 @@ def test_what_is_surely_new_still_has_a_best_candidate() -> None:
         assert beliefs.sum() <= 1.0
 
 
-def test_nothing_held_out_still_calibrates() -> None:
+def test_without_held_out_clips_there_is_a_calibration() -> None:
     found = fit_calibration(*NONE)
     assert (found.temperature, found.threshold, found.scale) == (1.0, 0.0, 1.0)
     assert found.error_rates() == (0.0, 0.0)
@@ -71,7 +71,7 @@ def test_no_more_new_ones_are_accepted_than_allowed(
     assert rejected <= best
 
 
-def test_the_curve_falls_and_its_area_tells_how_well_they_part() -> None:
+def test_the_curve_falls_and_its_area_measures_the_separation() -> None:
     rng = np.random.default_rng(1)
     novelty = np.concatenate([rng.normal(0, 1, 300), rng.normal(2, 1, 200)])
     truth = np.array([0] * 300 + [-1] * 200)
@@ -113,19 +113,19 @@ def test_one_task_that_is_far_from_all_others_does_not_hide_the_other_new_ones(f
     assert rejected <= 0.02
 
 
-def test_where_no_take_was_repeated_imagined_ones_set_the_threshold() -> None:
+def test_without_repeated_takes_simulated_ones_set_the_threshold() -> None:
     rng = np.random.default_rng(4)
     unusual, new = rng.normal(1, 1, 60), rng.normal(6, 2, 60)
     novelty, truth = np.concatenate([unusual, new]), np.repeat([0, NEW], 60)
-    seen, imagined = np.zeros(120, dtype=bool), rng.normal(-6, 1, 90)
+    seen, simulated = np.zeros(120, dtype=bool), rng.normal(-6, 1, 90)
     evidence = np.zeros((120, 1))
-    found = fit_calibration(evidence, novelty, truth, seen, imagined)
+    found = fit_calibration(evidence, novelty, truth, seen, simulated)
     assert found.threshold == pytest.approx(-2.0, abs=0.6)
-    np.testing.assert_array_equal(found.known_novelty, np.sort(imagined))
+    np.testing.assert_array_equal(found.known_novelty, np.sort(simulated))
     without = fit_calibration(evidence, novelty, truth, seen)
     assert without.threshold > 1.0
-    # nothing new was held out: nothing can be said by imagined takes either
-    none_new = fit_calibration(evidence[:60], unusual, truth[:60], seen[:60], imagined)
+    # nothing new was held out: nothing can be said by simulated takes either
+    none_new = fit_calibration(evidence[:60], unusual, truth[:60], seen[:60], simulated)
     assert none_new.threshold == fit_calibration(evidence[:60], unusual, truth[:60]).threshold
 
 

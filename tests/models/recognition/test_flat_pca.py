@@ -28,7 +28,7 @@ def test_a_person_is_a_vector_for_each_task() -> None:
     assert record.coefficients.shape == (30, 10)
 
 
-def test_what_a_person_never_did_is_not_told_by_their_other_tasks() -> None:
+def test_a_person_is_not_recognized_at_a_task_that_they_never_did() -> None:
     """The difference to the multilinear model: nothing is completed."""
     clips = factor_clips()
     missing = np.array([p == "p1" and t == "t2" for p, t in clips.labels])

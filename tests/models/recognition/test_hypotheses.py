@@ -18,7 +18,7 @@ def of_kind(record: Hypotheses, kind: Kind) -> tuple[np.ndarray, np.ndarray]:
     return means, backs[-1].T @ backs[-1]
 
 
-def test_strangers_differ_from_each_person_as_pairs_of_persons_do() -> None:
+def test_new_persons_differ_from_each_person_as_two_persons_do() -> None:
     rng = np.random.default_rng(0)
     who, what = zip(
         *[(p, t) for p in "abcd" for t in "xyz" if (p, t) != ("d", "z")] * 2, strict=True
@@ -36,7 +36,7 @@ def test_strangers_differ_from_each_person_as_pairs_of_persons_do() -> None:
     np.testing.assert_allclose(covariance, shrunk(np.mean([np.outer(d, d) for d in apart], axis=0)))
 
 
-def test_a_strangers_task_is_found_where_persons_do_it_in_different_ways() -> None:
+def test_the_task_of_a_new_person_is_recognized_if_persons_do_it_differently() -> None:
     """Half do `x` at -4 and `y` at 2, half do them at 4 and 10: the means say 0 and 6."""
     rng = np.random.default_rng(1)
     persons = [f"p{i}" for i in range(6) for _ in "xy"]
@@ -74,7 +74,7 @@ def gaussian_at(record: Hypotheses, hypothesis: int, point: np.ndarray) -> float
     return float(record.log_likelihoods(point[None])[0, hypothesis])
 
 
-def test_a_wave_that_is_uneven_is_not_strange_where_a_walk_would_be() -> None:
+def test_each_task_has_its_own_variation_of_takes() -> None:
     rng = np.random.default_rng(3)
     persons, tasks, points = [], [], []
     for person in "abcd":
@@ -95,12 +95,12 @@ def test_a_wave_that_is_uneven_is_not_strange_where_a_walk_would_be() -> None:
     assert off["walk"] < 5 * off["wave"] < 0
 
 
-def test_further_takes_are_as_their_cells_scatter() -> None:
+def test_further_takes_have_the_covariance_of_their_cells() -> None:
     rng = np.random.default_rng(4)
     persons, tasks = [p for p in "abc" for _ in range(40)], ["x", "y"] * 60
     points = rng.normal(size=(120, 3)) * [0.1, 1.0, 0.5] + np.arange(120)[:, None] // 40
     record = fit_hypotheses(points, find_cells(persons, tasks))
-    takes = record.further_takes(3000, most_cells=100).reshape(6, 3000, 3)
+    takes = record.further_takes(3000, max_cells=100).reshape(6, 3000, 3)
     seen = np.flatnonzero(record.kind == Kind.SEEN)
     for h, drawn in zip(seen, takes, strict=True):
         back = np.linalg.inv(record.whiteners[record.form[h]])

@@ -76,7 +76,7 @@ def test_held_out_takes_are_recognized(clips: Clips, record: TensorRecognizer, t
 
 
 @pytest.mark.parametrize("factor", ["person", "task"])
-def test_what_was_never_seen_is_unknown(factor: str) -> None:
+def test_a_new_person_and_a_new_task_are_unknown(factor: str) -> None:
     clips = Clips(without=("p2", None) if factor == "person" else (None, "t3"))
     record = clips.fit()
     labels = clips.persons if factor == "person" else clips.tasks
@@ -94,7 +94,7 @@ def test_a_stricter_rate_accepts_less(clips: Clips, record: TensorRecognizer) ->
     assert strict.task_calibration.threshold <= record.task_calibration.threshold
 
 
-def test_labels_that_the_library_lacks_tell_nothing(clips: Clips, record: TensorRecognizer) -> None:
+def test_labels_that_the_library_lacks_are_ignored(clips: Clips, record: TensorRecognizer) -> None:
     (plain,) = recognize_by_tensor(record, clips.samples[:1])
     (told,) = recognize_by_tensor(record, clips.samples[:1], known_person="nobody")
     assert told.task == plain.task
@@ -111,7 +111,7 @@ def test_a_record_comes_back_from_its_arrays(clips: Clips, record: TensorRecogni
 
 
 @pytest.mark.parametrize("labels", [["a", "a"], ["a", "b"], ["a", "b", "c", "c"]])
-def test_the_smallest_and_stillest_libraries_give_finite_answers(labels: list[str]) -> None:
+def test_small_libraries_and_motionless_clips_give_finite_answers(labels: list[str]) -> None:
     still = np.zeros((len(labels), 4 * 39 + 2))
     record = fit_tensor_recognizer(still, labels, labels)
     for probe in (still[:1], still[:1] + 1e3):

@@ -51,7 +51,7 @@ def test_a_cell_never_recorded_is_recognized_by_its_person_and_task(clips: Facto
 
 
 @pytest.mark.parametrize("factor", ["person", "task"])
-def test_what_was_never_seen_is_unknown_and_has_no_label(clips: FactorClips, factor: str) -> None:
+def test_a_new_label_is_unknown(clips: FactorClips, factor: str) -> None:
     labels = clips.persons if factor == "person" else clips.tasks
     new = np.array([label.endswith("3") for label in labels])
     record = fit_recognizer(*clips.where(~new & (clips.takes > 0)))
@@ -65,7 +65,7 @@ def test_what_was_never_seen_is_unknown_and_has_no_label(clips: FactorClips, fac
     assert all((a.label is None) == (not a.known) for a in strange + usual)
 
 
-def test_one_take_a_cell_is_enough(clips: FactorClips) -> None:
+def test_one_take_for_each_cell_is_enough(clips: FactorClips) -> None:
     record = fit_recognizer(*clips.where(clips.takes == 1))
     samples, who, what = clips.where(clips.takes == 0)
     found = recognize_many(record, samples)
@@ -77,7 +77,7 @@ def test_one_take_a_cell_is_enough(clips: FactorClips) -> None:
 
 
 @pytest.mark.parametrize("factor", ["person", "task"])
-def test_what_is_new_is_told_from_one_take_a_cell_too(factor: str) -> None:
+def test_new_labels_are_recognized_with_one_take_for_each_cell(factor: str) -> None:
     clips = factor_clips(persons=6, tasks=7)
     labels = clips.persons if factor == "person" else clips.tasks
     new = np.array([label.endswith("3") for label in labels])
@@ -91,7 +91,7 @@ def test_what_is_new_is_told_from_one_take_a_cell_too(factor: str) -> None:
     assert known[1] < 0.2
 
 
-def test_libraries_that_lack_labels_answer_what_they_can(clips: FactorClips) -> None:
+def test_libraries_without_some_labels_give_the_other_answers(clips: FactorClips) -> None:
     samples, who, what = clips.where(clips.takes > 0)
     probe, _, truth = clips.where(clips.takes == 0)
     none: list[str | None] = [None] * len(who)
@@ -110,7 +110,7 @@ def test_libraries_that_lack_labels_answer_what_they_can(clips: FactorClips) -> 
     assert persons_only.person.candidates
 
 
-def test_what_the_asker_knows_is_kept_and_helps(clips: FactorClips, record: Recognizer) -> None:
+def test_a_known_label_is_in_the_answer_and_helps(clips: FactorClips, record: Recognizer) -> None:
     told = recognize(record, clips.samples[-1], known_person="p4")
     assert (told.person.label, told.person.score) == ("p4", 1.0)
     assert told.task.label == "t5"
@@ -140,7 +140,7 @@ def test_fitting_twice_gives_the_same(clips: FactorClips, record: Recognizer) ->
         np.testing.assert_array_equal(array, ours[name])
 
 
-def test_what_only_the_wide_vector_tells_is_told(clips: FactorClips) -> None:
+def test_information_of_the_wide_vector_alone_is_used(clips: FactorClips) -> None:
     """Motion samples are the same of all persons: only what follows them tells them apart."""
     rng = np.random.default_rng(5)
     blind = clips.samples.copy()
@@ -169,7 +169,7 @@ def test_too_few_labels_are_refused(labels: list[str | None]) -> None:
 
 
 @pytest.mark.parametrize("labels", [["a", "a"], ["a", "b"], ["a", "b", "c", "c"]])
-def test_the_smallest_and_stillest_libraries_give_finite_answers(labels: list[str]) -> None:
+def test_small_libraries_and_motionless_clips_give_finite_answers(labels: list[str]) -> None:
     record = fit_recognizer(np.ones((len(labels), WIDTH)), labels, labels)
     for probe in (np.ones(WIDTH), np.full(WIDTH, 1e6)):
         found = recognize(record, probe)

@@ -41,7 +41,7 @@ def test_without_tasks_nothing_is_warped() -> None:
     np.testing.assert_array_equal(means.aligned(motions, [None, "wave"]), motions)
 
 
-def test_persons_are_told_apart_whatever_their_timing() -> None:
+def test_persons_are_recognized_with_any_timing() -> None:
     samples, persons, tasks = _clips(np.random.default_rng(2))
     train = np.arange(len(samples)) % 4 > 0
     who, what = ([names[i] for i in np.flatnonzero(train)] for names in (persons, tasks))

@@ -52,7 +52,7 @@ def test_the_objective_by_the_textbook() -> None:
             assert printed[n, k] == pytest.approx(-sum(votes))
 
 
-def test_missing_cells_are_never_held_against_a_probe() -> None:
+def test_missing_cells_are_never_compared_with_a_probe() -> None:
     danced = danced_by(3, 3, cycles=2)
     there = [p != "p1" or t != "t1" for p, t in zip(danced.persons, danced.tasks, strict=True)]
     part = danced.part(np.array(there))

@@ -28,7 +28,7 @@ def scattered(
     return found, covariances, order
 
 
-def test_many_takes_tell_each_tasks_own_covariance() -> None:
+def test_many_takes_give_each_task_its_own_covariance() -> None:
     walk, wave = np.array([0.2, 0.2, 2.0]), np.array([1.0, 3.0, 0.3])
     sizes = {(who, what): size for who in "abc" for what, size in (("walk", walk), ("wave", wave))}
     _, covariances, _ = scattered(sizes, takes=300)
@@ -37,7 +37,7 @@ def test_many_takes_tell_each_tasks_own_covariance() -> None:
         assert np.linalg.norm(covariance - truth) < 0.12 * np.linalg.norm(truth)
 
 
-def test_a_person_who_is_more_even_than_others_is_so_at_every_task() -> None:
+def test_a_person_has_one_factor_for_all_tasks() -> None:
     sizes = {
         (who, what): np.full(5, size * scale)
         for who, scale in (("even", 0.5), ("uneven", 1.5))
@@ -49,7 +49,7 @@ def test_a_person_who_is_more_even_than_others_is_so_at_every_task() -> None:
         assert ratio == pytest.approx(9.0, rel=0.15)
 
 
-def test_few_takes_hardly_move_what_is_usual() -> None:
+def test_few_takes_hardly_change_the_pooled_covariance() -> None:
     sizes = {(who, what): np.ones(8) for who in "abcdef" for what in "xyz"}
     found, covariances, order = scattered(sizes, takes=2)
     assert len(found.covariances) == 4

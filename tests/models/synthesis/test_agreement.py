@@ -11,7 +11,7 @@ def shapes(count: int, seed: int = 0) -> np.ndarray:
     return np.random.default_rng(seed).normal(size=(count, SHAPE_LENGTH))
 
 
-def test_the_same_motion_agrees_wholly_whatever_the_posture() -> None:
+def test_equal_motions_agree_in_full_in_any_posture() -> None:
     one = shapes(1)
     assert agreement(np.repeat(one, 4, axis=0)) == pytest.approx(1.0)
     postures = np.tile(np.random.default_rng(2).normal(size=(4, 43)), 32)
@@ -21,16 +21,16 @@ def test_the_same_motion_agrees_wholly_whatever_the_posture() -> None:
 
 
 @pytest.mark.parametrize("count", [2, 3, 10])
-def test_unlike_motions_agree_in_nothing_however_many(count: int) -> None:
+def test_unrelated_motions_do_not_agree_in_any_number(count: int) -> None:
     assert agreement(shapes(count)) == pytest.approx(0.0, abs=0.1)
 
 
 @pytest.mark.parametrize("count", [2, 8])
-def test_it_is_the_share_that_is_common(count: int) -> None:
+def test_agreement_is_the_common_share(count: int) -> None:
     common, own = shapes(1), shapes(count, seed=1)
     assert agreement(np.sqrt(0.6) * common + np.sqrt(0.4) * own) == pytest.approx(0.6, abs=0.08)
 
 
-def test_opposite_motions_are_less_than_unlike() -> None:
+def test_opposite_motions_agree_less_than_unrelated_ones() -> None:
     one = shapes(1)
     assert agreement(np.concatenate([one, -one])) == pytest.approx(-1.0)

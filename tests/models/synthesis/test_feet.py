@@ -72,5 +72,5 @@ def test_the_floor_is_under_the_standing_ankle_whatever_the_foot_does() -> None:
     assert floor_of(pointing, feet, deep) == pytest.approx(0.1)
 
 
-def test_an_ankle_without_a_foot_is_left_alone() -> None:
+def test_an_ankle_without_a_foot_stays_as_it_is() -> None:
     assert feet_of(leg(rolling(), np.zeros(60)).skeleton, [1, 4]) == []

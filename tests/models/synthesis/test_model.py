@@ -28,7 +28,7 @@ def far(one: np.ndarray, other: np.ndarray) -> float:
     return float(np.linalg.norm((one - other) * weights()))
 
 
-def slow_solve(basis: np.ndarray, wanted: np.ndarray, own: np.ndarray) -> np.ndarray:
+def slow_solve(basis: np.ndarray, target: np.ndarray, own: np.ndarray) -> np.ndarray:
     """Each set of weights by stacked least squares with the ridge as further rows."""
     scale, (persons, tasks, _) = weights(), basis.shape
     every = np.stack([np.vstack([rows, mirrored(rows)]) for rows in basis]) * scale
@@ -36,7 +36,7 @@ def slow_solve(basis: np.ndarray, wanted: np.ndarray, own: np.ndarray) -> np.nda
 
     def fitted(columns: np.ndarray, prior: np.ndarray, ridge: float) -> np.ndarray:
         rows = np.vstack([every[k][:, columns].T for k in range(persons)])
-        aim = np.concatenate([(wanted[k] * scale)[columns] for k in range(persons)])
+        aim = np.concatenate([(target[k] * scale)[columns] for k in range(persons)])
         pull = np.sqrt(ridge * (rows**2).sum() / (2 * tasks)) * np.eye(2 * tasks)
         aims = np.concatenate([aim, pull @ prior])
         return np.linalg.lstsq(np.vstack([rows, pull]), aims, rcond=None)[0]
@@ -46,7 +46,7 @@ def slow_solve(basis: np.ndarray, wanted: np.ndarray, own: np.ndarray) -> np.nda
     made = np.zeros(SHAPE_LENGTH)
     for part in parts():
         w = fitted(part, shared, PART_RIDGE)
-        left = [(wanted[k] * scale)[part] - w @ every[k][:, part] for k in range(persons)]
+        left = [(target[k] * scale)[part] - w @ every[k][:, part] for k in range(persons)]
         made[part] = w @ mine[:, part] + np.mean(left, axis=0)
     return made / scale
 
@@ -55,13 +55,13 @@ def test_the_parts_are_the_whole_body_once() -> None:
     np.testing.assert_array_equal(np.sort(np.concatenate(parts())), np.arange(SHAPE_LENGTH))
 
 
-def test_it_is_what_stacked_least_squares_give(all_cells: InventedShapes) -> None:
+def test_the_solution_is_that_of_stacked_least_squares(all_cells: InventedShapes) -> None:
     cells = np.array([[all_cells.cell(f"p{p}", f"t{t}") for t in range(4)] for p in range(3)])
     args = cells[1:, :3], cells[1:, 3], cells[0, :3]
     np.testing.assert_allclose(solve(*args).shape, slow_solve(*args), atol=1e-8)
 
 
-def test_a_task_comes_to_a_person_who_never_did_it(
+def test_a_task_is_predicted_for_a_person_who_never_did_it(
     all_cells: InventedShapes, lacking: Synthesis
 ) -> None:
     truth = all_cells.cell("p0", "t0")
@@ -76,19 +76,21 @@ def test_a_task_comes_to_a_person_who_never_did_it(
     assert far(made, truth) < 0.5 * far(others.mean(axis=0), truth)
 
 
-def test_more_of_the_persons_takes_make_it_better(
+def test_more_takes_of_the_person_improve_the_prediction(
     all_cells: InventedShapes, lacking: Synthesis
 ) -> None:
     truth, own = all_cells.cell("p0", "t0"), lacking.tasks_of("p0")
     names = sorted(own)
     off = [
-        far(predict(lacking, {n: own[n] for n in names[:count]}, "t0", but=("p0",)).shape, truth)
+        far(
+            predict(lacking, {n: own[n] for n in names[:count]}, "t0", exclude=("p0",)).shape, truth
+        )
         for count in (1, 3, 5)
     ]
     assert off[0] > off[1] > off[2]
 
 
-def test_what_never_was_recorded_together_is_completed(all_cells: InventedShapes) -> None:
+def test_missing_cells_are_predicted(all_cells: InventedShapes) -> None:
     left = all_cells.without("p0", "t0").without("p1", "t1").without("p2", "t3")
     made = predict(fit := fit_synthesis(left.shapes, left.persons, left.tasks),
                    fit.tasks_of("p0"), "t0").shape  # fmt: skip
@@ -98,7 +100,7 @@ def test_what_never_was_recorded_together_is_completed(all_cells: InventedShapes
     assert far(made, truth) < far(others, truth)
 
 
-def test_a_mirrored_task_tells_of_the_other_side() -> None:
+def test_a_mirrored_task_helps_to_predict_the_other_side() -> None:
     rng = np.random.default_rng(1)
     right = rng.normal(size=(3, SHAPE_LENGTH))
     right[:, -2:] = 0.0
@@ -113,7 +115,7 @@ def moments(shapes: np.ndarray) -> np.ndarray:
     return shapes[..., :-2].reshape(*shapes.shape[:-1], 32, 43)
 
 
-def test_of_a_task_that_tells_nothing_only_the_bearing_is_carried_over() -> None:
+def test_of_an_unrelated_task_only_the_posture_is_used() -> None:
     rng = np.random.default_rng(4)
     stance, bearing = np.pad(np.tile(rng.normal(size=(2, 43)), 32), ((0, 0), (0, 2)))
     kick, bow = 4 * stance + rng.normal(size=(2, 3, SHAPE_LENGTH))
@@ -127,7 +129,7 @@ def test_of_a_task_that_tells_nothing_only_the_bearing_is_carried_over() -> None
     assert np.corrcoef(moved, moments(bearing)[0])[0, 1] > 0.7
 
 
-def test_nobody_is_higher_over_the_floor_than_all_who_do_the_task(
+def test_a_prediction_is_at_a_usual_height_above_the_floor(
     all_cells: InventedShapes, lacking: Synthesis
 ) -> None:
     own = lacking.tasks_of("p0")
@@ -137,7 +139,7 @@ def test_nobody_is_higher_over_the_floor_than_all_who_do_the_task(
     others = np.array([lacking.tasks_of(name)["t0"] for name in lacking.who_did("t0")])
     there = clearance(moments(others))
     for given in (own, bent):
-        made = clearance(moments(predict(lacking, given, "t0", but=("p0",)).shape))
+        made = clearance(moments(predict(lacking, given, "t0", exclude=("p0",)).shape))
         assert (made >= there.min(axis=0) - 1e-9).all()
         assert (made <= there.max(axis=0) + 1e-9).all()
 
@@ -149,7 +151,7 @@ def test_cells_that_are_partly_cyclic_keep_the_more_frequent_kind() -> None:
     np.testing.assert_allclose(found.cell("p0", "t0"), made.shapes[:2].mean(axis=0), atol=1e-12)
 
 
-def test_it_is_kept_whole_and_is_the_same_each_time(
+def test_a_model_is_stored_completely_and_fits_are_equal(
     all_cells: InventedShapes, lacking: Synthesis
 ) -> None:
     arrays, meta = lacking.to_arrays()
@@ -179,10 +181,10 @@ def test_too_few_labels_are_refused_with_what_is_needed(lacking: Synthesis) -> N
     with pytest.raises(NotEnoughLabels, match="another task"):
         predict(lacking, {"t0": shape[0]}, "t0")
     with pytest.raises(NotEnoughLabels, match="Another person must have a clip"):
-        predict(lacking, lacking.tasks_of("p0"), "t0", but=("p1", "p2", "p3"))
+        predict(lacking, lacking.tasks_of("p0"), "t0", exclude=("p1", "p2", "p3"))
 
 
-def test_of_a_large_library_the_most_alike_tasks_and_persons_are_taken(
+def test_of_a_large_library_the_most_similar_tasks_and_persons_are_used(
     all_cells: InventedShapes, lacking: Synthesis, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     truth, own = all_cells.cell("p0", "t0"), lacking.tasks_of("p0")

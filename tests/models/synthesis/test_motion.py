@@ -35,7 +35,7 @@ def _depth(joint: int) -> int:
     return 0 if SUN_PARENTS[joint] < 0 else 1 + _depth(SUN_PARENTS[joint])
 
 
-def test_a_cycle_goes_round_without_a_jump_as_long_as_is_wished() -> None:
+def test_a_cycle_is_repeated_without_a_jump_for_the_requested_time() -> None:
     walk = track_of(walking(6.0, steps_hz=0.9))
     course = course_of(motion_shape(walk), walk.body_length, seconds=5.0)
     frames = len(course.positions) / course.cycles
@@ -48,7 +48,7 @@ def test_a_cycle_goes_round_without_a_jump_as_long_as_is_wished() -> None:
     assert steps[seams].max() <= 1.2 * np.delete(steps, seams, axis=0).max()
 
 
-def test_a_walk_walks_as_fast_and_turns_as_much() -> None:
+def test_a_walk_has_the_same_speed_and_turn() -> None:
     walk = track_of(walking(6.0, speed=1.2, turn=0.3))
     shape = motion_shape(walk)
     course = course_of(shape, walk.body_length, seconds=4.0)
@@ -58,14 +58,14 @@ def test_a_walk_walks_as_fast_and_turns_as_much() -> None:
                                shape[:-2].reshape(32, 43)[:, :39], atol=0.1)  # fmt: skip
 
 
-def test_what_does_not_go_round_keeps_the_detail_of_a_take() -> None:
+def test_a_motion_that_is_not_cyclic_keeps_the_detail_of_a_take() -> None:
     wave = track_of(waving(8.0, hz=2.0))
     shape = motion_shape(wave)
-    wanted = np.array(shape)
-    wanted[:-2].reshape(32, 43)[:, 39] += 0.1  # all of it, higher
-    bare = course_of(wanted, wave.body_length)
+    target_shape = np.array(shape)
+    target_shape[:-2].reshape(32, 43)[:, 39] += 0.1  # all of it, higher
+    bare = course_of(target_shape, wave.body_length)
     full = course_of(
-        wanted, wave.body_length, take=moments_of(wave), take_shape=shape.astype(np.float64)
+        target_shape, wave.body_length, take=moments_of(wave), take_shape=shape.astype(np.float64)
     )
     hand = [np.abs(np.diff(c.positions[:, -1, 0])).mean() for c in (bare, full)]
     real = np.abs(np.diff(wave.positions[:, -1, 0])).mean()
@@ -77,7 +77,7 @@ def test_what_does_not_go_round_keeps_the_detail_of_a_take() -> None:
     )
     assert lift == pytest.approx(0.1 * wave.body_length, rel=0.05)
     assert full.cycles == 0
-    short = course_of(wanted, wave.body_length, seconds=2.0)
+    short = course_of(target_shape, wave.body_length, seconds=2.0)
     assert len(short.positions) == 60
 
 
@@ -89,17 +89,17 @@ def test_a_take_that_steps_is_not_left_in_the_air_by_another_posture() -> None:
         steps[:, side, 1] += lift
     track = track_of(steps)
     shape = motion_shape(track).astype(np.float64)
-    wanted = np.array(shape)
-    moments = wanted[:-2].reshape(32, 43)
+    target_shape = np.array(shape)
+    moments = target_shape[:-2].reshape(32, 43)
     moments[:, 3 * foot[0] + 1] += 0.15  # on the right foot only, no higher over the floor
     moments[:, 39] += clearance(shape[:-2].reshape(32, 43)) - clearance(moments)
-    course = course_of(wanted, track.body_length, take=moments_of(track), take_shape=shape)
+    course = course_of(target_shape, track.body_length, take=moments_of(track), take_shape=shape)
     real = steps[:, :, 1].min(axis=1)
     lowest = course.positions[:, :, 1].min(axis=1)
     np.testing.assert_allclose(lowest - lowest.min(), real - real.min(), atol=0.02)
 
 
-def test_it_comes_on_the_donors_bones_with_its_feet_on_the_floor() -> None:
+def test_the_body_has_the_skeleton_of_the_donors_and_feet_on_the_floor() -> None:
     walk = walking(5.0)
     donors = same_body([donor(walk), donor(1.2 * walk)])
     assert len(donors) == 1  # another body
@@ -116,7 +116,7 @@ def test_it_comes_on_the_donors_bones_with_its_feet_on_the_floor() -> None:
     assert np.abs(poses[0] - poses[1]).mean() < 0.05
 
 
-def test_little_motion_is_no_trouble() -> None:
+def test_small_motions_give_finite_bodies() -> None:
     still = standing(2)
     shape = motion_shape(track_of(still))
     course = course_of(shape, 1.5)
@@ -125,7 +125,7 @@ def test_little_motion_is_no_trouble() -> None:
     assert np.isfinite(made.positions()).all()
 
 
-def test_a_take_gestures_when_the_shape_does() -> None:
+def test_a_take_is_warped_to_the_timing_of_the_shape() -> None:
     hand = SUN_ROLES.index(JointRole.RIGHT_HAND)
 
     def raised(at: float) -> BodyTrack:
@@ -133,9 +133,9 @@ def test_a_take_gestures_when_the_shape_does() -> None:
         body[:, hand, 1] += 0.8 * np.exp(-0.5 * ((np.arange(180) / 30 - at) / 0.25) ** 2)
         return track_of(body)
 
-    take, wanted = raised(2.5), motion_shape(raised(3.2)).astype(np.float64)
+    take, target_shape = raised(2.5), motion_shape(raised(3.2)).astype(np.float64)
     course = course_of(
-        wanted, take.body_length, take=moments_of(take), take_shape=motion_shape(take)
+        target_shape, take.body_length, take=moments_of(take), take_shape=motion_shape(take)
     )
     height = course.positions[:, hand, 1]
     assert abs(int(height.argmax()) / 30 - 3.2) < 0.15

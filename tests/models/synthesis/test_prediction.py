@@ -7,7 +7,7 @@ import pytest
 
 from app.analysis.descriptors.motion_sample import SAMPLES
 from app.analysis.descriptors.motion_shape import CHANNELS, SHAPE_LENGTH, mirrored
-from app.models.synthesis.agreement import AGREED
+from app.models.synthesis.agreement import MIN_AGREEMENT
 from app.models.synthesis.model import Synthesis, fit_synthesis, mean_of_takes
 from app.models.synthesis.prediction import predict
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
@@ -65,7 +65,7 @@ def of_two_sides(asked: int) -> Synthesis:
 
 
 @pytest.mark.parametrize(("asked", "other"), [(LEFT, RIGHT), (RIGHT, LEFT)])
-def test_who_points_with_a_hand_punches_with_it_and_with_it_alone(asked: int, other: int) -> None:
+def test_a_punch_is_predicted_with_the_hand_of_the_other_tasks(asked: int, other: int) -> None:
     record = of_two_sides(asked)
     made = predict(record, record.tasks_of("x"), "punch")
     assert made.follows is None
@@ -73,21 +73,21 @@ def test_who_points_with_a_hand_punches_with_it_and_with_it_alone(asked: int, ot
     assert np.abs(hand(made.shape, other)).max() < 0.1
 
 
-def test_who_did_nothing_to_a_side_takes_that_of_most() -> None:
+def test_a_person_without_sides_gets_the_most_frequent_side() -> None:
     record = of_two_sides(LEFT)
     made = predict(record, {"nod": record.tasks_of("x")["nod"]}, "punch").shape
     assert hand(made, RIGHT).max() > 0.9
     assert np.abs(hand(made, LEFT)).max() < 0.1
 
 
-def test_takes_of_either_hand_of_one_person_are_not_half_of_each() -> None:
+def test_takes_of_both_hands_of_one_person_are_not_averaged() -> None:
     takes = np.stack([reach(RIGHT), reach(LEFT), reach(RIGHT, at=16.5)])
     mean = mean_of_takes(takes)
     assert hand(mean, RIGHT).max() > 0.9
     assert np.abs(hand(mean, LEFT)).max() < 0.01
 
 
-def test_takes_of_either_hand_at_other_times_are_told_apart_too() -> None:
+def test_takes_of_both_hands_at_different_times_are_separated() -> None:
     takes = np.stack([reach(RIGHT, at=12), reach(LEFT, at=17), reach(RIGHT, at=16)])
     mean = mean_of_takes(takes)
     assert hand(mean, RIGHT).max() > 0.9
@@ -115,7 +115,7 @@ def test_gestures_that_begin_at_other_times_keep_their_height() -> None:
     assert hand(mean_of_takes(takes), RIGHT).max() > 0.9
 
 
-def test_who_is_late_is_late_at_what_they_never_did() -> None:
+def test_the_delay_of_a_person_is_predicted_too() -> None:
     cells = {}
     for name, late in (("a", -2), ("b", 0), ("c", 2), ("x", 4)):
         cells[name, "point"] = [reach(LEFT, at=14 + late, far=0.6)]
@@ -138,12 +138,12 @@ def of_dances() -> Synthesis:
     return fitted(cells)
 
 
-def test_of_dances_one_is_followed_in_the_askeds_bearing() -> None:
+def test_of_different_dances_one_is_followed_in_the_posture_of_the_person() -> None:
     record = of_dances()
     made = predict(record, record.tasks_of("x"), "dance")
     assert made.follows in {"a", "b", "c"}
     assert made.agreement is not None
-    assert made.agreement < AGREED
+    assert made.agreement < MIN_AGREEMENT
     moments = [
         s[:-2].reshape(SAMPLES, CHANNELS) for s in (made.shape, record.cell(made.follows, "dance"))
     ]
@@ -161,9 +161,9 @@ def test_the_cell_of_dances_is_one_of_them() -> None:
     assert any(np.array_equal(cell, take) for take in takes)
     agreement = record.cell_agreement("b", "dance")
     assert agreement is not None
-    assert agreement < AGREED
+    assert agreement < MIN_AGREEMENT
     assert record.cell_agreement("b", "nod") is None  # a single take
-    alone = predict(record, record.tasks_of("x"), "dance", but=("a", "c"))
+    alone = predict(record, record.tasks_of("x"), "dance", exclude=("a", "c"))
     assert (alone.follows, alone.agreement) == ("b", agreement)
 
 

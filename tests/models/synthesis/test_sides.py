@@ -23,17 +23,17 @@ def turned(shapes: FloatArray, which: list[int]) -> FloatArray:
 
 
 @pytest.mark.parametrize("left", [[0], [1, 3], [0, 1, 2, 4]])
-def test_takes_of_two_sides_are_told_apart(left: list[int]) -> None:
+def test_takes_of_two_sides_are_separated(left: list[int]) -> None:
     found = sides(turned(takes(5), left))
     few = -1 if len(left) < 3 else 1
     np.testing.assert_array_equal(found, [few if i in left else -few for i in range(5)])
 
 
-def test_of_as_many_of_either_side_the_first_takes_is_kept() -> None:
+def test_of_equally_frequent_sides_that_of_the_first_take_is_positive() -> None:
     np.testing.assert_array_equal(sides(turned(takes(4), [0, 3])), [1, -1, -1, 1])
 
 
-def test_takes_of_one_side_have_none() -> None:
+def test_takes_of_one_side_have_no_side() -> None:
     assert not sides(takes(6)).any()
     assert not sides(takes(6, noise=1.0)).any()
     assert not sides(takes(1)).any()
@@ -41,13 +41,13 @@ def test_takes_of_one_side_have_none() -> None:
     assert not sides((symmetric + mirrored(symmetric)) / 2 + 0.01 * takes(6, seed=3)).any()
 
 
-def test_what_goes_round_has_no_side() -> None:
+def test_cycles_have_no_side() -> None:
     cyclic = turned(takes(4), [1])
     cyclic[2, -1] = 1.0
     assert not sides(cyclic).any()
 
 
-def test_takes_are_brought_to_one_side_and_back() -> None:
+def test_takes_are_mirrored_to_one_side_and_back() -> None:
     plain = takes(5)
     mixed = turned(plain, [1, 3])
     found = sides(mixed)
@@ -57,7 +57,7 @@ def test_takes_are_brought_to_one_side_and_back() -> None:
     np.testing.assert_array_equal(to_side(mixed, np.zeros_like(found), 1), mixed)
 
 
-def test_who_kicks_left_waves_left_where_the_others_do() -> None:
+def test_the_side_of_a_task_follows_the_correlation_among_others() -> None:
     kicks, waves = np.array([1, 1, -1, 1]), np.array([-1, -1, 1, -1])
     assert likely_side([-1], [kicks], waves) == 1
     assert likely_side([1], [kicks], waves) == -1

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.models.words.calibration import AS_THEY_ARE, WordCalibration, calibrate
+from app.models.words.calibration import IDENTITY_CALIBRATION, WordCalibration, calibrate
 from app.models.words.model import fit_word_model
 from app.numerics.arrays import FloatArray
 
@@ -41,7 +41,7 @@ def test_scores_of_new_clips_are_the_shares_that_carry_a_word(
         assert truth[within].mean() == pytest.approx(found[within].mean(), abs=0.06)
 
 
-def test_words_that_go_together_are_likelier_together_than_by_chance() -> None:
+def test_words_that_occur_together_are_more_likely_together() -> None:
     rng = np.random.default_rng(0)
     statistics = rng.normal(size=(300, 3))
     one = (rng.random(300) < 0.5).astype(np.float64)
@@ -56,14 +56,14 @@ def test_words_that_go_together_are_likelier_together_than_by_chance() -> None:
     assert dependence(apart) > 0.8
 
 
-def test_more_is_always_likelier_and_never_certain() -> None:
+def test_probabilities_rise_with_outputs_and_are_never_0_or_1() -> None:
     made = WordCalibration(np.array([0.1, 0.4]), np.array([0.0, 1.0]), 0.5)
     found = made.probabilities(np.linspace(-1.0, 2.0, 301))
     assert (np.diff(found) > 0).all()
     assert 0 < found[0] < found[-1] < 1
 
 
-def test_copies_of_a_recording_are_not_judged_by_one_another() -> None:
+def test_copies_of_a_recording_are_held_out_together() -> None:
     rng = np.random.default_rng(3)
     statistics, labels = rng.normal(size=(60, 3)), np.eye(6)[rng.integers(6, size=60)]
     twice, labels_twice = np.tile(statistics, (2, 1)), np.tile(labels, (2, 1))
@@ -77,11 +77,11 @@ def test_copies_of_a_recording_are_not_judged_by_one_another() -> None:
 def test_one_recording_leaves_outputs_as_they_are() -> None:
     statistics, labels = clips(6, 0)
     model = fit_word_model(statistics, labels)
-    assert calibrate(model, statistics, labels, ["one"] * 6) is AS_THEY_ARE
+    assert calibrate(model, statistics, labels, ["one"] * 6) is IDENTITY_CALIBRATION
 
 
 def test_a_query_of_one_word_has_that_words_probability() -> None:
     chances = np.array([[0.2], [0.7]])
-    np.testing.assert_allclose(np.exp(-AS_THEY_ARE.joint_surprise(chances)), chances[:, 0])
-    independent = AS_THEY_ARE.joint_surprise(np.array([[0.5, 0.4]]))
+    np.testing.assert_allclose(np.exp(-IDENTITY_CALIBRATION.joint_surprise(chances)), chances[:, 0])
+    independent = IDENTITY_CALIBRATION.joint_surprise(np.array([[0.5, 0.4]]))
     np.testing.assert_allclose(np.exp(-independent), 0.2)

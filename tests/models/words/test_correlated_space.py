@@ -25,7 +25,7 @@ def labels() -> np.ndarray:
     ).astype(float)
 
 
-def test_words_find_their_motions_both_ways_of_measuring(
+def test_words_find_their_motions_by_angle_and_by_distance(
     points: np.ndarray, labels: np.ndarray
 ) -> None:
     space = fit_correlated_space(points, labels)
@@ -34,7 +34,7 @@ def test_words_find_their_motions_both_ways_of_measuring(
         assert set(KIND[np.argsort(-scores)[:20]]) == {2}
 
 
-def test_a_word_finds_like_motions_that_do_not_carry_it(
+def test_a_word_finds_similar_motions_without_the_word(
     points: np.ndarray, labels: np.ndarray
 ) -> None:
     scores = fit_correlated_space(points, labels).clip_cosines(points, np.eye(5)[2])
@@ -49,7 +49,7 @@ def test_motions_find_their_words(points: np.ndarray, labels: np.ndarray) -> Non
         assert (best[KIND == 0] == 0).all()
 
 
-def test_survives_being_taken_apart(points: np.ndarray, labels: np.ndarray) -> None:
+def test_a_record_comes_back_from_its_arrays(points: np.ndarray, labels: np.ndarray) -> None:
     space = fit_correlated_space(points, labels)
     arrays, meta = space.to_arrays()
     again = CorrelatedSpace.from_arrays(arrays, meta)
@@ -69,9 +69,7 @@ def test_too_few_labels_are_refused_and_few_are_enough(
     assert np.isfinite(space.word_cosines(points)).all()
 
 
-def test_labels_or_points_that_are_all_the_same_do_no_harm(
-    points: np.ndarray, labels: np.ndarray
-) -> None:
+def test_equal_labels_or_points_give_finite_results(points: np.ndarray, labels: np.ndarray) -> None:
     same = fit_correlated_space(points, np.ones_like(labels))
     assert np.isfinite(same.clip_cosines(points, labels[0])).all()
     still = fit_correlated_space(np.zeros_like(points), labels)

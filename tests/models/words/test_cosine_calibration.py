@@ -41,7 +41,7 @@ def test_scores_of_new_clips_are_the_shares_that_carry_a_word() -> None:
     np.testing.assert_allclose(found.mean(axis=0), truth.mean(axis=0), atol=0.08)
 
 
-def test_at_the_same_angle_the_commoner_word_is_likelier() -> None:
+def test_at_the_same_angle_the_more_frequent_word_is_more_likely() -> None:
     points, labels = clips(400, 2)
     made = calibrate_cosines(points, labels, groups(400))
     common, rare = made.of_words(np.full((1, WORDS), 0.5))[0, [0, WORDS - 1]]
@@ -56,14 +56,14 @@ def test_scores_rise_strictly_and_are_never_certain() -> None:
 
 
 @pytest.mark.parametrize("count", [3, 4])
-def test_too_few_clips_to_hold_some_out_have_a_curve_all_the_same(count: int) -> None:
+def test_with_too_few_clips_to_hold_out_there_is_still_a_curve(count: int) -> None:
     points, labels = clips(count, 3)
     made = calibrate_cosines(points, labels, ["one"] * (count - 1) + ["other"])
     assert (made.level, made.slope, made.weight) == START
     assert ((made.shares > 0.0) & (made.shares < 1.0)).all()
 
 
-def test_words_that_all_or_no_clips_carry_do_no_harm() -> None:
+def test_words_of_all_or_no_clips_give_finite_scores() -> None:
     points, _ = clips(60, 4)
     labels = np.tile([1.0, 0.0], (60, 1))
     made = calibrate_cosines(points, labels, groups(60))
@@ -72,7 +72,7 @@ def test_words_that_all_or_no_clips_carry_do_no_harm() -> None:
     assert found[0] > 0.8 > 0.2 > found[1]
 
 
-def test_survives_being_stored() -> None:
+def test_a_record_is_stored_and_read_back() -> None:
     made = calibrate_cosines(*clips(80, 5), groups(80))
     arrays, meta = made.to_arrays()
     again = CosineCalibration.from_arrays(arrays, json.loads(json.dumps(meta)))

@@ -24,7 +24,7 @@ def test_both_modes_find_clips_for_a_word_and_words_for_a_clip(clips) -> None:  
     asked = model.ask(["waving"])
     points = model.space.place(symbols)
     default, cca = model.word_scores(statistics), model.word_scores_cca(points)
-    surprises = model.clip_surprises(default, model.vocabulary.words, asked.meant)
+    surprises = model.clip_surprises(default, model.vocabulary.words, asked.items)
     angles = model.angle_scores(model.clip_angles(points, asked), asked)
     for scores in (np.exp(-surprises), angles):
         assert ((scores >= 0) & (scores <= 1)).all()
@@ -34,7 +34,7 @@ def test_both_modes_find_clips_for_a_word_and_words_for_a_clip(clips) -> None:  
         assert {"walk", "stroll"} & {model.vocabulary.words[int(column)] for column in best}
 
 
-def test_survives_being_stored(clips) -> None:  # type: ignore[no-untyped-def]
+def test_a_record_is_stored_and_read_back(clips) -> None:  # type: ignore[no-untyped-def]
     symbols, statistics, words = clips
     model = fit_library_words(symbols, statistics, words).words
     arrays, meta = model.to_arrays()

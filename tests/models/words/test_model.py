@@ -9,7 +9,7 @@ from app.models.words.vocabulary import WordVocabulary
 from tests.models.word_clips import word_clips
 
 
-def test_words_of_clips_it_has_not_seen() -> None:
+def test_words_of_held_out_clips_are_predicted() -> None:
     _, statistics, words = word_clips(10)
     vocabulary = WordVocabulary.of(words)
     labels = vocabulary.label_matrix(words)
@@ -22,7 +22,7 @@ def test_words_of_clips_it_has_not_seen() -> None:
     assert wave.argmax() % 4 == 2
 
 
-def test_survives_being_taken_apart() -> None:
+def test_a_record_comes_back_from_its_arrays() -> None:
     _, statistics, words = word_clips(3)
     model = fit_word_model(statistics, WordVocabulary.of(words).label_matrix(words))
     arrays, meta = model.to_arrays()
@@ -33,7 +33,7 @@ def test_survives_being_taken_apart() -> None:
 
 
 @pytest.mark.parametrize("count", [1, 2, 4])
-def test_a_handful_of_clips_is_enough(count: int) -> None:
+def test_few_clips_are_enough(count: int) -> None:
     _, statistics, words = word_clips(1)
     labels = WordVocabulary.of(words).label_matrix(words)
     model = fit_word_model(statistics[:count], labels[:count])
@@ -47,5 +47,5 @@ def test_no_labels_are_refused() -> None:
         fit_word_model(np.zeros((2, 131)), np.zeros((2, 0)))
 
 
-def test_a_query_without_known_words_is_near_nothing() -> None:
+def test_a_query_without_known_words_has_cosine_zero() -> None:
     assert not clip_cosines(np.ones((3, 2)), np.zeros(2)).any()

@@ -8,7 +8,7 @@ from app.models.words.vocabulary import WordVocabulary
 VOCABULARY = WordVocabulary(("jump", "left_leg", "old", "run", "walk", "wave"))
 
 
-def test_words_are_told_apart() -> None:
+def test_words_are_separated() -> None:
     asked = understand(["an old man sprints", "zebra", "-jumping", "-gnu"], VOCABULARY, {})
     assert asked.weights["old"] == 1.0
     assert 0.5 <= asked.weights["run"] < 1.0
@@ -18,7 +18,7 @@ def test_words_are_told_apart() -> None:
     assert asked.expanded == {"sprints": ("run",)}
 
 
-def test_what_is_asked_for_itself_outweighs_what_is_meant() -> None:
+def test_a_word_of_the_query_has_more_weight_than_a_replacement() -> None:
     assert understand(["sprint", "run"], VOCABULARY, {}).weights == {"run": 1.0}
 
 

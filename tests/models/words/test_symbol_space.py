@@ -18,7 +18,7 @@ def test_points_lie_as_far_apart_as_their_symbols() -> None:
 
 def test_landmarks_give_nearly_the_same_space(monkeypatch: pytest.MonkeyPatch) -> None:
     symbols = word_clips(10)[0]
-    monkeypatch.setattr(symbol_space, "WHOLE_LIBRARY", 20)
+    monkeypatch.setattr(symbol_space, "MAX_WHOLE_LIBRARY", 20)
     monkeypatch.setattr(symbol_space, "LANDMARKS", 25)
     space = fit_symbol_space(symbols)
     assert len(space.landmarks) == 25
@@ -27,7 +27,7 @@ def test_landmarks_give_nearly_the_same_space(monkeypatch: pytest.MonkeyPatch) -
     assert (nearest.argmin(axis=1) % 4 == np.arange(len(points)) % 4).mean() > 0.9
 
 
-def test_a_new_symbol_is_placed_beside_its_like() -> None:
+def test_a_new_symbol_is_placed_near_a_similar_one() -> None:
     symbols = word_clips(6)[0]
     space = fit_symbol_space(symbols[:-4])
     points = space.place(symbols[-4:])
@@ -35,7 +35,7 @@ def test_a_new_symbol_is_placed_beside_its_like() -> None:
     assert (apart.argmin(axis=1) % 4 == np.arange(4)).all()
 
 
-def test_survives_being_taken_apart() -> None:
+def test_a_record_comes_back_from_its_arrays() -> None:
     symbols = word_clips(2)[0]
     space = fit_symbol_space(symbols[:5])
     arrays, meta = space.to_arrays()

@@ -35,7 +35,7 @@ def naive_dtw(a: FloatArray, b: FloatArray) -> float:
     seed=st.integers(0, 10_000),
 )
 @settings(max_examples=150, deadline=None)
-def test_a_batch_equals_the_naive_twin(
+def test_a_batch_equals_a_naive_computation(
     n: int, lengths: list[int], dimensions: int, seed: int
 ) -> None:
     rng = np.random.default_rng(seed)
@@ -50,7 +50,7 @@ def test_many_batches_give_what_one_gives(monkeypatch: pytest.MonkeyPatch) -> No
     query = rng.normal(size=(9, 3))
     candidates = [rng.normal(size=(m, 3)) for m in rng.integers(1, 30, size=40)]
     at_once = dtw_distances(query, candidates)
-    monkeypatch.setattr(dtw, "CELLS_AT_ONCE", 500)
+    monkeypatch.setattr(dtw, "MAX_CELLS_AT_ONCE", 500)
     np.testing.assert_allclose(dtw_distances(query, candidates), at_once, rtol=1e-5)
 
 
@@ -62,13 +62,13 @@ def test_many_batches_give_what_one_gives(monkeypatch: pytest.MonkeyPatch) -> No
     seed=st.integers(0, 10_000),
 )
 @settings(max_examples=100, deadline=None)
-def test_a_long_pair_in_strips_equals_the_naive_twin(
+def test_a_long_pair_in_strips_equals_a_naive_computation(
     n: int, m: int, rows: int, dimensions: int, seed: int
 ) -> None:
     rng = np.random.default_rng(seed)
     a, b = rng.normal(size=(n, dimensions)), rng.normal(size=(m, dimensions))
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(dtw, "CELLS_AT_ONCE", 1)
+        patched.setattr(dtw, "MAX_CELLS_AT_ONCE", 1)
         patched.setattr(dtw, "MIN_ROWS", rows)
         patched.setattr(dtw, "MAX_ROWS", rows)
         found = dtw_distances(a, [b], per_step=False)[0]
@@ -79,12 +79,12 @@ def test_strips_of_one_dimension_change_no_bit() -> None:
     rng = np.random.default_rng(5)
     a, b = rng.normal(size=2600), rng.normal(size=700)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(dtw, "CELLS_AT_ONCE", 10**9)
+        patched.setattr(dtw, "MAX_CELLS_AT_ONCE", 10**9)
         whole = dtw_distances(a, [b])[0]
     assert dtw_distances(a, [b])[0] == whole
 
 
-def test_a_long_pair_takes_memory_as_it_is_long_and_not_its_square() -> None:
+def test_the_memory_of_a_long_pair_grows_with_its_length() -> None:
     a, b = np.sin(np.arange(40_000) / 50), np.sin(np.arange(400) / 50)
     tracemalloc.start()
     dtw_distances(a, [b])[0]
@@ -93,7 +93,7 @@ def test_a_long_pair_takes_memory_as_it_is_long_and_not_its_square() -> None:
     assert peak < 16 * 2**20, "the table of costs alone has 64 MB"
 
 
-def test_the_work_stops_between_two_steps_when_nobody_waits_for_it() -> None:
+def test_the_computation_stops_when_the_client_left() -> None:
     a, b = np.zeros(20_000), np.zeros(20_000)
     abandoned = Deadline()
     abandoned.abandon()
@@ -101,7 +101,7 @@ def test_the_work_stops_between_two_steps_when_nobody_waits_for_it() -> None:
         dtw_distances(a, [b])[0]
 
 
-def test_what_a_pair_costs_does_not_depend_on_what_it_is_computed_beside() -> None:
+def test_the_cost_of_a_pair_does_not_depend_on_the_other_candidates() -> None:
     rng = np.random.default_rng(3)
     query = rng.normal(size=(41, 82)).astype(np.float32)
     lengths = rng.integers(1, 90, size=60)
@@ -113,7 +113,7 @@ def test_what_a_pair_costs_does_not_depend_on_what_it_is_computed_beside() -> No
     assert together[20:31].tolist() == some.tolist()
 
 
-def test_a_sequence_is_at_no_distance_from_itself_and_distance_is_symmetric() -> None:
+def test_a_sequence_has_distance_zero_to_itself_and_distance_is_symmetric() -> None:
     rng = np.random.default_rng(2)
     a, b = rng.normal(size=(20, 82)).astype(np.float32), rng.normal(size=(31, 82))
     from_a, from_b = dtw_distances(a, [a, b]), dtw_distances(b, [a])
@@ -121,7 +121,7 @@ def test_a_sequence_is_at_no_distance_from_itself_and_distance_is_symmetric() ->
     assert from_a[1] == pytest.approx(from_b[0])
 
 
-def test_one_dimension_may_be_given_flat_and_is_exact() -> None:
+def test_one_dimension_may_be_a_flat_array_and_is_exact() -> None:
     a, b = np.array([0.0, 1.0, 2.0]), np.array([0.0, 0.0, 1.0, 2.0, 2.0])
     assert dtw_distances(a, [b]) == 0.0
     assert dtw_distances(a, [b + 1], per_step=False) == pytest.approx(naive_dtw(a, b + 1))

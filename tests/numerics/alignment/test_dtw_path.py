@@ -61,5 +61,5 @@ def test_of_equal_steps_both_sequences_move() -> None:
     np.testing.assert_array_equal(path, np.eye(6, dtype=bool))
 
 
-def test_no_table_has_no_path() -> None:
+def test_zero_tables_have_zero_paths() -> None:
     assert cheapest_paths(np.zeros((0, 4, 4)), 0.2, np.zeros(0)).shape == (0, 4, 4)

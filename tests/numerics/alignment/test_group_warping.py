@@ -26,12 +26,12 @@ def wandering(count: int, size: int = 32, seed: int = 0) -> FloatArray:
 def test_a_large_number_is_warped_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     one, other = wandering(7, seed=1), wandering(7, seed=2)
     times, motions = warping_times(one, other), warped(one, other)
-    monkeypatch.setattr(group_warping, "AT_ONCE", 3)
+    monkeypatch.setattr(group_warping, "MAX_TAKES_AT_ONCE", 3)
     np.testing.assert_array_equal(warping_times(one, other), times)
     np.testing.assert_array_equal(warped(one, other), motions)
 
 
-def test_one_reference_may_serve_all_and_no_motion_is_none() -> None:
+def test_one_reference_for_all_motions_and_no_motions() -> None:
     motions, reference = wandering(4), wandering(1, seed=3)[0]
     each = [warped(motion[None], reference)[0] for motion in motions]
     np.testing.assert_allclose(warped(motions, reference), each, rtol=1e-12)
@@ -64,7 +64,7 @@ def late_middle(by: float) -> FloatArray:
     return np.stack([np.sin(5 * time), np.cos(3 * time), time], axis=-1)
 
 
-def test_a_motion_in_another_time_falls_onto_the_reference() -> None:
+def test_a_motion_with_another_timing_is_warped_onto_the_reference() -> None:
     reference, late = late_middle(0.0), late_middle(-0.15)
     before = np.abs(late - reference).mean()
     after = np.abs(warped(late[None], reference)[0] - reference).mean()

@@ -78,14 +78,14 @@ def _told(found: Matches) -> list[tuple[int, int, int]]:
     seed=st.integers(0, 10_000),
 )
 @settings(max_examples=25, deadline=None, derandomize=True)
-def test_it_finds_what_the_naive_twin_finds_in_pieces_and_batches_of_any_size(
+def test_matches_are_those_of_a_naive_search_in_pieces_of_any_size(
     n: int, lengths: list[int], dimensions: int, cells: int, seed: int
 ) -> None:
     rng = np.random.default_rng(seed)
     query = rng.normal(size=(n, dimensions))
     streams = [rng.normal(size=(m, dimensions)) for m in lengths]
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(module, "CELLS_AT_ONCE", cells)
+        patched.setattr(module, "MAX_CELLS_AT_ONCE", cells)
         found = subsequence_dtw(query, streams)
     # a query frame nearest to the point half-way between two frames is as near to either: of
     # matches that differ by that alone rounding decides
@@ -98,7 +98,7 @@ def test_it_finds_what_the_naive_twin_finds_in_pieces_and_batches_of_any_size(
 
 
 @pytest.mark.parametrize("factor", [0.6, 0.9, 1.0, 1.1, 1.7])
-def test_a_piece_played_at_another_speed_is_bounded_exactly(
+def test_a_piece_at_another_speed_is_matched_exactly(
     factor: float,
 ) -> None:
     rng = np.random.default_rng(3)
@@ -113,7 +113,7 @@ def test_a_piece_played_at_another_speed_is_bounded_exactly(
     assert abs(found.ends[best] - (201 + len(played))) <= 1
 
 
-def test_it_does_not_matter_where_the_samples_fell() -> None:
+def test_the_times_of_the_samples_do_not_matter() -> None:
     times = np.arange(0, 60, 0.5)
     curve = np.cumsum(np.random.default_rng(7).normal(size=(60, 6)), axis=0)
     fine = np.stack([np.interp(times, np.arange(60), column) for column in curve.T], axis=1)
@@ -124,7 +124,7 @@ def test_it_does_not_matter_where_the_samples_fell() -> None:
     assert (found.starts[best], found.ends[best]) in [(20, 40), (21, 41), (20, 41)]
 
 
-def test_every_place_where_the_query_stands_is_a_minimum_of_cost_nothing() -> None:
+def test_every_copy_of_the_query_is_a_match_of_cost_zero() -> None:
     rng = np.random.default_rng(4)
     query = rng.normal(size=(12, 82)).astype(np.float32)
     gaps = [rng.normal(size=(m, 82)).astype(np.float32) for m in (5, 30, 17)]
@@ -142,7 +142,7 @@ def test_a_match_is_between_half_and_twice_as_long_as_the_query() -> None:
     assert lengths.max() <= 20
 
 
-def test_streams_too_short_for_a_match_and_none_at_all() -> None:
+def test_too_short_streams_and_no_streams() -> None:
     query = np.ones((10, 2))
     for streams in ([], [np.zeros((4, 2))], [np.zeros((0, 2)), np.zeros((1, 2))]):
         found = subsequence_dtw(query, streams)

@@ -56,7 +56,7 @@ def test_ranks_as_monte_carlo_does(models: list[GaussianHMM]) -> None:
     assert spearmanr(np.ravel(slow), fast.ravel()).statistic > 0.98
 
 
-def test_a_symbol_is_no_distance_from_itself(models: list[GaussianHMM]) -> None:
+def test_a_symbol_has_divergence_zero_to_itself(models: list[GaussianHMM]) -> None:
     np.testing.assert_allclose(np.diag(symmetric_divergences(models, models)), 0.0, atol=1e-4)
 
 
@@ -74,6 +74,6 @@ def test_takes_of_one_motion_are_nearer_than_others() -> None:
     assert distances[0, 1] < 0.1 * distances[0, 2]
 
 
-def test_nothing_to_compare(models: list[GaussianHMM]) -> None:
+def test_no_models_have_no_divergences(models: list[GaussianHMM]) -> None:
     assert expected_path_divergences([], models).shape == (0, len(models))
     assert expected_path_divergences(models, []).shape == (len(models), 0)

@@ -35,7 +35,7 @@ def assert_sound(model: GaussianHMM, sequence: np.ndarray) -> None:
 
 
 @pytest.mark.parametrize(("frames", "states"), [(90, 10), (300, 30), (45, 5), (3, 1), (1, 1)])
-def test_it_is_the_textbook_s(frames: int, states: int) -> None:
+def test_a_fit_is_that_of_the_textbook(frames: int, states: int) -> None:
     sequence = wavy(frames, 5)
     start = fitted(sequence, states, iterations=0)
     expected = textbook_em(start, sequence, FLOOR, 3)
@@ -45,7 +45,7 @@ def test_it_is_the_textbook_s(frames: int, states: int) -> None:
     np.testing.assert_allclose(found.variances, expected.variances, atol=1e-9)
 
 
-def test_a_frame_far_from_every_state_is_no_trouble() -> None:
+def test_a_frame_far_from_every_state_is_fitted() -> None:
     """Its probability is below the smallest number; logarithms take over."""
     sequence = np.random.default_rng(1).normal(size=(3000, 6))
     sequence[1000] = 1e5
@@ -106,7 +106,7 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("sequence", HOSTILE.values(), ids=HOSTILE)
-def test_hostile_sequences_are_fitted_without_a_word(
+def test_extreme_sequences_are_fitted_without_warnings(
     sequence: np.ndarray, caplog: pytest.LogCaptureFixture
 ) -> None:
     caplog.set_level(logging.DEBUG)
@@ -119,14 +119,14 @@ def test_hostile_sequences_are_fitted_without_a_word(
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e150])
-def test_what_is_no_usable_number_is_refused(value: float) -> None:
+def test_nan_and_huge_numbers_are_refused(value: float) -> None:
     sequence = wavy(50, 1)
     sequence[20, 3] = value
     with pytest.raises(ValueError, match="expected channels within"):
         fitted(sequence, 10)
 
 
-def test_the_place_of_a_sequence_does_not_change_its_shape() -> None:
+def test_a_shifted_sequence_has_the_same_model() -> None:
     near, far = fitted(wavy(90, 3), 10), fitted(wavy(90, 3) + FAR, 10)
     np.testing.assert_allclose(far.means - FAR, near.means, atol=1e-7)
     np.testing.assert_allclose(far.variances, near.variances, atol=1e-7)

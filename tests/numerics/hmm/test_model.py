@@ -43,7 +43,7 @@ def test_likelihood_is_hmmlearns(model: GaussianHMM, frames: int) -> None:
     assert log_likelihood(model, sequence) == pytest.approx(expected, rel=1e-6)
 
 
-def test_a_short_beginning_is_possible_for_a_long_model(model: GaussianHMM) -> None:
+def test_the_short_start_of_a_motion_is_possible_for_a_long_model(model: GaussianHMM) -> None:
     assert np.isfinite(log_likelihood(model, wavy(80, 1)[:2]))
 
 
@@ -74,6 +74,6 @@ def test_expected_path_lasts_about_as_long_as_the_clip(model: GaussianHMM) -> No
 
 
 def test_mean_trajectory_is_near_the_motion(model: GaussianHMM) -> None:
-    wanted, got = wavy(80, 1), mean_trajectory(model)
-    resampled = got[np.linspace(0, len(got) - 1, len(wanted)).round().astype(int)]
-    assert np.abs(resampled - wanted).mean() < 0.4 * np.abs(wanted - wanted.mean(0)).mean()
+    expected, got = wavy(80, 1), mean_trajectory(model)
+    resampled = got[np.linspace(0, len(got) - 1, len(expected)).round().astype(int)]
+    assert np.abs(resampled - expected).mean() < 0.4 * np.abs(expected - expected.mean(0)).mean()

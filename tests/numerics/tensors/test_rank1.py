@@ -36,7 +36,7 @@ def test_a_rank_1_volume_is_found_exactly() -> None:
 
 @given(seed=st.integers(0, 10_000))
 @settings(max_examples=30, deadline=None)
-def test_what_is_left_is_what_the_weight_does_not_explain(seed: int) -> None:
+def test_the_residual_is_the_part_that_the_weight_does_not_explain(seed: int) -> None:
     volume = a_volume(seed)
     found = symmetric_rank1(volume)
     left = np.linalg.norm(volume - whole(found)) ** 2
@@ -94,7 +94,7 @@ def test_equals_a_general_decomposition(seed: int) -> None:
         np.testing.assert_allclose(mine, np.abs(factor) / length, atol=1e-5)
 
 
-def test_errors_fall_and_convergence_is_told() -> None:
+def test_errors_fall_and_convergence_is_reported() -> None:
     found = symmetric_rank1(a_volume(3))
     assert (np.diff(found.errors) <= 1e-12).all()
     assert found.converged
@@ -102,15 +102,15 @@ def test_errors_fall_and_convergence_is_told() -> None:
     assert not symmetric_rank1(a_volume(3), max_iterations=1).converged
 
 
-def test_it_stops_when_lambda_has_come_to_rest() -> None:
-    found = symmetric_rank1(a_volume(3), smallest_change=1e-6)
+def test_iterations_stop_when_lambda_is_constant() -> None:
+    found = symmetric_rank1(a_volume(3), min_change=1e-6)
     assert found.changes[-1] <= 1e-6
     assert found.iterations < symmetric_rank1(a_volume(3)).iterations
-    longer = symmetric_rank1(a_volume(3), smallest_change=0.0, max_iterations=100)
+    longer = symmetric_rank1(a_volume(3), min_change=0.0, max_iterations=100)
     np.testing.assert_allclose(symmetric_rank1(a_volume(3)).primary, longer.primary, atol=1e-6)
 
 
-def test_a_rho_that_swings_for_ever_is_brought_to_rest() -> None:
+def test_an_alternating_rho_converges() -> None:
     """One joint apart from twelve that coincide: lambda rests at once, rho never would."""
     star = np.zeros((13, 13, 4))
     star[0, 1:] = star[1:, 0] = 1.0
@@ -120,14 +120,14 @@ def test_a_rho_that_swings_for_ever_is_brought_to_rest() -> None:
     assert found.primary[0] == pytest.approx(np.sqrt(0.5))
 
 
-def test_scale_goes_to_the_weight_alone() -> None:
+def test_scale_changes_only_the_weight() -> None:
     once, thrice = symmetric_rank1(a_volume(4)), symmetric_rank1(3 * a_volume(4))
     assert thrice.weight == pytest.approx(3 * once.weight)
     np.testing.assert_allclose(thrice.primary, once.primary, atol=1e-12)
 
 
 @pytest.mark.parametrize("frames", [1, 2])
-def test_nothing_and_little_are_answered_without_nan(frames: int) -> None:
+def test_empty_and_tiny_volumes_give_no_nan(frames: int) -> None:
     found = symmetric_rank1(np.zeros((13, 13, frames)))
     assert found.weight == 0.0
     assert np.linalg.norm(found.primary) == pytest.approx(1.0)

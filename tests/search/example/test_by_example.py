@@ -43,8 +43,8 @@ class Gallery:
         rows.put([indexed(i, v) for i, v in zip(self.features, self.vectors, strict=True)])
         self.rows = rows.view()
 
-    def nearest(self, query: FloatArray, wanted: ClipFilter, exclude: Any) -> NearestRanking:
-        return NearestRanking(1, self.rows, self.rows.labels.mask(wanted, exclude), query)
+    def nearest(self, query: FloatArray, clip_filter: ClipFilter, exclude: Any) -> NearestRanking:
+        return NearestRanking(1, self.rows, self.rows.labels.mask(clip_filter, exclude), query)
 
     def load(self, clip_ids: Sequence[str], _: str) -> Mapping[str, FloatArray]:
         self.read.extend(clip_ids)
@@ -71,7 +71,7 @@ class Gallery:
 
 
 @pytest.mark.parametrize("size", [7, 130, 1000])
-def test_pages_of_fused_are_those_of_all_that_is_measured_at_once(size: int) -> None:
+def test_pages_of_fused_are_those_of_all_distances_measured_at_once(size: int) -> None:
     gallery = Gallery()
     query = gallery.query()
     pages = walk(

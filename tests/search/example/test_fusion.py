@@ -12,7 +12,9 @@ from tests.search.fused import fused_distances
 
 @given(n=st.integers(1, 40), seed=st.integers(0, 10_000))
 @settings(max_examples=40, deadline=None)
-def test_it_is_never_below_both_distances_and_nothing_only_to_itself(n: int, seed: int) -> None:
+def test_a_fused_distance_is_at_least_its_parts_and_zero_only_for_the_query(
+    n: int, seed: int
+) -> None:
     rng = np.random.default_rng(seed)
     vectors, warped = rng.normal(size=(n, 8)), rng.uniform(0.1, 1.0, size=n)
     query, warped[0] = vectors[0].copy(), 0.0
@@ -25,7 +27,7 @@ def test_it_is_never_below_both_distances_and_nothing_only_to_itself(n: int, see
 
 @given(seed=st.integers(0, 10_000))
 @settings(max_examples=20, deadline=None)
-def test_the_order_in_which_clips_come_does_not_matter(seed: int) -> None:
+def test_the_order_of_the_clips_does_not_matter(seed: int) -> None:
     rng = np.random.default_rng(seed)
     vectors, warped = rng.normal(size=(30, 8)), rng.uniform(size=30)
     order = rng.permutation(30)
@@ -35,7 +37,7 @@ def test_the_order_in_which_clips_come_does_not_matter(seed: int) -> None:
     np.testing.assert_allclose(other, one[order], rtol=1e-9)
 
 
-def test_the_same_task_is_found_through_those_who_do_it_half_so() -> None:
+def test_a_path_of_intermediate_clips_leads_to_the_same_task() -> None:
     """Two tasks side by side, manner along both: the own ones come before the other's nearer."""
     straight, fused = [], []
     for seed in range(20):
@@ -59,7 +61,7 @@ def test_a_little_noise_changes_distances_by_less_than_a_hundredth() -> None:
     assert np.abs(after / before - 1).max() < 0.01
 
 
-def test_no_clip_has_no_distance_and_one_has_one() -> None:
+def test_zero_clips_and_one_clip_are_ranked() -> None:
     assert fused_distances(np.ones(4), np.zeros((0, 4)), np.zeros(0)).shape == (0,)
     alone = fused_distances(np.ones(4), np.zeros((1, 4)), np.zeros(1))
     assert 2.0 <= alone[0] <= 2.0 * (1 + MAX_DETOUR)
@@ -67,7 +69,7 @@ def test_no_clip_has_no_distance_and_one_has_one() -> None:
 
 @given(seed=st.integers(0, 10_000))
 @settings(max_examples=20, deadline=None)
-def test_without_warping_it_is_a_bound_and_each_row_has_the_same_distance_alone(seed: int) -> None:
+def test_without_warping_it_is_a_lower_bound_and_rows_are_independent(seed: int) -> None:
     rng = np.random.default_rng(seed)
     query, vectors, warped = rng.normal(size=8), rng.normal(size=(40, 8)), rng.uniform(size=40)
     known, every = FusedDistance.of(query, vectors), np.arange(40)

@@ -11,21 +11,21 @@ from app.search.index.filters import parse_filter
 from app.store.clips.filter import ClipFilter
 
 
-def test_nothing_asked_lets_every_clip_pass() -> None:
+def test_an_empty_filter_selects_all_clips() -> None:
     assert parse_filter(None) == parse_filter({}) == ClipFilter()
 
 
-def test_a_string_means_that_value_and_an_array_any_of_its_values() -> None:
+def test_a_string_is_one_value_and_an_array_is_any_of_its_values() -> None:
     read = parse_filter({"person": "ada", "task": ["walk", "run"], "word": "Walk"})
     assert (read.person, read.task, read.word) == (("ada",), ("walk", "run"), ("walk",))
 
 
-def test_labels_are_looked_for_as_clips_keep_them() -> None:
+def test_labels_are_compared_in_their_stored_form() -> None:
     read = parse_filter({"word": ["left leg", " High-Kick "], "person": " Jose\u0301"})
     assert (read.word, read.person) == (("left_leg", "high_kick"), ("Jos\u00e9",))
 
 
-def test_what_is_refused_is_read_as_what_is_wanted() -> None:
+def test_not_conditions_are_read_like_the_others() -> None:
     read = parse_filter({"not_task": "walk", "not_word": [" Left Leg "], "not_person": ["a", "b"]})
     assert read.not_task == ("walk",)
     assert read.not_word == ("left_leg",)
@@ -54,7 +54,7 @@ def test_durations_are_numbers_of_seconds() -> None:
         ({"min_duration": -1}, "filter.min_duration"),
     ],
 )
-def test_what_cannot_be_read_is_named(given: dict[str, Any], location: str) -> None:
+def test_each_bad_key_is_named(given: dict[str, Any], location: str) -> None:
     with pytest.raises(BadField) as refused:
         parse_filter(given)
     assert [place.location for place in refused.value.places] == [location]

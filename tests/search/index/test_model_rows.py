@@ -40,7 +40,7 @@ def put(labels: Labels, *clip_ids: str) -> None:
     labels.add([indexed(clip_id) for clip_id in clip_ids])
 
 
-def test_rows_stand_in_the_order_of_the_index() -> None:
+def test_rows_are_in_the_order_of_the_index() -> None:
     labels, model, rows = labels_of("3", "1"), Model(), ModelRows()
     found = rows.of(labels.view(), "m", 2, model)
     assert found.values.tolist() == [[3, 0], [1, 0]]
@@ -51,7 +51,7 @@ def test_rows_stand_in_the_order_of_the_index() -> None:
     assert model.asked == [["3", "1"], ["2"]]
 
 
-def test_a_request_that_stops_half_way_leaves_the_rest_to_the_next_one(
+def test_the_next_request_continues_after_a_request_that_stopped(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(module, "BATCH", 2)
@@ -74,33 +74,33 @@ def test_a_request_that_stops_half_way_leaves_the_rest_to_the_next_one(
     assert model.asked == [["1", "2"], ["4"], ["6"], ["5"]]
 
 
-def test_a_clip_of_which_nothing_can_be_computed_is_not_there() -> None:
+def test_a_clip_without_arrays_has_no_row() -> None:
     labels, model, rows = labels_of("3", "9", "1"), Model(gone=["9"]), ModelRows()
     for _ in range(2):
-        assert rows.of(labels.view(), "m", 2, model).there.tolist() == [True, False, True]
+        assert rows.of(labels.view(), "m", 2, model).has_row.tolist() == [True, False, True]
     assert len(model.asked) == 1
 
 
 def test_an_empty_index_has_no_rows() -> None:
     found = ModelRows().of(Labels().view(), "m", 2, Model())
     assert found.values.shape == (0, 2)
-    assert found.there.shape == (0,)
+    assert found.has_row.shape == (0,)
 
 
-def test_a_clip_that_changed_is_computed_anew_and_an_older_view_keeps_its_row() -> None:
+def test_a_changed_clip_is_computed_again_and_an_older_view_stays_the_same() -> None:
     labels, rows = labels_of("1", "2"), ModelRows()
     before = labels.view()
     rows.of(before, "m", 2, Model())
     put(labels, "1")
     after = Model(stamp=5.0)
     found = rows.of(labels.view(), "m", 2, after)
-    assert found.values[found.there].tolist() == [[1, 0], [2, 0], [1, 5]]
+    assert found.values[found.has_row].tolist() == [[1, 0], [2, 0], [1, 5]]
     assert labels.view().alive.tolist() == [False, True, True]
     assert after.asked == [["1"]]
     assert rows.of(before, "m", 2, after).values.tolist() == [[1, 0], [2, 0]]
 
 
-def test_what_the_fit_knows_is_not_computed() -> None:
+def test_rows_of_the_fit_are_not_computed_again() -> None:
     labels, model, rows = labels_of("1", "2", "3"), Model(), ModelRows()
 
     def known() -> tuple[list[str], FloatArray]:
@@ -111,7 +111,7 @@ def test_what_the_fit_knows_is_not_computed() -> None:
     assert model.asked == [["1", "3"]]
 
 
-def test_another_model_has_rows_of_its_own_and_of_its_own_width() -> None:
+def test_another_model_has_its_own_rows_and_width() -> None:
     labels, rows = labels_of("1"), ModelRows()
     one = rows.of(labels.view(), "m", 2, Model())
     other = rows.of(labels.view(), "n", 3, lambda ids: {i: np.full(3, 2.0) for i in ids})
@@ -128,7 +128,7 @@ def test_many_clips_are_computed_in_batches(monkeypatch: pytest.MonkeyPatch) -> 
     assert found.values[:, 0].tolist() == list(range(8))
 
 
-def test_a_computation_that_fails_is_tried_again() -> None:
+def test_a_failed_computation_is_repeated() -> None:
     labels, rows = labels_of("1"), ModelRows()
 
     def fails(clip_ids: Sequence[str]) -> Mapping[str, FloatArray]:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.search.example.reranking import ReRanked
+from app.search.example.reranking import ShortlistRanking
 from app.search.index import rows as rows_module
 from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.rows import Layout, Rows
@@ -57,7 +57,7 @@ def _keys(vectors: Vectors) -> list[tuple[float, str]]:
 
 @BRIEF
 @given(VECTORS, st.integers(1, 9))
-def test_pages_put_together_are_the_ranking(vectors: Vectors, size: int) -> None:
+def test_all_pages_together_are_the_ranking(vectors: Vectors, size: int) -> None:
     near = _near(vectors)
     keys = _keys(vectors)
     assert list(near.ids) == walked(near, size) == [clip_id for _, clip_id in keys]
@@ -67,14 +67,14 @@ def test_pages_put_together_are_the_ranking(vectors: Vectors, size: int) -> None
 
 @BRIEF
 @given(VECTORS, st.sampled_from([0.0, 1.0, 1.5]), st.integers(0, 99).map("c{:02d}".format))
-def test_all_up_to_a_clip(vectors: Vectors, distance: float, clip_id: str) -> None:
+def test_the_clips_up_to_a_clip_are_listed(vectors: Vectors, distance: float, clip_id: str) -> None:
     page = _near(vectors).until(distance, clip_id)
     expected = [i for d, i in _keys(vectors) if (d, i) <= (distance, clip_id)]
     assert list(page.ids) == expected
     assert page.more == (len(expected) < len(vectors))
 
 
-def test_what_is_excluded_is_neither_ranked_nor_counted() -> None:
+def test_excluded_clips_are_neither_ranked_nor_counted() -> None:
     near = _near({"a": (0, 0, 0), "b": (1, 0, 0)}, left_out="a")
     assert (list(near.ids), len(near)) == (["b"], 1)
 
@@ -93,16 +93,16 @@ def _backwards(shortlist: Page) -> LowerBounds:
 
 @BRIEF
 @given(VECTORS, st.integers(1, 9), st.integers(1, 12))
-def test_a_shortlist_comes_first_and_the_rest_in_its_order(
+def test_a_shortlist_comes_first_and_the_other_clips_keep_their_order(
     vectors: Vectors, size: int, shortlist: int
 ) -> None:
-    found = ReRanked(_near(vectors), _backwards, shortlist)
+    found = ShortlistRanking(_near(vectors), _backwards, shortlist)
     order = [clip_id for _, clip_id in _keys(vectors)]
     expected = sorted(order[:shortlist], reverse=True) + order[shortlist:]
     assert list(found.ids) == expected
     assert np.all(np.diff(found.distances) >= 0)
     pages = walk(
-        lambda after: ReRanked(
+        lambda after: ShortlistRanking(
             _near(vectors), _backwards, shortlist, after.anchor if after else None
         ),
         size,
@@ -125,7 +125,7 @@ CHANGES = st.lists(
 
 @BRIEF
 @given(VECTORS, st.integers(1, 9), st.integers(1, 12), CHANGES, st.booleans())
-def test_clips_that_come_and_go_between_pages_make_none_be_missed_or_listed_twice(
+def test_no_clip_is_missed_or_listed_twice_if_clips_are_added_and_deleted_between_pages(
     vectors: Vectors, size: int, shortlist: int, changes: list[Any], rerank: bool
 ) -> None:
     """Clips that were there all the time are listed once; none is listed twice."""
@@ -144,7 +144,7 @@ def test_clips_that_come_and_go_between_pages_make_none_be_missed_or_listed_twic
         near = _near(now)
         if not rerank:
             return near
-        return ReRanked(near, _backwards, shortlist, after.anchor if after else None)
+        return ShortlistRanking(near, _backwards, shortlist, after.anchor if after else None)
 
     listed = [str(i) for page in walk(ranked, size) for i in page.ids]
     came_twice = {i for i in listed if listed.count(i) > 1}
@@ -152,21 +152,21 @@ def test_clips_that_come_and_go_between_pages_make_none_be_missed_or_listed_twic
     assert stayed <= set(listed)
 
 
-def test_a_clip_that_is_gone_from_the_shortlist_is_left_out() -> None:
+def test_a_deleted_clip_of_the_shortlist_is_left_out() -> None:
     vectors: Vectors = {f"c{n:02d}": (float(n), 0.0, 0.0) for n in range(6)}
 
     def gone(shortlist: Page) -> LowerBounds:
         away = np.where(shortlist.ids == "c00", np.inf, 0.0)
         return _bounds(shortlist.ids, shortlist.distances + away)
 
-    found = ReRanked(_near(vectors), gone, 3)
+    found = ShortlistRanking(_near(vectors), gone, 3)
     assert list(found.ids) == ["c01", "c02", "c03", "c04", "c05"]
-    everyone_gone = ReRanked(
+    everyone_gone = ShortlistRanking(
         _near(vectors), lambda s: _bounds(s.ids, np.full(len(s.ids), np.inf)), 3
     )
     assert list(everyone_gone.ids) == ["c03", "c04", "c05"]
 
 
-def test_nothing_to_rank() -> None:
-    page = ReRanked(_near({}), _backwards, 5).page(None, 10)
+def test_a_ranking_without_clips_is_empty() -> None:
+    page = ShortlistRanking(_near({}), _backwards, 5).page(None, 10)
     assert (len(page.ids), page.more) == (0, False)

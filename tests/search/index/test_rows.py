@@ -27,7 +27,7 @@ def _small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     """So that few clips fill blocks, and few dead ones are dropped."""
     monkeypatch.setattr(module, "BLOCK", 5)
     monkeypatch.setattr(module, "MAX_FEW_DEAD", 3)
-    monkeypatch.setattr(module, "COPIED", 2)
+    monkeypatch.setattr(module, "COPY_BATCH", 2)
 
 
 STEPS = st.lists(
@@ -77,7 +77,7 @@ def _held(view: RowsView) -> dict[str, list[list[float]]]:
 @pytest.mark.parametrize("layout", [ONE, MANY], ids=["one row", "several rows"])
 @SMALL
 @given(steps=STEPS)
-def test_they_hold_what_came_last(layout: Layout, steps: list[Any]) -> None:
+def test_rows_are_those_of_the_last_change(layout: Layout, steps: list[Any]) -> None:
     rows, kept = _played(layout, steps)
     assert len(rows) == len(kept)
     assert _held(rows.view()) == {
@@ -88,12 +88,14 @@ def test_they_hold_what_came_last(layout: Layout, steps: list[Any]) -> None:
 
 
 @SMALL
-@given(steps=STEPS, wanted=FILTERS, excluded=st.sampled_from("abz"))
-def test_filters_agree_with_the_slow_twin(steps: list[Any], wanted: Any, excluded: str) -> None:
+@given(steps=STEPS, clip_filter=FILTERS, excluded=st.sampled_from("abz"))
+def test_filters_select_the_same_clips_as_a_loop(
+    steps: list[Any], clip_filter: Any, excluded: str
+) -> None:
     rows, kept = _played(ONE, steps)
     labels = rows.view().labels
-    found = labels.ids[labels.mask(wanted, [excluded])]
-    expected = {i for i, clip in kept.items() if passes(clip, wanted) and i != excluded}
+    found = labels.ids[labels.mask(clip_filter, [excluded])]
+    expected = {i for i, clip in kept.items() if passes(clip, clip_filter) and i != excluded}
     assert sorted(found) == sorted(expected)
 
 
@@ -116,7 +118,7 @@ def test_a_view_stays_as_it_was(before: list[Any], after: list[Any]) -> None:
     assert words.keys() == held.keys()
 
 
-def test_masks_name_the_rows_of_the_clips_that_pass() -> None:
+def test_masks_select_the_rows_of_the_clips_that_pass() -> None:
     rows = Rows(MANY)
     rows.put([indexed(name, _array(MANY, n)) for n, name in enumerate("abc", 3)])
     view = rows.view()
@@ -136,7 +138,7 @@ def test_a_clip_of_an_earlier_analysis_is_left_out(array: np.ndarray | None) -> 
     assert len(rows) == 0
 
 
-def test_the_dead_are_dropped_when_they_are_most() -> None:
+def test_dead_rows_are_dropped_if_they_are_the_majority() -> None:
     rows = Rows(ONE)
     rows.put([indexed(f"c{i}", _array(ONE, i), words=frozenset({"w"})) for i in range(9)])
     rows.remove([f"c{i}" for i in range(7)])

@@ -1,11 +1,11 @@
-"""The index against the obvious: a list of all clips, compared one by one."""
+"""The index compared with a loop over all clips."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -20,37 +20,9 @@ from app.search.index.vector_index import VECTOR, WIDTH, VectorIndex
 from app.store.clips import arrays, index_feed
 from app.store.clips import repository as clips
 from app.store.clips.filter import ClipFilter
-from app.store.clips.record import ClipFacts, ClipLabels, ClipRecord, NewClip
-from app.store.database import schema
+from app.store.clips.record import ClipRecord
 from app.store.store import Store
-
-Add = Callable[..., ClipRecord]
-
-
-@pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
-    url = f"sqlite:///{tmp_path / 'kinedex.sqlite3'}"
-    schema.upgrade(url)
-    opened = Store.open(url, tmp_path / "files")
-    yield opened
-    opened.close()
-
-
-@pytest.fixture
-def add(store: Store) -> Add:
-    rng = np.random.default_rng(5)
-
-    def ready(name: str, duration: float = 2.0, **labels: Any) -> ClipRecord:
-        new = NewClip(f"{abs(hash(name)):064x}"[:64], f"{name}.bvh", 3, ClipLabels(name, **labels))
-        facts = ClipFacts("bvh", 60, 30.0, 30.0, duration, 22, 0.01, {}, (), (), 1)
-        vector = rng.normal(size=WIDTH).astype(np.float32)
-        with store.write() as tx:
-            clip = clips.add_or_get(tx, new).clip
-            arrays.put_many(tx, clip.id, {VECTOR: vector}, version=1)
-            clips.set_ready(tx, clip.id, facts)
-            return clips.get(tx, clip.id)
-
-    return ready
+from tests.search.stored_clips import AddClip
 
 
 def _vector(store: Store, clip: ClipRecord) -> np.ndarray:
@@ -58,7 +30,7 @@ def _vector(store: Store, clip: ClipRecord) -> np.ndarray:
         return arrays.get_one(tx, clip.id, VECTOR)
 
 
-def test_distances_are_those_of_the_obvious_loop(store: Store, add: Add) -> None:
+def test_distances_are_those_of_a_loop(store: Store, add: AddClip) -> None:
     all_clips = [add(f"c{i}") for i in range(30)]
     index = VectorIndex()
     index.catch_up(store)
@@ -70,14 +42,14 @@ def test_distances_are_those_of_the_obvious_loop(store: Store, add: Add) -> None
         assert by_id[clip.id] == pytest.approx(naive, rel=1e-5)
 
 
-def test_a_clip_is_at_no_distance_from_itself(store: Store, add: Add) -> None:
+def test_a_clip_has_distance_zero_to_itself(store: Store, add: AddClip) -> None:
     clip = add("same")
     index = VectorIndex()
     index.catch_up(store)
     assert index.nearest(_vector(store, clip), ClipFilter()).distances.tolist() == [0.0]
 
 
-def test_it_follows_the_library(store: Store, add: Add) -> None:
+def test_it_follows_the_library(store: Store, add: AddClip) -> None:
     index, kept, gone = VectorIndex(), add("kept", person="ada"), add("gone")
     first = index.catch_up(store)
     assert set(index.candidates(ClipFilter()).ids) == {kept.id, gone.id}
@@ -115,8 +87,10 @@ FILTERS = [
 ]
 
 
-@pytest.mark.parametrize("wanted", FILTERS)
-def test_filters_agree_with_those_of_lists(store: Store, add: Add, wanted: ClipFilter) -> None:
+@pytest.mark.parametrize("clip_filter", FILTERS)
+def test_filters_select_the_same_clips_as_a_listing(
+    store: Store, add: AddClip, clip_filter: ClipFilter
+) -> None:
     from app.store.clips.listing import list_ids
 
     rng = np.random.default_rng(1)
@@ -133,13 +107,15 @@ def test_filters_agree_with_those_of_lists(store: Store, add: Add, wanted: ClipF
     index = VectorIndex()
     index.catch_up(store)
     with store.read() as tx:
-        expected = set(list_ids(tx, wanted))
-    assert set(index.candidates(wanted).ids) == expected
+        expected = set(list_ids(tx, clip_filter))
+    assert set(index.candidates(clip_filter).ids) == expected
     some = frozenset(list(expected)[:1])
-    assert set(index.candidates(wanted, exclude=some).ids) == expected - some
+    assert set(index.candidates(clip_filter, exclude=some).ids) == expected - some
 
 
-def test_it_is_loaded_in_batches(store: Store, add: Add, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_index_is_loaded_in_batches(
+    store: Store, add: AddClip, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(index_feed, "BATCH", 3)
     made = [add(f"c{i}", words=("slow",) if i % 2 else ("fast", "sad")) for i in range(8)]
     changed: list[str] = []
@@ -154,8 +130,8 @@ def test_it_is_loaded_in_batches(store: Store, add: Add, monkeypatch: pytest.Mon
     assert set(index.candidates(ClipFilter(word=("slow",))).ids) == {c.id for c in made[1::2]}
 
 
-def test_a_load_that_fails_is_done_anew(
-    store: Store, add: Add, monkeypatch: pytest.MonkeyPatch
+def test_a_failed_load_is_repeated(
+    store: Store, add: AddClip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(index_feed, "BATCH", 2)
     kept, gone, third = add("kept"), add("gone"), add("third")
@@ -177,8 +153,8 @@ def test_a_load_that_fails_is_done_anew(
     assert set(index.candidates(ClipFilter()).ids) == {kept.id, third.id}
 
 
-def test_searches_go_on_while_changes_are_loaded(
-    store: Store, add: Add, monkeypatch: pytest.MonkeyPatch
+def test_searches_continue_while_changes_are_loaded(
+    store: Store, add: AddClip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     first = add("first")
     index = VectorIndex()
@@ -201,7 +177,7 @@ def test_searches_go_on_while_changes_are_loaded(
     assert set(index.nearest(np.zeros(WIDTH), ClipFilter()).ids) == {first.id, late.id}
 
 
-def test_many_threads_search_while_clips_come_and_go(store: Store, add: Add) -> None:
+def test_many_threads_search_while_clips_are_added_and_deleted(store: Store, add: AddClip) -> None:
     """Each search sees a whole library: ready clips, in order, none twice, none half-changed."""
     stays = {add(f"stays {i}", person="ada", task="walk").id for i in range(20)}
     index = VectorIndex()
@@ -233,7 +209,7 @@ def test_many_threads_search_while_clips_come_and_go(store: Store, add: Add) -> 
 
 
 def test_no_search_waits_for_another(
-    store: Store, add: Add, monkeypatch: pytest.MonkeyPatch
+    store: Store, add: AddClip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Eight searches are in the middle of their product at the same moment."""
     add("one")
@@ -273,7 +249,7 @@ for clip_id in sys.argv[3:]:
 """
 
 
-def test_it_follows_another_process(store: Store, add: Add, tmp_path: Path) -> None:
+def test_the_index_follows_another_process(store: Store, add: AddClip, tmp_path: Path) -> None:
     changed, gone = add("changed"), add("gone")
     index = VectorIndex()
     index.catch_up(store)
@@ -299,14 +275,16 @@ def test_it_follows_another_process(store: Store, add: Add, tmp_path: Path) -> N
         other.communicate()
 
 
-def test_the_cache_stays_within_its_bytes_and_forgets_on_request(store: Store, add: Add) -> None:
+def test_the_cache_stays_within_its_bytes_and_forgets_on_request(
+    store: Store, add: AddClip
+) -> None:
     made = [add(f"c{i}") for i in range(10)]
     cache = ArrayCache(max_bytes=4 * WIDTH * 4)
     ids = [clip.id for clip in made]
     assert set(cache.get_many(store, ids, VECTOR)) == set(ids)
-    assert cache.bytes_kept <= 4 * WIDTH * 4
+    assert cache.cached_bytes <= 4 * WIDTH * 4
     kept = cache.get_many(store, ids[-1:], VECTOR)[ids[-1]]
     assert cache.get_many(store, ids[-1:], VECTOR)[ids[-1]] is kept
     cache.forget(ids)
-    assert cache.bytes_kept == 0
+    assert cache.cached_bytes == 0
     assert cache.get_many(store, [*ids[-1:], "clip_gone"], VECTOR).keys() == {ids[-1]}

@@ -14,7 +14,7 @@ from app.search.index import rows as rows_module
 from app.search.index.rows import Rows
 from app.search.pose import by_pose
 from app.search.pose.by_pose import POSES, POSITIONS, PoseHit, PoseRanking, pose_distances
-from app.search.pose.pose_places import Places, pose_places
+from app.search.pose.pose_matches import MatchesPerClip, pose_matches
 from app.search.ranking.cursor import Position, decode, digest, encode
 from app.store.clips.filter import ClipFilter
 from tests.bodies import standing, turned_about_y, walking, waving
@@ -25,15 +25,15 @@ QUESTION = digest("pose")
 
 @pytest.fixture(autouse=True, scope="module")
 def _small() -> object:
-    """So that clips lie across blocks, and are looked into in several rounds."""
+    """Small limits, so that clips extend over several blocks and are compared in several rounds."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(rows_module, "BLOCK", 16)
-        patch.setattr(by_pose, "AT_ONCE", 3)
+        patch.setattr(by_pose, "MAX_CLIPS_AT_ONCE", 3)
         yield
 
 
 def _library(seed: int, count: int) -> dict[str, np.ndarray]:
-    """Walks, waves and stands, disturbed, turned and moved; some clips twice."""
+    """Noisy, turned and moved clips that walk, wave or stand; some clips occur twice."""
     rng = np.random.default_rng(seed)
     made: dict[str, np.ndarray] = {}
     for number in range(count):
@@ -51,17 +51,19 @@ def _library(seed: int, count: int) -> dict[str, np.ndarray]:
 
 
 class _Searched:
-    """A ranking over a library, with a count of the clips that it looked into."""
+    """A ranking over a library. It records which clips were loaded."""
 
-    def __init__(self, clips: Mapping[str, np.ndarray], query: np.ndarray, places: Places) -> None:
+    def __init__(
+        self, clips: Mapping[str, np.ndarray], query: np.ndarray, per_clip: MatchesPerClip
+    ) -> None:
         self.clips = dict(clips)
         self.query = query
-        self.places = places
-        self.looked_into: list[str] = []
+        self.per_clip = per_clip
+        self.loaded: list[str] = []
 
     def load(self, clip_ids: Sequence[str], name: str) -> Mapping[str, np.ndarray]:
         assert name == POSITIONS
-        self.looked_into += clip_ids
+        self.loaded += clip_ids
         return {clip_id: self.clips[clip_id] for clip_id in clip_ids if clip_id in self.clips}
 
     def ranking(self, exclude: Sequence[str] = ()) -> PoseRanking:
@@ -69,15 +71,15 @@ class _Searched:
         none = np.zeros(0, dtype=int)
         rows.put([indexed(i, pose_cover(p, none)) for i, p in self.clips.items()])
         view = rows.view()
-        passing = view.labels.mask(ClipFilter(), exclude)
-        return PoseRanking(view, passing, self.query, self.load, self.places)
+        mask = view.labels.mask(ClipFilter(), exclude)
+        return PoseRanking(view, mask, self.query, self.load, self.per_clip)
 
     def naive(self) -> list[tuple[float, str]]:
-        """The slow twin: keys of all places of all clips."""
+        """The keys of the matches of all clips, computed from all frames."""
         return sorted(
-            PoseHit(clip_id, place).key
+            PoseHit(clip_id, match).key
             for clip_id, positions in self.clips.items()
-            for place in pose_places(pose_distances(positions, self.query), self.places)
+            for match in pose_matches(pose_distances(positions, self.query), self.per_clip)
         )
 
 
@@ -94,13 +96,13 @@ def _some_pose(clips: Mapping[str, np.ndarray], seed: int) -> np.ndarray:
     seed=st.integers(0, 10_000),
     count=st.integers(1, 14),
     limit=st.integers(1, 6),
-    places=st.sampled_from(Places),
+    per_clip=st.sampled_from(MatchesPerClip),
 )
-def test_pages_put_together_are_every_frame_searched(
-    seed: int, count: int, limit: int, places: Places
+def test_all_pages_together_are_the_same_as_a_search_of_all_frames(
+    seed: int, count: int, limit: int, per_clip: MatchesPerClip
 ) -> None:
     clips = _library(seed, count)
-    searched = _Searched(clips, _some_pose(clips, seed), places)
+    searched = _Searched(clips, _some_pose(clips, seed), per_clip)
     found: list[tuple[float, str]] = []
     after: Position | None = None
     while True:
@@ -113,36 +115,36 @@ def test_pages_put_together_are_every_frame_searched(
     assert found == searched.naive()
 
 
-def test_most_clips_are_never_looked_into() -> None:
+def test_most_clips_are_never_loaded() -> None:
     clips = _library(5, 60)
-    searched = _Searched(clips, pose_vectors(waving(1.0)[[12]])[0], Places.BEST)
+    searched = _Searched(clips, pose_vectors(waving(1.0)[[12]])[0], MatchesPerClip.BEST)
     page = searched.ranking().page(None, 3)
     assert [hit.key for hit in page.hits] == searched.naive()[:3]
-    assert len(set(searched.looked_into)) == len(searched.looked_into) < 30
+    assert len(set(searched.loaded)) == len(searched.loaded) < 30
 
 
-def test_a_pose_finds_itself_at_no_distance_wherever_it_stands() -> None:
+def test_a_pose_finds_its_own_frame_at_distance_zero_also_when_turned_and_moved() -> None:
     clips = _library(1, 8) | {"own": walking(2.0).astype(np.float32)}
     elsewhere = turned_about_y(3.0 * clips["own"][[17]], 2.0) + np.array([4.0, 0.0, -9.0])
-    searched = _Searched(clips, pose_vectors(elsewhere)[0], Places.BEST)
+    searched = _Searched(clips, pose_vectors(elsewhere)[0], MatchesPerClip.BEST)
     (hit,) = searched.ranking().page(None, 1).hits
-    assert (hit.clip_id, hit.place.frame) == ("own", 17)
-    assert hit.place.distance < 1e-6
+    assert (hit.clip_id, hit.match.frame) == ("own", 17)
+    assert hit.match.distance < 1e-6
     searched.query = pose_vectors(clips["own"][[17]])[0]
-    assert searched.ranking().page(None, 1).hits[0].place.distance == 0.0
+    assert searched.ranking().page(None, 1).hits[0].match.distance == 0.0
     others = searched.ranking(exclude=["own"]).page(None, 100).hits
     assert {hit.clip_id for hit in others} == clips.keys() - {"own"}
 
 
-def test_a_clip_that_is_gone_meanwhile_is_left_out() -> None:
+def test_a_clip_that_is_deleted_during_the_search_is_left_out() -> None:
     clips = _library(2, 6)
-    searched = _Searched(clips, _some_pose(clips, 2), Places.BEST)
+    searched = _Searched(clips, _some_pose(clips, 2), MatchesPerClip.BEST)
     ranking = searched.ranking()
     searched.clips = {}
     assert ranking.page(None, 10).hits == ()
 
 
 def test_an_empty_index_has_no_hits() -> None:
-    searched = _Searched({}, np.zeros(36, dtype=np.float32), Places.BEST)
+    searched = _Searched({}, np.zeros(36, dtype=np.float32), MatchesPerClip.BEST)
     page = searched.ranking().page(None, 10)
     assert (page.hits, page.more) == ((), False)

@@ -21,19 +21,19 @@ QUESTION = digest("clip_1", "fused")
     distance=st.floats(0, 1e9),
     clip_id=st.text(max_size=40),
 )
-def test_a_cursor_holds_its_position(rank: int, distance: float, clip_id: str) -> None:
+def test_a_cursor_contains_its_position(rank: int, distance: float, clip_id: str) -> None:
     position = Position(rank, distance, clip_id)
     assert decode(encode(position, QUESTION), QUESTION) == position
 
 
-def test_a_cursor_of_another_question_is_refused() -> None:
+def test_a_cursor_of_another_query_is_refused() -> None:
     cursor = encode(Position(1, 0.5, "clip_1"), QUESTION)
     with pytest.raises(BadField, match="cursor"):
         decode(cursor, digest("clip_1", "vector"))
 
 
 @given(st.text(max_size=80))
-def test_no_text_makes_anything_but_a_refusal(text: str) -> None:
+def test_any_other_text_is_refused(text: str) -> None:
     with pytest.raises(BadField) as refused:
         decode(text, QUESTION)
     assert refused.value.places[0].location == "cursor"
@@ -78,7 +78,7 @@ FORGED = st.lists(NUMBERS | st.text() | ANY_JSON, max_size=7).map(lambda rest: [
 @given(
     content=(ANY_JSON | FORGED).map(json.dumps).map(str.encode) | st.binary(), cut=st.integers(0, 3)
 )
-def test_whatever_a_cursor_holds_it_is_a_position_or_refused(content: bytes, cut: int) -> None:
+def test_a_cursor_with_any_content_is_a_position_or_is_refused(content: bytes, cut: int) -> None:
     cursor = base64.urlsafe_b64encode(content).decode()
     for text in (cursor, cursor.rstrip("="), cursor[: len(cursor) - cut], "[" * 990):
         try:

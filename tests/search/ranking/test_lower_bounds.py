@@ -20,7 +20,7 @@ def _ids(count: int) -> np.ndarray:
 
 @given(DISTANCES, st.integers(1, 9), st.integers(0, 10_000))
 @settings(max_examples=100, deadline=None)
-def test_pages_are_those_of_everything_measured(
+def test_pages_are_the_same_as_if_all_clips_were_measured(
     distances: list[float], size: int, seed: int
 ) -> None:
     truth = np.array(distances)
@@ -42,7 +42,7 @@ def test_pages_are_those_of_everything_measured(
         after = Position(seen, float(page.distances[-1]), str(page.ids[-1]))
 
 
-def test_each_clip_is_measured_once_and_few_where_bounds_are_near() -> None:
+def test_each_clip_is_measured_once_and_few_clips_if_bounds_are_tight() -> None:
     rng = np.random.default_rng(1)
     truth = rng.uniform(1.0, 9.0, size=300)
     looked: list[int] = []
@@ -60,13 +60,15 @@ def test_each_clip_is_measured_once_and_few_where_bounds_are_near() -> None:
     assert found.end == float(truth.max().round(9))
 
 
-def test_nothing_is_farther_than_the_end() -> None:
+def test_no_clip_is_farther_than_the_end() -> None:
     truth = np.array([1.0, 5.0, 3.0])
-    found = LowerBoundRanking(LowerBounds(_ids(3), truth, lambda rows: truth[rows]), most=2.5)
+    found = LowerBoundRanking(
+        LowerBounds(_ids(3), truth, lambda rows: truth[rows]), max_distance=2.5
+    )
     assert sorted(found.page(None, 3).distances.tolist()) == [1.0, 2.5, 2.5]
     assert found.end == 2.5
 
 
-def test_no_clip_has_an_end_too() -> None:
+def test_a_ranking_without_clips_has_an_end() -> None:
     found = LowerBoundRanking(LowerBounds(_ids(0), np.zeros(0), lambda rows: np.zeros(len(rows))))
     assert (len(found.page(None, 5).ids), found.end) == (0, 0.0)

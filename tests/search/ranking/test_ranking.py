@@ -25,7 +25,7 @@ def test_order_is_by_distance_then_id(distances: list[float]) -> None:
 
 
 @given(DISTANCES, st.floats(0.01, 100.0))
-def test_scores_are_equal_only_where_distances_are(distances: list[float], scale: float) -> None:
+def test_scores_are_equal_only_if_distances_are_equal(distances: list[float], scale: float) -> None:
     ranked = Ranking(_ids(len(distances)), np.array(distances))
     scores = [score(float(d), scale) for d in ranked.distances]
     assert all(0.0 < s <= 1.0 for s in scores)
@@ -38,17 +38,17 @@ def test_scores_are_equal_only_where_distances_are(distances: list[float], scale
 
 
 @given(DISTANCES, st.integers(1, 7))
-def test_pages_put_together_are_the_ranking(distances: list[float], size: int) -> None:
+def test_all_pages_together_are_the_ranking(distances: list[float], size: int) -> None:
     ranked = Ranking(_ids(len(distances)), np.array(distances))
     assert walked(ranked, size) == list(ranked.ids)
 
 
-def test_a_page_goes_on_where_its_last_clip_was_although_that_is_gone() -> None:
+def test_the_next_page_continues_after_the_last_clip_also_if_it_was_deleted() -> None:
     ranked = Ranking(np.array(["a", "c"], dtype=object), np.array([0.1, 0.3]))
     assert list(ranked.page(Position(1, 0.2, "b"), 5).ids) == ["c"]
 
 
-def test_a_page_tells_whether_there_is_more() -> None:
+def test_a_page_reports_whether_others_follow() -> None:
     ranked = Ranking(_ids(3), np.array([0.1, 0.3, 0.3]))
     assert [ranked.page(None, limit).more for limit in (1, 2, 3, 4)] == [True, True, False, False]
     assert not Ranking(_ids(0), np.zeros(0)).page(None, 1).more

@@ -77,7 +77,7 @@ def segment_of(features: FloatArray, start: float, end: float) -> QuerySegment:
 
 
 @pytest.mark.parametrize("frames", [1, 4, 10, 12, 20, 33, 40, 47, 110, 1200])
-def test_proposals_are_those_of_the_obvious_loop(some: Clips, frames: int) -> None:
+def test_proposals_are_those_of_a_loop(some: Clips, frames: int) -> None:
     segment = QuerySegment(smooth(frames / 10, 99), frames / 10)
     scale = scale_for(frames)
     found = propose(some.view, segment, None)
@@ -110,7 +110,7 @@ def _hops(frames: int, scale: WindowScale) -> list[int]:
 
 
 @pytest.mark.parametrize("length", [0.7, 2.0, 9.0])
-def test_every_way_finds_a_piece_where_it_was_cut_from(some: Clips, length: float) -> None:
+def test_every_method_finds_a_piece_at_its_own_position(some: Clips, length: float) -> None:
     segment = segment_of(some.features["clip_0"], 12.0, 12.0 + length)
     both, anchor = by_both(some.view, segment, None, some.load)
     assert anchor is not None
@@ -123,7 +123,7 @@ def test_every_way_finds_a_piece_where_it_was_cut_from(some: Clips, length: floa
         assert (best.start, best.end) == pytest.approx((12.0, 12.0 + length), abs=tolerance + 1e-6)
 
 
-def test_nothing_is_found_in_the_excluded_interval(some: Clips) -> None:
+def test_the_excluded_interval_has_no_hits(some: Clips) -> None:
     segment, excluded = (
         segment_of(some.features["clip_0"], 12, 14),
         ExcludedInterval("clip_0", 12.0, 14.0),
@@ -138,10 +138,9 @@ def test_nothing_is_found_in_the_excluded_interval(some: Clips) -> None:
         assert not (own & (found.starts < 14.0 - 1e-6) & (found.ends > 12.0 + 1e-6)).any()
 
 
-def test_all_else_follows_behind_what_was_warped(
-    some: Clips, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(in_windows, "_how_many", lambda segment: 2)
+def test_windows_follow_after_the_matches(some: Clips, monkeypatch: pytest.MonkeyPatch) -> None:
+    for limit in ("MIN_PROPOSED", "MAX_PROPOSED"):
+        monkeypatch.setattr(in_windows, limit, 2)
     segment = segment_of(some.features["clip_3"], 3, 5)
     found, anchor = by_both(some.view, segment, None, some.load)
     assert anchor is not None
@@ -153,21 +152,20 @@ def test_all_else_follows_behind_what_was_warped(
     assert set(found.owners[-windows:]) == {0, 1, 2, 3}
 
 
-def test_an_anchor_keeps_the_same_places_before_the_others(
-    some: Clips, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(in_windows, "_how_many", lambda segment: 4)
+def test_an_anchor_keeps_the_same_parts_first(some: Clips, monkeypatch: pytest.MonkeyPatch) -> None:
+    for limit in ("MIN_PROPOSED", "MAX_PROPOSED"):
+        monkeypatch.setattr(in_windows, limit, 4)
     segment = segment_of(some.features["clip_3"], 3, 5)
     first, anchor = by_both(some.view, segment, None, some.load)
-    before = [(place.key, place.distance) for place in merge_overlapping(first, 1000)[0]]
+    before = [(part.key, part.distance) for part in merge_overlapping(first, 1000)[0]]
     near = {f"new_{i}": some.features["clip_3"][25:55] + np.float32(0.01 * i) for i in range(1, 6)}
     grown = Clips({**some.features, **near})
     for given, is_kept in ((anchor, True), (None, False)):
         found, _ = by_both(grown.view, segment, None, grown.load, given)
         after = [
-            (place.key, place.distance)
-            for place in merge_overlapping(found, 1000)[0]
-            if not place.clip_id.startswith("new")
+            (part.key, part.distance)
+            for part in merge_overlapping(found, 1000)[0]
+            if not part.clip_id.startswith("new")
         ]
         assert (after == before) == is_kept
 
@@ -183,7 +181,7 @@ def test_matches_in_parts_of_clips_are_those_in_all_of_them(some: Clips) -> None
 
 
 @pytest.mark.parametrize("frames", [1, 150, 10_000])
-def test_few_frames_are_held_at_a_time_and_nothing_changes(
+def test_few_frames_are_in_memory_at_a_time_and_the_matches_are_the_same(
     some: Clips, monkeypatch: pytest.MonkeyPatch, frames: int
 ) -> None:
     segment = segment_of(some.features["clip_0"], 12, 14)
@@ -205,7 +203,7 @@ def _rows(found: Candidates) -> list[tuple[int, float, float]]:
     return list(zip(*columns, strict=True))
 
 
-def test_regions_that_touch_are_one() -> None:
+def test_regions_that_touch_are_joined() -> None:
     regions = [
         Region(1, 0, 5),
         Region(0, 7, 9),

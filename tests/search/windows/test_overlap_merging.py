@@ -42,7 +42,7 @@ def naive_merging(found: Candidates) -> list[Listed]:
 
 
 def listed(found: list[FoundInterval]) -> list[Listed]:
-    return [(place.clip_id, place.start, place.end, place.distance) for place in found]
+    return [(part.clip_id, part.start, part.end, part.distance) for part in found]
 
 
 @st.composite
@@ -58,11 +58,11 @@ def _some(draw: st.DrawFn) -> Candidates:
     return candidates(list(zip(*columns, strict=True)))
 
 
-@given(found=_some(), first_look=st.sampled_from([1, 5, 2048]))
+@given(found=_some(), first_count=st.sampled_from([1, 5, 2048]))
 @settings(max_examples=60, deadline=None)
-def test_they_are_those_of_the_greedy_loop(found: Candidates, first_look: int) -> None:
+def test_results_are_those_of_a_greedy_loop(found: Candidates, first_count: int) -> None:
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(module, "FIRST_LOOK", first_look)
+        patched.setattr(module, "FIRST_COUNT", first_count)
         everything, more = merge_overlapping(found, 1000)
     assert listed(everything) == naive_merging(found)
     assert not more
@@ -70,7 +70,7 @@ def test_they_are_those_of_the_greedy_loop(found: Candidates, first_look: int) -
 
 @given(found=_some(), size=st.integers(1, 7))
 @settings(max_examples=30, deadline=None)
-def test_pages_put_together_are_all_of_them(found: Candidates, size: int) -> None:
+def test_all_pages_together_are_all_results(found: Candidates, size: int) -> None:
     paged: list[FoundInterval] = []
     after: Position | None = None
     while True:
@@ -83,16 +83,16 @@ def test_pages_put_together_are_all_of_them(found: Candidates, size: int) -> Non
     assert listed(paged) == naive_merging(found)
 
 
-def test_neighbours_that_hardly_overlap_are_two_places() -> None:
+def test_neighbors_that_hardly_overlap_are_two_results() -> None:
     found = candidates([(0, 0.0, 2.0, 0.1), (0, 1.7, 3.7, 0.2), (0, 3.0, 5.0, 0.3)])
-    assert [place.start for place in merge_overlapping(found, 9)[0]] == [0.0, 1.7]
+    assert [part.start for part in merge_overlapping(found, 9)[0]] == [0.0, 1.7]
 
 
-def test_nothing_farther_than_asked_is_found() -> None:
+def test_no_result_is_farther_than_the_limit() -> None:
     found = candidates([(0, 0.0, 1.0, 0.1), (1, 0.0, 1.0, 0.2), (2, 0.0, 1.0, 0.3)])
-    assert [p.distance for p in merge_overlapping(found, 9, until=0.2)[0]] == [0.1, 0.2]
+    assert [p.distance for p in merge_overlapping(found, 9, max_distance=0.2)[0]] == [0.1, 0.2]
 
 
-def test_a_place_knows_which_candidate_it_was() -> None:
+def test_a_result_has_the_index_of_its_candidate() -> None:
     found = candidates([(0, 5.0, 6.0, 0.9), (1, 2.0, 3.0, 0.5)])
-    assert [place.index for place in merge_overlapping(found, 9)[0]] == [1, 0]
+    assert [part.index for part in merge_overlapping(found, 9)[0]] == [1, 0]

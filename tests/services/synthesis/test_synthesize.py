@@ -14,7 +14,7 @@ from app.analysis.descriptors.motion_shape import motion_shape
 from app.demo import demo_clips
 from app.errors import BadField, ClipNotFound, ModelNotFitted, NotEnoughLabels, NotFound
 from app.formats.read import read_recording
-from app.models.synthesis.agreement import AGREED
+from app.models.synthesis.agreement import MIN_AGREEMENT
 from app.models.synthesis.body import embody
 from app.models.synthesis.motion import course_of
 from app.motion.canonical.canonical import canonicalize
@@ -136,7 +136,7 @@ def test_of_dances_that_do_not_agree_one_is_followed_and_it_says_so(fitted: Libr
     assert quality.given_persons == ("ada", "chika")
     assert quality.follows in {"ada", "chika"}
     assert quality.agreement is not None
-    assert quality.agreement < AGREED
+    assert quality.agreement < MIN_AGREEMENT
     assert (quality.nearest_person, quality.nearest_task) == (quality.follows, "dance")
     real = load_motion(fitted, clip_of(fitted, quality.follows, "dance"))
     assert made.motion.duration == pytest.approx(real.duration, rel=0.05)
@@ -144,7 +144,7 @@ def test_of_dances_that_do_not_agree_one_is_followed_and_it_says_so(fitted: Libr
     walk = synthesize(fitted, SynthesisQuery("walk", person="chika")).quality
     assert walk.follows is None
     assert walk.agreement is not None
-    assert walk.agreement > AGREED
+    assert walk.agreement > MIN_AGREEMENT
 
 
 def jumps(motion: Motion) -> float:

@@ -1,1 +1,1 @@
-"""Words as people write them: inflections, meaning, sentences."""
+"""English words in queries: inflections, meanings, sentences."""

@@ -1,7 +1,7 @@
 """Base forms of English words: jumping, jumps, jumped -> jump; knives -> knife.
 
-Rules produce candidates, and the caller decides which of them are words. Only a known base form is
-used, so that "bus" stays and "wing" does not become "w". Phrases (left_legs) are split at their
+Rules produce candidates, and the caller decides which of them are words. Only words are used. So
+"bus" stays as it is, and "wing" does not become "w". Phrases (left_legs) are split at their
 underscores. The rules are those of regular English verbs and nouns; the list of irregular ones
 covers movement.
 """
@@ -90,7 +90,7 @@ IRREGULAR: dict[str, str] = {
 """Base form by inflected form."""
 
 _VOWELS = frozenset("aeiouy")
-_SHORTEST = 2
+_MIN_LETTERS = 2
 """Smallest number of letters of a base form."""
 _MAX_PHRASES = 64
 """Largest number of combinations of base forms that are tried for a phrase."""
@@ -115,14 +115,17 @@ def base_forms(word: str) -> tuple[str, ...]:
 
 
 def _of_one(word: str) -> Iterator[str]:
+    """Candidates for the base form of a word without underscores, the most likely first."""
     if word in IRREGULAR:
         yield IRREGULAR[word]
+    # A base form has a vowel: this removes most wrong candidates.
     for base in _by_rule(word.removesuffix("'s")):
-        if len(base) >= _SHORTEST and not _VOWELS.isdisjoint(base):
+        if len(base) >= _MIN_LETTERS and not _VOWELS.isdisjoint(base):
             yield base
 
 
 def _by_rule(word: str) -> Iterator[str]:
+    """Candidates for the base form of a regular verb, noun or adverb."""
     if word.endswith("ies"):
         yield word[:-3] + "y"
     if word.endswith("es"):
@@ -145,5 +148,5 @@ def _before(stem: str) -> Iterator[str]:
     """Possible base forms of a stem before -ing, -ed or -er: walk-, jog(g)-, wav(e)-."""
     yield stem
     yield stem + "e"
-    if len(stem) > _SHORTEST and stem[-1] == stem[-2]:
+    if len(stem) > _MIN_LETTERS and stem[-1] == stem[-2]:  # a doubled letter
         yield stem[:-1]

@@ -1,9 +1,9 @@
 """A small lexicon of human movement, written for this project.
 
-It has groups of words with the same meaning, and the kinds of each meaning. So a query finds clips
-whose annotator chose another word (*sprint* -> *run*). The likeness of two words is 1 for the same
-word, .9 for the same meaning, .7 if one is a kind of the other, .5 if both are kinds of the same
-meaning, and else 0.
+It has groups of words with the same meaning, and the kinds of each meaning. So a query also finds
+clips with another word of the same meaning (*sprint* -> *run*). The likeness of two words is 1 for
+the same word, .9 for the same meaning, .7 if one is a kind of the other, .5 if both are kinds of
+the same meaning, and else 0.
 """
 
 from __future__ import annotations
@@ -186,6 +186,7 @@ sit: kneel
 
 @cache
 def _meaning_of() -> dict[str, int]:
+    """The number of the meaning of each word, which is its line in _MEANINGS."""
     return {
         word: number
         for number, line in enumerate(_MEANINGS.strip().splitlines())
@@ -195,13 +196,13 @@ def _meaning_of() -> dict[str, int]:
 
 @cache
 def _broader() -> dict[int, frozenset[int]]:
-    """For each meaning, the meanings that it is a kind of."""
-    of: dict[int, set[int]] = {}
+    """For each meaning, the broader meanings of which it is a kind."""
+    broader: dict[int, set[int]] = {}
     for line in _KINDS.strip().splitlines():
         broad, kinds = line.split(":")
         for kind in kinds.split():
-            of.setdefault(_meaning_of()[kind], set()).add(_meaning_of()[broad])
-    return {kind: frozenset(broad) for kind, broad in of.items()}
+            broader.setdefault(_meaning_of()[kind], set()).add(_meaning_of()[broad])
+    return {kind: frozenset(broad) for kind, broad in broader.items()}
 
 
 def is_known(word: str) -> bool:
@@ -222,10 +223,10 @@ def likeness(one: str, other: str) -> float:
     above_a, above_b = _broader().get(a, frozenset()), _broader().get(b, frozenset())
     if a in above_b or b in above_a:
         return KIND_OF
-    return 0.0 if above_a.isdisjoint(above_b - _says_little()) else SIBLINGS
+    return 0.0 if above_a.isdisjoint(above_b - _too_broad()) else SIBLINGS
 
 
 @cache
-def _says_little() -> frozenset[int]:
+def _too_broad() -> frozenset[int]:
     """Meanings that are so broad that their kinds need not be similar: walking is not jumping."""
     return frozenset({_meaning_of()["move"]})

@@ -1,4 +1,4 @@
-"""Finds words of the library that are similar in meaning to a word that no clip carries."""
+"""Finds words of the library that are similar in meaning to a word that no clip has."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ from app.models.words.language.inflection import base_forms
 from app.models.words.language.lexicon import is_known, likeness
 
 MIN_LIKENESS = 0.5
-WITHIN = 0.05
-"""Words whose likeness is at most this much below the best are used too."""
+"""Words with a smaller likeness are not used."""
+MAX_BELOW_BEST = 0.05
+"""Words with a likeness at most this much below the best one are used too."""
 MAX_WORDS = 5
+"""The largest number of words that replace a word."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,16 +29,18 @@ def neighbors(
 ) -> tuple[Neighbor, ...]:
     """The words of the library that are nearest to a normalized `word`, the best first.
 
-    library: its words; related: WordNet's likeness by foreign word (see `wordnet`). Our lexicon
-    has priority. The result is empty if no word is near.
+    library: its words; related: WordNet's likeness by foreign word (see `wordnet`). WordNet is
+    used only if our lexicon has no similar word. The result is empty if no word is near.
     """
-    ours = tuple(library)
+    own_words = tuple(library)
     for form in (word, *base_forms(word)):
-        found = {one: likeness(form, one) for one in ours} if is_known(form) else {}
-        if max(found.values(), default=0.0) < MIN_LIKENESS:
-            found = {one: near for one, near in related.get(form, {}).items() if one in ours}
-        best = max(found.values(), default=0.0)
+        likenesses = {one: likeness(form, one) for one in own_words} if is_known(form) else {}
+        if max(likenesses.values(), default=0.0) < MIN_LIKENESS:
+            foreign = related.get(form, {})
+            likenesses = {one: near for one, near in foreign.items() if one in own_words}
+        best = max(likenesses.values(), default=0.0)
         if best >= MIN_LIKENESS:
-            near = [Neighbor(one, near) for one, near in found.items() if near >= best - WITHIN]
+            limit = best - MAX_BELOW_BEST
+            near = [Neighbor(one, near) for one, near in likenesses.items() if near >= limit]
             return tuple(sorted(near, key=lambda n: (-n.likeness, n.word))[:MAX_WORDS])
     return ()

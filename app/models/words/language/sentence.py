@@ -1,8 +1,8 @@
 """Reads a query of words, phrases or sentences into words to find and words to exclude.
 
-*an old man waves with his left hand* becomes old, wave, left, hand. Words that the library knows
-are kept, the longest phrases first (left_hand if that is a label), and then all words except
-function words. A word after a minus (-left), or after *without* in a sentence, is excluded.
+*an old man waves with his left hand* becomes old, wave, left, hand. Words and phrases of the
+library are used, the longest phrases first (left_hand if that is a label), and all other words
+except function words. A word after a minus (-left), or after *without* in a sentence, is excluded.
 """
 
 from __future__ import annotations
@@ -36,31 +36,34 @@ motion motions movement movements clip clips animation animations video action a
 find show search me please
 """
 FUNCTION_WORDS = frozenset(_FUNCTION_WORDS.split())
-"""Words that are ignored in a sentence unless a clip of the library carries them."""
+"""Words that are ignored in a sentence, except if a clip of the library has them."""
 
 NEGATIONS = frozenset({"no", "not", "never", "without"})
-"""The word of the sentence after one of these is excluded."""
+"""The next word of the sentence after one of these words is excluded."""
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
-    """Distinct normalized words to find (`wanted`) and to exclude, in their order."""
+class QueryWords:
+    """The words of a query: distinct, normalized, in their order.
 
-    wanted: tuple[str, ...]
+    included: words to find; excluded: words that a hit must not have.
+    """
+
+    included: tuple[str, ...]
     excluded: tuple[str, ...]
 
 
-def read_query(texts: Iterable[str], is_word: Callable[[str], bool]) -> Asked:
+def read_query(texts: Iterable[str], is_word: Callable[[str], bool]) -> QueryWords:
     """Read `texts`; each is a word, a phrase or a sentence.
 
     is_word: whether the library has a normalized word, inflected or not.
     """
-    wanted: list[str] = []
+    included: list[str] = []
     excluded: list[str] = []
     for text in texts:
         for word, is_excluded in _words_of(text.strip(), is_word):
-            (excluded if is_excluded else wanted).append(word)
-    return Asked(tuple(dict.fromkeys(wanted)), tuple(dict.fromkeys(excluded)))
+            (excluded if is_excluded else included).append(word)
+    return QueryWords(tuple(dict.fromkeys(included)), tuple(dict.fromkeys(excluded)))
 
 
 def _words_of(text: str, is_word: Callable[[str], bool]) -> Iterator[tuple[str, bool]]:
@@ -75,22 +78,25 @@ def _words_of(text: str, is_word: Callable[[str], bool]) -> Iterator[tuple[str, 
         if word:
             yield word, tokens[0].startswith("-")
         return
-    place, is_negated = 0, False
-    while place < len(tokens):
-        word, length = _longest(tokens[place:], is_word)
-        is_minus = tokens[place].startswith("-")
+    position, is_negated = 0, False
+    while position < len(tokens):
+        word, length = _longest_phrase(tokens[position:], is_word)
+        is_minus = tokens[position].startswith("-")
         if word and (is_minus or is_word(word) or word not in FUNCTION_WORDS):
             yield word, is_minus or is_negated
             is_negated = False
         is_negated |= word in NEGATIONS
-        place += length
+        position += length
 
 
-def _longest(tokens: list[str], is_word: Callable[[str], bool]) -> tuple[str, int]:
-    """The longest known phrase at the start of `tokens` (else the first word), and its length."""
+def _longest_phrase(tokens: list[str], is_word: Callable[[str], bool]) -> tuple[str, int]:
+    """The longest phrase of the library at the start of `tokens`, else the first word.
+
+    Also returns its number of tokens.
+    """
     for length in range(min(MAX_PHRASE_WORDS, len(tokens)), 1, -1):
         if any(token.startswith("-") for token in tokens[1:length]):
-            continue
+            continue  # a minus begins a new word
         phrase = normalize_word(" ".join(tokens[:length]))
         if is_word(phrase):
             return phrase, length

@@ -1,9 +1,9 @@
-"""Related words from WordNet, for words that our own lexicon lacks (extra `words`).
+"""Related words from WordNet, for words that are not in our own lexicon (extra `words`).
 
 Loading WordNet takes seconds and about 350 MB. So it is done in the process of a fit, and only for
 words that were not looked up before. The result is a table from foreign words to the library's
 words: *canter* -> *run*. The likeness depends on the relation of their usual senses: the same
-synset, one a kind of the other, two steps apart, or similar adjectives.
+synset, a kind of it, a kind of a kind, a broader synset, or similar adjectives.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ USUAL_SENSES = 4
 """Number of senses of a library's word for each part of speech; rarer senses give wrong results
 (*run* a risk)."""
 FOREIGN_SENSES = 3
-"""Number of senses of a foreign word, likewise (a *ball* that is a dance)."""
+"""The same number for a foreign word, for the same reason (a *ball* that is a dance)."""
 PARTS_OF_SPEECH = ("v", "n", "a")
 
 
@@ -36,22 +36,22 @@ class Meanings:
     related: Related = field(default_factory=dict)
 
     def of(self, words: Iterable[str], *, look_up: bool) -> Self:
-        """The meanings of `words`: the known ones and, with `look_up`, the others from WordNet.
+        """The meanings of `words`: the stored ones and, with `look_up`, the others from WordNet.
 
-        Without the extra `words`, nothing new is looked up.
+        Without the extra `words`, no new word is looked up.
         """
-        wanted = set(words)
-        kept = wanted & set(self.looked_up)
+        all_words = set(words)
+        done = all_words & set(self.looked_up)
         related = {
             foreign: near
             for foreign, ours in self.related.items()
-            if (near := {word: likeness for word, likeness in ours.items() if word in kept})
+            if (near := {word: likeness for word, likeness in ours.items() if word in done})
         }
-        if look_up and is_installed() and (new := wanted - kept):
-            kept |= new
+        if look_up and is_installed() and (new := all_words - done):
+            done |= new
             for foreign, ours in related_words(new).items():
                 related.setdefault(foreign, {}).update(ours)
-        return type(self)(tuple(sorted(kept)), related)
+        return type(self)(tuple(sorted(done)), related)
 
     def to_meta(self) -> dict[str, Any]:
         """JSON-able metadata for `from_meta`."""
@@ -80,12 +80,13 @@ def related_words(words: Iterable[str]) -> Related:
     for word in sorted(set(words)):
         for foreign, likeness in _neighbors(wordnet, word):
             if foreign != word:
-                known = related.setdefault(foreign, {})
-                known[word] = max(known.get(word, 0.0), likeness)
+                likenesses = related.setdefault(foreign, {})
+                likenesses[word] = max(likenesses.get(word, 0.0), likeness)
     return related
 
 
 def _neighbors(wordnet: Any, word: str) -> Iterator[tuple[str, float]]:
+    """Related words of `word`, normalized, with their likeness; a word can occur several times."""
     for part in PARTS_OF_SPEECH:
         for synset in wordnet.synsets(word, part)[:USUAL_SENSES]:
             for near, likeness in _around(synset):
@@ -95,6 +96,7 @@ def _neighbors(wordnet: Any, word: str) -> Iterator[tuple[str, float]]:
 
 
 def _around(synset: Any) -> Iterator[tuple[Any, float]]:
+    """The synset and the related synsets, with their likeness."""
     yield synset, SAME_SYNSET
     for near in (*synset.similar_tos(), *synset.verb_groups()):
         yield near, SIMILAR

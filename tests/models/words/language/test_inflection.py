@@ -49,7 +49,7 @@ def test_a_form_finds_its_word(form: str, base: str) -> None:
 
 
 @pytest.mark.parametrize("word", ["singing", "bing", "ss", "s", "ed", "", "zebra", "walkable"])
-def test_what_is_no_form_of_a_known_word_finds_none(word: str) -> None:
+def test_a_form_of_an_unknown_word_has_no_base_form(word: str) -> None:
     assert base_form(word, WORDS.__contains__) is None
 
 

@@ -24,11 +24,11 @@ LIBRARY = ("bow", "elderly", "jump", "kick", "punch", "run", "sit", "tired", "wa
         ("boots", "kick"),
     ],
 )
-def test_the_lexicon_knows_what_movers_say(word: str, ours: str) -> None:
+def test_the_lexicon_has_the_words_of_movement(word: str, ours: str) -> None:
     assert neighbors(word, LIBRARY, {})[0].word == ours
 
 
-def test_a_stranger_has_no_neighbours() -> None:
+def test_an_unknown_word_has_no_neighbors() -> None:
     assert neighbors("zebra", LIBRARY, {}) == ()
     assert neighbors("sprint", (), {}) == ()
 
@@ -42,14 +42,14 @@ def test_likeness_is_symmetric_and_the_same_word_is_the_nearest() -> None:
             assert one == other or likeness(one, other) < 1.0
 
 
-def test_what_wordnet_found_serves_where_the_lexicon_is_silent() -> None:
+def test_wordnet_is_used_for_words_that_the_lexicon_lacks() -> None:
     related = {"canter": {"run": 0.65, "walk": 0.5}, "sprint": {"walk": 0.9}}
     assert [near.word for near in neighbors("canter", LIBRARY, related)] == ["run"]
     assert neighbors("cantering", LIBRARY, related)[0].word == "run"
     assert neighbors("sprint", LIBRARY, related)[0].word == "run"
 
 
-def test_words_that_a_library_no_longer_carries_are_forgotten() -> None:
+def test_words_that_a_library_no_longer_has_are_dropped() -> None:
     before = Meanings(
         ("run", "walk"), {"canter": {"run": 0.6, "walk": 0.5}, "amble": {"walk": 0.8}}
     )
@@ -61,7 +61,7 @@ def test_words_that_a_library_no_longer_carries_are_forgotten() -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not is_installed(), reason="the extra `words` is not installed")
-def test_wordnet_knows_more() -> None:
+def test_wordnet_has_more_words() -> None:
     """WordNet takes seconds to load."""
     related = Meanings().of(LIBRARY, look_up=True).related
     for word, ours in {

@@ -1,4 +1,4 @@
-"""A sentence is reduced to the words that matter; what is not wanted is told apart."""
+"""A sentence is read into words to find and words to exclude."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.models.words.language.inflection import base_form
-from app.models.words.language.sentence import Asked, read_query
+from app.models.words.language.sentence import QueryWords, read_query
 
 _LABELS = "old wave left hand left_leg kick walk turn high_kick up"
 LABELS = frozenset(_LABELS.split())
@@ -18,7 +18,7 @@ def _is_word(word: str) -> bool:
 
 
 @pytest.mark.parametrize(
-    ("texts", "wanted", "excluded"),
+    ("texts", "included", "excluded"),
     [
         (["an old man waves with his left hand"], ("old", "waves", "left", "hand"), ()),
         (["The man's kicking with the left leg."], ("kicking", "left_leg"), ()),
@@ -36,15 +36,15 @@ def _is_word(word: str) -> bool:
         (["  ", "!?"], (), ()),
     ],
 )
-def test_what_is_asked(
-    texts: list[str], wanted: tuple[str, ...], excluded: tuple[str, ...]
+def test_queries_are_read_into_words(
+    texts: list[str], included: tuple[str, ...], excluded: tuple[str, ...]
 ) -> None:
-    assert read_query(texts, _is_word) == Asked(wanted, excluded)
+    assert read_query(texts, _is_word) == QueryWords(included, excluded)
 
 
 @given(st.lists(st.text(max_size=40), max_size=4))
 def test_any_text_is_read(texts: list[str]) -> None:
-    asked = read_query(texts, _is_word)
-    assert all(asked.wanted)
-    assert all(asked.excluded)
-    assert len(set(asked.wanted)) == len(asked.wanted)
+    words = read_query(texts, _is_word)
+    assert all(words.included)
+    assert all(words.excluded)
+    assert len(set(words.included)) == len(words.included)
