@@ -12,7 +12,7 @@ from app.store.store import Store
 CANNOT_START = 78
 """Exit code of a process that its settings, its port or its database do not allow to start, so
 that another try would be in vain (EX_CONFIG of sysexits.h)."""
-HOPELESS = (ConfigurationError, DatabaseOutOfDate)
+START_FAILURES = (ConfigurationError, DatabaseOutOfDate)
 """What makes a process end with it."""
 
 

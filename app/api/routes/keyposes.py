@@ -46,12 +46,12 @@ def get_keyposes(lib: Lib, clip_id: ClipId, wanted: Annotated[KeyposeQuery, Quer
     responses=refusals(400, 404, 413, 415),
     description=_NAMED,
 )
-def name_keyposes(lib: Lib, clip_id: ClipId, named: NamedKeyposes) -> KeyposesNamed:
+def annotate_keyposes(lib: Lib, clip_id: ClipId, named: NamedKeyposes) -> KeyposesNamed:
     """Name a clip's keyposes."""
-    return KeyposesNamed(times=list(keyposes.name_keyposes(lib, clip_id, named.times)))
+    return KeyposesNamed(times=list(keyposes.annotate_keyposes(lib, clip_id, named.times)))
 
 
 @router.delete("", status_code=204, dependencies=[writes, heavy], responses=refusals(404))
 def forget_named_keyposes(lib: Lib, clip_id: ClipId) -> None:
     """Take away what was named: the found keyposes count again."""
-    keyposes.name_keyposes(lib, clip_id, ())
+    keyposes.annotate_keyposes(lib, clip_id, ())

@@ -24,7 +24,7 @@ from app.errors import (
 )
 from app.services.children.child import ChildDied
 from app.services.library.analysis_pool import AnalysisRequest
-from app.services.library.keypose_frames import named_keyposes
+from app.services.library.keypose_frames import annotated_keypose_arrays
 from app.services.library.library import Library
 from app.services.library.stored_motion import motion_arrays
 from app.store.clips import repository as stored
@@ -33,7 +33,7 @@ from app.store.database.engine import Tx
 from app.store.jobs import leases, outcomes
 from app.store.jobs.record import ClaimedJob
 
-MOST_WARNINGS = 50
+MAX_WARNINGS = 50
 """The most warnings that one clip keeps."""
 RETRY_DELAY_S = 5.0
 """How long to wait before a temporary failure is tried again."""
@@ -82,7 +82,11 @@ def finish(tx: Tx, claimed: ClaimedJob, clip: ClipRecord, found: Analysis) -> No
     if _is_superseded(tx, clip):
         _leave(tx, claimed, clip)
         return
-    arrays = {**found.arrays, **motion_arrays(found.motion), **named_keyposes(tx, clip, found)}
+    arrays = {
+        **found.arrays,
+        **motion_arrays(found.motion),
+        **annotated_keypose_arrays(tx, clip, found),
+    }
     outcomes.finish_ingest(tx, claimed.lease, clip.id, facts(found), arrays, settles_imports=False)
 
 
@@ -136,7 +140,7 @@ def facts(found: Analysis) -> ClipFacts:
         missing_roles=tuple(role.value for role in motion.missing_roles),
         warnings=tuple(
             ClipWarning(c.code, shortened(c.detail, MAX_MESSAGE), c.likely)
-            for c in doubts[:MOST_WARNINGS]
+            for c in doubts[:MAX_WARNINGS]
         ),
         analysis_version=ANALYSIS_VERSION,
         audio_offset=found.audio_offset,

@@ -19,7 +19,7 @@ from app.search.index.nearest_ranking import NearestRanking
 from app.services.find.query import Arrays
 from app.services.library.fitted_models import ModelKind
 from app.services.library.library import Library
-from app.services.library.precomputed_rows import POINTS, read_known
+from app.services.library.precomputed_rows import POINTS, read_precomputed
 from app.store.clips.filter import ClipFilter
 
 KINDS = {
@@ -66,7 +66,7 @@ def rank_by_metric(
         query,
         clip_filter,
         exclude,
-        partial(read_known, lib, fitted.id, POINTS),
+        partial(read_precomputed, lib, fitted.id, POINTS),
     )
     content = hashlib.sha256(b"".join(descriptors[name].tobytes() for name in INPUTS)).hexdigest()
     return MetricRanking(found, fitted.id, content, model.calibration.probability)

@@ -19,7 +19,7 @@ from app.search.index.model_rows import ModelRowsView
 from app.search.ranking.ranking import Ranking
 from app.services.library.fitted_models import Fitted
 from app.services.library.library import Library
-from app.services.library.precomputed_rows import OUTPUTS, POINTS, read_known
+from app.services.library.precomputed_rows import OUTPUTS, POINTS, read_precomputed
 from app.store.clips.filter import ClipFilter
 
 STATISTICS = "symbol_statistics"
@@ -83,7 +83,7 @@ def clip_points(lib: Library, fitted: Words, clips: LabelView) -> ModelRowsView:
         fitted.id,
         fitted.model.space.points.shape[1],
         partial(_place, lib, fitted.model),
-        partial(read_known, lib, fitted.id, POINTS),
+        partial(read_precomputed, lib, fitted.id, POINTS),
     )
 
 
@@ -94,7 +94,7 @@ def _word_scores(lib: Library, fitted: Words, clips: LabelView) -> ModelRowsView
         fitted.id,
         len(fitted.model.vocabulary),
         partial(_predict, lib, fitted.model),
-        partial(read_known, lib, fitted.id, OUTPUTS),
+        partial(read_precomputed, lib, fitted.id, OUTPUTS),
     )
 
 

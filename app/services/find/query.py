@@ -17,7 +17,7 @@ from app.services import fields
 from app.services.find.query_source import UPLOAD_ONLY, QuerySource
 from app.services.library.analysis_pool import AnalysisRequest
 from app.services.library.library import Library
-from app.services.library.ready_clips import descriptors_of, find_ready
+from app.services.library.ready_clips import descriptors_of, read_ready_clip
 from app.services.library.stored_motion import load_motion
 from app.store.clips.record import ClipRecord
 from app.store.files.files import Readable
@@ -105,7 +105,7 @@ def _describe_clip(
         if getattr(source, name) not in (None, ""):
             raise fields.bad_field(name, "goes with an uploaded file, not with a stored clip")
     with lib.store.read() as tx:
-        clip = find_ready(tx, clip_id)
+        clip = read_ready_clip(tx, clip_id)
         if source.is_whole:
             return QueryDescriptors(source, descriptors_of(tx, clip, names), clip)
     part = cut(load_motion(lib, clip), source.start, source.end)

@@ -19,7 +19,7 @@ from app.services import fields
 from app.services.clips.catalogue import WORKER_DEATHS
 from app.services.imports.manifest_table import ManifestLimits
 from app.services.imports.plan import Plan
-from app.services.imports.register import Progress, Registering
+from app.services.imports.register import ImportRun, Progress
 from app.services.imports.skeleton_pairs import pair_skeletons
 from app.services.imports.sources import (
     ArchiveLimits,
@@ -88,7 +88,7 @@ def unpack(
     began = time.monotonic()
     archive = lib.store.files.path(claimed.file_sha256)
     with archive_files(archive, _limits(lib)) as files:
-        doing = Registering(lib, claimed.lease, _plan(lib, files))
+        doing = ImportRun(lib, claimed.lease, _plan(lib, files))
         turn = _Turn(lib, max(TURN_S, time.monotonic() - began))
         if doing.run(progress, should_stop, turn.is_over):
             doing.finish(WAITING)
@@ -104,7 +104,7 @@ def import_path(lib: Library, path: Path, progress: Progress | None = None) -> J
     """
     with _sources(lib, path) as files:
         plan = _plan(lib, files)
-        doing = Registering(lib, _own_job(lib, path).lease, plan)
+        doing = ImportRun(lib, _own_job(lib, path).lease, plan)
         doing.run(progress or (lambda *_: None), lambda: False, lambda: False)
         return doing.finish(WAITING)
 
@@ -125,7 +125,7 @@ class _Turn:
             return leases.is_any_claimable(tx, [JobKind.IMPORT])
 
 
-def _give_turn(doing: Registering) -> None:
+def _give_turn(doing: ImportRun) -> None:
     detail = f"{doing.done} of {doing.total} files; others go first"
     with doing.lib.store.write() as tx:
         stored.give_turn(tx, doing.lease, doing.done / doing.total, detail, LOWEST_PRIORITY)

@@ -17,7 +17,7 @@ from app.services.imports.manifest_table import MANIFEST_NAME, ManifestLimits
 from app.services.imports.skeleton_pairs import pair_skeletons
 from app.services.imports.sources import SourceFile
 
-MOST_ABSENT = 100
+MAX_ABSENT_LISTED = 100
 """How many missing files of manifests are reported one by one; the others are only counted."""
 
 
@@ -34,7 +34,8 @@ class Item:
 class Plan:
     """What an import does with its files.
 
-    motions: the files that may become clips; absent: the problems of the first MOST_ABSENT paths
+    motions: the files that may become clips; absent: the problems of the first
+    MAX_ABSENT_LISTED paths
     that a manifest names and that are missing; absent_count: how many paths are missing.
     """
 
@@ -54,7 +55,7 @@ class Plan:
         absent = {path: line for path, line in named if path not in self._by_path}
         self.absent_count = len(absent)
         self.absent = {
-            path: _absent(path, absent[path]) for path in heapq.nsmallest(MOST_ABSENT, absent)
+            path: _absent(path, absent[path]) for path in heapq.nsmallest(MAX_ABSENT_LISTED, absent)
         }
 
     def item(self, motion: SourceFile) -> Item:

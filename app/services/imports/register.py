@@ -1,4 +1,4 @@
-"""Registering the files of an import: each becomes a clip with an ingest job, or a problem.
+"""ImportRun the files of an import: each becomes a clip with an ingest job, or a problem.
 
 A clip, its job and the import's record of it are stored in one transaction. Files that become no
 clip wait to be recorded together, because each transaction waits for the disk.
@@ -33,19 +33,19 @@ Progress = Callable[[int, int, str], None]
 Over = Callable[[], bool]
 """Returns whether the import must stop now to let other imports run."""
 
-MOST_TOGETHER = 500
+MAX_PROBLEMS_TOGETHER = 500
 """Files without a clip that are recorded in one transaction."""
 RECORD_AFTER_S = 1.0
 """Such files wait at most this long, so that a cancellation is noticed."""
 FIRST_CLIPS = 64
-LOWEST_STEPS = 9
+MAX_PRIORITY_STEPS = 9
 """The clips of a large import wait for those of a small one: those after the first 64 have a
-priority lower by one step, after 128 by two, after 256 by three, up to LOWEST_STEPS."""
-JUDGED_AT_ONCE = HEAD_BYTES + TAIL_BYTES
+priority lower by one step, after 128 by two, after 256 by three, up to MAX_PRIORITY_STEPS."""
+MAX_CHECKED_BYTES = HEAD_BYTES + TAIL_BYTES
 """A file of at most this many bytes is checked before it is written anywhere."""
 
 
-class Registering:
+class ImportRun:
     """A running import: its plan, and the lease of its job."""
 
     def __init__(self, lib: Library, lease: Lease, plan: Plan) -> None:
@@ -125,7 +125,7 @@ class Registering:
     def _note(self, path: str, problem: KinedexError) -> None:
         self._problems.append(NewEntry(path, ImportOutcome.FAILED, problem=problem.as_problem()))
         waited = time.monotonic() - self._recorded_at
-        if len(self._problems) >= MOST_TOGETHER or waited >= RECORD_AFTER_S:
+        if len(self._problems) >= MAX_PROBLEMS_TOGETHER or waited >= RECORD_AFTER_S:
             self.record_problems()
 
     def _store(self, content: Readable, item: Item) -> None:
@@ -156,7 +156,7 @@ class Registering:
 
     def _priority(self) -> int:
         """The priority of the next analysis: a large import must not delay a small one."""
-        return BULK_PRIORITY + min((self.done // FIRST_CLIPS).bit_length(), LOWEST_STEPS)
+        return BULK_PRIORITY + min((self.done // FIRST_CLIPS).bit_length(), MAX_PRIORITY_STEPS)
 
 
 def judged(content: Readable) -> Readable:
@@ -165,11 +165,11 @@ def judged(content: Readable) -> Readable:
     Raises EmptyFile or UnknownFormat for a small file that is none, before it is written.
     """
     chunks, size = [], 0
-    while size <= JUDGED_AT_ONCE and (chunk := content.read(JUDGED_AT_ONCE + 1 - size)):
+    while size <= MAX_CHECKED_BYTES and (chunk := content.read(MAX_CHECKED_BYTES + 1 - size)):
         chunks.append(chunk)
         size += len(chunk)
     head = b"".join(chunks)
-    if size <= JUDGED_AT_ONCE:
+    if size <= MAX_CHECKED_BYTES:
         sniff(head)
     return _Rejoined(head, content)
 

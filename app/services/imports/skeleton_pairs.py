@@ -11,7 +11,7 @@ from bisect import bisect_left
 from collections.abc import Iterable
 from posixpath import splitext
 
-MOST_CUTS = 30
+MAX_CUTS = 30
 """Words that are cut off a motion's stem in search of its skeleton's."""
 
 _Folder = tuple[str, ...]
@@ -75,7 +75,7 @@ class _Skeletons:
 def _beginnings(stem: str) -> list[str]:
     """The stem, and what is left of it where words at its end are cut off, longest first."""
     cuts = [i for i in range(len(stem) - 1, 0, -1) if not stem[i].isalnum()]
-    return [stem] + [stem[:cut] for cut in cuts[:MOST_CUTS]]
+    return [stem] + [stem[:cut] for cut in cuts[:MAX_CUTS]]
 
 
 def _nearest(folder: _Folder, sorted_skeletons: list[tuple[_Folder, str]]) -> str | None:

@@ -58,12 +58,12 @@ METRICS = (ModelKind.METRIC_TASK, ModelKind.METRIC_PERSON)
 FALSE_ACCEPT_RATE = "false_accept_rate"
 """A setting of a recogniser: how often something new may be called known."""
 
-TELLING_UNKNOWN = (ModelKind.RECOGNIZER, ModelKind.PERERA)
+KINDS_WITH_UNKNOWN = (ModelKind.RECOGNIZER, ModelKind.PERERA)
 """Recognisers that have that setting."""
 
 _WITHOUT_PERSONS = frozenset({ModelKind.WORDS, ModelKind.METRIC_TASK, ModelKind.KEYPOSES})
 
-SHAPES_FITTED = "shapes"
+INPUT_SHAPES = "shapes"
 """In a model's meta: the shapes of the arrays that it was fitted on."""
 
 
@@ -173,7 +173,7 @@ class FittedModels:
                 raise missing_model(tx, kind.value)
             record = stored.current(tx, kind.value)
             arrays = stored.load_arrays(tx, record.id)
-        if record.meta.get(SHAPES_FITTED, input_shapes()) != input_shapes():
+        if record.meta.get(INPUT_SHAPES, input_shapes()) != input_shapes():
             # The worker analyses the clips anew, then fits anew.
             with store.read() as tx:
                 raise outdated_model(tx, kind.value)

@@ -55,7 +55,7 @@ def read_beats(tx: Tx, clip_id: str) -> Beats | None:
         return None
 
 
-def named_keyposes(tx: Tx, clip: ClipRecord, found: Analysis) -> dict[str, NDArray[Any]]:
+def annotated_keypose_arrays(tx: Tx, clip: ClipRecord, found: Analysis) -> dict[str, NDArray[Any]]:
     """The arrays to store of a clip whose keyposes a person named; none of any other."""
     named = keypose_annotations.get(tx, clip.id)
     if named is None:
@@ -64,7 +64,7 @@ def named_keyposes(tx: Tx, clip: ClipRecord, found: Analysis) -> dict[str, NDArr
     return keypose_arrays(frames, found.arrays[FEATURES])
 
 
-def store_keyposes(tx: Tx, clip: ClipRecord, times: FloatArray) -> None:
+def store_keypose_arrays(tx: Tx, clip: ClipRecord, times: FloatArray) -> None:
     """Put keyposes at `times` (seconds) in place of those of a ready clip, in all that is
     built on them."""
     count = len(arrays.get_one(tx, clip.id, ROLE_POSITIONS))

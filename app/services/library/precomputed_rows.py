@@ -19,11 +19,11 @@ from app.store.clips import versions as library
 OUTPUTS = f"{models.OF_CLIPS}outputs"
 POINTS = f"{models.OF_CLIPS}points"
 _IDS = f"{models.OF_CLIPS}ids"
-MOST_VALUES = 50_000_000
+MAX_VALUES = 50_000_000
 """Outputs beyond so many (200 MB) are not stored: searches compute what they need."""
 
 
-def known_arrays(
+def precomputed_arrays(
     ids: Sequence[str], outputs: FloatArray | None, points: FloatArray
 ) -> dict[str, NDArray[Any]]:
     """Arrays to store with the model: word scores (N, V) and coordinates (N, d) of N clips.
@@ -36,12 +36,12 @@ def known_arrays(
         _IDS: np.array([list(name) for name in _padded(ids)], dtype=np.uint8),
         POINTS: points.astype(np.float32),
     }
-    if outputs is not None and outputs.size <= MOST_VALUES:
+    if outputs is not None and outputs.size <= MAX_VALUES:
         kept[OUTPUTS] = outputs.astype(np.float32)
     return kept
 
 
-def read_known(lib: Library, model_id: str, name: str) -> tuple[Sequence[str], FloatArray]:
+def read_precomputed(lib: Library, model_id: str, name: str) -> tuple[Sequence[str], FloatArray]:
     """Ids (n) and rows (n, width) of OUTPUTS or POINTS, of clips that did not change since."""
     with lib.store.read() as tx:
         stored = models.load_arrays(tx, model_id, (_IDS, name))

@@ -16,7 +16,7 @@ from app.store.database.engine import Tx
 def ready_clip(lib: Library, clip_id: str) -> ClipRecord:
     """A clip that is ready; raises ClipNotFound, ClipNotReady."""
     with lib.store.read() as tx:
-        return find_ready(tx, clip_id)
+        return read_ready_clip(tx, clip_id)
 
 
 def ready_clips(lib: Library, clip_ids: Sequence[str], field: str) -> dict[str, ClipRecord]:
@@ -43,7 +43,7 @@ def ready_clips(lib: Library, clip_ids: Sequence[str], field: str) -> dict[str, 
     return found
 
 
-def find_ready(tx: Tx, clip_id: str) -> ClipRecord:
+def read_ready_clip(tx: Tx, clip_id: str) -> ClipRecord:
     """A clip that is ready, in a transaction; raises ClipNotFound, ClipNotReady."""
     clip = stored.get(tx, clip_id)
     if clip.state is not ClipState.READY:

@@ -37,7 +37,7 @@ from app.services.library.library import Library
 from app.services.library.ready_clips import ready_clip
 from app.services.library.stored_motion import load_motion
 from app.services.views.export_format import ExportFormat, ExportSkeleton
-from app.services.views.frame_rates import wanted_rate
+from app.services.views.frame_rates import requested_rate
 from app.services.views.low_dimensional import Reduction, as_motion, reduce
 from app.store.clips.record import ClipRecord
 
@@ -82,7 +82,7 @@ def export(
     clip = ready_clip(lib, clip_id)
     source = clip.frame_rate or 1.0 if reduction is None else ANALYSIS_RATE
     joints = clip.joints or 0 if reduction is None else len(SUN_ROLES)
-    rate = wanted_rate(lib, clip, fps, source=source, joints=joints)
+    rate = requested_rate(lib, clip, fps, source=source, joints=joints)
     ending = "-canonical" if body is ExportSkeleton.CANONICAL else ""
     if reduction is None:
         motion = load_motion(lib, clip)

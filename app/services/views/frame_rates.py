@@ -16,7 +16,7 @@ MAX_POSITIONS = 30_000_000
 joints has 26 million. The limit is 360 MB as float32."""
 
 
-def wanted_rate(
+def requested_rate(
     lib: Library, clip: ClipRecord, fps: float | None, *, source: float, joints: int
 ) -> float:
     """The frame rate: `fps`, or if it is None, the rate `source` (Hz) of the motion.

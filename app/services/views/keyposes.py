@@ -16,7 +16,7 @@ from app.models.keyposes.thresholds import USUAL, Thresholds
 from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from app.services import fields
-from app.services.library.keypose_frames import store_keyposes, stored_beats
+from app.services.library.keypose_frames import store_keypose_arrays, stored_beats
 from app.services.library.library import Library
 from app.services.library.ready_clips import ready_clip
 from app.services.library.stored_motion import load_motion
@@ -131,7 +131,7 @@ def _learned(lib: Library, method: str) -> tuple[Thresholds | None, int | None]:
     return found, None if found is None else fitted.version
 
 
-def name_keyposes(lib: Library, clip_id: str, times: Sequence[float]) -> tuple[float, ...]:
+def annotate_keyposes(lib: Library, clip_id: str, times: Sequence[float]) -> tuple[float, ...]:
     """Store the times of a clip's keyposes, in seconds; an empty list removes the annotation.
 
     The data that depend on the keyposes of a ready clip are updated at once. Raises BadField for
@@ -148,7 +148,7 @@ def name_keyposes(lib: Library, clip_id: str, times: Sequence[float]) -> tuple[f
         keypose_annotations.put(tx, clip_id, tidy)
         is_same = bool(tidy) or now.analysis_input == before.analysis_input
         if now.state is ClipState.READY and is_same and instead is not None:
-            store_keyposes(tx, now, instead)
+            store_keypose_arrays(tx, now, instead)
     return tidy
 
 

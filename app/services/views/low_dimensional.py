@@ -29,7 +29,7 @@ from app.services.library.keypose_frames import keypose_frames
 from app.services.library.library import Library
 from app.services.library.ready_clips import ready_clip, ready_clips
 from app.services.library.stored_motion import load_motion
-from app.services.views.frame_rates import wanted_rate
+from app.services.views.frame_rates import requested_rate
 from app.services.views.views import MotionView
 from app.store.clips.record import ClipRecord
 
@@ -165,7 +165,7 @@ def keyposes_of(lib: Library, clip: ClipRecord, model_clips: Sequence[str] = ())
 
 def frame_rate(lib: Library, clip: ClipRecord, fps: float | None) -> float:
     """`fps`, or 30 Hz if it is None. Raises BadField for a rate that is not possible."""
-    return wanted_rate(lib, clip, fps, source=ANALYSIS_RATE, joints=len(SUN_ROLES))
+    return requested_rate(lib, clip, fps, source=ANALYSIS_RATE, joints=len(SUN_ROLES))
 
 
 def as_motion(found: Reduced, clip: ClipRecord) -> Motion:

@@ -16,7 +16,7 @@ from app.services.figures.thumbnail import thumbnail
 from app.services.library.library import Library
 from app.services.library.ready_clips import ready_clip
 from app.services.library.stored_motion import load_motion
-from app.services.views.frame_rates import wanted_rate
+from app.services.views.frame_rates import requested_rate
 from app.store.clips import arrays
 
 CONVERGENCE = "msv_convergence"
@@ -62,7 +62,7 @@ def motion(lib: Library, clip_id: str, fps: float | None = None, joints: str = "
         raise fields.bad_field("joints", "must be all or roles")
     clip = ready_clip(lib, clip_id)
     count = len(SUN_ROLES) if joints == "roles" else clip.joints or 0
-    rate = wanted_rate(lib, clip, fps, source=clip.frame_rate or 1.0, joints=count)
+    rate = requested_rate(lib, clip, fps, source=clip.frame_rate or 1.0, joints=count)
     stored = load_motion(lib, clip)
     names, parents, positions = stored.names, tuple(stored.parents.tolist()), stored.positions
     if joints == "roles":

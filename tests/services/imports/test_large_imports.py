@@ -20,7 +20,7 @@ from app.services.clips import jobs
 from app.services.clips.jobs import FIRST_FILES
 from app.services.imports import imports
 from app.services.imports import register as import_register
-from app.services.imports.plan import MOST_ABSENT
+from app.services.imports.plan import MAX_ABSENT_LISTED
 from app.services.library.library import Library
 from app.store.jobs import queue
 from app.store.jobs.import_files import FileOutcome
@@ -70,7 +70,7 @@ def test_paths_that_a_manifest_names_in_vain_are_counted_and_the_first_are_liste
     assert job.result is not None
     assert (job.result["total"], job.result["absent"], job.result["ready"]) == (5001, 5000, 1)
     absent = list(jobs.all_files(lib, job.id, FileOutcome.ABSENT))
-    assert [file.path for file in absent] == [f"gone_{i:06d}.bvh" for i in range(MOST_ABSENT)]
+    assert [file.path for file in absent] == [f"gone_{i:06d}.bvh" for i in range(MAX_ABSENT_LISTED)]
     assert absent[0].error is not None
     assert absent[0].error["errors"][0]["location"] == "manifest.csv line 2"
 
@@ -142,7 +142,7 @@ def test_files_without_a_clip_are_recorded_together(
     monkeypatch.setattr(lib.store.database, "write", counted)
     _unpack(lib, claimed)
     # beside the entries: the end of the import, and the removal of its archive
-    assert writes["write"] <= 1200 / import_register.MOST_TOGETHER + 3
+    assert writes["write"] <= 1200 / import_register.MAX_PROBLEMS_TOGETHER + 3
 
 
 def test_small_files_that_are_no_motion_never_reach_the_disk(

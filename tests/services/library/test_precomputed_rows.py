@@ -11,7 +11,7 @@ from app.services.find import by_words as word_ranking
 from app.services.find.find import find_words
 from app.services.find.queries import WordQuery
 from app.services.library.library import Library
-from app.services.library.precomputed_rows import OUTPUTS, POINTS, read_known
+from app.services.library.precomputed_rows import OUTPUTS, POINTS, read_precomputed
 from app.services.training.models import request_fit
 from tests.libraries import upload, work
 
@@ -37,10 +37,10 @@ def test_the_first_search_computes_nothing_but_what_changed(
     update_clip(lib, ids[0], {"words": ["something"]})
     model = lib.models.words(lib.store)
     for name in (OUTPUTS, POINTS):
-        known, rows = read_known(lib, model.id, name)
+        known, rows = read_precomputed(lib, model.id, name)
         assert set(known) == set(ids[1:])
         assert len(rows) == 5
     outputs = predict(lib, model.model, ids[1:])
-    known, rows = read_known(lib, model.id, OUTPUTS)
+    known, rows = read_precomputed(lib, model.id, OUTPUTS)
     for clip_id, row in zip(known, rows, strict=True):
         np.testing.assert_allclose(row, outputs[clip_id], atol=1e-6)

@@ -11,7 +11,7 @@ from app.services.find.find import find_motion
 from app.services.find.queries import MotionQuery
 from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
-from app.services.views.keyposes import name_keyposes
+from app.services.views.keyposes import annotate_keyposes
 from app.services.views.segments import Segments, list_segments, segment_arrays
 from app.store.clips import arrays
 from app.store.clips.record import ClipRecord
@@ -84,11 +84,11 @@ def test_segments_follow_the_keyposes_that_a_person_names(
 ) -> None:
     lib, clip, _ = danced
     found = list_segments(lib, clip.id)
-    name_keyposes(lib, clip.id, [0.5, 1.5, 4.0])
+    annotate_keyposes(lib, clip.id, [0.5, 1.5, 4.0])
     named = list_segments(lib, clip.id)
     assert [(one.start, one.end) for one in named.segments] == [(0.5, 1.5), (1.5, 4.0)]
     asked = MotionQuery(QuerySource(clip.id), segment=0, scope="segments", include_self=True)
     hits = find_motion(lib, asked).items
     assert [(hit.start, hit.end) for hit in hits] == [(0.5, 1.5), (1.5, 4.0)]
-    name_keyposes(lib, clip.id, [])
+    annotate_keyposes(lib, clip.id, [])
     assert list_segments(lib, clip.id) == found
