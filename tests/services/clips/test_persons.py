@@ -55,11 +55,11 @@ def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoCl
     found = clips.get_clip(lib, theirs)
     assert (found.person, found.state) == (None, ClipState.READY)
     with pytest.raises(
-        ModelBeingFitted, match="removed: a person whom it held was removed"
+        ModelBeingFitted, match="removed: it held a person who was removed"
     ) as refused:
         recognize.recognize(lib, RecognizeQuery(QuerySource(theirs)))
     (waiting,) = jobs.list_jobs(lib, kind=JobKind.FIT, state=JobState.QUEUED).items
-    assert f"ask again when the job {waiting.id} has ended" in refused.value.detail
+    assert f"try again when the job {waiting.id} has ended" in refused.value.detail
     assert NAME not in refused.value.detail
     lib.store.erase_traces()
     assert NAME.encode() not in _bytes_of(lib.settings.data_dir)
@@ -101,7 +101,7 @@ def test_why_a_model_is_not_there_is_told(lib: Library, some_demo_clips: list[De
     with pytest.raises(ModelNotFitted, match="two clips each"):
         find_motion(lib, asked)
     models.request_fit(lib)
-    with pytest.raises(ModelBeingFitted, match=r"yet\. The models are being fitted: ask"):
+    with pytest.raises(ModelBeingFitted, match=r"yet\. The models are being fitted: try"):
         find_motion(lib, asked)
     persons.forget_person(lib, NAME)
     work(lib.settings)
