@@ -18,7 +18,7 @@ def test_good_files_enter_and_each_failure_is_told(
     count = len(clips)
     assert f"{count} of {count + 2} files are in the library ({count} new)." in told
     assert f"{BAD} " in told
-    assert f"{ABSENT} The manifest names a file that is not there." in told
+    assert f"{ABSENT} The manifest names a file that does not exist." in told
     assert "Traceback" not in imported.err
 
 

@@ -49,10 +49,10 @@ def rank_by_metric(
     clip_filter: ClipFilter,
     exclude: frozenset[str] = frozenset(),
 ) -> MetricRanking:
-    """All clips that pass the filter and are not excluded. The index must have caught up with the
-    library.
+    """Rank all clips that pass the filter and are not excluded.
 
-    descriptors: the INPUTS of the query. Raises ModelNotFitted.
+    The index must have caught up with the library. descriptors: the INPUTS of the query by name;
+    method: one of KINDS; exclude: ids of clips. Raises ModelNotFitted.
     """
     kind = KINDS[method]
     if kind is ModelKind.METRIC_PERSON and not lib.settings.recognize_persons:
@@ -73,11 +73,11 @@ def rank_by_metric(
 
 
 def _project(lib: Library, model: LearnedMetric, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
-    """Coordinates by clip id; clips that are gone are left out."""
+    """(d,) coordinates in the metric by clip id; clips without the arrays are left out."""
     with lib.store.read() as tx:
-        found = [usable_arrays.get_many(tx, clip_ids, name) for name in INPUTS]
-    there = [clip_id for clip_id in clip_ids if all(clip_id in part for part in found)]
-    if not there:
+        inputs = [usable_arrays.get_many(tx, clip_ids, name) for name in INPUTS]
+    usable = [clip_id for clip_id in clip_ids if all(clip_id in rows for rows in inputs)]
+    if not usable:
         return {}
-    described = Described(*(np.stack([part[clip_id] for clip_id in there]) for part in found))
-    return dict(zip(there, model.axes.project(described), strict=True))
+    described = Described(*(np.stack([rows[clip_id] for clip_id in usable]) for rows in inputs))
+    return dict(zip(usable, model.axes.project(described), strict=True))

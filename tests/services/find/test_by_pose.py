@@ -147,7 +147,7 @@ def _with(index: int, point: Any) -> list[Any]:
         (_with(9, [0, True, 0]), "positions.9", "neck"),
         (_with(9, "here"), "positions.9", "neck"),
         (_with(4, [1e9, 0, 0]), "positions.4", "hips: farther than"),
-        ([[1.0, 1.0, 1.0]] * 13, "positions", "all joints are in one place"),
+        ([[1.0, 1.0, 1.0]] * 13, "positions", "all joints have the same position"),
         ([[0.0, 0.1 * i, 0.0] for i in range(13)], "positions.7", "no left and right"),
     ],
 )

@@ -181,7 +181,7 @@ def test_an_import_lets_another_go_first_and_goes_on_afterwards(
     )
     waiting = _unpack(lib, claimed)
     assert (waiting.state, waiting.progress) == (JobState.QUEUED, pytest.approx(1 / 3))
-    assert waiting.detail == "1 of 3 files; others go first"
+    assert waiting.detail == "1 of 3 files; waiting for other imports"
     following = _claim(lib)
     assert following.job.id == small.id
     _unpack(lib, following)
