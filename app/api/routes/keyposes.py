@@ -46,7 +46,7 @@ def get_keyposes(lib: Lib, clip_id: ClipId, wanted: Annotated[KeyposeQuery, Quer
     responses=refusals(400, 404, 413, 415),
     description=_NAMED,
 )
-def annotate_keyposes(lib: Lib, clip_id: ClipId, named: NamedKeyposes) -> KeyposesNamed:
+def name_keyposes(lib: Lib, clip_id: ClipId, named: NamedKeyposes) -> KeyposesNamed:
     """Name a clip's keyposes."""
     return KeyposesNamed(times=list(keyposes.annotate_keyposes(lib, clip_id, named.times)))
 

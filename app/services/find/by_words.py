@@ -55,8 +55,8 @@ def rank_by_words(
     mode.
 
     The score is the probability that a clip carries the requested words. The distance is -ln of it
-    in mode "default", and 1 - cosine in the correlated space in mode "cca" (Takano, sections 2.2-2.4).
-    Raises ModelNotFitted, and NotEnoughLabels if mode "cca" could not be fitted.
+    in mode "default", and 1 - cosine in the correlated space (Takano, sections 2.2-2.4) in mode
+    "cca". Raises ModelNotFitted, and NotEnoughLabels if mode "cca" could not be fitted.
     """
     fitted = lib.models.words(lib.store)
     asked = fitted.model.ask(texts)

@@ -88,6 +88,7 @@ def _fit_one(store: Store, training: TrainingSet, kind: ModelKind, wordnet: bool
         _log.exception("the %s model could not be fitted", kind.value)
         return {"outcome": "failed", "reason": f"{type(defect).__name__}: {defect}"}
     with store.write() as tx:
+        # Somebody may have asked to forget a person during the fit, which takes long.
         if holds_persons(kind) and _is_someone_gone(tx, training):
             enqueue_fit(tx)
             return {"outcome": "skipped", "reason": "A person was removed during the fit."}
@@ -124,8 +125,9 @@ def _fit_words(training: TrainingSet, before: Before) -> Fit:
     fitted = fit_library_words(
         training.symbols, training.statistics, training.label_sets, training.groups
     )
-    known = Meanings.from_meta(before.meta.get("meanings", {}))
-    meanings = known.of(fitted.words.vocabulary.words, look_up=before.wordnet)
+    # Meanings are looked up once, since a look-up is slow: the model before has them already.
+    earlier = Meanings.from_meta(before.meta.get("meanings", {}))
+    meanings = earlier.of(fitted.words.vocabulary.words, look_up=before.wordnet)
     model = replace(fitted.words, meanings=meanings)
     arrays, meta = model.to_arrays()
     ids = [clip.id for clip in training.clips]

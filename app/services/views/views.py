@@ -24,7 +24,11 @@ CONVERGENCE = "msv_convergence"
 
 @dataclass(frozen=True, slots=True)
 class MotionView:
-    """A motion to draw: positions (frames, joints, 3) float32, meters, Y up; parents, -1 a root."""
+    """A motion to draw.
+
+    frame_rate: Hz; parents: (joints,) index of each joint's parent, -1 for a root; positions:
+    (frames, joints, 3) float32, meters, Y up.
+    """
 
     frame_rate: float
     joint_names: tuple[str, ...]
@@ -54,9 +58,9 @@ class DescriptorView:
 
 
 def motion(lib: Library, clip_id: str, fps: float | None = None, joints: str = "all") -> MotionView:
-    """A clip's motion, resampled by time to `fps`, all joints or Sun's 13 ("roles").
+    """A clip's motion, resampled by time to `fps` (default: its own rate).
 
-    Raises BadField, ClipNotFound, ClipNotReady.
+    joints: "all", or "roles" for the 13 joint roles. Raises BadField, ClipNotFound, ClipNotReady.
     """
     if joints not in ("all", "roles"):
         raise fields.bad_field("joints", "must be all or roles")

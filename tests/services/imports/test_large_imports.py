@@ -1,4 +1,4 @@
-"""Imports that are large, or say that they are: bounded, taking turns, and told in pages."""
+"""Large imports: they have limits, take turns, and list their files in pages."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def _unpack(lib: Library, claimed: ClaimedJob) -> JobRecord:
 
 
 def _bad(count: int) -> list[tuple[str, bytes]]:
-    """Files that become clips, and fail when they are analysed; each is another."""
+    """Different files that become clips and fail in their analysis."""
     return [(f"bad_{i:03d}.bvh", f"HIERARCHY\nROOT {i}\n".encode()) for i in range(count)]
 
 
@@ -58,7 +58,7 @@ def _manifest(rows: int) -> tuple[str, bytes]:
     return "manifest.csv", b"path\n" + b"".join(b"gone_%06d.bvh\n" % i for i in range(rows))
 
 
-def test_paths_that_a_manifest_names_in_vain_are_counted_and_the_first_are_listed(
+def test_missing_files_of_a_manifest_are_counted_and_the_first_are_listed(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     good = ("here.bvh", some_demo_clips[0].content)
@@ -107,9 +107,7 @@ def test_the_result_of_a_large_import_is_small_and_its_files_are_paged(lib: Libr
         jobs.list_files(lib, job.id, cursor="nonsense")
 
 
-def test_of_many_files_those_that_failed_are_told_first(
-    lib: Library, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_result_lists_failed_files_first(lib: Library, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(jobs, "FIRST_FILES", 3)
     files = [*_bad(4), ("z_empty.bvh", b""), ("y_notes.txt", b"notes")]
     imports.start_import(lib, archive_of(files), "a.zip")
@@ -118,8 +116,8 @@ def test_of_many_files_those_that_failed_are_told_first(
         clips.delete_clip(lib, clip.id)
     job = jobs.get_job(lib, claimed.job.id)
     assert job.result is not None
-    told = [(line["path"], line["outcome"]) for line in job.result["files"]]
-    assert told == [
+    listed = [(line["path"], line["outcome"]) for line in job.result["files"]]
+    assert listed == [
         ("bad_000.bvh", "deleted"),
         ("y_notes.txt", "failed"),
         ("z_empty.bvh", "failed"),
@@ -145,7 +143,7 @@ def test_files_without_a_clip_are_recorded_together(
     assert writes["write"] <= 1200 / import_register.MAX_PROBLEMS_TOGETHER + 3
 
 
-def test_small_files_that_are_no_motion_never_reach_the_disk(
+def test_small_files_that_are_no_motion_are_not_written_to_disk(
     lib: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     files = [("empty.bvh", b""), ("notes.txt", b"notes\n" * 10_000), ("good.bvh", _bad(1)[0][1])]
@@ -165,12 +163,12 @@ def test_small_files_that_are_no_motion_never_reach_the_disk(
 
 
 def _end_turns_with_each_file(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A clock that goes on by the length of a turn whenever it is read."""
+    """A clock that advances by the length of a turn with each reading."""
     ticks = itertools.count(step=imports.TURN_S)
     monkeypatch.setattr(imports, "time", SimpleNamespace(monotonic=ticks.__next__))
 
 
-def test_an_import_lets_another_go_first_and_goes_on_afterwards(
+def test_an_import_lets_another_import_run_and_continues_later(
     lib: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     _end_turns_with_each_file(monkeypatch)
@@ -194,7 +192,7 @@ def test_an_import_lets_another_go_first_and_goes_on_afterwards(
     assert len(clips.list_clips(lib).items) == 4
 
 
-def test_an_import_alone_goes_on_without_a_break(
+def test_a_single_import_runs_without_a_break(
     lib: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     _end_turns_with_each_file(monkeypatch)
@@ -218,7 +216,7 @@ def test_an_import_can_be_canceled_between_its_turns(
     assert clip.error["code"] == "canceled"
 
 
-def test_the_clips_of_a_large_import_stand_back_behind_those_of_a_small_one(
+def test_clips_of_a_small_import_go_before_those_of_a_large_one(
     lib: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(import_register, "FIRST_CLIPS", 2)
@@ -234,7 +232,7 @@ def test_the_clips_of_a_large_import_stand_back_behind_those_of_a_small_one(
     assert [names[clip_id] for clip_id in order].index("small") == 1
 
 
-def test_a_path_that_is_too_long_is_told_and_repeated_names_never_collide(
+def test_a_too_long_path_is_refused_and_repeated_names_do_not_collide(
     lib: Library, recwarn: pytest.WarningsRecorder
 ) -> None:
     long = "x" * 3000 + ".bvh"
@@ -255,7 +253,7 @@ def test_a_path_that_is_too_long_is_told_and_repeated_names_never_collide(
 
 
 @pytest.mark.parametrize("letter", ["é", "\N{GRINNING FACE}", "\x01", '"'])
-def test_the_cursor_after_a_long_path_is_taken(lib: Library, letter: str) -> None:
+def test_a_cursor_after_a_long_path_is_accepted(lib: Library, letter: str) -> None:
     names = [letter * 490 + f"{i}.bvh" for i in range(3)]
     imports.start_import(lib, archive_of((name, b"") for name in names), "a.zip")
     job = _unpack(lib, _claim(lib))

@@ -1,4 +1,4 @@
-"""Which frame rates can be asked for, and how much work for one call."""
+"""The limits of a requested frame rate, and of the work of one call."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def rate(lib: Library, clip: ClipRecord, fps: float | None) -> float:
 
 
 @pytest.mark.parametrize("fps", [1.0, 29.97, 120.0, 800.0])
-def test_rates_within_the_bounds_are_taken(
+def test_rates_within_the_bounds_are_accepted(
     ready_library: Library, clip: ClipRecord, fps: float
 ) -> None:
     assert rate(ready_library, clip, fps) == fps
@@ -58,7 +58,7 @@ def test_too_many_frames_are_refused(ready_library: Library, clip: ClipRecord) -
 
 
 @pytest.mark.parametrize("fps", [60.0, 240.0])
-def test_too_much_work_is_refused_on_both_sides_of_the_filter(
+def test_too_many_positions_before_or_after_resampling_are_refused(
     ready_library: Library, clip: ClipRecord, fps: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     positions = 600 * 60 * max(fps, 120.0)
